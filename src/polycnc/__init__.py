@@ -1,0 +1,59 @@
+"""A virtual CNC and motion controller.
+
+Run part programs on a simulated machine, cycle by cycle, as a library or with the ``polycnc`` command::
+
+    import polycnc
+
+    result = polycnc.run("part.nc", machine="mill3", trace=True)
+    print(result.time_s, result.extents_mm, result.trace.setpoint[-1])
+
+The names below are loaded when they are first used, so that importing the package stays quick.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+__version__ = "0.1.0.dev0"
+
+if TYPE_CHECKING:
+    from polycnc.errors import AlarmError, ConfigurationError, PolycncError, ProgramError, UsageError
+    from polycnc.machine import Machine, MachineConfig, load_machine
+    from polycnc.runner import Alarm, RunResult, Trace, check, plot, run, verify_trace
+
+_HOME = {
+    "errors": ("AlarmError", "ConfigurationError", "PolycncError", "ProgramError", "UsageError"),
+    "machine": ("Machine", "MachineConfig", "load_machine"),
+    "runner": ("Alarm", "RunResult", "Trace", "check", "plot", "run", "verify_trace"),
+}
+
+__all__ = [
+    "Alarm",
+    "AlarmError",
+    "ConfigurationError",
+    "Machine",
+    "MachineConfig",
+    "PolycncError",
+    "ProgramError",
+    "RunResult",
+    "Trace",
+    "UsageError",
+    "check",
+    "load_machine",
+    "plot",
+    "run",
+    "verify_trace",
+]
+
+
+def __getattr__(name: str) -> Any:
+    from importlib import import_module
+
+    for home, names in _HOME.items():
+        if name in names:
+            return getattr(import_module(f"polycnc.{home}"), name)
+    raise AttributeError(f"module 'polycnc' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

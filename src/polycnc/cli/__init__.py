@@ -1,0 +1,5 @@
+"""The ``polycnc`` command: thin commands over the library."""
+
+from polycnc.cli._app import main
+
+__all__ = ["main"]

@@ -1,0 +1,90 @@
+"""The error tree: what can go wrong, where it is, and what to do about it.
+
+Every message has the same shape: the first line says what is wrong and where, the last line what to do.
+Classes that stand for a usual Python mistake inherit from that one too, so ``except ValueError`` works.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SourcePosition:
+    """Name a place in a text file: 1-based line and column, and the line itself."""
+
+    file: str
+    line: int
+    column: int
+    text: str
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+    def excerpt(self) -> str:
+        """Return the line with a caret below the column."""
+        lead = "".join("\t" if char == "\t" else " " for char in self.text[: self.column - 1])
+        return f"    {self.text}\n    {lead}^"
+
+
+class PolycncError(Exception):
+    """Root of every error that polycnc raises on purpose."""
+
+    def __init__(self, what: str, *, hint: str = "") -> None:
+        super().__init__(what)
+        self.what = what
+        self.hint = hint
+        self.result: object | None = None  # what had been done until then, where there is such a thing
+
+    def __str__(self) -> str:
+        return f"{self.what}\n{self.hint}" if self.hint else self.what
+
+
+class UsageError(PolycncError, ValueError):
+    """A call, an option or a configuration that cannot be meant."""
+
+
+class ConfigurationError(UsageError):
+    """A configuration file with an unknown key, a missing key or a value out of range."""
+
+    def __init__(self, what: str, *, hint: str = "", position: SourcePosition | None = None) -> None:
+        super().__init__(what, hint=hint)
+        self.position = position
+
+    def __str__(self) -> str:
+        return _placed(self.what, self.position, self.hint)
+
+
+class ProgramError(PolycncError):
+    """A part program that cannot be run as written."""
+
+    def __init__(
+        self, what: str, *, code: str = "", position: SourcePosition | None = None, hint: str = ""
+    ) -> None:
+        super().__init__(what, hint=hint)
+        self.code = code
+        self.position = position
+
+    def __str__(self) -> str:
+        what = f"{self.what} [{self.code}]" if self.code else self.what
+        return _placed(what, self.position, self.hint)
+
+
+class AlarmError(PolycncError):
+    """A machine that has stopped: a limit, a following error, an emergency stop."""
+
+    def __init__(self, what: str, *, code: str = "", time_s: float = 0.0, hint: str = "") -> None:
+        super().__init__(what, hint=hint)
+        self.code = code
+        self.time_s = time_s
+
+
+class ProtocolError(PolycncError):
+    """A peer that sent something outside its protocol."""
+
+
+def _placed(what: str, position: SourcePosition | None, hint: str) -> str:
+    lines = [what] if position is None else [f"{position}: {what}", position.excerpt()]
+    if hint:
+        lines.append(hint)
+    return "\n".join(lines)

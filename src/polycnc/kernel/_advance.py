@@ -1,0 +1,212 @@
+"""Run control cycles: every source gives its part, the sum is the setpoint, the servos follow, the record is kept.
+
+`advance` never enters Python between two cycles. A controller with logic of its own per cycle writes a compiled loop
+around `cycle`.
+"""
+
+from __future__ import annotations
+
+from polycnc.kernel._curve import curve_cycle
+from polycnc.kernel._follower import follower_cycle
+from polycnc.kernel._interpolate import EVENT, RESTED, path_cycle, settle, skip_path
+from polycnc.kernel._jit import compiled, entry
+from polycnc.kernel._path import READY
+from polycnc.kernel._point_to_point import ADDED, MAIN, place_axis, profile_cycle
+from polycnc.kernel._recorder import is_full, record
+from polycnc.kernel._segments import RAPID
+from polycnc.kernel._servo import servo_cycle, servo_place
+from polycnc.kernel._state import (
+    FOLLOWING_ERROR,
+    PATH_EVENT,
+    PATH_RESTED,
+    POINT_TO_POINT,
+    PROFILE_ENDED,
+    QUEUE_LOW,
+    RECORDER_FULL,
+    SOFT_LIMIT,
+    SWITCH_EDGE,
+    TABLE_EMPTY,
+    KernelState,
+)
+from polycnc.kernel._switches import SOFT_INSIDE, SWITCHES_PER_AXIS, soft_limit, switches_cycle
+from polycnc.kernel._table import table_cycle
+
+
+@compiled
+def _raise(state: KernelState, reason: int, axis: int) -> None:
+    clock = state.clock[0]
+    clock["raised"] |= reason
+    if axis >= 0:
+        clock["axis"] = axis
+
+
+@compiled
+def _run_paths(state: KernelState, dt: float) -> None:
+    for g in range(state.paths.row.shape[0]):
+        if state.paths.row[g]["state"] == 0:
+            continue
+        result = path_cycle(state.seg, state.paths, g, dt)
+        while result == RESTED and settle(state.seg, state.paths, g) == EVENT:
+            _raise(state, PATH_EVENT, -1)
+            if state.clock[0]["mask"] & PATH_EVENT:
+                break
+        row = state.paths.row[g]
+        if result == RESTED and row["state"] == READY and row["head"] >= row["tail"]:
+            _raise(state, PATH_RESTED, -1)
+        if row["closed"] == 0 and row["planned"] - row["head"] <= state.clock[0]["low_water"]:
+            _raise(state, QUEUE_LOW, -1)
+
+
+@compiled
+def _position_sources(state: KernelState, dt: float) -> None:
+    """Put what owns each axis, and what is added to it, into the setpoints."""
+    for i in range(state.setpoint.shape[0]):
+        if profile_cycle(state.ptp, ADDED, i, dt):
+            _raise(state, PROFILE_ENDED, i)
+        if state.owner[i] == POINT_TO_POINT:
+            if profile_cycle(state.ptp, MAIN, i, dt):
+                _raise(state, PROFILE_ENDED, i)
+            state.base[i] = state.ptp.row[MAIN, i]["position"]
+    for g in range(state.paths.row.shape[0]):
+        for m in range(state.paths.axis.shape[1]):
+            axis = state.paths.axis[g, m]
+            if axis >= 0 and state.owner[axis] == g:
+                state.base[axis] = state.paths.position[g, m]
+    for i in range(state.setpoint.shape[0]):
+        state.setpoint[i] = state.base[i] + state.ptp.row[ADDED, i]["position"]
+
+
+@compiled
+def _coupled_sources(state: KernelState) -> None:
+    """Add tables, gears and curves, in slot order, so that a chain of couplings acts within the cycle."""
+    table = state.table
+    for k in range(table.running.shape[0]):
+        running = table.running[k]
+        if running != 0 and table_cycle(k, table) == 0:
+            _raise(state, TABLE_EMPTY, -1)
+        for column in range(table.axis.shape[1]):
+            axis = table.axis[k, column]
+            if axis >= 0:
+                state.setpoint[axis] += table.value[k, column]
+    for k in range(state.follower.slave.shape[0]):
+        state.setpoint[state.follower.slave[k]] += follower_cycle(
+            k, state.follower, state.setpoint, state.servo.actual
+        )
+    for k in range(state.curve.slave.shape[0]):
+        if state.curve.length[k] > 0:
+            state.setpoint[state.curve.slave[k]] += curve_cycle(
+                k, state.curve, state.setpoint, state.servo.actual
+            )
+
+
+@compiled
+def _follow(state: KernelState, i: int, last_setpoint: float, dt: float) -> None:
+    """Let the servo of axis `i` follow its setpoint, and watch its switches and limits."""
+    velocity = (state.setpoint[i] - last_setpoint) / dt
+    state.acceleration[i] = (velocity - state.velocity[i]) / dt
+    state.velocity[i] = velocity
+    last_actual = state.servo.actual[i]
+    state.servo.profile_at_rest[i] = 1 if velocity == 0.0 else 0
+    servo_cycle(i, state.servo, state.plant, state.setpoint[i], velocity, state.acceleration[i], dt)
+    if state.servo.error_tripped[i] != 0:
+        _raise(state, FOLLOWING_ERROR, i)
+    switches_cycle(i, state.switches, state.servo.actual[i], last_actual)
+    for j in range(SWITCHES_PER_AXIS):
+        if state.switches.rising[i, j] != 0 or state.switches.falling[i, j] != 0:
+            _raise(state, SWITCH_EDGE, i)
+    if soft_limit(i, state.switches, state.setpoint[i]) != SOFT_INSIDE:
+        _raise(state, SOFT_LIMIT, i)
+
+
+@compiled
+def cycle(state: KernelState) -> None:
+    """Run one control cycle."""
+    clock = state.clock[0]
+    dt = clock["dt"]
+    clock["raised"] = 0
+    clock["axis"] = -1
+    last = state.work[0]
+    for i in range(last.shape[0]):
+        last[i] = state.setpoint[i]
+    _run_paths(state, dt)
+    _position_sources(state, dt)
+    _coupled_sources(state)
+    for i in range(last.shape[0]):
+        _follow(state, i, last[i], dt)
+    clock["cycle"] += 1
+    main = clock["main_path"]
+    path = state.paths.row[main]
+    time_s = clock["cycle"] * dt
+    rapid = path["flags"] & RAPID
+    record(state.recorder, time_s, path["tag"], path["speed"], rapid, state.setpoint, state.servo.actual)
+    if is_full(state.recorder):
+        _raise(state, RECORDER_FULL, -1)
+
+
+@entry
+def advance(state: KernelState, cycles: int) -> int:
+    """Run up to `cycles` control cycles; return how many were run.
+
+    Stops after a cycle in which a reason in the clock's `mask` was met; the clock's `raised` tells which. Stops at
+    once, with 0, when a path stands at an event that has not been reported yet.
+    """
+    clock = state.clock[0]
+    if clock["mask"] & PATH_EVENT:
+        clock["raised"] = 0
+        for g in range(state.paths.row.shape[0]):
+            if settle(state.seg, state.paths, g) == EVENT:
+                _raise(state, PATH_EVENT, -1)
+                return 0
+    for done in range(cycles):
+        cycle(state)
+        if clock["raised"] & clock["mask"]:
+            return done + 1
+    return cycles
+
+
+@entry
+def skip(state: KernelState, g: int, until: int) -> int:
+    """Go along path `g` in closed form up to segment count `until` or the next event; return the cycles it took.
+
+    The clock goes on as if all cycles had been run; servos are taken as ideal and nothing is recorded.
+    """
+    clock = state.clock[0]
+    cycles = skip_path(state.seg, state.paths, g, clock["dt"], until)
+    clock["cycle"] += cycles
+    for m in range(state.paths.axis.shape[1]):
+        axis = state.paths.axis[g, m]
+        if axis >= 0 and state.owner[axis] == g:
+            state.base[axis] = state.paths.position[g, m]
+            state.setpoint[axis] = state.base[axis]
+    return cycles
+
+
+@entry
+def give_to_path(state: KernelState, g: int) -> None:
+    """Hand the axes of path `g` over to it, at rest where they are; its queue must be empty."""
+    for m in range(state.paths.axis.shape[1]):
+        axis = state.paths.axis[g, m]
+        if axis >= 0:
+            state.paths.position[g, m] = state.base[axis]
+            state.paths.queued[g, m] = state.base[axis]
+            state.owner[axis] = g
+
+
+@entry
+def give_to_point_to_point(state: KernelState, axis: int) -> None:
+    """Hand an axis over to its point-to-point source, at rest where it is."""
+    place_axis(state.ptp, MAIN, axis, state.base[axis])
+    state.owner[axis] = POINT_TO_POINT
+
+
+@entry
+def place_machine(state: KernelState, axis: int, position: float) -> None:
+    """Put an axis at rest at `position`: setpoint, actual position and point-to-point source alike."""
+    place_axis(state.ptp, MAIN, axis, position)
+    place_axis(state.ptp, ADDED, axis, 0.0)
+    state.owner[axis] = POINT_TO_POINT
+    state.base[axis] = position
+    state.setpoint[axis] = position
+    state.velocity[axis] = 0.0
+    state.acceleration[axis] = 0.0
+    servo_place(axis, state.servo, state.plant, position)

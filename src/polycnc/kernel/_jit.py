@@ -1,0 +1,102 @@
+"""Compile kernel functions with numba, cached on disk under a stamp of all compiled sources.
+
+numba's own cache notices a change in the file of a function but not in the files of the functions it calls.
+The stamp covers every module of the package, so a stale callee is never loaded.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, ParamSpec, TypeVar, cast
+
+import numba
+from numba.core.registry import CPUDispatcher
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+# numba's own annotations leave out the options and settings that are used here.
+_CONFIG: Any = numba.config
+_njit: Any = numba.njit
+
+OPEN_INTERNALS = bool(os.environ.get("POLYCNC_OPEN_INTERNALS"))
+"""Whether Python may call functions that are not entries: tests may, at the price of longer compilation."""
+
+
+def _source_stamp(package: Path) -> str:
+    digest = hashlib.blake2b(digest_size=8)
+    for source in sorted(package.rglob("*.py")):
+        info = source.stat()
+        digest.update(f"{source.relative_to(package)}:{info.st_size}:{info.st_mtime_ns};".encode())
+    return digest.hexdigest()
+
+
+def _cache_folder() -> Path:
+    """Return the folder of this source tree's compiled functions (not created yet)."""
+    package = Path(__file__).resolve().parents[1]
+    base = (
+        os.environ.get("POLYCNC_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    )
+    place = hashlib.blake2b(str(package).encode(), digest_size=4).hexdigest()
+    kind = "-open" if OPEN_INTERNALS else ""
+    return Path(base) / "polycnc" / f"{place}-{_source_stamp(package)}{kind}"
+
+
+CACHE_FOLDER = _cache_folder()
+
+
+def is_cold() -> bool:
+    """Tell whether the compiled functions still have to be made on this machine."""
+    return not _CONFIG.DISABLE_JIT and not any(CACHE_FOLDER.rglob("*.nbi"))
+
+
+class _Internal(CPUDispatcher):
+    """A compiled function without a wrapper: numba would crash if Python called it."""
+
+    def __call__(self, *args: object, **kwargs: object) -> object:
+        raise TypeError(
+            f"{self.py_func.__name__} is internal to compiled code: decorate it with `entry`, "
+            "or set POLYCNC_OPEN_INTERNALS=1 in tests"
+        )
+
+
+def compiled(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` for compiled callers; IEEE arithmetic, so it equals its uncompiled self bit by bit.
+
+    Python cannot call it: the wrapper for that costs more compile time than most functions do (see `entry`). It
+    cannot allocate arrays: without numba's reference counts a control cycle takes a tenth of the time (see
+    `allocating`).
+    """
+    return _internal(function, counted=False)
+
+
+def allocating(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` for compiled callers, as `compiled` does, but allowed to allocate arrays."""
+    return _internal(function, counted=True)
+
+
+def _internal(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
+    if OPEN_INTERNALS or _CONFIG.DISABLE_JIT:
+        return _cached(function, counted=counted)
+    wrapped = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **wrapped)(function)
+    dispatcher.__class__ = _Internal
+    return cast("Callable[P, R]", dispatcher)
+
+
+def entry(function: Callable[P, R]) -> Callable[P, R]:
+    """Compile `function` for Python and compiled callers, and keep the result on disk."""
+    return _cached(function, counted=True)
+
+
+def _cached(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
+    before = _CONFIG.CACHE_DIR
+    _CONFIG.CACHE_DIR = str(CACHE_FOLDER)
+    try:
+        dispatcher = _njit(cache=True, error_model="numpy", fastmath=False, _nrt=counted)(function)
+        return cast("Callable[P, R]", dispatcher)
+    finally:
+        _CONFIG.CACHE_DIR = before

@@ -1,0 +1,239 @@
+"""The channel queue: a ring of path segments in columns, and what a segment is made of.
+
+A slot holds one segment of any kind; the columns are shared by all paths, path `g` owning a run of slots (see
+`_path`). Speeds are along the path; the path length counts the feed axes of a segment only, the others ride along.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
+from polycnc.kernel._jit import allocating, compiled
+from polycnc.kernel._spline import Splines, make_splines, spline_next_corner, spline_point
+
+LINE = 0
+ARC = 1  # circle in two axes; every other axis moves linearly with the angle (helix)
+CIRCLE3D = 2
+SPLINE = 3
+WAIT = 4  # no motion: a dwell, or an event at a point of the path
+
+RAPID = 1  # flag: positioning at the axes' speed
+STOP = 2  # flag: come to rest at the end (exact stop)
+
+GEO = 16
+# Geometry of an ARC.
+CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, ANGLE_START, SWEEP, IN_PLANE = 0, 1, 2, 3, 4, 5, 6
+# Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point behind it.
+CIRCLE3D_RADIUS, CIRCLE3D_LENGTH = 10, 11
+WORK_POINT = 13
+# Geometry of a SPLINE, a WAIT.
+SPLINE_INDEX = 0
+WAIT_S, WAIT_EVENT = 0, 1
+
+TINY = 1e-12
+
+Floats = npt.NDArray[np.float64]
+
+
+SEGMENT_ROW = np.dtype(
+    [
+        ("length", np.float64),
+        ("feed", np.float64),  # programmed path speed, inf for rapids
+        ("end_speed", np.float64),  # prescribed speed at the end, or negative: the look-ahead decides
+        ("cap", np.float64),  # highest path speed that feed and axes allow
+        ("full_accel", np.float64),  # path acceleration that the axes allow, before corners take their share
+        ("accel", np.float64),
+        ("junction", np.float64),  # highest speed through the end
+        ("share", np.float64),  # part of the acceleration that the corner at the end uses up
+        ("out", np.float64),  # planned speed at the end
+        ("tag", np.int32),  # the caller's name for the segment: the line of its block
+        ("kind", np.int8),
+        ("flags", np.int8),
+    ],
+    align=True,
+)
+
+
+class Segments(NamedTuple):
+    """S slots for segments of n axes: a row of numbers each, and the geometry in columns.
+
+    Few arrays, because every array that a compiled function takes costs compile time.
+    """
+
+    row: npt.NDArray[np.void]  # [S] of SEGMENT_ROW
+    start: Floats  # [S, n]
+    end: Floats  # [S, n]
+    plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC (first two) or a CIRCLE3D
+    geo: Floats  # [S, GEO]
+    splines: Splines
+
+
+def make_segments(slots: int, axes: int, splines: Splines | None = None) -> Segments:
+    """Allocate `slots` empty segments of `axes` axes."""
+    return Segments(
+        row=np.zeros(slots, SEGMENT_ROW),
+        start=np.zeros((slots, axes)),
+        end=np.zeros((slots, axes)),
+        plane=np.zeros((slots, 3), np.int8),
+        geo=np.zeros((slots, GEO)),
+        splines=make_splines(axes, 1, 1, 1) if splines is None else splines,
+    )
+
+
+@compiled
+def set_common(seg: Segments, k: int, start: Floats, end: Floats, feed: float, flags: int, tag: int) -> None:
+    """Fill what every kind of segment has."""
+    for i in range(start.shape[0]):
+        seg.start[k, i] = start[i]
+        seg.end[k, i] = end[i]
+    seg.row[k]["feed"] = feed
+    seg.row[k]["flags"] = flags
+    seg.row[k]["tag"] = tag
+    seg.row[k]["end_speed"] = -1.0
+
+
+@compiled
+def set_line(
+    seg: Segments,
+    k: int,
+    feed_axis: npt.NDArray[np.uint8],
+    start: Floats,
+    end: Floats,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Fill slot `k` with a straight line; False if it has no length."""
+    counted = 0.0
+    riding = 0.0
+    for i in range(start.shape[0]):
+        d = end[i] - start[i]
+        if feed_axis[i] != 0:
+            counted += d * d
+        else:
+            riding += d * d
+    length = math.sqrt(counted)
+    if length < TINY:  # only axes that otherwise ride along: the feed is theirs
+        length = math.sqrt(riding)
+    if length < TINY:
+        return False
+    set_common(seg, k, start, end, feed, flags, tag)
+    seg.row[k]["kind"] = LINE
+    seg.row[k]["length"] = length
+    return True
+
+
+@compiled
+def set_arc(
+    seg: Segments,
+    k: int,
+    feed_axis: npt.NDArray[np.uint8],
+    start: Floats,
+    end: Floats,
+    axis_p: int,
+    axis_q: int,
+    center_p: float,
+    center_q: float,
+    sweep: float,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Fill slot `k` with an arc about (center_p, center_q) through `sweep` rad, positive from axis p to axis q.
+
+    The radius goes linearly from the start's to the end's, so a rounded end point is met exactly.
+    """
+    dp, dq = start[axis_p] - center_p, start[axis_q] - center_q
+    radius_start = math.sqrt(dp * dp + dq * dq)
+    ep, eq = end[axis_p] - center_p, end[axis_q] - center_q
+    radius_end = math.sqrt(ep * ep + eq * eq)
+    in_plane = abs(sweep) * 0.5 * (radius_start + radius_end)
+    if in_plane < TINY or radius_start < TINY or radius_end < TINY:
+        return False
+    counted = in_plane * in_plane
+    for i in range(start.shape[0]):
+        if i != axis_p and i != axis_q and feed_axis[i] != 0:
+            d = end[i] - start[i]
+            counted += d * d
+    set_common(seg, k, start, end, feed, flags, tag)
+    seg.row[k]["kind"] = ARC
+    seg.plane[k, 0] = axis_p
+    seg.plane[k, 1] = axis_q
+    seg.row[k]["length"] = math.sqrt(counted)
+    seg.geo[k, CENTER_P] = center_p
+    seg.geo[k, CENTER_Q] = center_q
+    seg.geo[k, RADIUS_START] = radius_start
+    seg.geo[k, RADIUS_END] = radius_end
+    seg.geo[k, ANGLE_START] = math.atan2(dq, dp)
+    seg.geo[k, SWEEP] = sweep
+    seg.geo[k, IN_PLANE] = in_plane / seg.row[k]["length"]
+    return True
+
+
+@allocating
+def set_circle3d(
+    seg: Segments,
+    k: int,
+    start: Floats,
+    axis_p: int,
+    axis_q: int,
+    axis_r: int,
+    center: Floats,
+    normal: Floats,
+    sweep_deg: float,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Fill slot `k` with a circle in three axes through `start` about `center`, by the right hand about `normal`.
+
+    `sweep_deg` may be several turns; axes besides the three stay. False if there is no such circle.
+    """
+    three = np.empty(3)
+    three[0], three[1], three[2] = start[axis_p], start[axis_q], start[axis_r]
+    geo = seg.geo[k]
+    if circle3d_setup(three, center, normal, sweep_deg, geo) != 0 or geo[CIRCLE3D_LENGTH] < TINY:
+        return False
+    end = start.copy()
+    circle3d_point(geo, 1.0, three)
+    end[axis_p], end[axis_q], end[axis_r] = three[0], three[1], three[2]
+    set_common(seg, k, start, end, feed, flags, tag)
+    seg.row[k]["kind"] = CIRCLE3D
+    seg.plane[k, 0], seg.plane[k, 1], seg.plane[k, 2] = axis_p, axis_q, axis_r
+    seg.row[k]["length"] = geo[CIRCLE3D_LENGTH]
+    return True
+
+
+@allocating
+def set_spline(seg: Segments, k: int, index: int, feed: float, flags: int, tag: int) -> bool:
+    """Fill slot `k` with spline `index` of the store; its first point must be where the path stands.
+
+    False if it has no length, or a corner inside: a segment is smooth, so a curve with corners is cut there.
+    """
+    length = seg.splines.length[index]
+    if length < TINY or spline_next_corner(seg.splines, index, 0.0) < length:
+        return False
+    point = np.empty(seg.start.shape[1])
+    spline_point(seg.splines, index, 0.0, point)
+    seg.start[k, :] = point
+    spline_point(seg.splines, index, length, point)
+    set_common(seg, k, seg.start[k].copy(), point, feed, flags, tag)
+    seg.row[k]["kind"] = SPLINE
+    seg.row[k]["length"] = length
+    seg.geo[k, SPLINE_INDEX] = index
+    return True
+
+
+@compiled
+def set_wait(seg: Segments, k: int, at: Floats, duration: float, event: int, tag: int) -> None:
+    """Fill slot `k` with a wait at rest; `event` >= 0 is reported when the path gets there."""
+    set_common(seg, k, at, at, 0.0, STOP, tag)
+    seg.row[k]["kind"] = WAIT
+    seg.row[k]["length"] = 0.0
+    seg.geo[k, WAIT_S] = max(duration, 0.0)
+    seg.geo[k, WAIT_EVENT] = event

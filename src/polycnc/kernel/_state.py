@@ -1,0 +1,113 @@
+"""Everything that one machine is made of in the control cycle, as one tuple of arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel._curve import Curve, make_curve
+from polycnc.kernel._follower import Follower, make_follower
+from polycnc.kernel._limits import AxisLimits, make_limits
+from polycnc.kernel._path import Paths, make_paths
+from polycnc.kernel._plant import Plant, make_plant
+from polycnc.kernel._point_to_point import PointToPoint, make_point_to_point
+from polycnc.kernel._recorder import Recorder, make_recorder
+from polycnc.kernel._segments import Segments, make_segments
+from polycnc.kernel._servo import Servo, make_servo
+from polycnc.kernel._switches import Switches, make_switches
+from polycnc.kernel._table import Table, make_table
+
+Floats = npt.NDArray[np.float64]
+
+# Reasons to stop, bits of `mask` and `raised`.
+QUEUE_LOW = 1  # few planned segments are left of a path that is not closed
+PATH_RESTED = 2  # a path came to rest and has nothing queued
+PROFILE_ENDED = 4
+SWITCH_EDGE = 8
+SOFT_LIMIT = 16  # a setpoint is beyond a software limit
+FOLLOWING_ERROR = 32
+RECORDER_FULL = 64
+PATH_EVENT = 128  # a path stands at an event
+TABLE_EMPTY = 256
+
+CLOCK_ROW = np.dtype(
+    [
+        ("cycle", np.int64),
+        ("dt", np.float64),
+        ("mask", np.int64),  # reasons that stop `advance`
+        ("raised", np.int64),  # reasons met in its last cycle
+        ("axis", np.int64),  # the axis of the last axis reason, -1 none
+        ("low_water", np.int64),  # planned segments at which QUEUE_LOW is raised
+        ("main_path", np.int64),  # the path whose block and feed are recorded
+    ],
+    align=True,
+)
+
+# Who gives an axis its position; a path g is g.
+POINT_TO_POINT = -1
+
+
+class KernelState(NamedTuple):
+    """A machine of n axes; `setpoint` is the sum of what its sources give."""
+
+    clock: npt.NDArray[np.void]  # [1] of CLOCK_ROW
+    owner: npt.NDArray[np.int64]  # [n] POINT_TO_POINT or a path
+    base: Floats  # [n] what the owner gives
+    setpoint: Floats  # [n]
+    velocity: Floats  # [n] of the setpoint
+    acceleration: Floats  # [n] of the setpoint
+    ptp: PointToPoint
+    paths: Paths
+    seg: Segments
+    limits: AxisLimits
+    table: Table
+    follower: Follower
+    curve: Curve
+    servo: Servo
+    plant: Plant
+    switches: Switches
+    recorder: Recorder
+    work: Floats  # [2, n] scratch
+
+
+def make_state(
+    axes: int,
+    *,
+    cycle_s: float = 0.001,
+    paths: int = 1,
+    segments: int = 1 << 16,
+    tables: int = 1,
+    table_rows: int = 1,
+    followers: int = 1,
+    curves: int = 1,
+    curve_points: int = 2,
+    record_cycles: int = 0,
+    record_actual: bool = False,
+) -> KernelState:
+    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits."""
+    clock = np.zeros(1, CLOCK_ROW)
+    clock["dt"] = cycle_s
+    clock["axis"] = -1
+    clock["low_water"] = 1024
+    return KernelState(
+        clock=clock,
+        owner=np.full(axes, POINT_TO_POINT, np.int64),
+        base=np.zeros(axes),
+        setpoint=np.zeros(axes),
+        velocity=np.zeros(axes),
+        acceleration=np.zeros(axes),
+        ptp=make_point_to_point(axes),
+        paths=make_paths(paths, segments, axes),
+        seg=make_segments(segments, axes),
+        limits=make_limits(axes),
+        table=make_table(tables, axes, table_rows),
+        follower=make_follower(followers),
+        curve=make_curve(curves, curve_points),
+        servo=make_servo(axes),
+        plant=make_plant(axes),
+        switches=make_switches(axes),
+        recorder=make_recorder(record_cycles, axes, record_actual),
+        work=np.zeros((2, axes)),
+    )

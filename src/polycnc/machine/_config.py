@@ -1,0 +1,236 @@
+"""What a machine is: axes, path, times, tools, offsets and I/O, as one frozen, fully checked value.
+
+A key that nothing reads does not exist here, so a file cannot hold a setting without effect.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from datetime import datetime
+from typing import Annotated, Literal, TypeAlias
+
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+
+from polycnc.errors import UsageError
+from polycnc.machine._config_axis import AnyAxis, NotNegative, Positive, Share
+from polycnc.machine._toml import StrictModel, problem
+from polycnc.machine._toml_locator import KeyPath
+
+EPOCH = datetime(2000, 1, 1)
+WORK_OFFSET = re.compile(r"G[12]?5[4-9]")
+IO_ADDRESS = re.compile(r"(IW|OW|I|O)(0|[1-9][0-9]*)")
+Count: TypeAlias = Annotated[int, Field(ge=0, le=65536)]
+
+
+def _number_key(value: object) -> object:
+    """Turn the key of a numbered table, which TOML reads as text, into its number."""
+    if isinstance(value, str):
+        if not re.fullmatch(r"0|[1-9][0-9]*", value):
+            raise problem(
+                f"'{value}' is not a number", hint="write the number of the tool, for example [tools.12]"
+            )
+        return int(value)
+    return value
+
+
+def _local(value: datetime) -> datetime:
+    if value.tzinfo is not None:
+        raise problem(
+            "the machine's date and time have no time zone", hint="write it like 2000-01-01T00:00:00"
+        )
+    return value
+
+
+def _look_ahead(value: object) -> object:
+    if value == "unlimited" or (isinstance(value, int) and not isinstance(value, bool) and value >= 2):
+        return value
+    raise problem("'look_ahead_blocks' must be a whole number from 2 up", hint='or write "unlimited"')
+
+
+def _some_axes(value: tuple[AnyAxis, ...]) -> tuple[AnyAxis, ...]:
+    if not value:
+        raise problem("the machine has no axis", hint="add a table [[axis]] for each axis")
+    return value
+
+
+class PathConfig(StrictModel):
+    """Describe how blocks are joined to a path."""
+
+    look_ahead_blocks: Annotated[int | Literal["unlimited"], BeforeValidator(_look_ahead)] = Field(
+        default="unlimited", description='How many blocks the look-ahead sees: 2 or more, or "unlimited".'
+    )
+    path_tolerance_mm: NotNegative = Field(
+        default=0.0, description="How far the path may leave a corner, mm."
+    )
+    jerkrel: Share = Field(
+        default=0.0,
+        description="Share of each ramp that is S-shaped; 0 is a trapezoid. The mean acceleration stays.",
+    )
+
+    @property
+    def look_ahead_limit(self) -> int | None:
+        """Return the number of blocks the look-ahead sees, None if unlimited."""
+        return None if self.look_ahead_blocks == "unlimited" else self.look_ahead_blocks
+
+
+class TimesConfig(StrictModel):
+    """Say how long the functions take that are not motion."""
+
+    tool_change_s: NotNegative = Field(default=0.0, description="Time of a tool change, s.")
+    spindle_start_s: NotNegative = Field(
+        default=0.0, description="Time the spindle takes to start or stop, s."
+    )
+    auxiliary_s: NotNegative = Field(default=0.0, description="Time of any other auxiliary function, s.")
+
+
+class SpindleConfig(StrictModel):
+    """Describe the spindle."""
+
+    max_rpm: Positive = Field(default=24000.0, description="Highest spindle speed, revolutions per minute.")
+
+
+class ToolConfig(StrictModel):
+    """Describe one tool."""
+
+    length_mm: float = Field(default=0.0, description="Length of the tool.")
+    radius_mm: NotNegative = Field(default=0.0, description="Radius of the tool.")
+    wear_length_mm: float = Field(default=0.0, description="Added to the length.")
+    wear_radius_mm: float = Field(default=0.0, description="Added to the radius.")
+    description: str = Field(default="", description="Any text.")
+
+
+class IoConfig(StrictModel):
+    """Size the I/O image and name points of it."""
+
+    inputs: Count = Field(default=64, description="Number of input bits.")
+    outputs: Count = Field(default=64, description="Number of output bits.")
+    input_words: Count = Field(default=16, description="Number of input words.")
+    output_words: Count = Field(default=16, description="Number of output words.")
+    points: dict[str, str] = Field(
+        default={}, description='Name of a point = its address: "I3", "O5" (bits), "IW2", "OW1" (words).'
+    )
+
+    @model_validator(mode="after")
+    def _points_exist(self) -> IoConfig:
+        sizes = {"I": self.inputs, "O": self.outputs, "IW": self.input_words, "OW": self.output_words}
+        for name, address in self.points.items():
+            found = IO_ADDRESS.fullmatch(address)
+            if found is None:
+                raise problem(
+                    f"'{address}' is not an address",
+                    hint='write it like "I3", "O5", "IW2" or "OW1"',
+                    at=("points", name),
+                )
+            if int(found[2]) >= sizes[found[1]]:
+                raise problem(
+                    f"'{address}' does not exist: there are {sizes[found[1]]} of this sort",
+                    hint="numbers start at 0; raise the size in [io] or use a lower number",
+                    at=("points", name),
+                )
+            if IO_ADDRESS.fullmatch(name):
+                raise problem(
+                    f"'{name}' is an address, not a name", hint="use another name", at=("points", name)
+                )
+        return self
+
+
+class MachineConfig(StrictModel):
+    """Describe a machine completely; see docs/reference/machine-file.md for the keys."""
+
+    name: str = Field(min_length=1, description="Name of the machine.")
+    description: str = Field(default="", description="Any text.")
+    cycle_s: Annotated[float, Field(gt=0, le=1)] = Field(
+        default=0.001, description="Length of a control cycle, s."
+    )
+    epoch: Annotated[datetime, AfterValidator(_local)] = Field(
+        default=EPOCH, description="Date and time of the machine's clock at cycle 0."
+    )
+    axes: Annotated[tuple[AnyAxis, ...], AfterValidator(_some_axes)] = Field(
+        alias="axis", description="The axes, see `[[axis]]`."
+    )
+    path: PathConfig = Field(default=PathConfig(), description="How blocks are joined, see `[path]`.")
+    times: TimesConfig = Field(default=TimesConfig(), description="Times of functions, see `[times]`.")
+    spindle: SpindleConfig = Field(default=SpindleConfig(), description="The spindle, see `[spindle]`.")
+    tools: dict[Annotated[int, BeforeValidator(_number_key)], ToolConfig] = Field(
+        default={}, description="The tools by number, see `[tools.N]`."
+    )
+    offsets: dict[str, dict[str, float]] = Field(
+        default={},
+        description="Work offsets G54 to G59, G154 to G159, G254 to G259, like `G54 = { X = 10, Y = 0 }`.",
+    )
+    start: dict[str, float] = Field(
+        default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
+    )
+    io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")
+
+    @model_validator(mode="after")
+    def _fits_together(self) -> MachineConfig:
+        for error in (*self._axis_problems(), *self._offset_problems(), *self._start_problems()):
+            raise error
+        return self
+
+    def _axis_problems(self) -> Iterator[Exception]:
+        for index, name in enumerate(self.axis_names):
+            if name in self.axis_names[:index]:
+                yield problem(f"there are two axes '{name}'", hint="rename one", at=("axis", index, "name"))
+
+    def _offset_problems(self) -> Iterator[Exception]:
+        for name, offset in self.offsets.items():
+            if not WORK_OFFSET.fullmatch(name):
+                yield problem(
+                    f"'{name}' is not a work offset",
+                    hint="use G54 to G59, G154 to G159 or G254 to G259",
+                    at=("offsets", name),
+                )
+            yield from self._unknown_axes(offset, ("offsets", name))
+
+    def _start_problems(self) -> Iterator[Exception]:
+        yield from self._unknown_axes(self.start, ("start",))
+        for index, axis in enumerate(self.axes):
+            low, high = axis.soft_limits
+            position = self.start.get(axis.name, axis.home)
+            if not low <= position <= high:
+                home_key = f"home_{axis.unit}"
+                has_home = home_key in axis.model_fields_set
+                yield problem(
+                    f"axis '{axis.name}' would start at {position}, outside its soft limits [{low}, {high}]",
+                    hint=f"set {home_key}, or {axis.name} in [start], to a position inside",
+                    at=("start", axis.name)
+                    if axis.name in self.start
+                    else ("axis", index, home_key if has_home else f"soft_limits_{axis.unit}"),
+                )
+
+    def _unknown_axes(self, names: dict[str, float], at: KeyPath) -> Iterator[Exception]:
+        for name in names:
+            if name not in self.axis_names:
+                yield problem(
+                    f"there is no axis '{name}'",
+                    hint=f"the axes are {', '.join(self.axis_names)}",
+                    at=(*at, name),
+                )
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        """Return the names of the axes, in their order."""
+        return tuple(axis.name for axis in self.axes)
+
+    @property
+    def start_positions(self) -> tuple[float, ...]:
+        """Return where each axis is at cycle 0 (mm or deg), in the order of the axes."""
+        return tuple(self.start.get(axis.name, axis.home) for axis in self.axes)
+
+    def axis_index(self, name: str) -> int:
+        """Return the place of the axis called `name`, from 0.
+
+        Raises:
+            UsageError: There is no such axis.
+        """
+        if name not in self.axis_names:
+            raise UsageError(f"there is no axis '{name}'", hint=f"the axes are {', '.join(self.axis_names)}")
+        return self.axis_names.index(name)
+
+    def work_offset(self, name: str) -> tuple[float, ...]:
+        """Return a work offset as one value per axis (mm or deg); zeros if it is not configured."""
+        offset = self.offsets.get(name, {})
+        return tuple(offset.get(axis.name, 0.0) for axis in self.axes)

@@ -1,0 +1,157 @@
+"""What G and M codes can do, whatever number a dialect gives them, and which of them exclude each other."""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum, StrEnum, auto
+
+
+class Group(StrEnum):
+    """Modal groups: of each, a block may hold one word."""
+
+    MOTION = "motion"
+    NON_MODAL = "non_modal"
+    DWELL = "dwell"
+    PLANE = "plane"
+    UNITS = "units"
+    DISTANCE = "distance"
+    ARC_DISTANCE = "arc_distance"
+    FEED_MODE = "feed_mode"
+    SPINDLE_MODE = "spindle_mode"
+    RADIUS_COMPENSATION = "radius_compensation"
+    LENGTH_COMPENSATION = "length_compensation"
+    WORK_OFFSET = "work_offset"
+    STOPPING = "stopping"
+    EXACT_STOP_BLOCK = "exact_stop_block"
+    RETRACT = "retract"
+    IGNORED = "ignored"
+
+
+class Action(IntEnum):
+    """What a G code does. Numbers are private to this process; names stand in dialect files."""
+
+    RAPID = auto()
+    LINEAR = auto()
+    ARC_CW = auto()
+    ARC_CCW = auto()
+    DWELL = auto()
+    EXACT_STOP_BLOCK = auto()
+    PLANE_XY = auto()
+    PLANE_ZX = auto()
+    PLANE_YZ = auto()
+    INCH = auto()
+    METRIC = auto()
+    REFERENCE_RETURN = auto()
+    COMP_OFF = auto()
+    COMP_LEFT = auto()
+    COMP_RIGHT = auto()
+    LENGTH_PLUS = auto()
+    LENGTH_MINUS = auto()
+    LENGTH_OFF = auto()
+    MACHINE_COORDINATES = auto()
+    WORK_OFFSET = auto()
+    WORK_OFFSET_OFF = auto()
+    EXACT_STOP = auto()
+    CONTINUOUS = auto()
+    ABSOLUTE = auto()
+    INCREMENTAL = auto()
+    ARC_CENTER_ABSOLUTE = auto()
+    ARC_CENTER_INCREMENTAL = auto()
+    SET_POSITION = auto()
+    CLEAR_SET_POSITION = auto()
+    FEED_INVERSE_TIME = auto()
+    FEED_PER_MINUTE = auto()
+    FEED_PER_REVOLUTION = auto()
+    CONSTANT_SURFACE_SPEED = auto()
+    SPINDLE_RPM = auto()
+    CYCLE_CANCEL = auto()
+    CYCLE_CHIP_BREAK = auto()
+    CYCLE_FINE_BORE = auto()
+    CYCLE_DRILL = auto()
+    CYCLE_DWELL = auto()
+    CYCLE_DEEP = auto()
+    CYCLE_TAP = auto()
+    CYCLE_BORE = auto()
+    CYCLE_BORE_STOP = auto()
+    CYCLE_BACK_BORE = auto()
+    CYCLE_BORE_MANUAL = auto()
+    CYCLE_BORE_DWELL = auto()
+    RETRACT_INITIAL = auto()
+    RETRACT_R = auto()
+    IGNORED = auto()
+
+
+_BY_GROUP: dict[Group, tuple[Action, ...]] = {
+    Group.MOTION: (
+        Action.RAPID,
+        Action.LINEAR,
+        Action.ARC_CW,
+        Action.ARC_CCW,
+        Action.CYCLE_CANCEL,
+        Action.CYCLE_CHIP_BREAK,
+        Action.CYCLE_FINE_BORE,
+        Action.CYCLE_DRILL,
+        Action.CYCLE_DWELL,
+        Action.CYCLE_DEEP,
+        Action.CYCLE_TAP,
+        Action.CYCLE_BORE,
+        Action.CYCLE_BORE_STOP,
+        Action.CYCLE_BACK_BORE,
+        Action.CYCLE_BORE_MANUAL,
+        Action.CYCLE_BORE_DWELL,
+    ),
+    Group.NON_MODAL: (
+        Action.REFERENCE_RETURN,
+        Action.MACHINE_COORDINATES,
+        Action.SET_POSITION,
+        Action.CLEAR_SET_POSITION,
+    ),
+    Group.DWELL: (Action.DWELL,),
+    Group.PLANE: (Action.PLANE_XY, Action.PLANE_ZX, Action.PLANE_YZ),
+    Group.UNITS: (Action.INCH, Action.METRIC),
+    Group.DISTANCE: (Action.ABSOLUTE, Action.INCREMENTAL),
+    Group.ARC_DISTANCE: (Action.ARC_CENTER_ABSOLUTE, Action.ARC_CENTER_INCREMENTAL),
+    Group.FEED_MODE: (Action.FEED_INVERSE_TIME, Action.FEED_PER_MINUTE, Action.FEED_PER_REVOLUTION),
+    Group.SPINDLE_MODE: (Action.CONSTANT_SURFACE_SPEED, Action.SPINDLE_RPM),
+    Group.RADIUS_COMPENSATION: (Action.COMP_OFF, Action.COMP_LEFT, Action.COMP_RIGHT),
+    Group.LENGTH_COMPENSATION: (Action.LENGTH_PLUS, Action.LENGTH_MINUS, Action.LENGTH_OFF),
+    Group.WORK_OFFSET: (Action.WORK_OFFSET, Action.WORK_OFFSET_OFF),
+    Group.STOPPING: (Action.EXACT_STOP, Action.CONTINUOUS),
+    Group.EXACT_STOP_BLOCK: (Action.EXACT_STOP_BLOCK,),
+    Group.RETRACT: (Action.RETRACT_INITIAL, Action.RETRACT_R),
+    Group.IGNORED: (Action.IGNORED,),
+}
+
+GROUP_OF: dict[Action, Group] = {action: group for group, actions in _BY_GROUP.items() for action in actions}
+"""The modal group of every action."""
+
+
+class MAction(Enum):
+    """What an M code does; the value tells its modal group."""
+
+    PROGRAM_STOP = ("program_stop", "stop")
+    OPTIONAL_STOP = ("optional_stop", "stop")
+    PROGRAM_END = ("program_end", "stop")
+    SPINDLE_CW = ("spindle_cw", "spindle")
+    SPINDLE_CCW = ("spindle_ccw", "spindle")
+    SPINDLE_STOP = ("spindle_stop", "spindle")
+    TOOL_CHANGE = ("tool_change", "tool")
+    COOLANT_MIST = ("coolant_mist", "")
+    COOLANT_FLOOD = ("coolant_flood", "")
+    COOLANT_OFF = ("coolant_off", "")
+    SUB_CALL = ("sub_call", "stop")
+    SUB_RETURN = ("sub_return", "stop")
+    AUXILIARY = ("auxiliary", "")
+
+    @property
+    def group(self) -> str:
+        """The modal group; empty if any number may stand in a block."""
+        return self.value[1]
+
+    @property
+    def title(self) -> str:
+        """The name in dialect files."""
+        return self.value[0]
+
+
+M_ACTIONS: dict[str, MAction] = {action.title: action for action in MAction}
+"""M actions by their name in dialect files."""

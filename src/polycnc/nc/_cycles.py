@@ -1,0 +1,370 @@
+"""Drilling cycles (G73, G81-G89) as a table: each cycle is a row of steps at one hole.
+
+A cycle drills from the R level down to the depth, always in the negative direction of the drilling axis.
+Expansion is pure: words, place and settings go in, a list of steps comes out; the interpreter turns them into
+moves. Sequences follow the public NIST RS274NGC description; where they differ is said in
+docs/reference/drilling-cycles.md.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from enum import Enum, auto
+from typing import Literal, TypeAlias
+
+from polycnc.errors import ProgramError
+
+# More pecks in one hole than this are a mistyped Q, not a hole.
+MOST_PECKS = 100_000
+# Levels that differ by less are one level (as pecks that add up to the depth are).
+_SAME_LEVEL_MM = 1e-9
+
+Spindle: TypeAlias = Literal["forward", "reverse", "stopped"]
+
+
+class StepKind(Enum):
+    """What a step of a cycle does, and which fields of the step it uses."""
+
+    RAPID_PLANE = auto()  # rapid in the plane to `first_mm`, `second_mm`
+    RAPID_AXIS = auto()  # rapid along the drilling axis to `level_mm`
+    FEED_AXIS = auto()  # feed along the drilling axis to `level_mm`; `feed_mm_s`, `synchronous`
+    DWELL = auto()  # wait `duration_s`
+    SPINDLE_STOP = auto()
+    SPINDLE_START = auto()  # turn as before the cycle
+    SPINDLE_REVERSE = auto()  # turn the other way than before the cycle
+    SPINDLE_ORIENT = auto()  # stop at the angle at which the tool can shift
+    PROGRAM_STOP = auto()  # wait for the operator (M0)
+    OVERRIDE_OFF = auto()  # feed and spindle override count as 100 %
+    OVERRIDE_ON = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class CycleStep:
+    """One step. `feed_mm_s` 0 means the programmed feed; `synchronous` ties the feed to the spindle."""
+
+    kind: StepKind
+    first_mm: float = 0.0
+    second_mm: float = 0.0
+    level_mm: float = 0.0
+    duration_s: float = 0.0
+    feed_mm_s: float = 0.0
+    synchronous: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class CycleWords:
+    """The words of a cycle; None where a block does not program one.
+
+    `depth_mm` Z, `retract_mm` R, `peck_mm` Q, `dwell_s` P, `shift_mm` I and J, `back_mm` K (G87),
+    `pitch_mm` the thread (G84), `repeats` L or K: how many holes, 0 only stores the words.
+    """
+
+    depth_mm: float | None = None
+    retract_mm: float | None = None
+    peck_mm: float | None = None
+    dwell_s: float | None = None
+    shift_mm: tuple[float, float] | None = None
+    back_mm: float | None = None
+    pitch_mm: float | None = None
+    repeats: int = 1
+
+    def then(self, block: CycleWords) -> CycleWords:
+        """Return these stored words with those of a later block; repeats hold for their own block only."""
+        changed = {
+            field.name: value
+            for field in dataclasses.fields(block)
+            if field.name != "repeats" and (value := getattr(block, field.name)) is not None
+        }
+        return dataclasses.replace(self, repeats=block.repeats, **changed)
+
+    def absolute(self, initial_mm: float) -> CycleWords:
+        """Return incremental words (G91) as levels: R counts from the initial level, Z from R, K from Z."""
+        if self.retract_mm is None or self.depth_mm is None:
+            return self  # the expansion names what is missing
+        retract = initial_mm + self.retract_mm
+        depth = retract + self.depth_mm
+        back = None if self.back_mm is None else depth + self.back_mm
+        return dataclasses.replace(self, retract_mm=retract, depth_mm=depth, back_mm=back)
+
+
+@dataclass(frozen=True, slots=True)
+class CyclePlace:
+    """Where and how the machine stands when a cycle block starts.
+
+    `hole_mm` is the first hole in the plane, `increment_mm` the way to each further one (G91 with repeats).
+    Levels are on the drilling axis: `initial_mm` before the first cycle block, `level_mm` now. `retract` is
+    G98 (initial) or G99 (r).
+    """
+
+    hole_mm: tuple[float, float]
+    initial_mm: float
+    level_mm: float
+    retract: Literal["initial", "r"] = "initial"
+    increment_mm: tuple[float, float] = (0.0, 0.0)
+    spindle: Spindle = "forward"
+    spindle_rpm: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class CycleSettings:
+    """What a control's parameters say about its cycles.
+
+    `chip_break_mm` is how far G73 backs up, `reentry_mm` how far above the last cut G83 changes from rapid to
+    feed. `shift_direction` is where Q shifts the tool when a block gives no I and J.
+    """
+
+    chip_break_mm: float = 1.0
+    reentry_mm: float = 1.0
+    shift_direction: tuple[float, float] = (1.0, 0.0)
+
+
+class CycleError(ProgramError):
+    """A cycle that cannot be run with its words.
+
+    `reason` is a stable key a dialect can map to its own alarm number.
+    """
+
+    def __init__(self, what: str, *, reason: str, hint: str = "") -> None:
+        super().__init__(what, hint=hint)
+        self.reason = reason
+
+
+@dataclass(frozen=True, slots=True)
+class _Hole:
+    """One hole with every number settled."""
+
+    first: float
+    second: float
+    shifted: tuple[float, float]
+    bottom: float
+    r: float
+    out: float
+    back: float
+    peck: float
+    dwell_s: float
+    tap_feed_mm_s: float
+    settings: CycleSettings
+
+
+_Part: TypeAlias = Callable[[_Hole], Iterator[CycleStep]]
+
+
+def _axis(kind: StepKind, level: str) -> _Part:
+    """Return the part that moves along the drilling axis to the level of that name."""
+    return lambda hole: iter((CycleStep(kind, level_mm=getattr(hole, level)),))
+
+
+def _tap(level: str) -> _Part:
+    def part(hole: _Hole) -> Iterator[CycleStep]:
+        to, feed = getattr(hole, level), hole.tap_feed_mm_s
+        yield CycleStep(StepKind.FEED_AXIS, level_mm=to, feed_mm_s=feed, synchronous=True)
+
+    return part
+
+
+def _always(*kinds: StepKind) -> _Part:
+    steps = tuple(CycleStep(kind) for kind in kinds)
+    return lambda hole: iter(steps)
+
+
+def _shift(hole: _Hole) -> Iterator[CycleStep]:
+    yield CycleStep(StepKind.RAPID_PLANE, *hole.shifted)
+
+
+def _unshift(hole: _Hole) -> Iterator[CycleStep]:
+    yield CycleStep(StepKind.RAPID_PLANE, hole.first, hole.second)
+
+
+def _dwell(hole: _Hole) -> Iterator[CycleStep]:
+    if hole.dwell_s > 0.0:
+        yield CycleStep(StepKind.DWELL, duration_s=hole.dwell_s)
+
+
+def _peck_depths(hole: _Hole) -> Iterator[float]:
+    """Return the depths of all pecks but the last, each counted from R so that no rounding adds up."""
+    for number in range(1, math.ceil((hole.r - hole.bottom - _SAME_LEVEL_MM) / hole.peck)):
+        yield hole.r - number * hole.peck
+
+
+def _pecks_to_r(hole: _Hole) -> Iterator[CycleStep]:
+    for depth in _peck_depths(hole):
+        yield CycleStep(StepKind.FEED_AXIS, level_mm=depth)
+        yield CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r)
+        yield CycleStep(StepKind.RAPID_AXIS, level_mm=min(depth + hole.settings.reentry_mm, hole.r))
+
+
+def _pecks_breaking_chips(hole: _Hole) -> Iterator[CycleStep]:
+    for depth in _peck_depths(hole):
+        yield CycleStep(StepKind.FEED_AXIS, level_mm=depth)
+        yield CycleStep(StepKind.RAPID_AXIS, level_mm=min(depth + hole.settings.chip_break_mm, hole.r))
+
+
+_FEED_IN = _axis(StepKind.FEED_AXIS, "bottom")
+_FEED_R = _axis(StepKind.FEED_AXIS, "r")
+_FEED_BACK = _axis(StepKind.FEED_AXIS, "back")
+_RAPID_IN = _axis(StepKind.RAPID_AXIS, "bottom")
+_OUT = _axis(StepKind.RAPID_AXIS, "out")
+_TAP_IN = _tap("bottom")
+_TAP_R = _tap("r")
+_STOP = _always(StepKind.SPINDLE_STOP)
+_START = _always(StepKind.SPINDLE_START)
+_REVERSE = _always(StepKind.SPINDLE_STOP, StepKind.SPINDLE_REVERSE)
+_FORWARD = _always(StepKind.SPINDLE_STOP, StepKind.SPINDLE_START)
+_ORIENT = _always(StepKind.SPINDLE_STOP, StepKind.SPINDLE_ORIENT)
+_OPERATOR = _always(StepKind.PROGRAM_STOP)
+_OVERRIDE_OFF = _always(StepKind.OVERRIDE_OFF)
+_OVERRIDE_ON = _always(StepKind.OVERRIDE_ON)
+_BORE_BACK = (
+    *(_shift, _ORIENT, _RAPID_IN, _unshift, _START),
+    *(_FEED_BACK, _FEED_IN, _ORIENT, _shift, _OUT, _unshift, _START),
+)
+_TAP = (_OVERRIDE_OFF, _TAP_IN, _REVERSE, _dwell, _TAP_R, _FORWARD, _OVERRIDE_ON, _OUT)
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """What a cycle does at a hole, from the R level on, and which words and states it cannot do without."""
+
+    code: str
+    parts: tuple[_Part, ...]
+    needs: frozenset[str] = frozenset()
+
+
+_PECK = frozenset({"peck"})
+_SPINDLE = frozenset({"spindle"})
+_SHIFT = frozenset({"spindle", "shift"})
+
+_ROWS: dict[str, _Row] = {
+    "cycle_chip_break": _Row("G73", (_pecks_breaking_chips, _FEED_IN, _OUT), _PECK),
+    "cycle_fine_bore": _Row("G76", (_FEED_IN, _dwell, _ORIENT, _shift, _OUT, _unshift, _START), _SHIFT),
+    "cycle_drill": _Row("G81", (_FEED_IN, _OUT)),
+    "cycle_dwell": _Row("G82", (_FEED_IN, _dwell, _OUT)),
+    "cycle_deep": _Row("G83", (_pecks_to_r, _FEED_IN, _OUT), _PECK),
+    "cycle_tap": _Row("G84", _TAP, _SPINDLE),
+    "cycle_bore": _Row("G85", (_FEED_IN, _FEED_R, _OUT)),
+    "cycle_bore_stop": _Row("G86", (_FEED_IN, _dwell, _STOP, _OUT, _START), _SPINDLE),
+    "cycle_back_bore": _Row("G87", _BORE_BACK, _SHIFT | {"back"}),
+    "cycle_bore_manual": _Row("G88", (_FEED_IN, _dwell, _STOP, _OPERATOR, _OUT, _START), _SPINDLE),
+    "cycle_bore_dwell": _Row("G89", (_FEED_IN, _dwell, _FEED_R, _OUT)),
+}
+
+CYCLES: dict[str, str] = {name: row.code for name, row in _ROWS.items()}
+
+
+def expand_cycle(
+    action: str, words: CycleWords, place: CyclePlace, settings: CycleSettings | None = None
+) -> list[CycleStep]:
+    """Return the steps of one cycle block: the way to each hole, and what the cycle does there.
+
+    `action` is a key of `CYCLES`; `words` are those in force, levels absolute. Repeats of 0 give no steps.
+
+    Raises:
+        CycleError: a word is missing or does not make sense, or the spindle must turn and does not.
+    """
+    row = _ROWS[action]
+    hole = _settled(row, words, place, settings or CycleSettings())
+    steps: list[CycleStep] = []
+    level = place.level_mm
+    for number in range(words.repeats):
+        first = place.hole_mm[0] + number * place.increment_mm[0]
+        second = place.hole_mm[1] + number * place.increment_mm[1]
+        level = _expand_hole(row, _moved(hole, first, second), level, steps)
+    return steps
+
+
+def _expand_hole(row: _Row, hole: _Hole, level: float, steps: list[CycleStep]) -> float:
+    """Append the steps of one hole, without moves to the level at hand; return the level they end at."""
+    if level < hole.r:
+        steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r))
+    steps.append(CycleStep(StepKind.RAPID_PLANE, hole.first, hole.second))
+    if level > hole.r:
+        steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r))
+    level = hole.r
+    for part in row.parts:
+        for step in part(hole):
+            if step.kind in (StepKind.RAPID_AXIS, StepKind.FEED_AXIS):
+                if abs(step.level_mm - level) < _SAME_LEVEL_MM:
+                    continue
+                level = step.level_mm
+            steps.append(step)
+    return level
+
+
+def _moved(hole: _Hole, first: float, second: float) -> _Hole:
+    shifted = hole.shifted[0] + first - hole.first, hole.shifted[1] + second - hole.second
+    return dataclasses.replace(hole, first=first, second=second, shifted=shifted)
+
+
+def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSettings) -> _Hole:
+    """Check the words of a cycle and return its numbers at the first hole."""
+    code = row.code
+    if words.repeats < 0:
+        raise CycleError(f"{code} repeats {words.repeats} times", reason="repeats", hint="Use 0 or more.")
+    bottom = _required(words.depth_mm, f"{code} needs a depth (Z)", "depth_missing")
+    r = _required(words.retract_mm, f"{code} needs a retract level (R)", "retract_missing")
+    if r < bottom:
+        raise CycleError(
+            f"{code} would drill upwards: R {r:.6g} lies below Z {bottom:.6g}",
+            reason="upwards",
+            hint="Give R above the depth.",
+        )
+    dwell = words.dwell_s or 0.0
+    if dwell < 0.0:
+        raise CycleError(f"{code} dwells {dwell:.6g} s", reason="dwell", hint="Give P 0 or more.")
+    if "spindle" in row.needs and place.spindle == "stopped":
+        raise CycleError(
+            f"{code} needs a turning spindle", reason="spindle_stopped", hint="Program M3 or M4 first."
+        )
+    first, second = place.hole_mm
+    shift = _shift_of(code, words, settings) if "shift" in row.needs else (0.0, 0.0)
+    return _Hole(
+        first=first,
+        second=second,
+        shifted=(first + shift[0], second + shift[1]),
+        bottom=bottom,
+        r=r,
+        out=max(place.initial_mm, r) if place.retract == "initial" else r,
+        back=_back_of(code, words, bottom, r) if "back" in row.needs else bottom,
+        peck=_peck_of(code, words, r - bottom) if "peck" in row.needs else 0.0,
+        dwell_s=dwell,
+        tap_feed_mm_s=(words.pitch_mm or 0.0) * place.spindle_rpm / 60.0,
+        settings=settings,
+    )
+
+
+def _required(value: float | None, what: str, reason: str) -> float:
+    if value is None:
+        raise CycleError(what, reason=reason, hint="Program it in the first block of the cycle.")
+    return value
+
+
+def _peck_of(code: str, words: CycleWords, depth: float) -> float:
+    peck = _required(words.peck_mm, f"{code} needs a peck (Q)", "peck_missing")
+    if peck <= 0.0:
+        raise CycleError(f"{code} pecks {peck:.6g} mm", reason="peck", hint="Give Q above 0.")
+    if depth / peck > MOST_PECKS:
+        raise CycleError(
+            f"{code} would peck {depth / peck:.0f} times", reason="peck", hint="Give a larger Q."
+        )
+    return peck
+
+
+def _shift_of(code: str, words: CycleWords, settings: CycleSettings) -> tuple[float, float]:
+    if words.shift_mm is not None:
+        return words.shift_mm
+    amount = _required(words.peck_mm, f"{code} needs a shift (I and J, or Q)", "shift_missing")
+    return amount * settings.shift_direction[0], amount * settings.shift_direction[1]
+
+
+def _back_of(code: str, words: CycleWords, bottom: float, r: float) -> float:
+    back = _required(words.back_mm, f"{code} needs the level to bore back to (K)", "back_missing")
+    if not bottom <= back <= r:
+        raise CycleError(
+            f"{code} would bore back to {back:.6g}, outside Z {bottom:.6g} to R {r:.6g}",
+            reason="back",
+            hint="Give K between the two.",
+        )
+    return back

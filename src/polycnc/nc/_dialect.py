@@ -1,0 +1,294 @@
+"""A dialect: which code does what on a control, as a table in a TOML file.
+
+The interpreter knows actions, never code numbers of a vendor; a new control is a new file.
+"""
+
+from __future__ import annotations
+
+import string
+from functools import cache, cached_property
+from importlib import resources
+from pathlib import Path
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import AfterValidator, Field, model_validator
+
+from polycnc.errors import UsageError
+from polycnc.machine import StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.nc._actions import M_ACTIONS, Action, MAction
+from polycnc.nc._cycles import CycleSettings
+from polycnc.nc._modal import (
+    ABSOLUTE,
+    ARC_RELATIVE,
+    ARC_TOLERANCE,
+    EXACT_STOP,
+    FEED,
+    FEED_MODE,
+    FEED_PER_MINUTE,
+    FEED_PER_REVOLUTION,
+    MOTION,
+    MOTION_LINEAR,
+    MOTION_NONE,
+    MOTION_RAPID,
+    PLANE_XY,
+    PLANE_YZ,
+    PLANE_ZX,
+    RAPID_STOP,
+    Modal,
+    set_inch,
+    set_plane,
+)
+from polycnc.nc._program import TextRules
+
+G_CODES = 10000  # G0 to G999.9
+
+_PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
+_MOTIONS = {"none": MOTION_NONE, "rapid": MOTION_RAPID, "linear": MOTION_LINEAR}
+_ACTIONS = {action.name.lower(): action for action in Action}
+
+
+def _known_actions(table: dict[str, str]) -> dict[str, str]:
+    for code, action in table.items():
+        if not code.replace(".", "", 1).isdigit() or not 0.0 <= float(code) < G_CODES / 10:
+            raise problem(f"'{code}' is not a G code", hint="write it like 0, 17 or 54.1", at=(code,))
+        if action not in _ACTIONS:
+            raise problem(
+                f"'{action}' is not an action", hint=f"use one of {', '.join(_ACTIONS)}", at=(code,)
+            )
+    return table
+
+
+def _known_m_actions(table: dict[str, str]) -> dict[str, str]:
+    for code, action in table.items():
+        if not code.isdigit():
+            raise problem(f"'{code}' is not an M code", hint="write it like 3 or 30", at=(code,))
+        if action not in M_ACTIONS:
+            raise problem(
+                f"'{action}' is not an action", hint=f"use one of {', '.join(M_ACTIONS)}", at=(code,)
+            )
+    return table
+
+
+def _only_marks(characters: str) -> str:
+    # A letter, digit, sign or point here would turn plain words into statements.
+    if wrong := "".join(char for char in characters if char not in string.punctuation or char in "+-."):
+        raise problem(f"'{wrong}' cannot mark a statement", hint="use punctuation marks other than + - .")
+    return characters
+
+
+class Numbers(StrictModel):
+    """How numbers without a decimal point are read."""
+
+    decimal_point: Literal["calculator", "least_input"] = Field(
+        default="calculator", description='"calculator": X10 is 10 units; "least_input": it is 10 increments.'
+    )
+    least_input: Annotated[float, Field(gt=0)] = Field(
+        default=0.001, description="Size of an increment in program units."
+    )
+
+
+class Arcs(StrictModel):
+    """How exact an arc must be."""
+
+    tolerance_mm: Annotated[float, Field(ge=0)] = Field(
+        default=0.01, description="How far the end point may lie off the circle."
+    )
+    relative_tolerance: Annotated[float, Field(ge=0, lt=0.1)] = Field(
+        default=0.001, description="The same as a part of the radius; the larger of both counts."
+    )
+
+
+class SubPrograms(StrictModel):
+    """How sub-programs are called."""
+
+    depth: Annotated[int, Field(ge=1)] = Field(default=7, description="How deep calls may be nested.")
+
+
+class Cycles(StrictModel):
+    """What the control's parameters say about drilling cycles."""
+
+    chip_break_mm: Annotated[float, Field(ge=0)] = Field(
+        default=1.0, description="How far a chip break backs up."
+    )
+    reentry_mm: Annotated[float, Field(ge=0)] = Field(
+        default=1.0, description="How far above the last cut a deep-hole peck begins to feed."
+    )
+
+
+class Text(StrictModel):
+    """What may stand in a block besides words."""
+
+    semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
+    parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
+    unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
+    line_numbers: bool = Field(
+        default=False, description="A block may begin with a bare number or a point: then it is a statement."
+    )
+    statement_characters: Annotated[str, AfterValidator(_only_marks)] = Field(
+        default=TextRules().statement_characters,
+        description='Characters, besides "=", that make a block a statement.',
+    )
+
+
+class Initial(StrictModel):
+    """The modal state at program start."""
+
+    motion: Literal["none", "rapid", "linear"] = Field(default="linear", description="Motion in force.")
+    units: Literal["metric", "inch"] = Field(default="metric", description="Units of lengths and feeds.")
+    plane: Literal["xy", "zx", "yz"] = Field(default="xy", description="Working plane.")
+    absolute: bool = Field(default=True, description="Positions are absolute.")
+    exact_stop: bool = Field(default=False, description="Every block comes to rest.")
+    feed_mode: Literal["per_minute", "per_revolution"] = Field(default="per_minute", description="Feed mode.")
+    feed_mm_min: Annotated[float, Field(ge=0)] = Field(
+        default=0.0, description="Feed until the first F; 0 is none."
+    )
+
+
+class Dialect(StrictModel):
+    """Describe a dialect completely; see docs/reference/dialects.md for the keys."""
+
+    name: str = Field(min_length=1, description="Name of the dialect.")
+    description: str = Field(default="", description="Any text.")
+    extensions: tuple[str, ...] = Field(default=(), description="File extensions that mean this dialect.")
+    g: Annotated[dict[str, str], AfterValidator(_known_actions)] = Field(
+        description="G code = action, see the table of actions."
+    )
+    m: Annotated[dict[str, str], AfterValidator(_known_m_actions)] = Field(
+        description="M code = action, see the table of M actions."
+    )
+    other_m: Literal["auxiliary", "error"] = Field(
+        default="auxiliary", description="What any other M code is."
+    )
+    dwell: dict[str, Literal["s", "ms", "s_or_ms", "rev"]] = Field(
+        default={"P": "s", "X": "s", "F": "s"},
+        description='Addresses of a dwell and their unit; "s_or_ms": seconds with a decimal point, else ms.',
+    )
+    ignored_addresses: tuple[str, ...] = Field(
+        default=(), description="Addresses that may stand anywhere without effect."
+    )
+    rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
+    numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
+    arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
+    sub_program: SubPrograms = Field(default=SubPrograms(), description="See `[sub_program]`.")
+    cycles: Cycles = Field(default=Cycles(), description="See `[cycles]`.")
+    text: Text = Field(default=Text(), description="See `[text]`.")
+    initial: Initial = Field(default=Initial(), description="See `[initial]`.")
+
+    @model_validator(mode="after")
+    def _extensions_have_dots(self) -> Dialect:
+        for extension in self.extensions:
+            if not extension.startswith("."):
+                raise problem(f"'{extension}' has no dot", hint=f"write '.{extension}'", at=("extensions",))
+        return self
+
+    @cached_property
+    def _by_code(self) -> dict[int, Action]:
+        return {round(float(code) * 10): _ACTIONS[action] for code, action in self.g.items()}
+
+    @cached_property
+    def _by_m(self) -> dict[int, MAction]:
+        return {int(code): M_ACTIONS[action] for code, action in self.m.items()}
+
+    def g_action(self, code: float) -> Action | None:
+        """Return what a G code does, None if the dialect does not know it."""
+        tenths = round(code * 10)
+        return self._by_code.get(tenths) if abs(code * 10 - tenths) < 1e-6 else None
+
+    def m_action(self, code: int) -> MAction | None:
+        """Return what an M code does, None if the dialect refuses it."""
+        other = MAction.AUXILIARY if self.other_m == "auxiliary" else None
+        return self._by_m.get(code, other)
+
+    def text_rules(self) -> TextRules:
+        """Return the rules of the block scanners."""
+        return TextRules(**dict(self.text))
+
+    def cycle_settings(self) -> CycleSettings:
+        """Return the settings of the drilling cycles."""
+        return CycleSettings(chip_break_mm=self.cycles.chip_break_mm, reentry_mm=self.cycles.reentry_mm)
+
+    @property
+    def increment(self) -> float:
+        """Size of an increment for numbers without a decimal point; 0: they are plain numbers."""
+        return self.numbers.least_input if self.numbers.decimal_point == "least_input" else 0.0
+
+    def tables(self) -> DialectTables:
+        """Return what the compiled kernel needs of the dialect."""
+        g_action = np.zeros(G_CODES, np.int16)
+        for tenths, action in self._by_code.items():
+            g_action[tenths] = action
+        return DialectTables(g_action, self.increment)
+
+    def set_initial_state(self, modal: Modal) -> None:
+        """Put the modal state that programs start with in force."""
+        initial = self.initial
+        set_plane(modal, _PLANES[initial.plane])
+        set_inch(modal, initial.units == "inch")
+        modal.whole[MOTION] = _MOTIONS[initial.motion]
+        modal.whole[ABSOLUTE] = initial.absolute
+        modal.whole[EXACT_STOP] = initial.exact_stop
+        modal.whole[RAPID_STOP] = self.rapid_exact_stop
+        modal.whole[FEED_MODE] = FEED_PER_MINUTE if initial.feed_mode == "per_minute" else FEED_PER_REVOLUTION
+        modal.real[FEED] = initial.feed_mm_min
+        modal.real[ARC_TOLERANCE] = self.arcs.tolerance_mm
+        modal.real[ARC_RELATIVE] = self.arcs.relative_tolerance
+
+
+class DialectTables(NamedTuple):
+    """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers."""
+
+    g_action: npt.NDArray[np.int16]
+    least_input: float
+
+
+_SHIPPED = ("din", "fanuc", "bosch")
+DEFAULT_DIALECT = "din"
+DIALECTS: tuple[str, ...] = _SHIPPED
+"""Names of the shipped dialects."""
+
+
+@cache
+def _shipped(name: str) -> Dialect:
+    file = resources.files("polycnc.nc") / "dialects" / f"{name}.toml"
+    data, locator = parse_toml(file.read_text(encoding="utf-8"), f"{name}.toml")
+    return validate(Dialect, data, locator)
+
+
+def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
+    """Return a dialect by name, from a TOML file, or the default one.
+
+    Raises:
+        UsageError: there is no such dialect.
+        ConfigurationError: the file is not a dialect.
+    """
+    if isinstance(source, Dialect):
+        return source
+    if source is None:
+        return _shipped(DEFAULT_DIALECT)
+    if isinstance(source, str) and source in _SHIPPED:
+        return _shipped(source)
+    path = Path(source)
+    if path.suffix == ".toml" or path.is_file():
+        data, locator = load_toml(path)
+        return validate(Dialect, data, locator)
+    raise UsageError(
+        f"there is no dialect '{source}'",
+        hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
+    )
+
+
+def dialect_for(program: str, explicit: str | Path | Dialect | None = None) -> Dialect:
+    """Return the dialect of a program: the explicit one, else by the file's extension, else the default.
+
+    Raises:
+        UsageError: there is no such dialect.
+    """
+    if explicit is not None:
+        return load_dialect(explicit)
+    extension = Path(program).suffix.lower()
+    for name in _SHIPPED:
+        if extension and extension in _shipped(name).extensions:
+            return _shipped(name)
+    return _shipped(DEFAULT_DIALECT)

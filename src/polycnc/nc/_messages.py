@@ -1,0 +1,33 @@
+"""What the operator should know: each message once, with the line where it first came up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
+    """A remark on a program: text, and the first line (0: the whole program) and how often it came up."""
+
+    text: str
+    line: int
+    count: int = 1
+
+
+@dataclass
+class Messages:
+    """Collect messages; a text that comes again is only counted."""
+
+    line: int = 0
+    _found: dict[str, Message] = field(default_factory=dict)
+
+    def add(self, text: str) -> None:
+        """Add a message about the present line."""
+        old = self._found.get(text)
+        self._found[text] = (
+            Message(text, self.line) if old is None else Message(text, old.line, old.count + 1)
+        )
+
+    def all(self) -> list[Message]:
+        """Return all messages in the order in which they first came up."""
+        return list(self._found.values())

@@ -1,0 +1,116 @@
+"""The modal state of a program, in arrays that compiled and ordinary interpretation share.
+
+What only the ordinary path needs (tables, comments, tool names) lives in `Interpreter`; what a plain motion block
+reads or writes lives here.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.units import MM_PER_INCH
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+# Columns of `whole`.
+MOTION, PLANE, AXIS_P, AXIS_Q, AXIS_R, WORD_P, WORD_Q, ABSOLUTE, ARC_ABSOLUTE, FEED_MODE = range(10)
+EXACT_STOP, RAPID_STOP, INCH = 10, 11, 12
+ORDINARY = 13  # something is active that only the ordinary path knows
+WHOLE_COLUMNS = 14
+
+# Columns of `real`.
+FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2
+REAL_COLUMNS = 3
+
+# Values of MOTION; more than MOTION_ARC_CCW are drilling cycles, by action number.
+MOTION_NONE = -1
+MOTION_RAPID = 0
+MOTION_LINEAR = 1
+MOTION_ARC_CW = 2
+MOTION_ARC_CCW = 3
+
+# Values of PLANE.
+PLANE_XY = 0
+PLANE_ZX = 1
+PLANE_YZ = 2
+PLANE_LETTERS = ("XYZ", "ZXY", "YZX")
+CENTER_LETTERS = ("IJ", "KI", "JK")
+
+# Values of FEED_MODE.
+FEED_PER_MINUTE = 0
+FEED_PER_REVOLUTION = 1
+FEED_INVERSE_TIME = 2
+
+NO_AXIS = -1
+
+
+class Modal(NamedTuple):
+    """Hold the modal state of one channel with n axes.
+
+    `machine position = program value * scale + offset`; `position` is the last programmed position in machine
+    coordinates, before tool radius compensation.
+    """
+
+    whole: Ints
+    real: Floats
+    position: Floats  # [n]
+    offset: Floats  # [n] work offset, G92 shift and tool length together
+    scale: Floats  # [n] mm per program unit, 1 for rotary axes
+    rotary: npt.NDArray[np.uint8]  # [n]
+    low: Floats  # [n] soft limits
+    high: Floats  # [n]
+    letter_axis: Ints  # [26] axis of each letter, NO_AXIS if it is none
+
+
+def make_modal(names: list[str], rotary: list[bool], low: list[float], high: list[float]) -> Modal:
+    """Make the state at program start for axes of these names; set the dialect's initial state afterwards."""
+    letter_axis = np.full(26, NO_AXIS, np.int64)
+    for index, name in enumerate(names):
+        if len(name) == 1:
+            letter_axis[ord(name) - ord("A")] = index
+    n = len(names)
+    modal = Modal(
+        whole=np.zeros(WHOLE_COLUMNS, np.int64),
+        real=np.zeros(REAL_COLUMNS),
+        position=np.zeros(n),
+        offset=np.zeros(n),
+        scale=np.ones(n),
+        rotary=np.array(rotary, np.uint8),
+        low=np.array(low),
+        high=np.array(high),
+        letter_axis=letter_axis,
+    )
+    modal.whole[ABSOLUTE] = 1
+    set_plane(modal, PLANE_XY)
+    return modal
+
+
+def set_plane(modal: Modal, plane: int) -> None:
+    """Select the working plane; axes that the machine lacks become NO_AXIS."""
+    whole = modal.whole
+    whole[PLANE] = plane
+    for column, letter in zip((AXIS_P, AXIS_Q, AXIS_R), PLANE_LETTERS[plane], strict=True):
+        whole[column] = modal.letter_axis[ord(letter) - ord("A")]
+    for column, letter in zip((WORD_P, WORD_Q), CENTER_LETTERS[plane], strict=True):
+        whole[column] = ord(letter) - ord("A")
+
+
+def set_inch(modal: Modal, inch: bool) -> None:
+    """Select inch or metric words; rotary axes stay in degrees."""
+    modal.whole[INCH] = inch
+    modal.scale[:] = np.where(modal.rotary != 0, 1.0, MM_PER_INCH if inch else 1.0)
+
+
+def copy_modal(modal: Modal) -> Modal:
+    """Return an independent copy, to go back to when a block is refused."""
+    return Modal(*(column.copy() for column in modal))
+
+
+def restore_modal(modal: Modal, saved: Modal) -> None:
+    """Put a saved state back in place."""
+    for column, old in zip(modal, saved, strict=True):
+        column[...] = old

@@ -1,0 +1,62 @@
+"""What the interpreter hands to the channel queue, one item per motion or wait.
+
+Coordinates are machine coordinates of all axes (mm for linear, degree for rotary axes) after every offset.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+Point: TypeAlias = tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Feed:
+    """Say how fast a move goes: a path speed, or a time for the whole move (inverse time)."""
+
+    speed_mm_s: float = 0.0
+    duration_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Move straight from `start` to `end`."""
+
+    start: Point
+    end: Point
+    feed: Feed
+    rapid: bool
+    exact_stop: bool
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """Move on a circle or helix.
+
+    `plane` holds the axis indices (first, second, normal). `center` is in the first two. `sweep_rad` is signed,
+    positive from the first towards the second axis, and includes whole turns; all other axes move linearly.
+    """
+
+    start: Point
+    end: Point
+    center: tuple[float, float]
+    sweep_rad: float
+    plane: tuple[int, int, int]
+    feed: Feed
+    exact_stop: bool
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order."""
+
+    duration_s: float
+    line: int
+    events: tuple[str, ...] = field(default=())
+
+
+Move: TypeAlias = Line | Arc
+QueueItem: TypeAlias = Line | Arc | Wait

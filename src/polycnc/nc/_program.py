@@ -1,0 +1,128 @@
+"""The text of a part program as bytes: nothing is decoded until somebody wants to read a line of it.
+
+The scanners work on the bytes and name places by byte offset; a place becomes line and column only when an
+error or a message is printed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.errors import SourcePosition, UsageError
+
+_UTF8_MARK = b"\xef\xbb\xbf"
+_UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+_NEWLINE = ord("\n")
+_RETURN = ord("\r")
+
+
+@dataclass(frozen=True, slots=True)
+class TextRules:
+    """Say what may stand in a block besides words and numbers.
+
+    `statement_characters`, and '=' always, hand a block to the language front end; a character that is
+    neither one of these nor part of a word is an error. With `line_numbers` a block may begin with a bare
+    number or a point, as the blocks of CPL do.
+    """
+
+    semicolon_comments: bool = True
+    parenthesis_comments: bool = True
+    unclosed_comments: bool = False
+    line_numbers: bool = False
+    statement_characters: str = "[]#\"',*<>"
+
+
+class ProgramText:
+    """Hold one part program: its name and its bytes, newlines as they came (LF, CR LF or CR)."""
+
+    def __init__(self, name: str, content: bytes) -> None:
+        if content[:2] in _UTF16_MARKS:
+            raise UsageError(f"{name}: the file is UTF-16 text", hint="Save it as ASCII or UTF-8.")
+        self.name = name
+        self.content = content.removeprefix(_UTF8_MARK)
+
+    @classmethod
+    def from_path(cls, path: str | Path) -> ProgramText:
+        """Read a part program from a file.
+
+        Raises:
+            UsageError: the file cannot be read, or is UTF-16.
+        """
+        try:
+            content = Path(path).read_bytes()
+        except FileNotFoundError:
+            raise UsageError(f"no such file: {path}", hint="Check the name and the folder.") from None
+        except OSError as error:
+            raise UsageError(f"cannot read {path}: {error.strerror}", hint="Give a readable file.") from None
+        return cls(str(path), content)
+
+    @classmethod
+    def from_text(cls, text: str | bytes, name: str = "<text>") -> ProgramText:
+        """Take a part program from a string (kept as UTF-8) or from bytes."""
+        return cls(name, text if isinstance(text, bytes) else text.encode("utf-8", "replace"))
+
+    def __len__(self) -> int:
+        return len(self.content)
+
+    @cached_property
+    def data(self) -> npt.NDArray[np.uint8]:
+        """The bytes as a read-only array, without a byte-order mark."""
+        return np.frombuffer(self.content, dtype=np.uint8)
+
+    def line(self, offset: int) -> str:
+        """Return the line that holds the byte at `offset`, without its newline."""
+        start, end = self._bounds(offset)
+        return _decoded(self.content[start:end])
+
+    def position(self, offset: int) -> SourcePosition:
+        """Return file, line and column (both 1-based, in characters) and the line of the byte at `offset`."""
+        number = int(np.searchsorted(self._line_starts, offset, side="right"))
+        start, end = self._bounds(offset)
+        column = len(_decoded(self.content[start : min(offset, end)])) + 1
+        return SourcePosition(self.name, number, column, _decoded(self.content[start:end]))
+
+    def line_position(self, line: int) -> SourcePosition:
+        """Return the place of the first character that is no blank in line number `line` (1-based)."""
+        start = int(self._line_starts[line - 1])
+        row = self.content[start : self.line_end(start)]
+        return self.position(start + len(row) - len(row.lstrip()))
+
+    def line_end(self, offset: int) -> int:
+        """Return the offset of the newline that ends the line of `offset` (the length for the last line)."""
+        feed = self.content.find(b"\n", offset)
+        end = len(self.content) if feed < 0 else feed
+        carriage = self.content.find(b"\r", offset, end)
+        return end if carriage < 0 else carriage
+
+    def next_line(self, offset: int) -> int:
+        """Return the offset of the first byte after the line of `offset` and its newline."""
+        end = self.line_end(offset)
+        if self.content[end : end + 2] == b"\r\n":
+            return end + 2
+        return min(end + 1, len(self.content))
+
+    def _bounds(self, offset: int) -> tuple[int, int]:
+        number = int(np.searchsorted(self._line_starts, offset, side="right"))
+        start = int(self._line_starts[number - 1])
+        return start, self.line_end(start)
+
+    @cached_property
+    def _line_starts(self) -> npt.NDArray[np.int64]:
+        data = self.data
+        ends = data == _NEWLINE
+        returns = data == _RETURN
+        returns[:-1] &= ~ends[1:]  # the CR of a CR LF does not end the line by itself
+        starts = np.flatnonzero(ends | returns) + 1
+        return np.concatenate((np.zeros(1, dtype=np.int64), starts.astype(np.int64)))
+
+
+def _decoded(line: bytes) -> str:
+    try:
+        return line.decode("utf-8")
+    except UnicodeDecodeError:
+        return line.decode("latin-1")

@@ -1,0 +1,29 @@
+"""Convert between the units of the outside and the kernel's mm, degree and second.
+
+Inside polycnc a length is mm, an angle degree, a time second. Conversions happen once, where a value enters
+or leaves; the names here say which way.
+"""
+
+MM_PER_INCH = 25.4
+MM_PER_M = 1000.0
+SECONDS_PER_MINUTE = 60.0
+
+
+def mm_from_inch(inch: float) -> float:
+    """Convert inch to mm."""
+    return inch * MM_PER_INCH
+
+
+def inch_from_mm(mm: float) -> float:
+    """Convert mm to inch."""
+    return mm / MM_PER_INCH
+
+
+def per_s_from_per_min(per_min: float) -> float:
+    """Convert a rate per minute (mm/min, rev/min) to a rate per second."""
+    return per_min / SECONDS_PER_MINUTE
+
+
+def per_min_from_per_s(per_s: float) -> float:
+    """Convert a rate per second to a rate per minute."""
+    return per_s * SECONDS_PER_MINUTE

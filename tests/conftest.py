@@ -1,0 +1,81 @@
+"""What every test shares: conformance claims, deterministic hypothesis, plots without a screen, samples."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+# Before polycnc is imported: tests may call compiled functions that are not entries.
+os.environ["POLYCNC_OPEN_INTERNALS"] = "1"
+
+import pytest
+from hypothesis import settings
+
+from polycnc import conformance
+
+REPOSITORY = Path(__file__).resolve().parents[1]
+
+os.environ["MPLBACKEND"] = "Agg"
+settings.register_profile("polycnc", deadline=None, derandomize=True, database=None)
+settings.load_profile("polycnc")
+
+_claims_key = pytest.StashKey[list[tuple[str, str]]]()
+_problem_key = pytest.StashKey[str]()
+
+
+@pytest.fixture(scope="session")
+def data_nc() -> Path:
+    """Return the folder of public NC sample programs; skip the test where there is none."""
+    data = Path(os.environ.get("POLYCNC_DATA", REPOSITORY.parent / "shared" / "data"))
+    if not (data / "nc").is_dir():
+        pytest.skip("no NC sample programs: set POLYCNC_DATA to a folder that has nc/")
+    return data / "nc"
+
+
+@pytest.fixture
+def collected_claims(request: pytest.FixtureRequest) -> list[tuple[str, str]]:
+    """Return the claims of the whole test tree as (row, test); skip when only a part was collected."""
+    if not _whole_tree(request.config):
+        pytest.skip("needs the whole test tree to be collected")
+    return request.config.stash[_claims_key]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--claims-file", metavar="PATH", help="write the claims of all tests to PATH")
+
+
+@pytest.hookimpl(tryfirst=True)  # before -k and -m take tests away
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    known = conformance.read_rows(conformance.data_folder())
+    not_applicable = conformance.read_not_applicable(conformance.data_folder(), known)
+    claims = config.stash.setdefault(_claims_key, [])
+    problems: list[str] = []
+    for item in items:
+        claimed = [row for mark in item.iter_markers("covers") for row in mark.args]
+        found = [text for row in claimed if (text := conformance.invalid_claim(row, known, not_applicable))]
+        if claimed and not conformance.asserts_something(item.function):  # type: ignore[attr-defined]
+            found.append("covers marks a test whose body asserts nothing")
+        if found:
+            item.stash[_problem_key] = "\n".join(found)
+            problems.append(f"{item.nodeid}: {found[0]}")
+        claims += [(row, item.nodeid.partition("[")[0]) for row in claimed]
+    if path := config.getoption("claims_file"):
+        if not _whole_tree(config):
+            problems.append("--claims-file needs the whole test tree to be collected")
+        if problems:
+            raise pytest.UsageError(*problems)
+        Path(path).write_text(conformance.claims_text(claims), encoding="utf-8")
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    if problem := item.stash.get(_problem_key, ""):
+        pytest.fail(problem, pytrace=False)
+
+
+def _whole_tree(config: pytest.Config) -> bool:
+    narrowing = ("ignore", "ignore_glob", "lf", "stepwise")
+    roots = {config.rootpath, config.rootpath / "tests"}
+    given = [config.invocation_params.dir / arg for arg in config.args]
+    narrowed = any(config.getoption(name, None) for name in narrowing)
+    return not narrowed and any(path in roots for path in given)

@@ -1,0 +1,342 @@
+"""Dialects: their files, the meaning of codes, the dialect of a program, the page of all keys."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+
+from polycnc.errors import ConfigurationError, UsageError
+from polycnc.nc._actions import GROUP_OF, Action, Group, MAction
+from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+from polycnc.nc._modal import (
+    ABSOLUTE,
+    ARC_RELATIVE,
+    ARC_TOLERANCE,
+    EXACT_STOP,
+    FEED,
+    FEED_MODE,
+    FEED_PER_REVOLUTION,
+    MOTION,
+    MOTION_LINEAR,
+    PLANE,
+    PLANE_ZX,
+    RAPID_STOP,
+    make_modal,
+)
+from polycnc.nc._program import ProgramText, TextRules
+from polycnc.nc._scan import STATEMENT
+from polycnc.nc._scan_plain import scan_blocks
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "dialects.md"
+
+SHORT = 'name = "own"\n[g]\n0 = "rapid"\n"5.1" = "ignored"\n[m]\n30 = "program_end"\n'
+
+
+def own(tmp_path: Path, text: str) -> Dialect:
+    path = tmp_path / "own.toml"
+    path.write_text(text, encoding="utf-8")
+    return load_dialect(path)
+
+
+# --- what comes with polycnc
+
+
+def test_the_default_is_din() -> None:
+    assert DEFAULT_DIALECT == load_dialect().name == "din"
+    assert set(DIALECTS) == {"din", "fanuc", "bosch"}
+    for name in DIALECTS:
+        assert load_dialect(name).name == name
+    din = load_dialect("din")
+    assert load_dialect(din) is din
+
+
+# Codes that ISO 6983 / DIN 66025-2 fix, or that nearly all milling controls share.
+COMMON = {
+    0: Action.RAPID,
+    1: Action.LINEAR,
+    2: Action.ARC_CW,
+    3: Action.ARC_CCW,
+    4: Action.DWELL,
+    17: Action.PLANE_XY,
+    18: Action.PLANE_ZX,
+    19: Action.PLANE_YZ,
+    40: Action.COMP_OFF,
+    41: Action.COMP_LEFT,
+    42: Action.COMP_RIGHT,
+    54: Action.WORK_OFFSET,
+    59: Action.WORK_OFFSET,
+    80: Action.CYCLE_CANCEL,
+    90: Action.ABSOLUTE,
+    91: Action.INCREMENTAL,
+    92: Action.SET_POSITION,
+    94: Action.FEED_PER_MINUTE,
+    95: Action.FEED_PER_REVOLUTION,
+}
+
+
+@pytest.mark.parametrize("name", DIALECTS)
+def test_common_codes(name: str) -> None:
+    dialect = load_dialect(name)
+    assert {code: dialect.g_action(code) for code in COMMON} == COMMON
+    m_codes = {0: "program_stop", 1: "optional_stop", 2: "program_end", 3: "spindle_cw", 4: "spindle_ccw"}
+    m_codes |= {5: "spindle_stop", 6: "tool_change", 8: "coolant_flood", 9: "coolant_off", 30: "program_end"}
+    for code, action in m_codes.items():
+        found = dialect.m_action(code)
+        assert found is not None
+        assert found.title == action
+    assert dialect.m_action(77) is MAction.AUXILIARY
+
+
+@pytest.mark.parametrize(
+    ("name", "inch", "metric"),
+    [("din", (20, 70), (21, 71)), ("fanuc", (20,), (21,)), ("bosch", (70,), (71,))],
+)
+def test_units(name: str, inch: tuple[int, ...], metric: tuple[int, ...]) -> None:
+    dialect = load_dialect(name)
+    for code in (20, 21, 70, 71):
+        wanted = Action.INCH if code in inch else Action.METRIC if code in metric else None
+        assert dialect.g_action(code) is wanted
+
+
+def test_the_din_dialect_knows_what_cam_systems_write() -> None:
+    din = load_dialect("din")
+    safety_line = [
+        17,
+        20,
+        21,
+        28,
+        40,
+        43,
+        49,
+        53,
+        54,
+        61,
+        64,
+        73,
+        80,
+        81,
+        82,
+        83,
+        84,
+        90,
+        90.1,
+        91.1,
+        92.1,
+        93,
+        98,
+        99,
+    ]
+    assert [code for code in safety_line if din.g_action(code) is None] == []
+    assert din.dwell["P"] == "s"
+    assert load_dialect("fanuc").dwell["P"] == "ms"
+
+
+def test_bosch_has_three_groups_of_zero_shifts_and_a_code_to_leave_each() -> None:
+    bosch = load_dialect("bosch")
+    for first in (54, 154, 254):
+        assert {bosch.g_action(first + n) for n in range(6)} == {Action.WORK_OFFSET}
+        assert bosch.g_action(first - 1) is Action.WORK_OFFSET_OFF
+
+
+def test_bosch_recognises_cpl_blocks() -> None:
+    text = ProgramText.from_text('10 A%=5 : B$="x"\nN10 G1 X[A%]\n.LABEL\nREM end\nN30 P999\n')
+    flags = [block.flags & STATEMENT for block in scan_blocks(text, load_dialect("bosch").text_rules())]
+    assert flags == [STATEMENT, STATEMENT, STATEMENT, STATEMENT, 0]
+
+
+def test_nesting_depth() -> None:
+    assert load_dialect("bosch").sub_program.depth == 7  # Manual 003, 2.1
+    assert load_dialect("fanuc").sub_program.depth == 4
+
+
+# --- codes
+
+
+def test_a_code_is_known_exactly_or_not_at_all() -> None:
+    din = load_dialect("din")
+    assert din.g_action(90.1) is Action.ARC_CENTER_ABSOLUTE
+    for code in (90.2, 90.05, 90.149, 5, 1000, -1, 1e300):
+        assert din.g_action(code) is None
+
+
+@pytest.mark.parametrize("name", DIALECTS)
+def test_compiled_tables_say_the_same(name: str) -> None:
+    dialect = load_dialect(name)
+    table = dialect.tables().g_action
+    assert table.dtype == np.int16
+    assert table.shape == (10_000,)
+    for tenths in range(10_000):
+        action = dialect.g_action(tenths / 10)
+        assert table[tenths] == (0 if action is None else action)
+
+
+def test_every_action_has_a_group_and_its_number_is_not_zero() -> None:
+    assert set(GROUP_OF) == set(Action)
+    assert set(GROUP_OF.values()) == set(Group)
+    assert min(Action) > 0
+
+
+# --- own files
+
+
+def test_a_short_file_gets_the_documented_defaults(tmp_path: Path) -> None:
+    dialect = own(tmp_path, SHORT)
+    assert dialect.text_rules() == TextRules()
+    assert dialect.g_action(5.1) is Action.IGNORED
+    assert dialect.g_action(1) is None
+    assert dialect.m_action(30) is MAction.PROGRAM_END
+    assert dialect.tables().least_input == 0.0
+    assert dialect.cycle_settings().chip_break_mm == dialect.cycles.chip_break_mm
+
+
+def test_values_of_a_file_reach_their_readers(tmp_path: Path) -> None:
+    dialect = own(
+        tmp_path,
+        'other_m = "error"\nrapid_exact_stop = false\n'
+        + SHORT
+        + '[numbers]\ndecimal_point = "least_input"\nleast_input = 0.01\n'
+        + "[arcs]\ntolerance_mm = 0.5\nrelative_tolerance = 0.02\n"
+        + "[cycles]\nchip_break_mm = 0.25\nreentry_mm = 2\n"
+        + "[text]\nsemicolon_comments = false\nunclosed_comments = true\nline_numbers = true\n"
+        + 'statement_characters = "["\n'
+        + '[initial]\nmotion = "linear"\nplane = "zx"\nunits = "inch"\nabsolute = false\nexact_stop = true\n'
+        + 'feed_mode = "per_revolution"\nfeed_mm_min = 120\n',
+    )
+    assert dialect.m_action(31) is None
+    assert dialect.tables().least_input == 0.01
+    assert (dialect.cycle_settings().chip_break_mm, dialect.cycle_settings().reentry_mm) == (0.25, 2.0)
+    assert dialect.text_rules() == TextRules(
+        semicolon_comments=False, unclosed_comments=True, line_numbers=True, statement_characters="["
+    )
+    modal = make_modal(["X", "Y", "Z", "A"], [False, False, False, True], [0.0] * 4, [1.0] * 4)
+    dialect.set_initial_state(modal)
+    assert modal.scale.tolist() == [25.4, 25.4, 25.4, 1.0]
+    whole, real = modal.whole, modal.real
+    assert (whole[MOTION], whole[PLANE], whole[ABSOLUTE]) == (MOTION_LINEAR, PLANE_ZX, 0)
+    assert (whole[EXACT_STOP], whole[RAPID_STOP], whole[FEED_MODE]) == (1, 0, FEED_PER_REVOLUTION)
+    assert (real[FEED], real[ARC_TOLERANCE], real[ARC_RELATIVE]) == (120.0, 0.5, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "line", "message"),
+    [
+        ("colour = 1\n", 1, "unknown key 'colour'"),
+        ('dwell = { P = "h" }\n', 1, "'P' must be"),
+        ('extensions = ["nc"]\n', 1, "'nc'"),
+        ("rapid_exact_stop = 1\n", 1, "true or false"),
+    ],
+)
+def test_a_wrong_key_is_named_with_its_line(tmp_path: Path, wrong: str, line: int, message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message) as caught:
+        own(tmp_path, wrong + SHORT)
+    assert caught.value.position is not None
+    assert caught.value.position.line == line
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ('[g]\n0 = "rapit"\n[m]\n', "'rapit' is not an action"),
+        ('[g]\nG0 = "rapid"\n[m]\n', "'G0' is not a G code"),
+        ('[g]\n1000 = "rapid"\n[m]\n', "'1000' is not a G code"),
+        ('[g]\n[m]\n3 = "spin"\n', "'spin' is not an action"),
+        ('[g]\n[m]\n"3.1" = "spindle_cw"\n', "'3.1' is not an M code"),
+        ('[g]\n[m]\n[text]\nstatement_characters = "[1"\n', "'1' cannot mark a statement"),
+    ],
+)
+def test_a_wrong_table_is_refused(tmp_path: Path, wrong: str, message: str) -> None:
+    with pytest.raises(ConfigurationError, match=message):
+        own(tmp_path, f'name = "own"\n{wrong}')
+
+
+def test_an_unknown_dialect_names_those_that_there_are() -> None:
+    with pytest.raises(UsageError, match="fanuk") as caught:
+        load_dialect("fanuk")
+    assert all(name in caught.value.hint for name in DIALECTS)
+
+
+# --- the dialect of a program
+
+
+def test_the_dialect_of_a_program() -> None:
+    assert dialect_for("part.tap", "bosch").name == "bosch"  # what is said counts first
+    for name in DIALECTS:
+        for extension in load_dialect(name).extensions:
+            assert dialect_for(f"folder/part{extension}").name == name
+            assert dialect_for(f"part{extension.upper()}").name == name
+    for program in ("part", "part.nc", "part.ngc", "part.unheard-of", "<text>"):
+        assert dialect_for(program).name == "din"
+    with pytest.raises(UsageError):
+        dialect_for("part.nc", "nothing")
+
+
+def test_no_extension_means_two_dialects() -> None:
+    extensions = [extension for name in DIALECTS for extension in load_dialect(name).extensions]
+    assert len(extensions) == len(set(extensions))
+
+
+# --- the page
+
+
+def _default(field: FieldInfo) -> str:
+    value = field.default
+    if field.is_required():
+        return "required"
+    if isinstance(value, BaseModel):
+        return "defaults"
+    if isinstance(value, float):
+        return f"{value:g}"
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {json.dumps(each)}" for key, each in value.items()) + " }"
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _key_rows(model: type[BaseModel]) -> list[str]:
+    return [
+        f"| `{key}` | {_default(field)} | {field.description} |" for key, field in model.model_fields.items()
+    ]
+
+
+def _codes(table: dict[str, str], letter: str, action: str) -> str:
+    codes = sorted(float(code) for code, name in table.items() if name == action)
+    return " ".join(f"{letter}{code:g}" for code in codes) or "-"
+
+
+def _sections() -> dict[str, list[str]]:
+    """Return the rows of the page that begin with a code, by the heading above them."""
+    sections: dict[str, list[str]] = {}
+    heading = ""
+    for line in PAGE.read_text(encoding="utf-8").splitlines():
+        if line.startswith("## "):
+            heading = line.removeprefix("## ")
+        elif line.startswith("| `"):
+            sections.setdefault(heading, []).append(line)
+    return sections
+
+
+def test_the_page_has_every_key_with_its_default_and_meaning() -> None:
+    sections = _sections()
+    assert sections["The file"] == _key_rows(Dialect)
+    for key, field in Dialect.model_fields.items():
+        if isinstance(field.default, BaseModel):
+            assert sections[f"`[{key}]`"] == _key_rows(type(field.default))
+
+
+def test_the_page_has_every_action_with_its_codes() -> None:
+    dialects = [load_dialect(name) for name in ("din", "fanuc", "bosch")]
+    sections = _sections()
+    assert sections["Actions of G codes"] == [
+        f"| `{name}` | {GROUP_OF[action]} | {' | '.join(_codes(each.g, 'G', name) for each in dialects)} |"
+        for action in Action
+        for name in [action.name.lower()]
+    ]
+    assert sections["Actions of M codes"] == [
+        f"| `{name}` | {action.group or '-'} | {' | '.join(_codes(each.m, 'M', name) for each in dialects)} |"
+        for action in MAction
+        for name in [action.title]
+    ]
