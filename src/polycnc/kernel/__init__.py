@@ -23,6 +23,7 @@ from polycnc.kernel._path import (
     slot,
 )
 from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, stop_axis
+from polycnc.kernel._profile import SHORT_JUMP, SHORT_OVERSHOOT, SHORT_REDUCE_START
 from polycnc.kernel._recorder import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
 from polycnc.kernel._segments import ARC, LINE, RAPID, STOP, WAIT, Segments, make_segments
 from polycnc.kernel._servo import IDEAL, PIDF
@@ -69,6 +70,9 @@ __all__ = [
     "RECORDER_FULL",
     "REFERENCE",
     "SEGMENTS",
+    "SHORT_JUMP",
+    "SHORT_OVERSHOOT",
+    "SHORT_REDUCE_START",
     "SOFT_LIMIT",
     "STOP",
     "SWITCH_EDGE",

@@ -6,8 +6,10 @@ The stamp covers every module of the package, so a stale callee is never loaded.
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 import os
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
@@ -46,6 +48,20 @@ def _cache_folder() -> Path:
 
 
 CACHE_FOLDER = _cache_folder()
+_KEPT_FOLDERS = 8
+
+
+def _forget_old_folders() -> None:
+    """Remove the oldest folders of earlier versions of this source tree."""
+    siblings = CACHE_FOLDER.parent.glob(f"{CACHE_FOLDER.name.split('-')[0]}-*")
+    old = sorted((each for each in siblings if each.is_dir()), key=lambda each: each.stat().st_mtime)
+    for folder in old[: -_KEPT_FOLDERS or None]:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+if not CACHE_FOLDER.exists():
+    with contextlib.suppress(OSError):
+        _forget_old_folders()
 
 
 def is_cold() -> bool:
@@ -64,10 +80,10 @@ class _Internal(CPUDispatcher):
 
 
 def compiled(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` for compiled callers; IEEE arithmetic, so it equals its uncompiled self bit by bit.
+    """Compile `function` for compiled callers; IEEE arithmetic, so it equals its uncompiled self exactly.
 
-    Python cannot call it: the wrapper for that costs more compile time than most functions do (see `entry`). It
-    cannot allocate arrays: without numba's reference counts a control cycle takes a tenth of the time (see
+    Python cannot call it: the wrapper for that costs more compile time than most functions do (see `entry`).
+    It cannot allocate arrays: without numba's reference counts a control cycle takes a tenth of the time (see
     `allocating`).
     """
     return _internal(function, counted=False)

@@ -18,7 +18,7 @@ from polycnc.machine._describe import (
     machine_row,
 )
 from polycnc.machine._io import IoBits, IoImage, scan_edges
-from polycnc.machine._machine import Machine
+from polycnc.machine._machine import Machine, Reason, Snapshot
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
 from polycnc.machine._store import Area, Entry, History, Store
 from polycnc.machine._toml import StrictModel, load_toml, parse_toml, problem, validate
@@ -48,8 +48,10 @@ __all__ = [
     "PathConfig",
     "Poll",
     "RealTime",
+    "Reason",
     "RotaryAxis",
     "RotaryServo",
+    "Snapshot",
     "SpindleConfig",
     "Step",
     "Store",

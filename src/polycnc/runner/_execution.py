@@ -1,4 +1,4 @@
-"""Run a channel's queue on its machine: in closed form, or cycle by cycle where somebody wants to see the cycles."""
+"""Run a channel's queue on its machine: in closed form, or cycle by cycle where the cycles are wanted."""
 
 from __future__ import annotations
 
@@ -23,12 +23,10 @@ from polycnc.kernel import (
     SWITCH_EDGE,
     TOP_SPEED,
     WAIT_S,
-    advance,
     free_slots,
     give_to_path,
     measure_queue,
     prepare_path,
-    skip,
     start_path,
 )
 from polycnc.machine import Machine
@@ -60,8 +58,8 @@ class Totals:
 class Execution:
     """Execute one channel on path 0 of its machine from start to end.
 
-    `rows` receives the recorder's rows. With `every_cycle` every control cycle is run, as simulated servos and
-    limit switches need it; without, the same cycles are counted in closed form.
+    `rows` receives the recorder's rows. With `every_cycle` every control cycle is run, as simulated servos
+    and limit switches need it; without, the same cycles are counted in closed form.
     """
 
     machine: Machine
@@ -145,9 +143,8 @@ class Execution:
 
     def _skip(self) -> None:
         target = self._target()
-        state = self.machine.state
         while self._row["head"] < target:
-            cycles = skip(state, self.channel.path, target)
+            cycles = self.machine.skip(self.channel.path, target)
             if self._row["event"] >= 0:
                 self._note_event()
             elif cycles == 0:
@@ -159,7 +156,7 @@ class Execution:
         clock["mask"] = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
         clock["low_water"] = self._row["planned"] - target
         while self.alarm is None and self._row["head"] < target:
-            advance(self.machine.state, _STEP_CYCLES)
+            self.machine.advance(_STEP_CYCLES)
             raised = int(clock["raised"])
             if raised & PATH_EVENT:
                 self._note_event()
