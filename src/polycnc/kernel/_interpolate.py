@@ -39,7 +39,7 @@ from polycnc.kernel._ramps import (
     ramps_at,
     ramps_duration,
 )
-from polycnc.kernel._segments import RAPID, WAIT, WAIT_EVENT, Floats, Segments
+from polycnc.kernel._segments import RAPID, TURN, WAIT, WAIT_EVENT, Floats, Segments
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
 
 REST_SLACK = 1e-6  # part of a cycle by which rounding may make a rest late
@@ -62,15 +62,18 @@ def start_path(paths: Paths, g: int) -> None:
 def _account(seg: Segments, paths: Paths, g: int, k: int, seconds: float) -> None:
     totals = paths.totals[g]
     totals[SEGMENTS] += 1.0
+    turns = seg.row[k]["flags"] & TURN  # degrees are neither path length nor feed
+    length = 0.0 if turns else seg.row[k]["length"]
     if seg.row[k]["kind"] == WAIT:
         totals[WAIT_S] += seconds
     elif seg.row[k]["flags"] & RAPID:
         totals[RAPID_S] += seconds
-        totals[RAPID_LENGTH] += seg.row[k]["length"]
+        totals[RAPID_LENGTH] += length
     else:
         totals[FEED_S] += seconds
-        totals[FEED_LENGTH] += seg.row[k]["length"]
-        totals[TOP_SPEED] = max(totals[TOP_SPEED], paths.ramps[g, SPEED_PEAK])
+        totals[FEED_LENGTH] += length
+        if not turns:
+            totals[TOP_SPEED] = max(totals[TOP_SPEED], paths.ramps[g, SPEED_PEAK])
 
 
 @compiled

@@ -64,9 +64,9 @@ if not CACHE_FOLDER.exists():
         _forget_old_folders()
 
 
-def is_cold() -> bool:
-    """Tell whether the compiled functions still have to be made on this machine."""
-    return not _CONFIG.DISABLE_JIT and not any(CACHE_FOLDER.rglob("*.nbi"))
+def is_cold(name: str) -> bool:
+    """Tell whether the entry of this name still has to be compiled on this machine."""
+    return not _CONFIG.DISABLE_JIT and not any(CACHE_FOLDER.rglob(f"*.{name}-*.nbi"))
 
 
 class _Internal(CPUDispatcher):

@@ -24,6 +24,7 @@ WAIT = 4  # no motion: a dwell, or an event at a point of the path
 
 RAPID = 1  # flag: positioning at the axes' speed
 STOP = 2  # flag: come to rest at the end (exact stop)
+TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
 GEO = 16
 # Geometry of an ARC.
@@ -120,6 +121,7 @@ def set_line(
     length = math.sqrt(counted)
     if length < TINY:  # only axes that otherwise ride along: the feed is theirs
         length = math.sqrt(riding)
+        flags |= TURN
     if length < TINY:
         return False
     set_common(seg, k, start, end, feed, flags, tag)

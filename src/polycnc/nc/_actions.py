@@ -9,6 +9,7 @@ class Group(StrEnum):
     """Modal groups: of each, a block may hold one word."""
 
     MOTION = "motion"
+    CYCLE_CANCEL = "cycle_cancel"
     NON_MODAL = "non_modal"
     DWELL = "dwell"
     PLANE = "plane"
@@ -86,7 +87,6 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.LINEAR,
         Action.ARC_CW,
         Action.ARC_CCW,
-        Action.CYCLE_CANCEL,
         Action.CYCLE_CHIP_BREAK,
         Action.CYCLE_FINE_BORE,
         Action.CYCLE_DRILL,
@@ -99,6 +99,7 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.CYCLE_BORE_MANUAL,
         Action.CYCLE_BORE_DWELL,
     ),
+    Group.CYCLE_CANCEL: (Action.CYCLE_CANCEL,),  # stands beside a motion in many a first block
     Group.NON_MODAL: (
         Action.REFERENCE_RETURN,
         Action.MACHINE_COORDINATES,

@@ -85,7 +85,10 @@ class Channel:
         self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
         self.state = self._initial_state()
         self._fast_work = make_fast_work(len(machine.config.axes))
-        self.interpreter = Interpreter(dialect, self.state, self.messages, self.writer.put)
+        self.writer.set_tolerance(self.state.path_tolerance_mm)
+        self.interpreter = Interpreter(
+            dialect, self.state, self.messages, self.writer.put, self.writer.set_tolerance
+        )
         self._scan_chunk()
 
     @property
@@ -139,7 +142,9 @@ class Channel:
         )
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
-        state = ChannelState(config, modal, Coordinates(config, modal))
+        state = ChannelState(
+            config, modal, Coordinates(config, modal), path_tolerance_mm=config.path.path_tolerance_mm
+        )
         if "G54" in config.offsets:
             state.coordinates.select_work_offset("G54")
         return state

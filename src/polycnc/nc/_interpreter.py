@@ -99,12 +99,14 @@ class Interpreter:
         state: ChannelState,
         messages: Messages,
         put: Callable[[QueueItem], None],
+        set_tolerance: Callable[[float], None] = lambda tolerance_mm: None,
     ) -> None:
         self.dialect = dialect
         self.state = state
         self.messages = messages
         self.compensation = RadiusCompensation()
         self._put = put
+        self._set_tolerance = set_tolerance
         self._text = ProgramText.from_text("")
         self._block: Block | None = None
         self._change_compensation: Callable[[], None] | None = None
@@ -171,13 +173,17 @@ class Interpreter:
         self._set_work_offset(words)
         self._set_stopping(words)
         self._set_distance(words)
-        moves = self._non_modal(words, line) or self._move(words, line)
+        if g := words.g.get(Group.NON_MODAL):
+            moves = self._non_modal(words, g, line)
+        else:
+            moves = self._move(words, line)
         outcome = self._outcome(words)
         self._refuse_unused(words)
         if self._change_compensation is not None:  # only now: a refused block must leave it alone
             self._change_compensation()
         after = self._auxiliary.after_motion(words, line)
         compensated = [out for item in (*items, *moves, *after) for out in self.compensation.push(item)]
+        self._set_tolerance(self.state.path_tolerance_mm)
         for item in compensated:
             self._put(item)
         self._note_position(moves)
@@ -320,13 +326,20 @@ class Interpreter:
         if g is None:
             return
         self.state.modal.whole[EXACT_STOP] = g.action is Action.EXACT_STOP
-        tolerance = words.value("P") if g.action is Action.CONTINUOUS and Group.DWELL not in words.g else None
-        if tolerance is not None:
-            words.take("Q")
-            if tolerance > 0.0:
-                self.messages.add(
-                    f"G{g.code} P: the path is kept exactly; corners are not rounded within the tolerance"
-                )
+        if g.action is Action.CONTINUOUS:
+            self._set_path_tolerance(words)
+
+    def _set_path_tolerance(self, words: BlockWords) -> None:
+        """Take over how far corners may be rounded: P, else what the machine allows."""
+        tolerance = words.take("P") if Group.DWELL not in words.g else None
+        words.take("Q")
+        if tolerance is None:
+            self.state.path_tolerance_mm = self.state.machine.path.path_tolerance_mm
+            return
+        if tolerance.value < 0.0:
+            raise self.fail("the path tolerance P is negative", "Write P from 0 up.", tolerance)
+        inch = MM_PER_INCH if self.state.modal.whole[INCH] else 1.0
+        self.state.path_tolerance_mm = tolerance.value * inch
 
     def _set_distance(self, words: BlockWords) -> None:
         if g := words.g.get(Group.DISTANCE):
@@ -340,11 +353,9 @@ class Interpreter:
 
     # ------------------------------------------------------------------ motion
 
-    def _non_modal(self, words: BlockWords, line: int) -> list[QueueItem]:
-        """Carry out a function that uses the axis words of the block for itself."""
-        g = words.g.get(Group.NON_MODAL)
-        if g is None:
-            return []
+    def _non_modal(self, words: BlockWords, g: GWord, line: int) -> list[QueueItem]:
+        """Carry out a function that uses the axis words of the block for itself; a motion word is only modal."""
+        self._motion_of(words)
         match g.action:
             case Action.SET_POSITION:
                 self._set_position(words, g)
@@ -397,10 +408,12 @@ class Interpreter:
         return [self._motion.line(end, motion == MOTION_RAPID, line)]
 
     def _motion_of(self, words: BlockWords) -> int:
-        """Take over a motion word of the block and return the motion in force."""
+        """Take over the motion words of the block and return the motion in force."""
         whole = self.state.modal.whole
-        g = words.g.get(Group.MOTION)
-        if g is not None:
+        for group in (Group.CYCLE_CANCEL, Group.MOTION):
+            g = words.g.get(group)
+            if g is None:
+                continue
             if g.action in _MOTIONS:
                 whole[MOTION] = _MOTIONS[g.action]
             else:

@@ -11,6 +11,7 @@ from polycnc.nc._arcs import (
     ARC_OK,
     ARC_RADIUS_AT_SAME_POINT,
     ARC_RADIUS_TOO_SMALL,
+    TWO_PI,
     arc_by_center,
     arc_by_radius,
     arc_extents,
@@ -124,8 +125,8 @@ class MotionBuilder:
         """Whether the present block comes to rest at its end."""
         return bool(self.state.modal.whole[EXACT_STOP]) or self.exact_stop_block
 
-    def feed(self, start: Point, end: Point) -> Feed:
-        """Return the feed of a move by the active feed mode.
+    def feed(self, start: Point, end: Point, *, arc: bool = False) -> Feed:
+        """Return the feed of a move by the active feed mode; an arc moves although it may end where it starts.
 
         Raises:
             ProgramError: no feed, or feed per revolution with the spindle at rest.
@@ -142,6 +143,13 @@ class MotionBuilder:
             return Feed(duration_s=SECONDS_PER_MINUTE / state.feed_words)
         if modal.real[FEED] <= 0.0:
             raise self.fail("a feed move without a feed", "Program F in this or an earlier block.", None)
+        value = float(modal.real[FEED])
+        if (
+            modal.whole[INCH]
+            and not arc
+            and all(rotary or a == b for a, b, rotary in zip(start, end, modal.rotary, strict=True))
+        ):
+            value /= MM_PER_INCH  # only rotary axes move: the feed is in degrees
         if mode == FEED_PER_REVOLUTION:
             rpm = self.spindle_rpm(start, end)
             if rpm <= 0.0:
@@ -150,12 +158,7 @@ class MotionBuilder:
                     "Start the spindle with S and M3 or M4.",
                     None,
                 )
-            return Feed(speed_mm_s=float(modal.real[FEED]) * rpm / SECONDS_PER_MINUTE)
-        value = float(modal.real[FEED])
-        if modal.whole[INCH] and all(
-            rotary or a == b for a, b, rotary in zip(start, end, modal.rotary, strict=True)
-        ):
-            value /= MM_PER_INCH  # only rotary axes move: the feed is in degrees
+            return Feed(speed_mm_s=value * rpm / SECONDS_PER_MINUTE)
         return Feed(speed_mm_s=value / SECONDS_PER_MINUTE)
 
     def spindle_rpm(self, start: Point, end: Point) -> float:
@@ -207,7 +210,7 @@ class MotionBuilder:
             center=(center_p, center_q),
             sweep_rad=sweep,
             plane=(p, q, r),
-            feed=self.feed(start, end),
+            feed=self.feed(start, end, arc=True),
             exact_stop=self.exact_stop,
             line=line,
         )
@@ -255,9 +258,10 @@ class MotionBuilder:
                 raise self.fail(
                     "an arc has both a radius R and a centre", "Write one of them.", words.take("R")
                 )
-            return arc_by_radius(
+            status, center_p, center_q, sweep, off = arc_by_radius(
                 start[p], start[q], end[p], end[q], radius * float(modal.scale[p]), clockwise, tolerance
             )
+            return status, center_p, center_q, sweep + math.copysign(TWO_PI * (turns - 1), sweep), off
         if not center:
             raise self.fail("an arc needs a centre or a radius", "Add I J K or R.", None)
         at = []

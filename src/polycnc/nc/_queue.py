@@ -43,6 +43,10 @@ class QueueWriter:
     make_room: Callable[[], None] = lambda: None
     events: list[Event] = field(default_factory=list)
 
+    def set_tolerance(self, tolerance_mm: float) -> None:
+        """Set how far the path may leave the corners of lines appended from now on."""
+        self.paths.row[self.path]["tolerance"] = tolerance_mm
+
     def put(self, item: QueueItem) -> None:
         """Append one line, arc or wait."""
         if free_slots(self.paths, self.path) < 2:

@@ -1,0 +1,157 @@
+"""Round the corner between two lines with an arc, so that it can be passed with speed.
+
+The arc touches both lines and stays within a tolerance of the corner. It takes at most half of what is left
+of the line before it and half of the line after it, so every line keeps room for arcs at both ends.
+"""
+
+from __future__ import annotations
+
+import math
+
+from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
+from polycnc.kernel._jit import compiled
+from polycnc.kernel._limits import AxisLimits
+from polycnc.kernel._path import BLEND_COLUMNS, Paths, slot
+from polycnc.kernel._segments import (
+    CIRCLE3D,
+    CIRCLE3D_LENGTH,
+    LINE,
+    RAPID,
+    STOP,
+    Floats,
+    Segments,
+    set_common,
+)
+
+SMALLEST_TURN = 1e-6  # rad; a smaller corner is passed as it is
+LARGEST_TURN = math.radians(175.0)  # a reversal has no room for an arc
+SMALLEST_ARC = 1e-6  # mm
+
+# Columns of the scratch `paths.blend`.
+_BEFORE, _AFTER, _START, _CENTER, _NORMAL = 0, 3, 6, 9, 12
+
+
+@compiled
+def blend_corner(
+    seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, feed: float, tag: int
+) -> bool:
+    """Append an arc at the end of path `g` towards `end`, if its last segment is a line that may be rounded.
+
+    Shortens that line; the arc goes on in the direction of `end`. Only where no axis moves but the first three
+    that count in the path length.
+    """
+    row = paths.row[g]
+    tolerance = row["tolerance"]
+    if tolerance <= 0.0 or row["tail"] - row["head"] < 2:  # the segment at `head` may be running
+        return False
+    k = slot(paths, g, row["tail"] - 1)
+    line = seg.row[k]
+    if line["kind"] != LINE or line["flags"] & (RAPID | STOP) or math.isinf(feed):
+        return False
+    p, q, r = _three_axes(seg, k, limits, end)
+    if p < 0:
+        return False
+    work = paths.blend[g]
+    before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
+    length_before = _direction(seg.start[k], seg.end[k], p, q, r, before)
+    length_after = _direction(seg.end[k], end, p, q, r, after)
+    if length_before <= 0.0 or length_after <= 0.0:
+        return False
+    cosine = before[0] * after[0] + before[1] * after[1] + before[2] * after[2]
+    turn = math.atan2(_cross(before, after, work[_NORMAL:BLEND_COLUMNS]), cosine)
+    if turn < SMALLEST_TURN or turn > LARGEST_TURN:
+        return False
+    tangent = math.tan(0.5 * turn)
+    quarter = math.sin(0.25 * turn)
+    # Along the lines: what the tolerance allows, radius (1 / cos(turn / 2) - 1), within the room there is.
+    cut = tolerance * math.sin(0.5 * turn) / (2.0 * quarter * quarter)
+    cut = min(cut, 0.5 * line["length"], 0.5 * length_after)
+    radius = cut / tangent
+    if radius * turn < SMALLEST_ARC:
+        return False
+    return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, feed, tag)
+
+
+@compiled
+def _three_axes(seg: Segments, k: int, limits: AxisLimits, end: Floats) -> tuple[int, int, int]:
+    """Return the first three axes that count, or -1 where another axis moves or there are fewer."""
+    found = 0
+    p, q, r = -1, -1, -1
+    for i in range(end.shape[0]):
+        if limits.feed_axis[i] != 0 and found < 3:
+            if found == 0:
+                p = i
+            elif found == 1:
+                q = i
+            else:
+                r = i
+            found += 1
+        elif seg.start[k, i] != seg.end[k, i] or end[i] != seg.end[k, i]:
+            return -1, -1, -1
+    if found < 3:
+        return -1, -1, -1
+    return p, q, r
+
+
+@compiled
+def _direction(start: Floats, end: Floats, p: int, q: int, r: int, out: Floats) -> float:
+    """Write the unit vector from `start` to `end` to `out[3]` and return the distance."""
+    out[0], out[1], out[2] = end[p] - start[p], end[q] - start[q], end[r] - start[r]
+    length = math.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
+    if length > 0.0:
+        for i in range(3):
+            out[i] /= length
+    return length
+
+
+@compiled
+def _cross(a: Floats, b: Floats, out: Floats) -> float:
+    """Write a x b to `out[3]` and return its length."""
+    out[0] = a[1] * b[2] - a[2] * b[1]
+    out[1] = a[2] * b[0] - a[0] * b[2]
+    out[2] = a[0] * b[1] - a[1] * b[0]
+    return math.sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2])
+
+
+@compiled
+def _append_arc(
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    k: int,
+    axes: tuple[int, int, int],
+    cut: float,
+    radius: float,
+    turn: float,
+    feed: float,
+    tag: int,
+) -> bool:
+    """Shorten line `k` by `cut` and append the arc of `radius` through `turn` rad that touches it there."""
+    p, q, r = axes
+    work = paths.blend[g]
+    before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
+    start, center = work[_START:_CENTER], work[_CENTER:_NORMAL]
+    corner = seg.end[k]
+    start[0] = corner[p] - cut * before[0]
+    start[1] = corner[q] - cut * before[1]
+    start[2] = corner[r] - cut * before[2]
+    cosine, sine = math.cos(turn), math.sin(turn)
+    for i in range(3):
+        center[i] = start[i] + radius * (after[i] - cosine * before[i]) / sine
+    arc = slot(paths, g, paths.row[g]["tail"])
+    geo = seg.geo[arc]
+    if circle3d_setup(start, center, work[_NORMAL:BLEND_COLUMNS], math.degrees(turn), geo) != 0:
+        return False
+    line = seg.row[k]
+    seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]
+    line["length"] -= cut
+    set_common(seg, arc, seg.end[k], seg.end[k], min(feed, line["feed"]), 0, tag)
+    circle3d_point(geo, 1.0, start)
+    seg.end[arc, p], seg.end[arc, q], seg.end[arc, r] = start[0], start[1], start[2]
+    seg.row[arc]["kind"] = CIRCLE3D
+    seg.row[arc]["length"] = geo[CIRCLE3D_LENGTH]
+    seg.plane[arc, 0], seg.plane[arc, 1], seg.plane[arc, 2] = p, q, r
+    for i in range(corner.shape[0]):
+        paths.queued[g, i] = seg.end[arc, i]
+    paths.row[g]["tail"] += 1
+    return True
