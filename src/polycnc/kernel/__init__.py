@@ -1,7 +1,7 @@
 """What happens in one control cycle: profiles, path geometry, look-ahead, interpolation, coupling, servo."""
 
 from polycnc.kernel._advance import advance, cycle, give_to_path, give_to_point_to_point, place_machine, skip
-from polycnc.kernel._append import append_arc, append_line, append_wait
+from polycnc.kernel._append import add_line, append_arc, append_line, append_wait
 from polycnc.kernel._geometry import segment_point
 from polycnc.kernel._interpolate import replan_path, start_path
 from polycnc.kernel._jit import compiled, entry, is_cold
@@ -84,6 +84,7 @@ __all__ = [
     "Paths",
     "PointToPoint",
     "Segments",
+    "add_line",
     "advance",
     "append_arc",
     "append_line",

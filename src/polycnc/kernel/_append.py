@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
 from polycnc.kernel._blend import blend_corner
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import AxisLimits
-from polycnc.kernel._path import Paths, slot
+from polycnc.kernel._path import Paths, slot, slot_of
 from polycnc.kernel._segments import RAPID, STOP, Floats, Segments, set_arc, set_line, set_wait
+
+Rows: TypeAlias = npt.NDArray[np.void]
 
 
 @compiled
-def _appended(seg: Segments, paths: Paths, g: int, k: int) -> None:
-    paths.row[g]["closed"] = 0
-    paths.row[g]["tail"] += 1
-    for i in range(seg.end.shape[1]):
-        paths.queued[g, i] = seg.end[k, i]
+def _appended(ends: Floats, path: Rows, queued: Floats, g: int, k: int) -> None:
+    path[g]["closed"] = 0
+    path[g]["tail"] += 1
+    for i in range(ends.shape[1]):
+        queued[g, i] = ends[k, i]
 
 
 @compiled
@@ -25,12 +32,12 @@ def stop_before_next(seg: Segments, paths: Paths, g: int) -> None:
 
 
 @compiled
-def _keep_rapids_apart(seg: Segments, paths: Paths, g: int, flags: int) -> None:
+def _keep_rapids_apart(row: Rows, path: Rows, g: int, flags: int) -> None:
     """Let a path come to rest where positioning meets feed motion, unless the caller lets them blend."""
-    if paths.row[g]["tail"] > paths.row[g]["head"]:
-        k = slot(paths, g, paths.row[g]["tail"] - 1)
-        if (seg.row[k]["flags"] ^ flags) & RAPID:
-            seg.row[k]["flags"] |= STOP
+    if path[g]["tail"] > path[g]["head"]:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        if (row[k]["flags"] ^ flags) & RAPID:
+            row[k]["flags"] |= STOP
 
 
 @entry
@@ -42,11 +49,31 @@ def append_line(
     With a path tolerance the corner before it is rounded where that is possible.
     """
     blend_corner(seg, paths, g, limits, end, feed, tag)
-    k = slot(paths, g, paths.row[g]["tail"])
-    if not set_line(seg, k, limits.feed_axis, paths.queued[g], end, feed, flags, tag):
+    return add_line(
+        seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, feed, flags, tag
+    )
+
+
+@compiled
+def add_line(
+    row: Rows,
+    starts: Floats,
+    ends: Floats,
+    path: Rows,
+    queued: Floats,
+    g: int,
+    feed_axis: npt.NDArray[np.uint8],
+    end: Floats,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Do what `append_line` does without a path tolerance, from single columns of `Segments` and `Paths`."""
+    k = slot_of(path, g, path[g]["tail"])
+    if not set_line(row, starts, ends, k, feed_axis, queued[g], end, feed, flags, tag):
         return False
-    _keep_rapids_apart(seg, paths, g, flags)
-    _appended(seg, paths, g, k)
+    _keep_rapids_apart(row, path, g, flags)
+    _appended(ends, path, queued, g, k)
     return True
 
 
@@ -84,8 +111,8 @@ def append_arc(
         tag,
     ):
         return False
-    _keep_rapids_apart(seg, paths, g, flags)
-    _appended(seg, paths, g, k)
+    _keep_rapids_apart(seg.row, paths.row, g, flags)
+    _appended(seg.end, paths.row, paths.queued, g, k)
     return True
 
 
@@ -95,4 +122,4 @@ def append_wait(seg: Segments, paths: Paths, g: int, duration: float, event: int
     stop_before_next(seg, paths, g)
     k = slot(paths, g, paths.row[g]["tail"])
     set_wait(seg, k, paths.queued[g], duration, event, tag)
-    _appended(seg, paths, g, k)
+    _appended(seg.end, paths.row, paths.queued, g, k)

@@ -1,8 +1,8 @@
 """Go along a path: one sample per control cycle, or many at once in closed form.
 
-Time runs on across junctions that are passed with speed; where the path comes to rest, the last sample is the end
-point itself and the next segment begins with the next cycle. So every stretch from rest to rest takes a whole
-number of cycles.
+Time runs on across junctions that are passed with speed; where the path comes to rest, the last sample is the
+end point itself and the next segment begins with the next cycle. So every stretch from rest to rest takes a
+whole number of cycles.
 """
 
 from __future__ import annotations
@@ -31,9 +31,11 @@ from polycnc.kernel._path import (
 from polycnc.kernel._ramps import (
     FROM_S,
     LENGTH,
+    ROUNDING,
     SPEED_OUT,
     SPEED_PEAK,
     TIME_CRUISE,
+    in_ramp,
     plan_halt,
     plan_ramps,
     ramps_at,
@@ -86,7 +88,7 @@ def _leave(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
 
 @compiled
 def settle(seg: Segments, paths: Paths, g: int) -> int:
-    """Pass waits of no duration at a point of rest; return EVENT if one of them reports an event, else STILL."""
+    """Pass waits of no duration at a point of rest; return EVENT if one of them reports one, else STILL."""
     paths.row[g]["event"] = -1
     while paths.row[g]["state"] == READY and paths.row[g]["head"] < paths.row[g]["tail"]:
         k = slot(paths, g, paths.row[g]["head"])
@@ -124,15 +126,43 @@ def _enter(seg: Segments, paths: Paths, g: int, speed: float, lead: float) -> No
     _plan_rest_of_segment(seg, paths, g, speed, 0.0)
     paths.row[g]["lead"] = lead
     paths.row[g]["cycles"] = 0
+    paths.row[g]["pending"] = 0
+
+
+@compiled
+def _replan_running(seg: Segments, paths: Paths, g: int, dt: float) -> None:
+    """Plan the rest of the running segment anew from the present place and speed."""
+    k = slot(paths, g, paths.row[g]["head"])
+    row = paths.row[g]
+    row["pending"] = 0
+    if seg.row[k]["kind"] == WAIT:
+        return
+    t = row["lead"] + row["cycles"] * dt
+    s, speed = ramps_at(paths.ramps[g], t, row["jerkrel"])
+    _plan_rest_of_segment(seg, paths, g, speed, min(s, seg.row[k]["length"]))
+    row["lead"] = 0.0
+    row["cycles"] = 0
+
+
+@compiled
+def _take_pending(seg: Segments, paths: Paths, g: int, t: float, dt: float) -> None:
+    """Take over a change that waited for the end of a ramp."""
+    if paths.row[g]["pending"] != 0 and not in_ramp(paths.ramps[g], t):
+        _replan_running(seg, paths, g, dt)
+
+
+@compiled
+def _reached(seg: Segments, paths: Paths, g: int) -> float:
+    """Return the path length within the running segment at which its planned stretch ends."""
+    end = paths.ramps[g, FROM_S] + paths.ramps[g, LENGTH]
+    length = seg.row[slot(paths, g, paths.row[g]["head"])]["length"]
+    return float(end if end < length * (1.0 - ROUNDING) else length)
 
 
 @compiled
 def _ends_within(seg: Segments, paths: Paths, g: int) -> bool:
     """Tell whether the planned stretch stops short of the segment's end (feed hold)."""
-    k = slot(paths, g, paths.row[g]["head"])
-    return bool(
-        paths.row[g]["hold"] != 0 and paths.ramps[g, FROM_S] + paths.ramps[g, LENGTH] < seg.row[k]["length"]
-    )
+    return bool(_reached(seg, paths, g) < seg.row[slot(paths, g, paths.row[g]["head"])]["length"])
 
 
 @compiled
@@ -145,6 +175,11 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
             return STILL
         paths.row[g]["state"] = RUNNING
         _enter(seg, paths, g, 0.0, 0.0)
+    elif paths.row[g]["state"] == HELD and paths.row[g]["hold"] == 0:
+        paths.row[g]["state"] = RUNNING
+        _plan_rest_of_segment(seg, paths, g, 0.0, _reached(seg, paths, g))
+        paths.row[g]["lead"] = 0.0
+        paths.row[g]["cycles"] = 0
     elif paths.row[g]["state"] != RUNNING:
         return STILL
     paths.row[g]["cycles"] += 1
@@ -157,6 +192,7 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         paths.row[g]["flags"] = current["flags"]
         if ramps[SPEED_OUT] == 0.0:
             if t < duration - REST_SLACK * dt:
+                _take_pending(seg, paths, g, t, dt)
                 return INSIDE
             if _ends_within(seg, paths, g):
                 paths.row[g]["state"] = HELD
@@ -165,6 +201,7 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
                 _leave(seg, paths, g, t)
             return RESTED
         if t <= duration:
+            _take_pending(seg, paths, g, t, dt)
             return INSIDE
         t -= duration
         speed = ramps[SPEED_OUT]
@@ -191,12 +228,7 @@ def path_cycle(seg: Segments, paths: Paths, g: int, dt: float) -> int:
     elif result == RESTED:
         paths.row[g]["speed"] = 0.0
         if paths.row[g]["state"] == HELD:
-            segment_point(
-                seg,
-                slot(paths, g, paths.row[g]["head"]),
-                paths.ramps[g, FROM_S] + paths.ramps[g, LENGTH],
-                position,
-            )
+            segment_point(seg, slot(paths, g, paths.row[g]["head"]), _reached(seg, paths, g), position)
         else:
             k = slot(paths, g, max(before, int(paths.row[g]["head"]) - 1))
             for i in range(position.shape[0]):
@@ -210,8 +242,8 @@ def path_cycle(seg: Segments, paths: Paths, g: int, dt: float) -> int:
 def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int:
     """Go along path `g` without setpoints while its segment count is below `until`; return the cycles taken.
 
-    The cycles are those that `path_cycle` takes, to the last one: all but the samples next to a segment's end are
-    counted at once, the rest stepped. Stops at an event, which then stands in the path's row.
+    The cycles are those that `path_cycle` takes, to the last one: all but the samples next to a segment's end
+    are counted at once, the rest stepped. Stops at an event, which then stands in the path's row.
     """
     cycles = 0
     paths.row[g]["event"] = -1
@@ -220,7 +252,7 @@ def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int
             break
         if paths.row[g]["state"] == RUNNING:
             left = ramps_duration(paths.ramps[g]) - paths.row[g]["lead"]
-            jump = int(math.floor(left / dt)) - 2
+            jump = math.floor(left / dt) - 2
             if jump > paths.row[g]["cycles"]:
                 cycles += jump - int(paths.row[g]["cycles"])
                 paths.row[g]["cycles"] = jump
@@ -237,22 +269,16 @@ def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int
 
 @entry
 def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
-    """Take over a new override, hold or queue extension from where path `g` stands now."""
-    limit_queue(seg, paths, g, limits, dt, int(paths.row[g]["head"]), work)
-    paths.row[g]["planned"] = paths.row[g]["head"]
+    """Take over a new override, hold or queue extension from where path `g` stands now.
+
+    An S-shaped ramp that is under way is finished first, so that the acceleration does not step.
+    """
+    row = paths.row[g]
+    limit_queue(seg, paths, g, limits, dt, int(row["head"]), work)
+    row["planned"] = row["head"]
     plan_path(seg, paths, g)
-    if paths.row[g]["state"] == HELD and paths.row[g]["hold"] == 0:
-        k = slot(paths, g, paths.row[g]["head"])
-        reached = min(paths.ramps[g, FROM_S] + paths.ramps[g, LENGTH], seg.row[k]["length"])
-        paths.row[g]["state"] = RUNNING
-        _plan_rest_of_segment(seg, paths, g, 0.0, reached)
-        paths.row[g]["lead"] = 0.0
-        paths.row[g]["cycles"] = 0
-    elif paths.row[g]["state"] == RUNNING:
-        k = slot(paths, g, paths.row[g]["head"])
-        if seg.row[k]["kind"] != WAIT:
-            t = paths.row[g]["lead"] + paths.row[g]["cycles"] * dt
-            s, speed = ramps_at(paths.ramps[g], t, paths.row[g]["jerkrel"])
-            _plan_rest_of_segment(seg, paths, g, speed, min(s, seg.row[k]["length"]))
-            paths.row[g]["lead"] = 0.0
-            paths.row[g]["cycles"] = 0
+    if row["state"] == RUNNING:
+        if row["jerkrel"] > 0.0 and in_ramp(paths.ramps[g], row["lead"] + row["cycles"] * dt):
+            row["pending"] = 1
+        else:
+            _replan_running(seg, paths, g, dt)

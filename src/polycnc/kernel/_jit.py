@@ -97,8 +97,10 @@ def allocating(function: Callable[P, R]) -> Callable[P, R]:
 def _internal(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
     if OPEN_INTERNALS or _CONFIG.DISABLE_JIT:
         return _cached(function, counted=counted)
-    wrapped = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **wrapped)(function)
+    # A state is hundreds of words, which a real call puts on the stack one by one. That costs more than most
+    # functions do, so they all become part of their callers. It changes no result.
+    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **options)(function)
     dispatcher.__class__ = _Internal
     return cast("Callable[P, R]", dispatcher)
 

@@ -67,19 +67,22 @@ def make_limits(axes: int) -> AxisLimits:
 
 @compiled
 def limit_segment(
-    seg: Segments, k: int, limits: AxisLimits, override: float, jerkrel: float, work: Floats
+    seg: Segments, k: int, limits: AxisLimits, override: float, top: float, jerkrel: float, work: Floats
 ) -> None:
-    """Set `cap` and `full_accel` of segment `k`: programmed feed times override, within what every axis allows.
+    """Set the caps and `full_accel` of segment `k`: feed times override, within what every axis allows.
 
-    `work` is scratch, [2, n]. Peak acceleration of an S-shaped ramp is (1 + jerkrel) times the mean one, so the
-    mean is lowered to keep the peak within the limit.
+    Curvature and corners take their part of the acceleration as at the highest override so far (`top`): when
+    the override falls, the path is still faster than the new cap, and must keep the limits while it brakes.
+    Peak acceleration of an S-shaped ramp is (1 + jerkrel) times the mean one, so the mean is lowered to keep
+    the peak within the limit. `work` is scratch, [2, n].
     """
     kind = seg.row[k]["kind"]
     if kind == WAIT:
+        seg.row[k]["full_cap"] = 0.0
         seg.row[k]["cap"] = 0.0
         seg.row[k]["full_accel"] = 1.0
         return
-    cap = seg.row[k]["feed"] * override
+    cap = seg.row[k]["feed"] * top
     accel = math.inf
     if kind == LINE:
         for i in range(limits.speed.shape[0]):
@@ -89,7 +92,8 @@ def limit_segment(
                 accel = min(accel, limits.acceleration[i] / part)
     else:
         cap, accel = _limit_curve(seg, k, limits, cap, work)
-    seg.row[k]["cap"] = cap
+    seg.row[k]["full_cap"] = cap
+    seg.row[k]["cap"] = min(cap, seg.row[k]["feed"] * override)
     seg.row[k]["full_accel"] = accel / (1.0 + jerkrel)
 
 
@@ -159,7 +163,7 @@ def limit_junction(
     curved = is_curved(seg, k) or is_curved(seg, following)
     budget = (CURVE_CORNER_SHARE if curved else CORNER_SHARE) / CORNER_MARGIN
     shorter = min(seg.row[k]["length"], seg.row[following]["length"])
-    speed = min(seg.row[k]["cap"], seg.row[following]["cap"])
+    speed = min(seg.row[k]["full_cap"], seg.row[following]["full_cap"])
     for i in range(before.shape[0]):
         change = abs(after[i] - before[i])
         if change > STRAIGHT:
@@ -175,7 +179,7 @@ def limit_junction(
             change = abs(after[i] - before[i])
             if change > STRAIGHT and limits.jump[i] < 0.0:
                 share = max(share, CORNER_MARGIN * speed * change / (limits.acceleration[i] * window))
-    seg.row[k]["junction"] = speed
+    seg.row[k]["junction"] = min(speed, seg.row[k]["cap"], seg.row[following]["cap"])
     seg.row[k]["share"] = share
 
 

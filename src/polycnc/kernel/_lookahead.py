@@ -21,30 +21,29 @@ def limit_queue(
     seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, first: int, work: Floats
 ) -> None:
     """Set caps, junctions and accelerations of the queued segments from count `first` on."""
-    tail = paths.row[g]["tail"]
-    first = max(first, int(paths.row[g]["head"]))
+    row = paths.row[g]
+    tail = row["tail"]
+    first = max(first, int(row["head"]))
+    row["top_override"] = max(row["top_override"], row["override"])
     for count in range(first, tail):
         limit_segment(
-            seg, slot(paths, g, count), limits, paths.row[g]["override"], paths.row[g]["jerkrel"], work
+            seg, slot(paths, g, count), limits, row["override"], row["top_override"], row["jerkrel"], work
         )
-    for count in range(max(first - 1, int(paths.row[g]["head"])), tail):
+    for count in range(max(first - 1, int(row["head"])), tail):
         k = slot(paths, g, count)
         if count + 1 < tail:
             limit_junction(seg, k, slot(paths, g, count + 1), limits, dt, work)
         else:
             seg.row[k]["junction"] = 0.0
             seg.row[k]["share"] = 0.0
-        if count == paths.row[g]["head"] and paths.row[g]["state"] == RUNNING and seg.row[k]["share"] > 0.0:
+        was_last = count == first - 1
+        if was_last and count == row["head"] and row["state"] == RUNNING and seg.row[k]["share"] > 0.0:
             # It began as the last one and has used all of its acceleration: nothing is left for a corner.
             seg.row[k]["junction"] = 0.0
             seg.row[k]["share"] = 0.0
-    for count in range(max(first - 1, int(paths.row[g]["head"])), tail):
+    for count in range(max(first - 1, int(row["head"])), tail):
         k = slot(paths, g, count)
-        before = (
-            seg.row[slot(paths, g, count - 1)]["share"]
-            if count > paths.row[g]["head"]
-            else paths.row[g]["entry_share"]
-        )
+        before = seg.row[slot(paths, g, count - 1)]["share"] if count > row["head"] else row["entry_share"]
         share_acceleration(seg, k, before, seg.row[k]["share"])
 
 

@@ -39,6 +39,7 @@ PATH_ROW = np.dtype(
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
         ("override", np.float64),
+        ("top_override", np.float64),  # the highest so far, at least 1
         ("jerkrel", np.float64),
         ("tolerance", np.float64),  # how far the path may leave a corner between lines appended from now on
         ("lead", np.float64),  # time into the running segment at sample 0
@@ -48,6 +49,7 @@ PATH_ROW = np.dtype(
         ("flags", np.int8),  # of that segment
         ("state", np.int8),
         ("hold", np.int8),
+        ("pending", np.int8),  # a change waits for the end of the S-shaped ramp that is under way
         ("closed", np.int8),  # nothing will be appended: the last segment ends the path
     ],
     align=True,
@@ -72,6 +74,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
     row["capacity"] = slots // paths
     row["base"] = np.arange(paths) * (slots // paths)
     row["override"] = 1.0
+    row["top_override"] = 1.0
     row["event"] = -1
     return Paths(
         row=row,
@@ -87,7 +90,13 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
 @compiled
 def slot(paths: Paths, g: int, count: int) -> int:
     """Return the slot of segment `count` of path `g`."""
-    return int(paths.row[g]["base"] + count % paths.row[g]["capacity"])
+    return slot_of(paths.row, g, count)
+
+
+@compiled
+def slot_of(path: npt.NDArray[np.void], g: int, count: int) -> int:
+    """Return the same from the column `Paths.row` alone."""
+    return int(path[g]["base"] + count % path[g]["capacity"])
 
 
 @entry

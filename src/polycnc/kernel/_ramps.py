@@ -72,6 +72,12 @@ def ramps_duration(ramps: Floats) -> float:
 
 
 @compiled
+def in_ramp(ramps: Floats, t: float) -> bool:
+    """Tell whether the speed changes at time `t` of the planned stretch."""
+    return bool(t < ramps[TIME_IN] or t > ramps[TIME_IN] + ramps[TIME_CRUISE])
+
+
+@compiled
 def shaped_ramp(
     t: float, duration: float, from_speed: float, to_speed: float, jerkrel: float
 ) -> tuple[float, float]:

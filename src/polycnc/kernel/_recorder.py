@@ -38,8 +38,8 @@ def is_full(recorder: Recorder) -> bool:
 def record(
     recorder: Recorder, time_s: float, block: int, feed: float, rapid: int, setpoint: Floats, actual: Floats
 ) -> None:
-    """Append the row of a cycle."""
-    if recorder.rows.shape[0] == 0:
+    """Append the row of a cycle; a full recorder, that nobody has emptied, keeps what it has."""
+    if recorder.count[0] >= recorder.rows.shape[0]:
         return
     row = recorder.rows[recorder.count[0]]
     row[TIME_S] = time_s

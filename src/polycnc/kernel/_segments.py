@@ -46,7 +46,8 @@ SEGMENT_ROW = np.dtype(
         ("length", np.float64),
         ("feed", np.float64),  # programmed path speed, inf for rapids
         ("end_speed", np.float64),  # prescribed speed at the end, or negative: the look-ahead decides
-        ("cap", np.float64),  # highest path speed that feed and axes allow
+        ("full_cap", np.float64),  # highest path speed that feed and axes allow at the highest override so far
+        ("cap", np.float64),  # the same at the present override
         ("full_accel", np.float64),  # path acceleration that the axes allow, before corners take their share
         ("accel", np.float64),
         ("junction", np.float64),  # highest speed through the end
@@ -89,18 +90,35 @@ def make_segments(slots: int, axes: int, splines: Splines | None = None) -> Segm
 @compiled
 def set_common(seg: Segments, k: int, start: Floats, end: Floats, feed: float, flags: int, tag: int) -> None:
     """Fill what every kind of segment has."""
+    _set_common(seg.row, seg.start, seg.end, k, start, end, feed, flags, tag)
+
+
+@compiled
+def _set_common(
+    row: npt.NDArray[np.void],
+    starts: Floats,
+    ends: Floats,
+    k: int,
+    start: Floats,
+    end: Floats,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> None:
     for i in range(start.shape[0]):
-        seg.start[k, i] = start[i]
-        seg.end[k, i] = end[i]
-    seg.row[k]["feed"] = feed
-    seg.row[k]["flags"] = flags
-    seg.row[k]["tag"] = tag
-    seg.row[k]["end_speed"] = -1.0
+        starts[k, i] = start[i]
+        ends[k, i] = end[i]
+    row[k]["feed"] = feed
+    row[k]["flags"] = flags
+    row[k]["tag"] = tag
+    row[k]["end_speed"] = -1.0
 
 
 @compiled
 def set_line(
-    seg: Segments,
+    row: npt.NDArray[np.void],
+    starts: Floats,
+    ends: Floats,
     k: int,
     feed_axis: npt.NDArray[np.uint8],
     start: Floats,
@@ -109,7 +127,10 @@ def set_line(
     flags: int,
     tag: int,
 ) -> bool:
-    """Fill slot `k` with a straight line; False if it has no length."""
+    """Fill slot `k` of the columns with a straight line; False if it has no length.
+
+    It takes single columns because a compiled call costs by the arrays it hands over, and lines are many.
+    """
     counted = 0.0
     riding = 0.0
     for i in range(start.shape[0]):
@@ -124,9 +145,9 @@ def set_line(
         flags |= TURN
     if length < TINY:
         return False
-    set_common(seg, k, start, end, feed, flags, tag)
-    seg.row[k]["kind"] = LINE
-    seg.row[k]["length"] = length
+    _set_common(row, starts, ends, k, start, end, feed, flags, tag)
+    row[k]["kind"] = LINE
+    row[k]["length"] = length
     return True
 
 

@@ -1,0 +1,146 @@
+"""Random paths for tests of the kernel: lines of every length, corners of every angle, arcs, waits."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from polycnc.kernel import (
+    PATH_RESTED,
+    RAPID,
+    RECORDER_FULL,
+    STOP,
+    KernelState,
+    advance,
+    append_arc,
+    append_line,
+    append_wait,
+    give_to_path,
+    make_state,
+    prepare_path,
+    start_path,
+)
+
+AXES = 3
+CYCLE_S = 0.001
+RECORDED = 1 << 16
+FEEDS = (5.0, 50.0, 200.0, 600.0, 2000.0)
+TURNS = (0.0, 0.0, 1e-7, 1e-3, 0.05, 0.3, 1.5, math.pi)
+
+
+@dataclass(frozen=True)
+class PathSettings:
+    """What a path is planned with besides its geometry."""
+
+    tolerance: float = 0.0
+    jerkrel: float = 0.0
+    depth: int = 0
+
+
+def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 4096) -> KernelState:
+    """Return a machine with random limits of each axis, its path 0 empty and in charge of all axes."""
+    state = make_state(AXES, cycle_s=CYCLE_S, segments=segments, record_cycles=RECORDED)
+    state.limits.speed[:] = rng.uniform(50.0, 600.0, AXES)
+    state.limits.acceleration[:] = rng.uniform(300.0, 8000.0, AXES)
+    row = state.paths.row[0]
+    row["tolerance"], row["jerkrel"], row["depth"] = settings.tolerance, settings.jerkrel, settings.depth
+    give_to_path(state, 0)
+    return state
+
+
+class PathMaker:
+    """Append random segments to path 0 of a machine, one after the other."""
+
+    def __init__(self, state: KernelState, rng: np.random.Generator, length: float | None = None) -> None:
+        self.state = state
+        self.rng = rng
+        self.length = length  # of every line; random over six decades if None
+        self.heading = float(rng.uniform(-3.0, 3.0))
+        self.place = np.zeros(AXES)
+        self.tag = 0
+
+    def append(self, count: int) -> None:
+        """Append `count` segments."""
+        for _ in range(count):
+            self.tag += 1
+            self._append_one()
+
+    def _append_one(self) -> None:
+        rng, state = self.rng, self.state
+        kind = int(rng.integers(0, 12))
+        feed = float(rng.choice(FEEDS))
+        self.heading += float(rng.choice(TURNS)) * float(rng.choice((-1.0, 1.0)))
+        if kind == 0:
+            self._arc(feed)
+        elif kind == 1:
+            append_wait(state.seg, state.paths, 0, 0.003, -1, self.tag)
+        else:
+            length = 10.0 ** rng.uniform(-5.0, 1.5) if self.length is None else self.length
+            direction = np.array(
+                [math.cos(self.heading), math.sin(self.heading), float(rng.choice((0.0, 0.0, 0.3, -2.0)))]
+            )
+            end = self.place + direction * length
+            speed, flags = (math.inf, RAPID) if kind == 2 else (feed, STOP if kind == 3 else 0)
+            if append_line(state.seg, state.paths, 0, state.limits, end, speed, flags, self.tag):
+                self.place = end
+
+    def _arc(self, feed: float) -> None:
+        """Append an arc that leaves in the present direction; some end a little off their circle."""
+        rng, state = self.rng, self.state
+        side = float(rng.choice((-1.0, 1.0)))
+        radius = 10.0 ** rng.uniform(-1.5, 1.5)
+        sweep = side * float(rng.uniform(0.05, 6.0))
+        center = self.place[:2] + radius * side * np.array([-math.sin(self.heading), math.cos(self.heading)])
+        angle = math.atan2(self.place[1] - center[1], self.place[0] - center[0]) + sweep
+        off = float(rng.choice((0.0, 0.0, 1.0)) * rng.uniform(-1.0, 1.0)) * min(0.005, radius * 0.001)
+        end = self.place.copy()
+        end[:2] = center + (radius + off) * np.array([math.cos(angle), math.sin(angle)])
+        end[2] += float(rng.choice((0.0, rng.normal() * 5.0)))
+        append_arc(
+            state.seg, state.paths, 0, state.limits, end, 0, 1, center[0], center[1], sweep, feed, 0, self.tag
+        )
+        self.place, self.heading = end, self.heading + sweep
+
+
+def prepare(state: KernelState, first: int = 0, *, closed: bool = True) -> None:
+    """Take segments from count `first` on into the look-ahead."""
+    state.paths.row[0]["closed"] = closed
+    prepare_path(state.seg, state.paths, 0, state.limits, CYCLE_S, first, state.work)
+
+
+def random_path(seed: int, settings: PathSettings, length: float | None = None) -> KernelState:
+    """Return a machine with a complete random path, planned and ready to start."""
+    rng = np.random.default_rng(seed)
+    state = machine(rng, settings)
+    PathMaker(state, rng, length).append(int(rng.integers(2, 300)))
+    prepare(state)
+    start_path(state.paths, 0)
+    return state
+
+
+def is_done(state: KernelState) -> bool:
+    """Tell whether path 0 has been gone along to its end."""
+    return bool(state.paths.row[0]["head"] >= state.paths.row[0]["tail"])
+
+
+def run_recorded(state: KernelState) -> int:
+    """Run every cycle until the path ends or the recorder is full; return the cycles."""
+    state.clock[0]["mask"] = RECORDER_FULL | PATH_RESTED
+    cycles = 0
+    while not is_done(state) and state.recorder.count[0] < RECORDED:
+        cycles += advance(state, RECORDED)
+    return cycles
+
+
+def overload(state: KernelState) -> tuple[float, float]:
+    """Return the greatest speed and acceleration of any axis in any recorded cycle, as parts of limits."""
+    rows = state.recorder.rows[: int(state.recorder.count[0])]
+    positions = np.concatenate([np.zeros((2, AXES)), rows[:, 4 : 4 + AXES]])
+    speed = np.diff(positions, axis=0) / CYCLE_S
+    acceleration = np.diff(speed, axis=0) / CYCLE_S
+    return (
+        float(np.max(np.abs(speed) / state.limits.speed)),
+        float(np.max(np.abs(acceleration) / state.limits.acceleration)),
+    )
