@@ -1,5 +1,6 @@
 """Write the documentation pages that are generated; run by scripts/reference, compared by a test."""
 
+import runpy
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +14,14 @@ def conformance_page() -> str:
     return conformance.reference_page(conformance.load_conformance(REPOSITORY / "conformance"))
 
 
+def life_of_a_block_page() -> str:
+    """Return the page that follows one block through the code, with its numbers."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_life_of_a_block.py"))["page"]
+    return page()
+
+
 PAGES: dict[str, Callable[[], str]] = {
+    "docs/explanation/life-of-a-block.md": life_of_a_block_page,
     "docs/reference/conformance.md": conformance_page,
 }
 """Every generated page: its path in the repository, and what returns its text."""

@@ -82,7 +82,7 @@ def test_counting_cycles_is_running_them(settings: PathSettings) -> None:
         cycles = 0
         while not is_done(stepped):
             cycles += advance(stepped, 1 << 16)
-            stepped.recorder.count[0] = 0
+            stepped.recorder.filled[0] = 0
         assert skip(counted, 0, rest_of(counted)) == cycles
         assert np.array_equal(counted.paths.totals, stepped.paths.totals)
         assert np.array_equal(counted.setpoint, stepped.setpoint)

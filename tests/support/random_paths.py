@@ -129,14 +129,14 @@ def run_recorded(state: KernelState) -> int:
     """Run every cycle until the path ends or the recorder is full; return the cycles."""
     state.clock[0]["mask"] = RECORDER_FULL | PATH_RESTED
     cycles = 0
-    while not is_done(state) and state.recorder.count[0] < RECORDED:
+    while not is_done(state) and state.recorder.filled[0] < RECORDED:
         cycles += advance(state, RECORDED)
     return cycles
 
 
 def overload(state: KernelState) -> tuple[float, float]:
     """Return the greatest speed and acceleration of any axis in any recorded cycle, as parts of limits."""
-    rows = state.recorder.rows[: int(state.recorder.count[0])]
+    rows = state.recorder.rows[: int(state.recorder.filled[0])]
     positions = np.concatenate([np.zeros((2, AXES)), rows[:, 4 : 4 + AXES]])
     speed = np.diff(positions, axis=0) / CYCLE_S
     acceleration = np.diff(speed, axis=0) / CYCLE_S

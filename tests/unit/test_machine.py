@@ -34,7 +34,7 @@ def test_a_new_target_on_the_way_is_taken_without_a_step_of_the_velocity() -> No
     machine.move("Y", -20.0)
     machine.run(Step(2000))
     recorder = machine.state.recorder
-    positions = recorder.rows[: int(recorder.count[0]), 4 + 1]
+    positions = recorder.rows[: int(recorder.filled[0]), 4 + 1]
     acceleration = np.diff(positions, 2) / machine.config.cycle_s**2
     assert np.max(np.abs(acceleration)) <= amax * (1.0 + 1e-9)
     assert positions[-1] == -20.0

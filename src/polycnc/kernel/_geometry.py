@@ -102,7 +102,7 @@ def grow_extents(seg: Segments, k: int, low: Floats, high: Floats) -> None:
     kind = seg.row[k]["kind"]
     if kind == ARC:
         _grow_by_quadrants(seg, k, low, high)
-    elif kind == SPLINE or kind == CIRCLE3D:
+    elif kind in (SPLINE, CIRCLE3D):
         # No closed form worth its lines: 64 points are within 0.1 % of a turn's radius.
         _grow_by_points(seg, k, low, high)
 
@@ -140,4 +140,4 @@ def _grow_by_points(seg: Segments, k: int, low: Floats, high: Floats) -> None:
 @compiled
 def is_curved(seg: Segments, k: int) -> bool:
     """Tell whether the direction of segment `k` changes along it."""
-    return seg.row[k]["kind"] != LINE and seg.row[k]["kind"] != WAIT
+    return bool(seg.row[k]["kind"] != LINE and seg.row[k]["kind"] != WAIT)

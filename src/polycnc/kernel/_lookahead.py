@@ -50,11 +50,8 @@ def limit_queue(
 @compiled
 def end_limit(seg: Segments, k: int) -> float:
     """Return the highest speed through the end of segment `k`: its junction, or what the caller prescribed."""
-    return (
-        seg.row[k]["junction"]
-        if seg.row[k]["end_speed"] < 0.0
-        else min(seg.row[k]["end_speed"], seg.row[k]["cap"])
-    )
+    row = seg.row[k]
+    return float(row["junction"] if row["end_speed"] < 0.0 else min(row["end_speed"], row["cap"]))
 
 
 @compiled

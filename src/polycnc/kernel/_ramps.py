@@ -68,7 +68,7 @@ def plan_halt(ramps: Floats, speed_in: float, length: float, accel: float, s: fl
 @compiled
 def ramps_duration(ramps: Floats) -> float:
     """Return the time of the planned stretch in s."""
-    return ramps[TIME_IN] + ramps[TIME_CRUISE] + ramps[TIME_OUT]
+    return float(ramps[TIME_IN] + ramps[TIME_CRUISE] + ramps[TIME_OUT])
 
 
 @compiled

@@ -20,7 +20,7 @@ class Recorder(NamedTuple):
     """A buffer of rows; an empty one (capacity 0) records nothing."""
 
     rows: Floats  # [capacity, LEADING + n] or [capacity, LEADING + 2 n]
-    count: npt.NDArray[np.int64]  # [1] rows filled
+    filled: npt.NDArray[np.int64]  # [1] rows
 
 
 def make_recorder(capacity: int, axes: int, actual: bool) -> Recorder:
@@ -31,7 +31,7 @@ def make_recorder(capacity: int, axes: int, actual: bool) -> Recorder:
 @compiled
 def is_full(recorder: Recorder) -> bool:
     """Tell whether a recorder that records has no room for another row."""
-    return recorder.rows.shape[0] > 0 and recorder.count[0] >= recorder.rows.shape[0]
+    return bool(recorder.rows.shape[0] > 0 and recorder.filled[0] >= recorder.rows.shape[0])
 
 
 @compiled
@@ -39,9 +39,9 @@ def record(
     recorder: Recorder, time_s: float, block: int, feed: float, rapid: int, setpoint: Floats, actual: Floats
 ) -> None:
     """Append the row of a cycle; a full recorder, that nobody has emptied, keeps what it has."""
-    if recorder.count[0] >= recorder.rows.shape[0]:
+    if recorder.filled[0] >= recorder.rows.shape[0]:
         return
-    row = recorder.rows[recorder.count[0]]
+    row = recorder.rows[recorder.filled[0]]
     row[TIME_S] = time_s
     row[BLOCK] = block
     row[FEED] = feed
@@ -52,4 +52,4 @@ def record(
     if row.shape[0] > LEADING + n:
         for i in range(n):
             row[LEADING + n + i] = actual[i]
-    recorder.count[0] += 1
+    recorder.filled[0] += 1

@@ -46,7 +46,7 @@ SEGMENT_ROW = np.dtype(
         ("length", np.float64),
         ("feed", np.float64),  # programmed path speed, inf for rapids
         ("end_speed", np.float64),  # prescribed speed at the end, or negative: the look-ahead decides
-        ("full_cap", np.float64),  # highest path speed that feed and axes allow at the highest override so far
+        ("full_cap", np.float64),  # highest path speed that feed and axes allow, at the top override
         ("cap", np.float64),  # the same at the present override
         ("full_accel", np.float64),  # path acceleration that the axes allow, before corners take their share
         ("accel", np.float64),

@@ -168,10 +168,10 @@ class Execution:
     def _drain(self) -> None:
         """Hand the recorded rows on and empty the recorder."""
         recorder = self.machine.state.recorder
-        count = int(recorder.count[0])
+        count = int(recorder.filled[0])
         if self.rows is not None and count:
             self.rows(recorder.rows[:count])
-        recorder.count[0] = 0
+        recorder.filled[0] = 0
 
     def _note_event(self) -> None:
         event = self.channel.writer.events[int(self._row["event"])]

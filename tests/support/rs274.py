@@ -1,0 +1,199 @@
+"""LinuxCNC's stand-alone interpreter `rs274` as an oracle: run it on a program, read its canonical calls.
+
+It prints four decimals. To compare more closely it is given a program that is `SCALE` times as large.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+import shutil
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from polycnc.units import MM_PER_INCH
+from support.canonical import Dwell, Feed, Function, Point, Step, Traverse, Turn
+from support.random_programs import tool_table
+
+COMMAND = shutil.which("rs274")
+SCALE = 10_000
+RESOLUTION_MM = 0.5e-4 * MM_PER_INCH / SCALE
+"""Half of the last printed digit, of a length in inch."""
+
+_CALL = re.compile(r"^\s*\d+ N\S*\s+(\w+)\((.*)\)$", re.MULTILINE)
+_PLANES = {"CANON_PLANE_XY": (0, 1, 2), "CANON_PLANE_YZ": (1, 2, 0), "CANON_PLANE_XZ": (2, 0, 1)}
+_FUNCTIONS = {
+    "START_SPINDLE_CLOCKWISE": "M3",
+    "START_SPINDLE_COUNTERCLOCKWISE": "M4",
+    "STOP_SPINDLE_TURNING": "M5",
+    "MIST_ON": "M7",
+    "FLOOD_ON": "M8",
+    "PROGRAM_STOP": "M0",
+    "OPTIONAL_PROGRAM_STOP": "M1",
+}
+_IGNORED = {
+    "COMMENT",
+    "MESSAGE",
+    "MIST_OFF",  # M9 is both, in this order
+    "ON_RESET",
+    "SET_XY_ROTATION",
+    "SET_FEED_REFERENCE",
+    "SET_MOTION_CONTROL_MODE",
+    "SET_NAIVECAM_TOLERANCE",
+    "PALLET_SHUTTLE",
+    "ORIENT_SPINDLE",
+    "WAIT_SPINDLE_ORIENT_COMPLETE",
+    "SELECT_TOOL",
+    "START_CHANGE",
+    "ENABLE_FEED_OVERRIDE",
+    "DISABLE_FEED_OVERRIDE",
+    "ENABLE_SPEED_OVERRIDE",
+    "DISABLE_SPEED_OVERRIDE",
+}
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What rs274 made of a program: its calls as printed, or what it refused and the block it refused."""
+
+    calls: list[tuple[str, list[str]]]
+    error: str = ""
+    block: str = ""
+
+
+def interpret(program: str, folder: Path, *, block_delete: bool = False) -> Answer:
+    """Run rs274 on a program text in `folder`, with an empty tool table and no variables."""
+    assert COMMAND is not None
+    file, tools = folder / "program.ngc", folder / "tools.tbl"
+    file.write_text(program, encoding="ascii")
+    tools.write_text(tool_table(), encoding="ascii")
+    options = ["-b"] if block_delete else []
+    done = subprocess.run(
+        [COMMAND, "-g", *options, "-t", str(tools), str(file)],
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+        cwd=folder,
+        env={**os.environ, "HOME": str(folder)},  # it keeps its tools in a file there, and others may run too
+    )
+    calls = [(name, [part.strip() for part in rest.split(",")]) for name, rest in _CALL.findall(done.stdout)]
+    if done.returncode == 0:
+        return Answer(calls)
+    message = [line for line in done.stderr.splitlines() if line != "executing"]
+    return Answer(calls, message[0] if message else "?", message[-1] if message else "?")
+
+
+@dataclass
+class _Canon:
+    """The state of the machine behind the canonical calls."""
+
+    axes: int
+    scale: float
+    inch: bool = False
+    feed: float = 0.0  # mm/min, or mm
+    number: float = 0.0  # the same as it was programmed: what counts when only rotary axes move
+    per_revolution: bool = False
+    rpm: float = 0.0
+    plane: tuple[int, int, int] = (0, 1, 2)
+    offsets: dict[str, list[float]] = field(default_factory=dict)
+    at: Point = ()
+    steps: list[Step] = field(default_factory=list)
+
+    def length(self, text: str) -> float:
+        return float(text) * (MM_PER_INCH if self.inch else 1.0) / self.scale
+
+    def coordinate(self, axis: int, text: str) -> float:
+        """Return machine mm or degree of axis 0 to 5 (X Y Z A B C)."""
+        value = self.length(text) if axis < 3 else float(text)
+        return value + sum(offset[axis] for offset in self.offsets.values())
+
+    def point(self, texts: list[str]) -> Point:
+        return tuple(self.coordinate(axis, text) for axis, text in enumerate(texts[: self.axes]))
+
+    def speed(self, end: Point, arc: bool = False) -> float:
+        """Return the speed of a feed move to `end`."""
+        straight = arc or math.dist(end[:3], self.at[:3]) > 2.0 * RESOLUTION_MM
+        feed = self.feed if straight else self.number
+        return feed * self.rpm if self.per_revolution else feed
+
+    def offset(self, name: str, texts: list[str]) -> None:
+        self.offsets[name] = [self.length(t) if axis < 3 else float(t) for axis, t in enumerate(texts)]
+
+    def move(self, step: Traverse | Feed | Turn) -> None:
+        # A move to where the machine stands is no move, unless it is a full circle.
+        if isinstance(step, Turn) or math.dist(step.end, self.at) > 2.0 * RESOLUTION_MM:
+            self.steps.append(step)
+        self.at = step.end
+
+    def arc(self, texts: list[str]) -> None:
+        p, q, r = self.plane
+        end = list(self.at)
+        end[p], end[q], end[r] = (self.coordinate(axis, texts[n]) for axis, n in ((p, 0), (q, 1), (r, 5)))
+        end[3:] = [self.coordinate(axis, texts[3 + axis]) for axis in range(3, self.axes)]
+        center = (self.coordinate(p, texts[2]), self.coordinate(q, texts[3]))
+        turns = int(texts[4])
+        first = math.atan2(self.at[q] - center[1], self.at[p] - center[0])
+        last = math.atan2(end[q] - center[1], end[p] - center[0])
+        radius = math.dist((self.at[p], self.at[q]), center)
+        nothing = 8.0 * RESOLUTION_MM / radius  # an angle that printing may have made or hidden
+        turn = (last - first) * math.copysign(1.0, turns) % (2.0 * math.pi)
+        if turn < nothing or turn > 2.0 * math.pi - nothing:
+            turn = 2.0 * math.pi
+        sweep = math.copysign(turn + 2.0 * math.pi * (abs(turns) - 1), turns)
+        self.move(Turn(tuple(end), center, (p, q), sweep, self.speed(tuple(end), arc=True)))
+
+    def call(self, name: str, texts: list[str]) -> None:
+        match name:
+            case "USE_LENGTH_UNITS":
+                self.inch = texts[0] == "CANON_UNITS_INCHES"
+            case "SELECT_PLANE":
+                self.plane = _PLANES[texts[0]]
+            case "SET_G5X_OFFSET":
+                self.offset("work", texts[1:])
+            case "SET_G92_OFFSET":
+                self.offset("shift", texts)
+            case "USE_TOOL_LENGTH_OFFSET":
+                assert not any(float(t) for text in texts for t in text.split())
+            case "SET_FEED_RATE":
+                self.feed, self.number = self.length(texts[0]), float(texts[0]) / self.scale
+            case "SET_SPINDLE_SPEED":
+                self.rpm = float(texts[1])
+                self.steps.append(Function(f"S{self.rpm:g}"))
+            case "SET_FEED_MODE":  # a feed of inverse time comes as a feed per minute
+                self.per_revolution = texts[1] == "1"
+            case "STRAIGHT_TRAVERSE":
+                self.move(Traverse(self.point(texts)))
+            case "STRAIGHT_FEED":
+                end = self.point(texts)
+                self.move(Feed(end, self.speed(end)))
+            case "ARC_FEED":
+                self.arc(texts)
+            case "DWELL":
+                self.steps.append(Dwell(float(texts[0])))
+            case "CHANGE_TOOL":
+                if self.steps and self.steps[-1] == Function("M5"):
+                    self.steps.pop()  # changing a tool stops the spindle without an M5 in the program
+                self.steps.append(Function(f"M6 T{texts[0]}"))
+            case "FLOOD_OFF":
+                self.steps.append(Function("M9"))
+            case _:
+                if name in _FUNCTIONS:
+                    self.steps.append(Function(_FUNCTIONS[name]))
+                else:
+                    assert name in _IGNORED, name
+
+
+def canonical_steps(answer: Answer, axes: int, scale: float = SCALE) -> list[Step]:
+    """Turn the calls that rs274 printed for a program `scale` times as large into canonical steps."""
+    canon = _Canon(axes, scale, at=(0.0,) * axes)
+    for name, texts in answer.calls:
+        if name == "SET_SPINDLE_MODE":  # the first call of the reset at program end that nothing else makes
+            if canon.steps and canon.steps[-1] == Function("M5"):
+                canon.steps.pop()
+            break
+        canon.call(name, texts)
+    return canon.steps
