@@ -1,22 +1,18 @@
 """Time the planning of point-to-point profiles, from any state and from rest to rest, with ruckig beside it.
 
-Run it as a script: it prints microseconds per plan of one axis, medians of several runs over the same states.
-ruckig is called from Python, one state at a time; handing over a state costs more than its own arithmetic.
+Figures are for one axis. ruckig is called from Python, one state at a time; handing over a state costs more than
+its own arithmetic.
 """
 
 from __future__ import annotations
 
-import os
-
-os.environ["POLYCNC_OPEN_INTERNALS"] = "1"  # before polycnc is imported: its planner is no entry
-
 import math
-import statistics
-import time
 from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
+from _measure import Figure, at_most, median_s
+from _report import run_script
 from ruckig import InputParameter, Ruckig, Trajectory
 
 from polycnc.kernel._jit import entry
@@ -39,6 +35,12 @@ def plan_all(states: Floats, jerkrel: float, phases: Floats) -> float:
         count = plan_profile(phases, s[0], s[1], s[2], s[3], s[4], s[5], s[6], jerkrel, SHORT_OVERSHOOT)
         total += profile_duration(phases, count)
     return total
+
+
+@entry
+def plan_one(phases: Floats) -> int:
+    """Plan one profile of all phases into `phases`; return how many they are."""
+    return plan_profile(phases, 0.0, 0.0, 100.0, 0.0, 50.0, 100.0, 100.0, 1.0, SHORT_OVERSHOOT)
 
 
 @entry
@@ -95,37 +97,28 @@ def peer_one(states: Floats) -> float:
     return float(found.duration)
 
 
-def median_us(work: Callable[[], float], size: int) -> float:
-    """Return the median time of `work` in microseconds per item, after one run to warm up."""
-    work()
-    times = []
-    for _ in range(RUNS):
-        begin = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - begin)
-    return 1e6 * statistics.median(times) / size
-
-
-def main() -> None:
-    """Print the table."""
+def figures(quick: bool) -> list[Figure]:
+    """Measure and return the figures."""
+    plans, peer_plans = (PLANS // 10, PEER_PLANS // 10) if quick else (PLANS, PEER_PLANS)
     phases = np.zeros((PROFILE_PHASES, PROFILE_COLUMNS))
-    moving, resting = random_states(PLANS, moving=True), random_states(PLANS, moving=False)
-    count = plan_profile(phases, 0.0, 0.0, 100.0, 0.0, 50.0, 100.0, 100.0, 1.0, SHORT_OVERSHOOT)
-    few = moving[:PEER_PLANS]
-    sampled = phases.copy()
-    lines = [
-        ("any state", median_us(lambda: plan_all(moving, 0.0, phases), PLANS)),
-        ("any state, S-shape", median_us(lambda: plan_all(moving, 1.0, phases), PLANS)),
-        ("rest to rest", median_us(lambda: plan_all(resting, 0.0, phases), PLANS)),
-        ("rest to rest, S-shape", median_us(lambda: plan_all(resting, 1.0, phases), PLANS)),
-        ("one sample, S-shape", median_us(lambda: sample_all(sampled, count, PLANS), PLANS)),
-        ("ruckig from Python, any state", median_us(lambda: peer_all(few), PEER_PLANS)),
-        ("ruckig from Python, calculate alone", median_us(lambda: peer_one(few), PEER_PLANS)),
+    moving, resting = random_states(plans, moving=True), random_states(plans, moving=False)
+    few = moving[:peer_plans]
+    count = plan_one(phases)
+
+    def us(work: Callable[[], float], size: int) -> float:
+        return 1e6 * median_s(work, RUNS) / size
+
+    sampled = us(lambda: sample_all(phases, count, plans), plans)
+    return [
+        at_most("from any state", us(lambda: plan_all(moving, 0.0, phases), plans), "us/plan", 10.0),
+        Figure("from any state, S-shape", us(lambda: plan_all(moving, 1.0, phases), plans), "us/plan"),
+        at_most("rest to rest", us(lambda: plan_all(resting, 0.0, phases), plans), "us/plan", 1.0),
+        Figure("rest to rest, S-shape", us(lambda: plan_all(resting, 1.0, phases), plans), "us/plan"),
+        Figure("one sample, S-shape", sampled, "us"),
+        Figure("ruckig from Python, any state", us(lambda: peer_all(few), peer_plans), "us/plan"),
+        Figure("ruckig from Python, calculate alone", us(lambda: peer_one(few), peer_plans), "us/plan"),
     ]
-    print("microseconds per plan, one axis")
-    for name, figure in lines:
-        print(f"  {name:36s}{figure:8.3f}")
 
 
 if __name__ == "__main__":
-    main()
+    run_script("Point-to-point planning", figures)

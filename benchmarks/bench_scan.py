@@ -1,15 +1,12 @@
-"""Time the block scanners on programs in memory: blocks and words per second, best and median of runs.
-
-Run it as a script. The first scan, which compiles or loads the scanner, is not counted.
-"""
+"""Time the block scanners on programs in memory."""
 
 from __future__ import annotations
 
-import statistics
-import time
 from collections.abc import Callable
 
 import numpy as np
+from _measure import Figure, median_s
+from _report import run_script
 
 from polycnc.nc._program import ProgramText, TextRules
 from polycnc.nc._scan import scan, scan_rules, word_columns
@@ -55,31 +52,19 @@ def scan_all_plain(text: ProgramText) -> tuple[int, int]:
     return len(words), sum(words)
 
 
-def report(
-    name: str, text: ProgramText, scanner: Callable[[ProgramText], tuple[int, int]], runs: int
-) -> None:
-    """Print one line of figures."""
-    times = []
-    for _ in range(runs):
-        start = time.perf_counter()
-        blocks, words = scanner(text)
-        times.append(time.perf_counter() - start)
-    best, median = min(times), statistics.median(times)
-    print(
-        f"{name:32} {blocks / best / 1e6:8.2f} M blocks/s best, {blocks / median / 1e6:8.2f} median,"
-        f" {words / median / 1e6:8.2f} M words/s, {len(text) / median / 1e6:8.1f} MB/s"
-    )
-
-
-def main() -> None:
-    """Print the figures of every shape of program."""
-    scan_all(ProgramText.from_text("G1 X1\n"))
+def figures(quick: bool) -> list[Figure]:
+    """Measure and return the figures."""
+    blocks = BLOCKS // 10 if quick else BLOCKS
+    found = []
     for name, shape in SHAPES.items():
-        report(name, make_program(shape, BLOCKS), scan_all, RUNS)
-    report(
-        "full blocks, ordinary scanner", make_program(SHAPES["full blocks"], SLOW_BLOCKS), scan_all_plain, 3
-    )
+        text = make_program(shape, blocks)
+        seconds = median_s(lambda text=text: scan_all(text), RUNS)
+        words = scan_all(text)[1] / seconds / 1e6
+        found.append(Figure(name, blocks / seconds, "blocks/s", note=f"{words:.1f} M words/s"))
+    text = make_program(SHAPES["full blocks"], SLOW_BLOCKS)
+    seconds = median_s(lambda: scan_all_plain(text), 3)
+    return [*found, Figure("full blocks, ordinary scanner", SLOW_BLOCKS / seconds, "blocks/s")]
 
 
 if __name__ == "__main__":
-    main()
+    run_script("Block scanner", figures)

@@ -16,6 +16,7 @@ from polycnc.kernel._ramps import LENGTH, SPEED_IN, SPEED_OUT, SPEED_PEAK, TIME_
 from polycnc.machine import Machine, load_machine
 from polycnc.nc import Channel, ProgramText, dialect_for
 from polycnc.nc._modal import ABSOLUTE, FEED, MOTION
+from polycnc.nc._scan import scan, scan_rules, word_columns
 from polycnc.runner import TraceWriter
 
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "explanation" / "life-of-a-block.md"
@@ -39,7 +40,7 @@ def page() -> str:
 
 def stations() -> dict[str, str]:
     """Run the program station by station; return what there is to see at each."""
-    text = ProgramText.from_text(PROGRAM, "part.nc")
+    text = _program()
     config = load_machine("mill3")
     machine = Machine(config, record_cycles=_KEPT_CYCLES)
     channel = Channel(text, dialect_for(text.name, None), machine)
@@ -68,6 +69,10 @@ def stations() -> dict[str, str]:
     return found
 
 
+def _program() -> ProgramText:
+    return ProgramText.from_text(PROGRAM, "part.nc")
+
+
 def _table(rows: list[tuple[str, ...]]) -> str:
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = (
@@ -82,7 +87,8 @@ def _number(value: float) -> str:
 
 
 def _words(channel: Channel) -> str:
-    words = channel._words
+    words = word_columns(2, 8)
+    scan(_program().data, 0, 1, scan_rules(channel.dialect.text_rules()), words)
     n = words.n_words
     header = ("", *(f"[{i}]" for i in range(n)))
     return (

@@ -19,12 +19,22 @@ __version__ = "0.1.0.dev0"
 if TYPE_CHECKING:
     from polycnc.errors import AlarmError, ConfigurationError, PolycncError, ProgramError, UsageError
     from polycnc.machine import Machine, MachineConfig, load_machine
-    from polycnc.runner import Alarm, RunResult, Trace, check, plot, run, verify_trace
+    from polycnc.runner import Alarm, RunResult, Trace, Violation, check, plot, read_trace, run, verify_trace
 
 _HOME = {
     "errors": ("AlarmError", "ConfigurationError", "PolycncError", "ProgramError", "UsageError"),
     "machine": ("Machine", "MachineConfig", "load_machine"),
-    "runner": ("Alarm", "RunResult", "Trace", "check", "plot", "run", "verify_trace"),
+    "runner": (
+        "Alarm",
+        "RunResult",
+        "Trace",
+        "Violation",
+        "check",
+        "plot",
+        "read_trace",
+        "run",
+        "verify_trace",
+    ),
 }
 
 __all__ = [
@@ -38,9 +48,11 @@ __all__ = [
     "RunResult",
     "Trace",
     "UsageError",
+    "Violation",
     "check",
     "load_machine",
     "plot",
+    "read_trace",
     "run",
     "verify_trace",
 ]

@@ -41,8 +41,8 @@ from polycnc.kernel._table import table_push
 CYCLE_S = 0.001
 
 
-def state_of(axes: int = 2, **sizes: int) -> KernelState:
-    state = make_state(axes, segments=256, record_cycles=sizes.pop("record_cycles", 0), **sizes)
+def state_of(axes: int = 2, *, record_cycles: int = 0, table_rows: int = 1) -> KernelState:
+    state = make_state(axes, segments=256, record_cycles=record_cycles, table_rows=table_rows)
     state.limits.speed[:] = 100.0
     state.limits.acceleration[:] = 1000.0
     return state
@@ -71,7 +71,7 @@ def run_until(state: KernelState, reason: int) -> int:
 
 
 def test_a_setpoint_is_the_sum_of_its_sources() -> None:
-    state = state_of(3, curves=1, curve_points=2, tables=1, table_rows=8)
+    state = state_of(3, table_rows=8)
     give_to_path(state, 0)
     append_line(state.seg, state.paths, 0, state.limits, np.array([10.0, 0.0, 0.0]), 50.0, 0, 1)
     finish(state)

@@ -1,29 +1,23 @@
-"""The commands, their shared options, and how errors end them.
-
-Exit status: 0 clean, 1 program error or alarm, 2 usage. Commands import what they need when they run, so that
-``polycnc --help`` is quick.
-"""
+"""The commands and what they share; they import what they need when they run, so ``--help`` is quick."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import typer
 
 from polycnc import __version__
 from polycnc.cli import _check, _conformance, _machine, _run
-from polycnc.cli._output import error_console
-from polycnc.errors import PolycncError, UsageError
+from polycnc.cli._errors import end_on_termination, guarded
 
 app = typer.Typer(
     name="polycnc",
-    help="A virtual CNC and motion controller: run, time and inspect NC programs with no machine on the desk.",
+    help="A virtual CNC and motion controller: run, time and inspect NC programs without a machine.",
+    epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 130 interrupted.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
@@ -43,33 +37,20 @@ def _options(
     """Hold the options of the command itself."""
 
 
-app.command("run")(_run.run_command)
-app.command("check")(_check.check_command)
-app.command("machine")(_machine.machine_command)
-app.command("conformance")(_conformance.conformance_command)
-
-
-@contextmanager
-def _errors_end_the_command() -> Iterator[None]:
-    try:
-        yield
-    except UsageError as error:
-        error_console().print(f"[bold red]error:[/] {_escaped(error)}", highlight=False)
-        sys.exit(2)
-    except PolycncError as error:
-        error_console().print(f"[bold red]error:[/] {_escaped(error)}", highlight=False)
-        sys.exit(1)
-    except BrokenPipeError:
-        sys.exit(1)
-
-
-def _escaped(error: PolycncError) -> str:
-    from rich.markup import escape
-
-    return escape(str(error))
+app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
+app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
+app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
+app.command("conformance", short_help="Show which parts of the manuals are tested.")(
+    guarded(_conformance.conformance_command)
+)
 
 
 def main() -> None:
     """Run the command line."""
-    with _errors_end_the_command():
-        app()
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal may lack a character of a file name
+    if "scipy" not in sys.modules:
+        sys.modules["scipy"] = None  # type: ignore[assignment]  # numba would load it: 0.3 s, for nothing here
+    end_on_termination()
+    app(prog_name="polycnc")

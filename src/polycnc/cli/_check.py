@@ -4,53 +4,57 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from polycnc.cli._output import console, print_json, say_if_cold
+from polycnc.cli._output import bold, print_json, say, say_if_cold
 from polycnc.cli._run import DIALECT, MACHINE
+
+if TYPE_CHECKING:
+    from polycnc.errors import ProgramError
 
 
 def check_command(
-    programs: Annotated[list[Path], typer.Argument(help="Part programs.", metavar="PROGRAM...")],
+    programs: Annotated[list[Path], typer.Argument(help="The part programs.", metavar="PROGRAM")],
     machine: Annotated[str | None, MACHINE] = None,
     dialect: Annotated[str | None, DIALECT] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
     """Report every error of part programs, each with its place and what to do."""
-    say_if_cold()
-    from rich.markup import escape
-
     from polycnc import runner
+    from polycnc.machine import load_machine
 
-    out = console()
-    found = {str(program): runner.check(program, machine, dialect) for program in programs}
-    total = sum(len(errors) for errors in found.values())
+    texts = [runner.program_text(program) for program in programs]
+    config = load_machine(machine)
+    say_if_cold()
+    found = {text.name: runner.check(text, config, dialect) for text in texts}
+    total = sum(map(len, found.values()))
     if as_json:
         print_json(
             {
-                "programs": {
-                    name: [
-                        {
-                            "text": error.what,
-                            "hint": error.hint,
-                            "code": error.code,
-                            "line": error.position.line if error.position else 0,
-                            "column": error.position.column if error.position else 0,
-                        }
-                        for error in errors
-                    ]
-                    for name, errors in found.items()
-                }
+                "errors": total,
+                "programs": {name: [_plain(error) for error in errors] for name, errors in found.items()},
             }
         )
     else:
         for name, errors in found.items():
             for error in errors:
-                out.print(escape(str(error)), highlight=False)
+                say(str(error))
             if not errors:
-                out.print(f"{escape(name)}: no errors", highlight=False)
+                say(f"{name}: no errors")
         if total:
-            out.print(f"[bold]{total} error{'s' if total > 1 else ''}[/]", highlight=False)
+            say(lead=bold(runner.counted(total, "error")))
     sys.exit(1 if total else 0)
+
+
+def _plain(error: ProgramError) -> dict[str, Any]:
+    at = error.position
+    return {
+        "text": error.what,
+        "hint": error.hint,
+        "code": error.code,
+        "file": at.file if at else "",
+        "line": at.line if at else 0,
+        "column": at.column if at else 0,
+    }

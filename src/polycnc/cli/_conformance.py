@@ -6,26 +6,28 @@ from typing import Annotated
 
 import typer
 
-from polycnc.cli._output import print_json
+from polycnc.cli._output import print_json, say
 
 
 def conformance_command(
     system: Annotated[
-        str | None, typer.Argument(help="fanuc, apci, imc, cpl or post; all if absent.", metavar="[SYSTEM]")
+        str | None,
+        typer.Argument(help="fanuc, apci, imc, cpl or post (default: all).", metavar="SYSTEM"),
     ] = None,
     state: Annotated[
         str | None,
         typer.Option(
-            "--list",
-            help="List the rows of SYSTEM in a state: tested, not_applicable or open (default).",
-            metavar="STATE",
+            "--list", help="Which rows of SYSTEM: tested, not_applicable or open (default).", metavar="STATE"
         ),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object instead of a table.")
     ] = False,
 ) -> None:
-    """Show, per system, which rows of its manual are tested, which do not apply and which are open."""
+    """Count the statements of the manuals that tests prove, that do not apply, and that are open.
+
+    With a SYSTEM, list its open rows, or those in another state.
+    """
     from polycnc.conformance import load_conformance, row_listing, summary_table
     from polycnc.errors import UsageError
 
@@ -33,12 +35,14 @@ def conformance_command(
     counts = found.counts()
     if system is not None and system not in counts:
         raise UsageError(f"unknown system '{system}'", hint=f"Systems are: {', '.join(counts)}")
+    if state is not None and system is None:
+        raise UsageError("--list needs a system", hint=f"Name one of {', '.join(counts)}.")
     if as_json:
         data = found.as_json()
         if system is not None:
             data["systems"] = {system: data["systems"][system]}
         print_json(data)
     elif system is None:
-        typer.echo(summary_table(found))
+        say(summary_table(found))
     else:
-        typer.echo(row_listing(found, system, state or "open"))
+        say(row_listing(found, system, state or "open"))

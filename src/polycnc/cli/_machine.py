@@ -6,36 +6,39 @@ from typing import Annotated
 
 import typer
 
-from polycnc.cli._output import console, print_json
+from polycnc.cli._output import bold, columns, print_json, say
 
 
 def machine_command(
     machine: Annotated[
-        str | None, typer.Argument(help="Preset or TOML file (default: mill3).", metavar="[FILE|PRESET]")
+        str | None,
+        typer.Argument(help="A preset or a TOML file (default: mill3).", metavar="FILE|PRESET"),
     ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object instead of a table.")
     ] = False,
+    as_toml: Annotated[
+        bool, typer.Option("--toml", help="Print the machine file of a preset, to start your own from.")
+    ] = False,
 ) -> None:
     """Show the axes, limits and settings of a machine."""
-    from polycnc.machine import AXIS_COLUMNS, axis_rows, describe_machine, load_machine
+    from polycnc import machine as machines
+    from polycnc.errors import UsageError
 
-    config = load_machine(machine)
-    if as_json:
-        print_json(describe_machine(config))
+    if as_json and as_toml:
+        raise UsageError("--json and --toml exclude each other", hint="Give one of them.")
+    if as_toml:
+        typer.echo(machines.preset_text(machine or machines.DEFAULT_MACHINE), nl=False)
         return
-    from rich.markup import escape
-    from rich.table import Table
-
-    out = console()
-    out.print(f"[bold]{escape(config.name)}[/]  {escape(config.description)}", highlight=False)
-    out.print(
-        f"control cycle {config.cycle_s * 1000.0:g} ms, highest spindle speed {config.spindle.max_rpm:g} rpm",
-        highlight=False,
-    )
-    table = Table()
-    for name in AXIS_COLUMNS:
-        table.add_column(name)
-    for row in axis_rows(config):
-        table.add_row(*row)
-    out.print(table)
+    config = machines.load_machine(machine)
+    if as_json:
+        print_json(machines.describe_machine(config))
+        return
+    say(f"  {config.description}" if config.description else "", lead=bold(config.name))
+    say(f"control cycle {config.cycle_s * 1000.0:g} ms, spindle up to {config.spindle.max_rpm:g} rpm")
+    say()
+    for line in columns([machines.AXIS_COLUMNS, *machines.axis_rows(config)]):
+        say(line)
+    if machine is None:
+        say()
+        say(f"presets: {', '.join(machines.PRESETS)}")

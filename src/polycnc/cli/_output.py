@@ -1,36 +1,67 @@
-"""What the commands print with: tables and progress for people, one JSON object for programs."""
+"""What the commands print with: text in columns for people, one JSON object for programs, a bar."""
 
 from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 if TYPE_CHECKING:
-    from rich.console import Console
+    from rich.progress import Progress, TaskID
 
-COLD_START = "Compiling the motion kernel for this machine; this happens once after an installation and takes some seconds."
-
-
-def console() -> Console:
-    """Return the console for standard output."""
-    from rich.console import Console
-
-    return Console(soft_wrap=True)
+COLD_START = "Compiling the motion kernel; this happens once after an installation and takes some seconds."
+_BAR_AFTER_S = 2.0
+_BAR_STEP_S = 0.1
 
 
-def error_console() -> Console:
-    """Return the console for standard error."""
-    from rich.console import Console
+def say(text: str = "", *, lead: str = "") -> None:
+    """Print a line for people: `lead` as it is, then `text`."""
+    typer.echo(lead + _printable(text))
 
-    return Console(stderr=True, soft_wrap=True)
+
+def say_error(text: str, *, lead: str = "") -> None:
+    """Print an error or a remark to standard error."""
+    typer.echo(lead + _printable(text), err=True)
+
+
+def bold(text: str) -> str:
+    """Return `text` as a lead in bold letters, where the output is a terminal."""
+    return typer.style(text, bold=True)
+
+
+def bold_red(text: str) -> str:
+    """Return `text` as a lead in bold red letters, where the output is a terminal."""
+    return typer.style(text, bold=True, fg="red")
+
+
+def _printable(text: str) -> str:
+    """Return text without control characters, which a terminal would obey."""
+    return "".join(
+        char if char.isprintable() or char in "\n\t" else "\N{REPLACEMENT CHARACTER}" for char in text
+    )
+
+
+def columns(rows: Iterable[Sequence[str]], right: Sequence[int] = ()) -> list[str]:
+    """Return rows of cells as lines with aligned columns, those numbered in `right` aligned right."""
+    rows = list(rows)
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [
+        "  ".join(
+            cell.rjust(width) if i in right else cell.ljust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
 
 
 def print_json(data: Any) -> None:
     """Print one JSON object; numbers that JSON does not have become null."""
-    sys.stdout.write(json.dumps(_plain(data), indent=2, allow_nan=False) + "\n")
+    typer.echo(json.dumps(_plain(data), indent=2, allow_nan=False))
 
 
 def _plain(data: Any) -> Any:
@@ -43,37 +74,62 @@ def _plain(data: Any) -> Any:
     return data
 
 
-def say_if_cold() -> None:
-    """Say why the first run takes longer."""
+def say_if_cold(every_cycle: bool = False) -> None:
+    """Say why the first run of its kind takes longer: cycle by cycle, or in closed form."""
     from polycnc.kernel import is_cold
 
-    if is_cold():
-        error_console().print(f"[dim]{COLD_START}[/]")
+    if is_cold("advance" if every_cycle else "skip"):
+        say_error(COLD_START)
+
+
+class _Bar:
+    """A bar on standard error, which appears when the work has lasted a while."""
+
+    def __init__(self, title: str) -> None:
+        self._title = title
+        self._next_s = time.monotonic() + _BAR_AFTER_S
+        self._display: Progress | None = None
+        self._task: TaskID | None = None
+
+    def __call__(self, part: float) -> None:
+        now_s = time.monotonic()
+        if now_s < self._next_s:
+            return
+        self._next_s = now_s + _BAR_STEP_S
+        if self._display is None or self._task is None:
+            self._display = _display()
+            self._task = self._display.add_task(self._title, total=1.0)
+            self._display.start()
+        self._display.update(self._task, completed=part)
+
+    def close(self) -> None:
+        if self._display is not None:
+            self._display.stop()
+
+
+def _display() -> Progress:
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+
+    text = TextColumn("{task.description}", markup=False)
+    return Progress(
+        text,
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+    )
 
 
 @contextmanager
-def progress_bar(title: str, *, quiet: bool) -> Iterator[Callable[[float], None]]:
-    """Show a bar on standard error while the body runs; the body calls what it is given with parts of 1."""
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    display = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.percentage:3.0f} %"),
-        TimeElapsedColumn(),
-        console=error_console(),
-        transient=True,
-        disable=quiet or not sys.stderr.isatty(),
-    )
-    with display:
-        task = display.add_task(title, total=1.0)
-        yield lambda part: display.update(task, completed=part)
-
-
-def duration(seconds: float) -> str:
-    """Return a time as people write it: 0.250 s, 1:02.500 min, 2:03:04.500 h."""
-    if seconds < 60.0:
-        return f"{seconds:.3f} s"
-    minutes, rest = divmod(seconds, 60.0)
-    hours, minutes = divmod(int(minutes), 60)
-    return f"{hours}:{minutes:02d}:{rest:06.3f} h" if hours else f"{minutes}:{rest:06.3f} min"
+def progress_bar(title: str) -> Iterator[Callable[[float], None] | None]:
+    """Show a bar on a terminal while the body runs, if that takes long; the body calls it with parts of 1."""
+    if not sys.stderr.isatty():
+        yield None
+        return
+    bar = _Bar(_printable(title))
+    try:
+        yield bar
+    finally:
+        bar.close()

@@ -9,21 +9,31 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from polycnc.cli._output import console, duration, print_json, progress_bar, say_if_cold
+from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say, say_error, say_if_cold
 
 if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
+
+    from polycnc.machine import MachineConfig
     from polycnc.runner import RunResult
 
+    Floats = npt.NDArray[np.float64]
+
 MACHINE = typer.Option(
-    "--machine", "-m", help="Preset or TOML file of the machine (default: mill3).", metavar="FILE|PRESET"
+    "--machine", "-m", help="The machine: a preset or a TOML file (default: mill3).", metavar="FILE|PRESET"
 )
 DIALECT = typer.Option(
-    "--dialect", "-d", help="Dialect of the program: din, fanuc, bosch or a TOML file.", metavar="D"
+    "--dialect",
+    "-d",
+    help="The dialect: din, fanuc, bosch or a TOML file (default: by the program's extension, else din).",
+    metavar="FILE|NAME",
 )
+_NUMBERS = (1, 2, 3)
 
 
 def run_command(
-    program: Annotated[Path, typer.Argument(help="Part program.", metavar="PROGRAM")],
+    program: Annotated[Path, typer.Argument(help="The part program.", metavar="PROGRAM")],
     machine: Annotated[str | None, MACHINE] = None,
     dialect: Annotated[str | None, DIALECT] = None,
     as_json: Annotated[
@@ -32,84 +42,107 @@ def run_command(
     trace: Annotated[
         Path | None,
         typer.Option(
-            "--trace", help="Write one row per control cycle to F.csv, F.npz or F.parquet.", metavar="F"
+            help="Write one row per control cycle to a .csv, .npz or .parquet file.", metavar="FILE"
         ),
     ] = None,
     plot: Annotated[
-        Path | None, typer.Option("--plot", help="Draw path and speed to F.png or F.svg.", metavar="F")
+        Path | None, typer.Option(help="Draw path and speed to a .png, .svg or .pdf file.", metavar="FILE")
     ] = None,
     servo: Annotated[
-        bool, typer.Option("--servo", help="Simulate the position loops, not only the setpoints.")
+        bool, typer.Option("--servo", help="Simulate the position loops; the trace gets actual positions.")
     ] = False,
     skip: Annotated[
         list[int] | None,
-        typer.Option("--skip", help="Leave out blocks marked /n (/ alone is level 1).", metavar="N"),
+        typer.Option(
+            help="Leave out blocks marked /N, as with block delete on; / alone is 1.",
+            metavar="N",
+            min=1,
+            max=9,
+        ),
     ] = None,
 ) -> None:
     """Run a part program on a simulated machine and say how long it takes and where it goes."""
-    say_if_cold()
     from polycnc import runner
     from polycnc.machine import load_machine
 
+    text = runner.program_text(program)
     config = load_machine(machine)
     with ExitStack() as stack:
         sinks = []
+        picture = None
+        if plot is not None:
+            runner.check_plot_file(plot)
+            picture = runner.PlotCollector(config)
+            sinks.append(picture.add)
         if trace is not None:
             sinks.append(stack.enter_context(runner.TraceWriter(trace, config, servo)).add)
-        picture = runner.PlotCollector(config) if plot is not None else None
-        if picture is not None:
-            sinks.append(picture.add)
-        bar = stack.enter_context(progress_bar(program.name, quiet=as_json))
+        if servo:
+            _say_if_ideal(config)
+        say_if_cold(every_cycle=servo or bool(sinks))
 
-        def rows(piece: runner.Rows) -> None:
+        def rows(piece: Floats) -> None:
             for sink in sinks:
                 sink(piece)
 
-        result = runner.run(
-            program,
-            config,
-            dialect,
-            servo=servo,
-            check=False,
-            skip_levels=skip or (),
-            rows=rows if sinks else None,
-            progress=bar,
-        )
-    if picture is not None and plot is not None:
-        runner.plot(picture.with_trace(result), plot)
+        with progress_bar(program.name) as bar:
+            result = runner.run(
+                text,
+                config,
+                dialect,
+                servo=servo,
+                check=False,
+                skip_levels=skip or (),
+                rows=rows if sinks else None,
+                progress=bar,
+            )
+        if picture is not None and plot is not None:
+            runner.plot(picture.with_trace(result), plot)
     if as_json:
         print_json(result.as_dict())
     else:
         _summary(result)
         for path in (trace, plot):
             if path is not None:
-                console().print(f"wrote {path}", highlight=False)
+                say(f"wrote      {path}")
     sys.exit(0 if result.ok else 1)
 
 
-def _summary(result: RunResult) -> None:
-    from rich.markup import escape
-    from rich.table import Table
+def _say_if_ideal(config: MachineConfig) -> None:
+    if all(axis.servo.kind == "ideal" for axis in config.axes):
+        say_error(
+            f"--servo changes nothing: {config.name} has ideal servos; a machine file can say otherwise."
+        )
 
-    out = console()
-    table = Table(show_header=False, box=None, padding=(0, 2, 0, 0))
-    table.add_column(style="dim")
-    table.add_column()
-    table.add_row(
-        "program", f"{escape(result.program)}  ({result.blocks:,} blocks, dialect {result.dialect})"
-    )
-    table.add_row("machine", escape(result.machine))
-    table.add_row("time", f"[bold]{duration(result.time_s)}[/]")
-    table.add_row("  cutting", f"{duration(result.cutting_time_s)}   {result.cutting_path_mm:,.3f} mm")
-    table.add_row("  rapid", f"{duration(result.rapid_time_s)}   {result.rapid_path_mm:,.3f} mm")
-    if result.waiting_time_s:
-        table.add_row("  waiting", duration(result.waiting_time_s))
-    table.add_row("highest feed", f"{result.top_feed_mm_min:,.1f} mm/min")
-    for axis, (low, high) in result.extents_mm.items():
-        table.add_row(f"extent {axis}", f"{low:12.3f} … {high:.3f}   end {result.end_position_mm[axis]:.3f}")
+
+def _summary(result: RunResult) -> None:
+    from polycnc.runner import counted, time_text
+
+    say(f"program    {result.program}")
+    say(f"           {counted(result.blocks, 'block')}, dialect {result.dialect}, machine {result.machine}")
+    say(lead="time       " + bold(time_text(result.time_s)))
+    parts = [
+        ("  cutting", time_text(result.cutting_time_s), f"{result.cutting_path_mm:,.3f} mm"),
+        ("  rapid", time_text(result.rapid_time_s), f"{result.rapid_path_mm:,.3f} mm"),
+        ("  waiting", time_text(result.waiting_time_s), ""),
+    ]
+    for line in columns(parts if result.waiting_time_s else parts[:2], right=_NUMBERS):
+        say(line)
+    say(f"path       {result.path_mm:,.3f} mm, cut with up to {result.top_feed_mm_min:,.1f} mm/min")
+    header = ("axis", "lowest", "highest", "end", "(machine coordinates)")
+    axes = [
+        (
+            f"  {axis}",
+            f"{low:,.3f}",
+            f"{high:,.3f}",
+            f"{result.end_position_mm[axis]:,.3f}",
+            result.axis_units[axis],
+        )
+        for axis, (low, high) in result.extents_mm.items()
+    ]
+    for line in columns([header, *axes], right=_NUMBERS):
+        say(line)
     for message in result.messages:
         times = f" ({message.count} times)" if message.count > 1 else ""
-        table.add_row("message", f"line {message.line}: {escape(message.text)}{times}")
-    out.print(table, highlight=False)
+        say(f"message    line {message.line}: {message.text}{times}")
     for alarm in result.alarms:
-        out.print(f"[bold red]alarm:[/] {escape(alarm.text)}", highlight=False)
+        say(str(alarm), lead=bold_red("alarm: "))

@@ -6,7 +6,10 @@ from enum import Enum, IntEnum, StrEnum, auto
 
 
 class Group(StrEnum):
-    """Modal groups: of each, a block may hold one word."""
+    """Modal groups: of each, a block may hold one word.
+
+    Leaving a cycle is a group of its own: CAM systems begin programs with G0 and G80 in one block.
+    """
 
     MOTION = "motion"
     CYCLE_CANCEL = "cycle_cancel"
@@ -99,7 +102,7 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.CYCLE_BORE_MANUAL,
         Action.CYCLE_BORE_DWELL,
     ),
-    Group.CYCLE_CANCEL: (Action.CYCLE_CANCEL,),  # stands beside a motion in many a first block
+    Group.CYCLE_CANCEL: (Action.CYCLE_CANCEL,),
     Group.NON_MODAL: (
         Action.REFERENCE_RETURN,
         Action.MACHINE_COORDINATES,

@@ -1,6 +1,7 @@
 """From the words of a circular block to centre and sweep, for both ways that blocks are read.
 
-Angles are positive from the first to the second axis of the plane (counter-clockwise, G3).
+Angles are positive from the first to the second axis of the plane (counter-clockwise, G3). Square roots stand
+for `hypot`, which Python and compiled code round differently.
 """
 
 from __future__ import annotations
@@ -14,9 +15,16 @@ ARC_NO_RADIUS = 1  # neither centre nor radius, or a centre on the start point
 ARC_RADIUS_TOO_SMALL = 2  # R is less than half the distance to the end point
 ARC_RADIUS_AT_SAME_POINT = 3  # R with the end point on the start point has no centre
 ARC_OFF_CIRCLE = 4  # start and end lie on different radii
+ARC_TOO_LARGE = 5  # a radius that no machine has, so the centre would be lost in rounding
 
 TWO_PI = 2.0 * math.pi
 SAME_ANGLE = 1e-9  # an end this close to the start is a full turn
+LARGEST_RADIUS = 1e9
+
+
+@compiled
+def _distance(p: float, q: float) -> float:
+    return math.sqrt(p * p + q * q)
 
 
 @entry
@@ -28,7 +36,6 @@ def arc_by_center(
     center_p: float,
     center_q: float,
     clockwise: bool,
-    turns: int,
     tolerance: float,
     relative: float,
 ) -> tuple[int, float, float, float, float]:
@@ -36,18 +43,18 @@ def arc_by_center(
 
     The radii at start and end may differ by `tolerance`, or by `relative` of the radius if that is more.
     """
-    radius = math.hypot(start_p - center_p, start_q - center_q)
-    radius_end = math.hypot(end_p - center_p, end_q - center_q)
+    radius = _distance(start_p - center_p, start_q - center_q)
+    radius_end = _distance(end_p - center_p, end_q - center_q)
     off = abs(radius - radius_end)
+    if not (radius < LARGEST_RADIUS and radius_end < LARGEST_RADIUS):
+        return ARC_TOO_LARGE, center_p, center_q, 0.0, off
     if radius <= 0.0 or radius_end <= 0.0:
         return ARC_NO_RADIUS, center_p, center_q, 0.0, off
     if off > max(tolerance, relative * radius):
         return ARC_OFF_CIRCLE, center_p, center_q, 0.0, off
     first = math.atan2(start_q - center_q, start_p - center_p)
     last = math.atan2(end_q - center_q, end_p - center_p)
-    sweep = _turn(last - first, clockwise)
-    extra = TWO_PI * (turns - 1)
-    return ARC_OK, center_p, center_q, sweep - extra if clockwise else sweep + extra, off
+    return ARC_OK, center_p, center_q, _turn(last - first, clockwise), off
 
 
 @compiled
@@ -82,11 +89,13 @@ def arc_by_radius(
     less than `tolerance` is a half turn.
     """
     dp, dq = end_p - start_p, end_q - start_q
-    chord = math.hypot(dp, dq)
+    chord = _distance(dp, dq)
     if chord <= 0.0:
         return ARC_RADIUS_AT_SAME_POINT, start_p, start_q, 0.0, 0.0
     half = 0.5 * chord
     size = abs(radius)
+    if not size < LARGEST_RADIUS:
+        return ARC_TOO_LARGE, start_p, start_q, 0.0, 0.0
     if size <= 0.0:
         return ARC_NO_RADIUS, start_p, start_q, 0.0, 0.0
     if size < half - tolerance:
@@ -105,9 +114,10 @@ def arc_extents(
     start_p: float, start_q: float, end_p: float, end_q: float, center_p: float, center_q: float, sweep: float
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return the lowest and the highest (p, q) that an arc passes."""
-    radius = math.hypot(start_p - center_p, start_q - center_q)
+    dp, dq = start_p - center_p, start_q - center_q
+    radius = math.sqrt(dp * dp + dq * dq)
     first = math.atan2(start_q - center_q, start_p - center_p)
-    low, high = sorted((first, first + sweep))
+    low, high = sorted((first, first + max(min(sweep, TWO_PI), -TWO_PI)))  # more turns pass nothing new
     ps, qs = [start_p, end_p], [start_q, end_q]
     quadrant = math.ceil(low / (0.5 * math.pi))
     while quadrant * 0.5 * math.pi <= high:

@@ -1,67 +1,120 @@
-"""The part of a channel's modal state that only the ordinary path knows, and going back when a block is refused."""
+"""Everything that a block may change besides the queue, and going back when a block is refused."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy.typing as npt
 
 from polycnc.machine import MachineConfig
-from polycnc.nc._coordinates import Coordinates
+from polycnc.nc._compensation import RadiusCompensation
+from polycnc.nc._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc._cycles import CycleWords
-from polycnc.nc._modal import Modal, copy_modal, restore_modal
+from polycnc.nc._modal import Modal, restore_modal, save_modal
 
 
-@dataclass
+@dataclass(frozen=True, slots=True)
 class Spindle:
-    """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped."""
+    """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped.
 
-    speed: float = 0.0  # rpm, or m/min with constant surface speed
+    `speed` is in revolutions per minute, or in m/min with constant surface speed.
+    """
+
+    speed: float = 0.0
     direction: int = 0
     surface_speed: bool = False
 
 
-@dataclass
+@dataclass(frozen=True, slots=True)
 class Cycle:
-    """Hold the active drilling cycle and its words, levels in machine coordinates."""
+    """Hold the active drilling cycle (its action, empty: none) and its words, levels in machine coordinates.
+
+    `initial` is where the drilling axis was when the first cycle began.
+    """
 
     action: str = ""
     retract_to_initial: bool = True
-    initial: float = 0.0  # drill axis position at the call, machine coordinates
+    initial: float = 0.0
     words: CycleWords = field(default_factory=CycleWords)
 
 
-@dataclass
+class Plain(NamedTuple):
+    """Hold the part of the state that is plain values."""
+
+    spindle: Spindle
+    cycle: Cycle
+    tool: int
+    selected_tool: int
+    feed_word: float
+    path_tolerance_mm: float
+    side: int
+    compensation_tool: int | None
+
+
+class SavedState(NamedTuple):
+    """Hold a state to go back to."""
+
+    modal: tuple[npt.NDArray[Any], ...]
+    coordinates: SavedCoordinates
+    compensation: RadiusCompensation | None
+    plain: Plain
+
+
 class ChannelState:
-    """Hold everything that a block may change, besides the queue."""
+    """Hold everything that a block may change, besides the queue.
 
-    machine: MachineConfig
-    modal: Modal
-    coordinates: Coordinates
-    spindle: Spindle = field(default_factory=Spindle)
-    cycle: Cycle = field(default_factory=Cycle)
-    tool: int = 0
-    selected_tool: int = 0
-    feed_words: float = 0.0  # the F word as programmed, for feed per revolution and inverse time
-    path_tolerance_mm: float = 0.0
-    compensation: int = 0  # 0 off, 1 left, -1 right
-    compensation_tool: int = 0
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
+    the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
+    -1 right, 0 off; `compensation_tool` the last D word, None before the first. `path_tolerance_mm` is how
+    far corners may be rounded.
+    """
 
-    @contextmanager
-    def unchanged_on_error(self) -> Iterator[None]:
-        """Put everything back if the body raises."""
-        modal = copy_modal(self.modal)
-        coordinates = self.coordinates.saved()
-        spindle = replace(self.spindle)
-        cycle = replace(self.cycle)
-        rest = (self.tool, self.selected_tool, self.feed_words, self.path_tolerance_mm)
-        compensation = (self.compensation, self.compensation_tool)
-        try:
-            yield
-        except BaseException:
-            restore_modal(self.modal, modal)
-            self.coordinates = coordinates
-            self.spindle, self.cycle = spindle, cycle
-            self.tool, self.selected_tool, self.feed_words, self.path_tolerance_mm = rest
-            self.compensation, self.compensation_tool = compensation
-            raise
+    def __init__(self, machine: MachineConfig, modal: Modal) -> None:
+        self.machine = machine
+        self.modal = modal
+        self.coordinates = Coordinates(machine, modal)
+        self.compensation = RadiusCompensation()
+        self.spindle = Spindle()
+        self.cycle = Cycle()
+        self.tool = 0
+        self.selected_tool = 0
+        self.feed_word = 0.0
+        self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.side = 0
+        self.compensation_tool: int | None = None
+        self.axis_names: Sequence[str] = machine.axis_names
+
+    def save(self) -> SavedState:
+        """Return the state to go back to when the block that comes is refused."""
+        return SavedState(
+            save_modal(self.modal),
+            self.coordinates.save(),
+            self.compensation.copy() if self.compensation.active else None,
+            self.plain(),
+        )
+
+    def restore(self, saved: SavedState) -> None:
+        """Go back to a saved state."""
+        restore_modal(self.modal, saved.modal)
+        self.coordinates.restore(saved.coordinates)
+        if saved.compensation is None:
+            self.compensation.reset()
+        else:
+            self.compensation = saved.compensation
+        for name, value in zip(Plain._fields, saved.plain, strict=True):
+            setattr(self, name, value)
+
+    def plain(self) -> Plain:
+        """Return the plain values."""
+        return Plain(
+            self.spindle,
+            self.cycle,
+            self.tool,
+            self.selected_tool,
+            self.feed_word,
+            self.path_tolerance_mm,
+            self.side,
+            self.compensation_tool,
+        )

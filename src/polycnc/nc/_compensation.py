@@ -7,6 +7,7 @@ order behind it whatever does not move in the plane.
 
 from __future__ import annotations
 
+import copy
 import math
 from enum import Enum, IntEnum
 from typing import Literal
@@ -144,6 +145,12 @@ class RadiusCompensation:
         self._pending = False  # that move has not been given out yet
         self._lead_in = False  # that move is the lead-in
         self._at: XY | None = None  # compensated place where the pending move starts or all motion has ended
+
+    def copy(self) -> RadiusCompensation:
+        """Return a stage in the same state, to go back to when a block is refused."""
+        other = copy.copy(self)
+        other._hold = self._hold.copy()
+        return other
 
     def start(self, side: Side, radius_mm: float, plane: tuple[int, int, int], line: int = 0) -> None:
         """Start compensation (G41, G42); the next plane move is the lead-in.

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import copy
-from dataclasses import dataclass, field
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -11,56 +10,69 @@ import numpy.typing as npt
 from polycnc.machine import MachineConfig
 from polycnc.nc._modal import Modal
 
-Floats = npt.NDArray[np.float64]
+Floats: TypeAlias = npt.NDArray[np.float64]
+SavedCoordinates: TypeAlias = tuple[tuple[str, ...], Floats, Floats, int]
 
 MACHINE_ZERO = ""
+WORK_GROUPS = 3
+"""Groups of work offsets that add up: G54 to G59, G154 to G159, G254 to G259."""
 
 
-@dataclass
+def work_group(code: float) -> int:
+    """Return the group of a work offset by its G code: the hundreds."""
+    return int(code) // 100
+
+
 class Coordinates:
-    """Hold the zero shifts of one channel; every vector has one value per axis, mm or degree."""
+    """Hold the zero shifts of one channel; every vector has one value per axis, mm or degree.
 
-    machine: MachineConfig
-    modal: Modal
-    work: str = MACHINE_ZERO  # name of the active work offset, MACHINE_ZERO for none
-    shift: Floats = field(init=False)  # G92
-    length: Floats = field(init=False)  # tool length compensation
+    `work` names the active work offset of each group, MACHINE_ZERO for none. `length_sign` is 1 or -1 while
+    tool length compensation is active, else 0. The vectors are replaced, never changed in place.
+    """
 
-    def __post_init__(self) -> None:
-        axes = len(self.machine.axes)
-        self.shift = np.zeros(axes)
-        self.length = np.zeros(axes)
-        self.renew()
+    def __init__(self, machine: MachineConfig, modal: Modal) -> None:
+        self._machine = machine
+        self._modal = modal
+        axes = len(machine.axes)
+        self.work = (MACHINE_ZERO,) * WORK_GROUPS
+        self.shift: Floats = np.zeros(axes)  # G92
+        self.length: Floats = np.zeros(axes)
+        self.length_sign = 0
 
-    def renew(self) -> None:
-        """Put the sum of all shifts in force."""
-        work = self.machine.work_offset(self.work) if self.work else 0.0
-        self.modal.offset[:] = work + self.shift + self.length
+    def save(self) -> SavedCoordinates:
+        """Return what to go back to; the sum in `modal.offset` is the modal state's business."""
+        return self.work, self.shift, self.length, self.length_sign
 
-    def select_work_offset(self, name: str) -> None:
-        """Take work offset `name` (G54, ...); MACHINE_ZERO for none."""
-        self.work = name
-        self.renew()
+    def restore(self, saved: SavedCoordinates) -> None:
+        """Go back to a saved state."""
+        self.work, self.shift, self.length, self.length_sign = saved
+
+    def select_work_offset(self, group: int, name: str) -> None:
+        """Take work offset `name` (G54, ...) of a group; MACHINE_ZERO for none."""
+        self.work = (*self.work[:group], name, *self.work[group + 1 :])
+        self._renew()
 
     def set_position(self, axis: int, value: float) -> None:
         """Shift program zero so that the present position of `axis` reads `value` (mm or degree)."""
-        self.shift[axis] += self.modal.position[axis] - self.modal.offset[axis] - value
-        self.renew()
+        self.shift = self.shift.copy()
+        self.shift[axis] += self._modal.position[axis] - self._modal.offset[axis] - value
+        self._renew()
 
     def clear_shift(self) -> None:
         """Take the G92 shift back."""
-        self.shift[:] = 0.0
-        self.renew()
+        self.shift = np.zeros_like(self.shift)
+        self._renew()
 
-    def set_length(self, axis: int, length_mm: float) -> None:
-        """Compensate the tool length along `axis`; 0 cancels."""
-        self.length[:] = 0.0
-        self.length[axis] = length_mm
-        self.renew()
+    def set_length(self, axis: int, sign: int, length_mm: float = 0.0) -> None:
+        """Compensate the tool length along `axis` by `sign` times `length_mm`; sign 0 cancels."""
+        self.length_sign = sign
+        self.length = np.zeros_like(self.length)
+        self.length[axis] = sign * length_mm
+        self._renew()
 
-    def saved(self) -> Coordinates:
-        """Return a copy to go back to."""
-        other = copy.copy(self)
-        other.shift = self.shift.copy()
-        other.length = self.length.copy()
-        return other
+    def _renew(self) -> None:
+        total = self.shift + self.length
+        for name in self.work:
+            if name != MACHINE_ZERO:
+                total = total + self._machine.work_offset(name)
+        self._modal.offset[:] = total

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from polycnc.nc._channel_state import ChannelState
+from polycnc.nc._auxiliary import whole_number
+from polycnc.nc._channel_state import ChannelState, Cycle
 from polycnc.nc._cycles import (
     CYCLES,
     CycleError,
@@ -16,13 +17,33 @@ from polycnc.nc._cycles import (
     expand_cycle,
 )
 from polycnc.nc._dialect import Dialect
-from polycnc.nc._modal import ABSOLUTE, AXIS_P, AXIS_Q, AXIS_R, NO_AXIS
+from polycnc.nc._modal import (
+    ABSOLUTE,
+    AXIS_P,
+    AXIS_Q,
+    AXIS_R,
+    FEED_INVERSE_TIME,
+    FEED_MODE,
+    NO_AXIS,
+    PLANE,
+    PLANE_LETTERS,
+)
 from polycnc.nc._motion import MotionBuilder
 from polycnc.nc._moves import Feed, Line, Point, QueueItem, Wait
+from polycnc.nc._scan_plain import Word
 from polycnc.nc._words import BlockWords, Fail, GWord, dwell_seconds
 
 _SPINDLES: dict[int, Spindle] = {1: "forward", -1: "reverse", 0: "stopped"}
 _TURN = {1: "M3", -1: "M4"}
+MOST_HOLES = 9999
+_BACK_BORE = "cycle_back_bore"
+# The words that most errors of a cycle are about.
+_TROUBLE_LETTERS = {
+    "upwards": "RZ",
+    "peck": "Q",
+    "back": "K",
+    "dwell": "P",
+}
 
 
 @dataclass
@@ -39,41 +60,54 @@ class CycleBlocks:
         """Whether a cycle is active: every block with a position drills."""
         return bool(self.state.cycle.action)
 
-    def select(self, g: GWord) -> None:
-        """Take over a word of the motion group: a cycle begins, any other motion ends it."""
+    def begin(self, g: GWord) -> None:
+        """Begin the cycle of a G word; the words of a cycle that was active stay in force."""
         cycle = self.state.cycle
-        action = g.action.name.lower()
-        if action not in CYCLES:
-            cycle.action = ""
-            cycle.words = CycleWords()
-            return
+        initial = cycle.initial
         if not cycle.action:
             axis = int(self.state.modal.whole[AXIS_R])
-            cycle.initial = float(self.state.modal.position[axis]) if axis != NO_AXIS else 0.0
-        cycle.action = action
+            initial = float(self.state.modal.position[axis]) if axis != NO_AXIS else 0.0
+        self.state.cycle = replace(cycle, action=g.action.name.lower(), initial=initial)
+
+    def cancel(self) -> None:
+        """Leave the cycle and forget its words."""
+        if self.active:
+            self.state.cycle = Cycle(retract_to_initial=self.state.cycle.retract_to_initial)
 
     def expand(self, words: BlockWords, line: int) -> list[QueueItem]:
-        """Return the moves of a block with an active cycle; none if it has no position or cycle word.
+        """Return the moves of a block with an active cycle; none if it has no position.
 
         Raises:
             ProgramError: a word is missing or does not make sense, a limit would be passed.
         """
         whole = self.state.modal.whole
         axes = (int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R]))
+        code = CYCLES[self.state.cycle.action]
         if NO_AXIS in axes:
+            letters = PLANE_LETTERS[int(whole[PLANE])]
             raise self.fail(
-                "a drilling cycle in a plane that this machine lacks",
-                "Select a plane with G17, G18 or G19.",
-                None,
+                f"{code} needs the axes {', '.join(letters)} here, and the machine lacks one of them",
+                "Select a plane of the machine's axes with G17, G18 or G19.",
+                self.motion.place(),
             )
-        named = {axis for axis in range(len(self.state.machine.axes)) if self._name(axis) in words.by_letter}
-        programmed = self._words(words, axes)
-        if not named and programmed == CycleWords():
-            return []
+        drills = "R" in words.by_letter or any(name in words.by_letter for name in self.state.axis_names)
+        self.state.cycle = replace(
+            self.state.cycle, words=self.state.cycle.words.then(self._words(words, axes))
+        )
         cycle = self.state.cycle
-        cycle.words = cycle.words.then(programmed)
-        values = self.motion.axis_words(words)
-        values.pop(axes[2], None)
+        if not drills:
+            return []
+        if self.state.side:
+            raise self.fail(
+                f"{code} while radius compensation is active",
+                "Cancel it with G40 first.",
+                self.motion.place(),
+            )
+        if whole[FEED_MODE] == FEED_INVERSE_TIME:
+            raise self.fail(
+                f"{code} with inverse time feed (G93)", "Select G94 or G95 first.", self.motion.place()
+            )
+        values = self.motion.axis_words()
         start = self.motion.start
         hole = self.motion.target(values)
         incremental = not whole[ABSOLUTE]
@@ -87,16 +121,14 @@ class CycleBlocks:
             if incremental
             else (0.0, 0.0),
             spindle=_SPINDLES[spindle.direction],
-            spindle_rpm=spindle.speed,
+            spindle_rpm=self.motion.rpm(start, start),
         )
         try:
             steps = expand_cycle(cycle.action, cycle.words, place, self.dialect.cycle_settings())
         except CycleError as error:
-            raise self.fail(error.what, error.hint, None) from None
-        return self._items(steps, start, hole, axes, line)
-
-    def _name(self, axis: int) -> str:
-        return self.state.machine.axes[axis].name
+            at = words.first(*_TROUBLE_LETTERS.get(error.reason, "")) or self.motion.place()
+            raise self.fail(error.what, error.hint, at) from None
+        return self._items(steps, start, hole, axes, line) if steps else []
 
     def _words(self, words: BlockWords, axes: tuple[int, int, int]) -> CycleWords:
         modal = self.state.modal
@@ -104,35 +136,45 @@ class CycleBlocks:
         scale = float(modal.scale[axes[2]])
         offset = float(modal.offset[axes[2]])
         absolute = bool(modal.whole[ABSOLUTE])
+        is_back_bore = cycle.action == _BACK_BORE
 
         def length(letter: str) -> float | None:
-            value = words.value(letter)
+            value = words.length(letter)
             return None if value is None else value * scale
 
-        retract, depth = length("R"), length(self._name(axes[2]))
+        retract = None if "R" in self.state.axis_names else length("R")
+        depth = length(self.state.axis_names[axes[2]])
+        back = length("K") if is_back_bore else None
         if absolute:
             retract = None if retract is None else retract + offset
             depth = None if depth is None else depth + offset
+            back = None if back is None else back + offset
         else:
             retract = None if retract is None else cycle.initial + retract
             r_level = retract if retract is not None else cycle.words.retract_mm
             if depth is not None and r_level is not None:
                 depth += r_level
+            bottom = depth if depth is not None else cycle.words.depth_mm
+            if back is not None and bottom is not None:
+                back += bottom
         dwell = words.take("P")
         shift_p, shift_q = length("I"), length("J")
-        back = length("K")
-        repeats = words.take("L")
-        if repeats is not None and (repeats.value < 0 or repeats.value != int(repeats.value)):
-            raise self.fail("the number of repetitions L is not a whole number", "Write L1, L2, ...", repeats)
         return CycleWords(
             depth_mm=depth,
             retract_mm=retract,
             peck_mm=length("Q"),
             dwell_s=None if dwell is None else dwell_seconds(dwell, self.dialect.dwell.get("P", "s")),
             shift_mm=None if shift_p is None and shift_q is None else (shift_p or 0.0, shift_q or 0.0),
-            back_mm=None if back is None else back + (offset if absolute else depth or 0.0),
-            repeats=1 if repeats is None else int(repeats.value),
+            back_mm=back,
+            repeats=self._repeats(words, is_back_bore),
         )
+
+    def _repeats(self, words: BlockWords, is_back_bore: bool) -> int:
+        """Take L, or K where it is no level: how many holes."""
+        found: list[Word] = [w for w in (words.take("L"), None if is_back_bore else words.take("K")) if w]
+        if len(found) > 1:
+            raise self.fail("L and K both say how many holes to drill", "Write one of them.", found[1])
+        return whole_number(found[0], "a number of holes", self.fail, MOST_HOLES) if found else 1
 
     def _items(
         self, steps: list[CycleStep], start: Point, hole: Point, axes: tuple[int, int, int], line: int

@@ -85,7 +85,7 @@ class Numbers(StrictModel):
         default="calculator", description='"calculator": X10 is 10 units; "least_input": it is 10 increments.'
     )
     least_input: Annotated[float, Field(gt=0)] = Field(
-        default=0.001, description="Size of an increment in program units."
+        default=0.001, description="Size of an increment in mm or degree; a tenth of the number in inch."
     )
 
 
@@ -98,12 +98,19 @@ class Arcs(StrictModel):
     relative_tolerance: Annotated[float, Field(ge=0, lt=0.1)] = Field(
         default=0.001, description="The same as a part of the radius; the larger of both counts."
     )
+    no_center: Literal["line", "error"] = Field(
+        default="error",
+        description='An arc with neither centre nor radius: "line" goes straight, "error" refuses it.',
+    )
 
 
 class SubPrograms(StrictModel):
     """How sub-programs are called."""
 
     depth: Annotated[int, Field(ge=1)] = Field(default=7, description="How deep calls may be nested.")
+    repeats_in_p: bool = Field(
+        default=False, description="P of more than four digits: the last four are the program, the others L."
+    )
 
 
 class Cycles(StrictModel):

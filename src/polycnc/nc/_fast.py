@@ -1,8 +1,10 @@
 """The compiled modal kernel: runs of plain motion blocks go straight from words into the channel queue.
 
-It knows straight and circular motion, planes, units, absolute and incremental, exact stop and feed. At the first
-block that holds anything else, or anything wrong, it stops without having changed anything for that block, and the
+It knows straight and circular motion, absolute and incremental, and feed. At the first block that
+holds anything else, or anything wrong, it stops without having changed anything for that block, and the
 ordinary interpreter takes it. So it needs no errors of its own, and both ways give the same motion.
+
+A compiled call costs by the arrays that it hands over, so what runs for every block takes those it needs.
 """
 
 from __future__ import annotations
@@ -19,11 +21,11 @@ from polycnc.kernel import (
     AxisLimits,
     Paths,
     Segments,
+    add_line,
     append_arc,
     append_line,
     compiled,
     entry,
-    free_slots,
 )
 from polycnc.nc._actions import Action
 from polycnc.nc._arcs import ARC_OK, arc_by_center, arc_by_radius
@@ -40,17 +42,23 @@ from polycnc.nc._modal import (
     FEED_MODE,
     FEED_PER_MINUTE,
     INCH,
+    LARGEST,
+    LINEAR_AXIS,
+    MODULO_AXIS,
     MOTION,
     MOTION_ARC_CCW,
     MOTION_ARC_CW,
     MOTION_LINEAR,
     MOTION_RAPID,
+    NO_AXIS,
     ORDINARY,
     RAPID_STOP,
     WORD_P,
     WORD_Q,
     Floats,
+    Ints,
     Modal,
+    short_way,
 )
 from polycnc.nc._scan import COMMENT, WordColumns
 from polycnc.units import MM_PER_INCH
@@ -62,31 +70,56 @@ QUEUE_FULL = 2
 
 RESERVE = 8  # slots that the ordinary path may need for one block
 
+# What a letter is, besides G.
+_UNKNOWN = 0
+_NUMBER = 1
+_LENGTH = 2
+
+# Columns of `said`: what a block says, and the letters of each sort as bits.
+_MOTION, _ABSOLUTE, _SEEN, _AXES, _CENTERS, _RADIUS = range(6)
+_SAID_COLUMNS = 6
+
 _LETTERS = 26
 _A = ord("A")
 _F, _G, _I, _J, _K, _N, _R = (ord(letter) - _A for letter in "FGIJKNR")
+_F_BIT = 1 << _F
 _RAPID = int(Action.RAPID)
 _LINEAR = int(Action.LINEAR)
 _ARC_CW = int(Action.ARC_CW)
 _ARC_CCW = int(Action.ARC_CCW)
-_ABSOLUTE = int(Action.ABSOLUTE)
-_INCREMENTAL = int(Action.INCREMENTAL)
-_EXACT_STOP = int(Action.EXACT_STOP)
-_CONTINUOUS = int(Action.CONTINUOUS)
-_PER_MINUTE = int(Action.FEED_PER_MINUTE)
+_ABSOLUTE_WORD = int(Action.ABSOLUTE)
+_INCREMENTAL_WORD = int(Action.INCREMENTAL)
+_PER_MINUTE_WORD = int(Action.FEED_PER_MINUTE)
+
+_short_way = compiled(short_way)
 
 
 class FastWork(NamedTuple):
-    """Scratch of the compiled kernel: words of one block by letter, and the point it goes to."""
+    """Scratch of the compiled kernel: what letters are, what one block says, and the point it goes to."""
 
+    role: npt.NDArray[np.int8]  # [26]
+    axis_letter: npt.NDArray[np.int8]  # [n] letter of each axis, NO_AXIS if its name is longer
     value: Floats  # [26]
-    seen: npt.NDArray[np.uint8]  # [26]
+    said: Ints
     target: Floats  # [n]
 
 
-def make_fast_work(axes: int) -> FastWork:
-    """Allocate the scratch for `axes` axes."""
-    return FastWork(np.zeros(_LETTERS), np.zeros(_LETTERS, np.uint8), np.zeros(axes))
+def make_fast_work(modal: Modal) -> FastWork:
+    """Allocate the scratch for the axes of `modal`."""
+    role = np.full(_LETTERS, _UNKNOWN, np.int8)
+    role[[_N, _F]] = _NUMBER
+    role[[_I, _J, _K, _R]] = _LENGTH
+    axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
+    said = np.zeros(_SAID_COLUMNS, np.int64)
+    said[_CENTERS] = 1 << _I | 1 << _J | 1 << _K
+    said[_RADIUS] = 1 << _R
+    for letter, axis in enumerate(modal.letter_axis):
+        if axis != NO_AXIS:
+            role[letter] = _LENGTH
+            axis_letter[axis] = letter
+            said[_AXES] |= 1 << letter
+    said[_RADIUS] &= ~said[_AXES]  # on a machine with an axis R it is that axis
+    return FastWork(role, axis_letter, np.zeros(_LETTERS), said, np.zeros(len(modal.position)))
 
 
 @entry
@@ -102,22 +135,13 @@ def run_plain(
     work: FastWork,
 ) -> tuple[int, int]:
     """Interpret plain blocks from `block` on; return the first block that was not taken, and why."""
-    n_blocks = int(words.counts[1])
     if modal.whole[ORDINARY] != 0:
         return block, NOT_PLAIN
-    while block < n_blocks:
-        if free_slots(paths, g) <= RESERVE:
-            return block, QUEUE_FULL
-        if (words.flags[block] & ~COMMENT) != 0 or words.skip_level[block] != 0:
-            return block, NOT_PLAIN
-        if not _run_block(words, block, tables, modal, seg, paths, g, limits, work):
-            return block, NOT_PLAIN
-        block += 1
-    return block, ALL_DONE
+    return _run(words, block, tables, modal, seg, paths, g, limits, work)
 
 
 @compiled
-def _run_block(
+def _run(
     words: WordColumns,
     block: int,
     tables: DialectTables,
@@ -127,153 +151,195 @@ def _run_block(
     g: int,
     limits: AxisLimits,
     work: FastWork,
-) -> bool:
+) -> tuple[int, int]:
     whole = modal.whole
+    said = work.said
+    path = paths.row
+    inch = MM_PER_INCH if whole[INCH] != 0 else 1.0
+    n_blocks = int(words.counts[1])
+    while block < n_blocks:
+        if path[g]["capacity"] - (path[g]["tail"] - path[g]["head"]) <= RESERVE:
+            return block, QUEUE_FULL
+        if (words.flags[block] & ~COMMENT) != 0 or words.skip_level[block] != 0:
+            return block, NOT_PLAIN
+        first, after = words.first_word[block], words.first_word[block + 1]
+        if not _read(
+            words.letter,
+            words.value,
+            words.point,
+            first,
+            after,
+            tables.g_action,
+            tables.least_input,
+            whole,
+            work,
+        ):
+            return block, NOT_PLAIN
+        seen = said[_SEEN]
+        motion = said[_MOTION]
+        feed = modal.real[FEED]
+        if seen & _F_BIT:
+            if whole[FEED_MODE] != FEED_PER_MINUTE or work.value[_F] <= 0.0:
+                return block, NOT_PLAIN
+            feed = work.value[_F] * inch
+        circular = seen & (said[_CENTERS] | said[_RADIUS])
+        if (seen & said[_AXES]) | circular:
+            is_arc = motion >= MOTION_ARC_CW
+            if (circular != 0 and not is_arc) or motion < MOTION_RAPID:
+                return block, NOT_PLAIN
+            if motion != MOTION_RAPID and (feed <= 0.0 or whole[FEED_MODE] != FEED_PER_MINUTE):
+                return block, NOT_PLAIN
+            if not _target(
+                modal.position,
+                modal.scale,
+                modal.offset,
+                modal.low,
+                modal.high,
+                modal.rotary,
+                work,
+            ):
+                return block, NOT_PLAIN
+            if (
+                inch != 1.0
+                and motion == MOTION_LINEAR
+                and _only_rotary(modal.rotary, modal.position, work.target)
+            ):
+                return block, NOT_PLAIN
+            flags = RAPID if motion == MOTION_RAPID else 0
+            if whole[EXACT_STOP] != 0 or (motion == MOTION_RAPID and whole[RAPID_STOP] != 0):
+                flags |= STOP
+            speed = math.inf if motion == MOTION_RAPID else feed / 60.0
+            tag = words.line[block]
+            if is_arc:
+                if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
+                    return block, NOT_PLAIN
+            elif path[g]["tolerance"] > 0.0:
+                append_line(seg, paths, g, limits, work.target, speed, flags, tag)
+            else:
+                add_line(
+                    seg.row,
+                    seg.start,
+                    seg.end,
+                    path,
+                    paths.queued,
+                    g,
+                    limits.feed_axis,
+                    work.target,
+                    speed,
+                    flags,
+                    tag,
+                )
+            for i in range(work.target.shape[0]):
+                modal.position[i] = work.target[i]
+        whole[MOTION] = motion
+        whole[ABSOLUTE] = said[_ABSOLUTE]
+        modal.real[FEED] = feed
+        block += 1
+    return block, ALL_DONE
+
+
+@compiled
+def _read(
+    letters: npt.NDArray[np.uint8],
+    values: Floats,
+    points: npt.NDArray[np.uint8],
+    first: int,
+    after: int,
+    g_action: npt.NDArray[np.int16],
+    least_input: float,
+    whole: Ints,
+    work: FastWork,
+) -> bool:
+    """Put what the words of a block say into `work`; False at the first that is not plain."""
     motion = whole[MOTION]
     absolute = whole[ABSOLUTE]
-    exact_stop = whole[EXACT_STOP]
-    feed_mode = whole[FEED_MODE]
-    motion_seen = False
-    distance_seen = False
-    stop_seen = False
-    feed_mode_seen = False
-    axis_words = 0
-    work.seen[:] = 0
-    for w in range(words.first_word[block], words.first_word[block + 1]):
-        letter = int(words.letter[w]) - _A
+    groups = 0  # modal groups that had a word, as bits
+    seen = 0
+    for w in range(first, after):
+        letter = int(letters[w]) - _A
         if letter < 0 or letter >= _LETTERS:
             return False
-        value = words.value[w]
+        value = values[w]
         if letter == _G:
-            code = int(value * 10.0 + 0.5)
-            if value < 0.0 or code >= tables.g_action.shape[0] or value * 10.0 != code:
+            if not 0.0 <= value < 1000.0:
                 return False
-            action = tables.g_action[code]
-            if action == _RAPID or action == _LINEAR or action == _ARC_CW or action == _ARC_CCW:
-                if motion_seen:
-                    return False
-                motion_seen = True
-                if action == _RAPID:
-                    motion = MOTION_RAPID
-                elif action == _LINEAR:
-                    motion = MOTION_LINEAR
-                elif action == _ARC_CW:
-                    motion = MOTION_ARC_CW
-                else:
-                    motion = MOTION_ARC_CCW
-            elif action == _ABSOLUTE or action == _INCREMENTAL:
-                if distance_seen:
-                    return False
-                distance_seen = True
-                absolute = 1 if action == _ABSOLUTE else 0
-            elif action == _EXACT_STOP or action == _CONTINUOUS:
-                if stop_seen:
-                    return False
-                stop_seen = True
-                exact_stop = 1 if action == _EXACT_STOP else 0
-            elif action == _PER_MINUTE and feed_mode == FEED_PER_MINUTE and not feed_mode_seen:
-                feed_mode_seen = True
+            code = int(value * 10.0 + 0.5)
+            if code >= g_action.shape[0] or value * 10.0 != code:
+                return False
+            action = g_action[code]
+            if action in (_LINEAR, _RAPID, _ARC_CW, _ARC_CCW):
+                group = 1
+                motion = _motion_of(action)
+            elif action in (_ABSOLUTE_WORD, _INCREMENTAL_WORD):
+                group = 2
+                absolute = 1 if action == _ABSOLUTE_WORD else 0
+            elif action == _PER_MINUTE_WORD and whole[FEED_MODE] == FEED_PER_MINUTE:
+                group = 4
             else:
                 return False  # planes, units and all else are rare enough for the ordinary path
+            if groups & group:
+                return False
+            groups |= group
             continue
-        if work.seen[letter] != 0:
+        bit = 1 << letter
+        role = work.role[letter]
+        if role == _UNKNOWN or seen & bit or (role == _LENGTH and least_input > 0.0 and points[w] == 0):
             return False
-        work.seen[letter] = 1
-        work.value[letter] = value * 1.0
-        if modal.letter_axis[letter] >= 0:
-            axis_words += 1
-            if tables.least_input > 0.0 and words.point[w] == 0:
-                return False
-        elif letter == _I or letter == _J or letter == _K or letter == _R:
-            if tables.least_input > 0.0 and words.point[w] == 0:
-                return False
-        elif letter != _N and letter != _F:
-            return False
-    return _go(
-        words, block, modal, seg, paths, g, limits, work, motion, absolute, exact_stop, feed_mode, axis_words
-    )
+        seen |= bit
+        work.value[letter] = value
+    said = work.said
+    said[_MOTION], said[_ABSOLUTE], said[_SEEN] = motion, absolute, seen
+    return True
 
 
 @compiled
-def _go(
-    words: WordColumns,
-    block: int,
-    modal: Modal,
-    seg: Segments,
-    paths: Paths,
-    g: int,
-    limits: AxisLimits,
+def _motion_of(action: int) -> int:
+    if action == _LINEAR:
+        return MOTION_LINEAR
+    if action == _RAPID:
+        return MOTION_RAPID
+    return MOTION_ARC_CW if action == _ARC_CW else MOTION_ARC_CCW
+
+
+@compiled
+def _target(
+    position: Floats,
+    scale: Floats,
+    offset: Floats,
+    low: Floats,
+    high: Floats,
+    rotary: npt.NDArray[np.uint8],
     work: FastWork,
-    motion: int,
-    absolute: int,
-    exact_stop: int,
-    feed_mode: int,
-    axis_words: int,
 ) -> bool:
-    whole = modal.whole
-    inch = MM_PER_INCH if whole[INCH] != 0 else 1.0
-    feed = modal.real[FEED]
-    if work.seen[_F] != 0:
-        if feed_mode != FEED_PER_MINUTE or work.value[_F] <= 0.0:
-            return False
-        feed = work.value[_F] * inch
-    has_center = work.seen[_I] + work.seen[_J] + work.seen[_K]
-    is_arc = motion == MOTION_ARC_CW or motion == MOTION_ARC_CCW
-    if axis_words + has_center + work.seen[_R] > 0:
-        if (
-            motion < MOTION_RAPID
-            or motion > MOTION_ARC_CCW
-            or (not is_arc and has_center + work.seen[_R] > 0)
-        ):
-            return False
-        if motion != MOTION_RAPID and (feed <= 0.0 or feed_mode != FEED_PER_MINUTE):
-            return False
-        if not _target(modal, work, absolute):
-            return False
-        flags = RAPID if motion == MOTION_RAPID else 0
-        if exact_stop != 0 or (motion == MOTION_RAPID and whole[RAPID_STOP] != 0):
-            flags |= STOP
-        speed = math.inf if motion == MOTION_RAPID else feed / 60.0
-        tag = words.line[block]
-        if is_arc:
-            if not _arc(
-                modal, seg, paths, g, limits, work, motion == MOTION_ARC_CW, has_center, speed, flags, tag
-            ):
-                return False
-        else:
-            if inch != 1.0 and motion == MOTION_LINEAR and _only_rotary(modal, work):
-                return False
-            append_line(seg, paths, g, limits, work.target, speed, flags, tag)
-        for i in range(work.target.shape[0]):
-            modal.position[i] = work.target[i]
-    whole[MOTION] = motion
-    whole[ABSOLUTE] = absolute
-    whole[EXACT_STOP] = exact_stop
-    modal.real[FEED] = feed
-    return True
-
-
-@compiled
-def _target(modal: Modal, work: FastWork, absolute: int) -> bool:
     """Put the programmed end point into `work.target`; False if it lies outside the soft limits."""
+    seen = work.said[_SEEN]
+    absolute = work.said[_ABSOLUTE]
     for i in range(work.target.shape[0]):
-        work.target[i] = modal.position[i]
-    for letter in range(_LETTERS):
-        axis = modal.letter_axis[letter]
-        if axis >= 0 and work.seen[letter] != 0:
-            step = work.value[letter] * modal.scale[axis]
-            work.target[axis] = step + modal.offset[axis] if absolute != 0 else modal.position[axis] + step
-            if not modal.low[axis] <= work.target[axis] <= modal.high[axis]:
-                return False
+        at = position[i]
+        letter = work.axis_letter[i]
+        if letter >= 0 and seen & (1 << letter):
+            step = work.value[letter] * scale[i]
+            if absolute != 0:
+                at = step + offset[i]
+                if rotary[i] == MODULO_AXIS:
+                    if not -LARGEST <= at <= LARGEST:
+                        return False
+                    at = _short_way(at, position[i])
+            else:
+                at += step
+        if not low[i] <= at <= high[i]:
+            return False
+        work.target[i] = at
     return True
 
 
 @compiled
-def _only_rotary(modal: Modal, work: FastWork) -> bool:
-    for i in range(work.target.shape[0]):
-        if modal.rotary[i] == 0 and work.target[i] != modal.position[i]:
-            return False
-    return True
+def _only_rotary(rotary: npt.NDArray[np.uint8], start: Floats, end: Floats) -> bool:
+    linear = 0
+    for i in range(end.shape[0]):
+        if rotary[i] == LINEAR_AXIS and end[i] != start[i]:
+            linear += 1
+    return linear == 0
 
 
 @compiled
@@ -284,34 +350,37 @@ def _arc(
     g: int,
     limits: AxisLimits,
     work: FastWork,
-    clockwise: bool,
-    has_center: int,
     speed: float,
     flags: int,
     tag: int,
 ) -> bool:
     whole = modal.whole
+    seen = work.said[_SEEN]
+    clockwise = work.said[_MOTION] == MOTION_ARC_CW
     p, q = whole[AXIS_P], whole[AXIS_Q]
-    in_plane = work.seen[whole[WORD_P]] + work.seen[whole[WORD_Q]]
-    if p < 0 or q < 0 or in_plane != has_center or whole[ARC_ABSOLUTE] != 0:
+    bit_p, bit_q = 1 << whole[WORD_P], 1 << whole[WORD_Q]
+    center = seen & work.said[_CENTERS]
+    has_radius = (seen & work.said[_RADIUS]) != 0
+    if p < 0 or q < 0 or center & ~(bit_p | bit_q) or whole[ARC_ABSOLUTE] != 0 or has_radius == (center != 0):
         return False
     start_p, start_q = modal.position[p], modal.position[q]
     end_p, end_q = work.target[p], work.target[q]
-    if work.seen[_R] != 0:
-        if has_center != 0:
-            return False
-        radius = work.value[_R] * modal.scale[p]
+    if has_radius:
         status, center_p, center_q, sweep, _ = arc_by_radius(
-            start_p, start_q, end_p, end_q, radius, clockwise, modal.real[ARC_TOLERANCE]
+            start_p,
+            start_q,
+            end_p,
+            end_q,
+            work.value[_R] * modal.scale[p],
+            clockwise,
+            modal.real[ARC_TOLERANCE],
         )
     else:
-        if has_center == 0:
-            return False
         center_p = start_p
         center_q = start_q
-        if work.seen[whole[WORD_P]] != 0:
+        if center & bit_p:
             center_p += work.value[whole[WORD_P]] * modal.scale[p]
-        if work.seen[whole[WORD_Q]] != 0:
+        if center & bit_q:
             center_q += work.value[whole[WORD_Q]] * modal.scale[q]
         status, center_p, center_q, sweep, _ = arc_by_center(
             start_p,
@@ -321,13 +390,13 @@ def _arc(
             center_p,
             center_q,
             clockwise,
-            1,
             modal.real[ARC_TOLERANCE],
             modal.real[ARC_RELATIVE],
         )
     if status != ARC_OK:
         return False
-    radius = math.hypot(start_p - center_p, start_q - center_q)
+    dp, dq = start_p - center_p, start_q - center_q
+    radius = math.sqrt(dp * dp + dq * dq)
     if not (
         modal.low[p] <= center_p - radius
         and center_p + radius <= modal.high[p]

@@ -20,13 +20,29 @@ class Messages:
 
     line: int = 0
     _found: dict[str, Message] = field(default_factory=dict)
+    _undo: list[tuple[str, Message | None]] = field(default_factory=list)
+
+    def begin(self, line: int) -> None:
+        """Begin a block: messages are about its line, and can be taken back together."""
+        self.line = line
+        self._undo.clear()
 
     def add(self, text: str) -> None:
         """Add a message about the present line."""
         old = self._found.get(text)
+        self._undo.append((text, old))
         self._found[text] = (
             Message(text, self.line) if old is None else Message(text, old.line, old.count + 1)
         )
+
+    def take_back(self) -> None:
+        """Take back what the present block has added, because it is refused."""
+        for text, old in reversed(self._undo):
+            if old is None:
+                del self._found[text]
+            else:
+                self._found[text] = old
+        self._undo.clear()
 
     def all(self) -> list[Message]:
         """Return all messages in the order in which they first came up."""

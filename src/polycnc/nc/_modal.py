@@ -1,12 +1,14 @@
 """The modal state of a program, in arrays that compiled and ordinary interpretation share.
 
-What only the ordinary path needs (tables, comments, tool names) lives in `Interpreter`; what a plain motion block
-reads or writes lives here.
+What only the ordinary path needs (cycles, tools, the spindle) lives in `ChannelState`; what a plain motion
+block reads or writes lives here.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -26,7 +28,7 @@ WHOLE_COLUMNS = 14
 FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2
 REAL_COLUMNS = 3
 
-# Values of MOTION; more than MOTION_ARC_CCW are drilling cycles, by action number.
+# Values of MOTION; a drilling cycle leaves it as it was.
 MOTION_NONE = -1
 MOTION_RAPID = 0
 MOTION_LINEAR = 1
@@ -45,7 +47,17 @@ FEED_PER_MINUTE = 0
 FEED_PER_REVOLUTION = 1
 FEED_INVERSE_TIME = 2
 
+# Values of `rotary`.
+LINEAR_AXIS = 0
+ROTARY_AXIS = 1
+MODULO_AXIS = 2  # positions repeat every turn
+
 NO_AXIS = -1
+
+LARGEST = 1e9
+"""No position lies further out (mm or degree): float64 would not resolve it any more."""
+
+TURN_DEG = 360.0
 
 
 class Modal(NamedTuple):
@@ -60,14 +72,19 @@ class Modal(NamedTuple):
     position: Floats  # [n]
     offset: Floats  # [n] work offset, G92 shift and tool length together
     scale: Floats  # [n] mm per program unit, 1 for rotary axes
-    rotary: npt.NDArray[np.uint8]  # [n]
-    low: Floats  # [n] soft limits
+    rotary: npt.NDArray[np.uint8]  # [n] LINEAR_AXIS, ROTARY_AXIS or MODULO_AXIS
+    low: Floats  # [n] soft limits, at most LARGEST
     high: Floats  # [n]
     letter_axis: Ints  # [26] axis of each letter, NO_AXIS if it is none
 
 
-def make_modal(names: list[str], rotary: list[bool], low: list[float], high: list[float]) -> Modal:
-    """Make the state at program start for axes of these names; set the dialect's initial state afterwards."""
+def make_modal(
+    names: Sequence[str], rotary: Sequence[int], low: Sequence[float], high: Sequence[float]
+) -> Modal:
+    """Make the state at program start for axes of these names; set the dialect's initial state afterwards.
+
+    `rotary` says of each axis whether it is a LINEAR_AXIS, a ROTARY_AXIS or a MODULO_AXIS.
+    """
     letter_axis = np.full(26, NO_AXIS, np.int64)
     for index, name in enumerate(names):
         if len(name) == 1:
@@ -80,8 +97,8 @@ def make_modal(names: list[str], rotary: list[bool], low: list[float], high: lis
         offset=np.zeros(n),
         scale=np.ones(n),
         rotary=np.array(rotary, np.uint8),
-        low=np.array(low),
-        high=np.array(high),
+        low=np.maximum(np.array(low, np.float64), -LARGEST),
+        high=np.minimum(np.array(high, np.float64), LARGEST),
         letter_axis=letter_axis,
     )
     modal.whole[ABSOLUTE] = 1
@@ -105,12 +122,23 @@ def set_inch(modal: Modal, inch: bool) -> None:
     modal.scale[:] = np.where(modal.rotary != 0, 1.0, MM_PER_INCH if inch else 1.0)
 
 
-def copy_modal(modal: Modal) -> Modal:
-    """Return an independent copy, to go back to when a block is refused."""
-    return Modal(*(column.copy() for column in modal))
+def short_way(wanted_deg: float, position_deg: float) -> float:
+    """Return `wanted_deg` plus the whole turns that bring it next to `position_deg`; half a turn goes up."""
+    return wanted_deg - TURN_DEG * math.ceil((wanted_deg - position_deg - 0.5 * TURN_DEG) / TURN_DEG)
 
 
-def restore_modal(modal: Modal, saved: Modal) -> None:
+def save_modal(modal: Modal) -> tuple[npt.NDArray[Any], ...]:
+    """Return a copy of what blocks may change, for `restore_modal`."""
+    return (
+        modal.whole.copy(),
+        modal.real.copy(),
+        modal.position.copy(),
+        modal.offset.copy(),
+        modal.scale.copy(),
+    )
+
+
+def restore_modal(modal: Modal, saved: tuple[npt.NDArray[Any], ...]) -> None:
     """Put a saved state back in place."""
-    for column, old in zip(modal, saved, strict=True):
+    for column, old in zip(modal[: len(saved)], saved, strict=True):
         column[...] = old

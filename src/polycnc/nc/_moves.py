@@ -35,8 +35,9 @@ class Line:
 class Arc:
     """Move on a circle or helix.
 
-    `plane` holds the axis indices (first, second, normal). `center` is in the first two. `sweep_rad` is signed,
-    positive from the first towards the second axis, and includes whole turns; all other axes move linearly.
+    `plane` holds the axis indices (first, second, normal). `center` is in the first two. `sweep_rad` is
+    signed, positive from the first towards the second axis, and includes whole turns; all other axes move
+    linearly.
     """
 
     start: Point

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from polycnc.errors import UsageError
 from polycnc.kernel import (
     RAPID,
     STOP,
@@ -24,12 +25,23 @@ from polycnc.nc._moves import Arc, Feed, Line, QueueItem, Wait
 NO_EVENT = -1
 
 
+class ExecutionStoppedError(Exception):
+    """Nobody goes along the path any more, so the queue stays full and preparation is over."""
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """An auxiliary function that the path has come to: its words and the program line."""
 
     word: str
     line: int
+
+
+def _nobody_makes_room() -> None:
+    raise UsageError(
+        "the channel queue is full in the middle of a block",
+        hint="Give `on_full_queue` something that runs part of the queue.",
+    )
 
 
 @dataclass
@@ -40,7 +52,7 @@ class QueueWriter:
     paths: Paths
     limits: AxisLimits
     path: int = 0
-    make_room: Callable[[], None] = lambda: None
+    make_room: Callable[[], None] = _nobody_makes_room
     events: list[Event] = field(default_factory=list)
 
     def set_tolerance(self, tolerance_mm: float) -> None:
@@ -48,9 +60,11 @@ class QueueWriter:
         self.paths.row[self.path]["tolerance"] = tolerance_mm
 
     def put(self, item: QueueItem) -> None:
-        """Append one line, arc or wait."""
-        if free_slots(self.paths, self.path) < 2:
-            self.make_room()
+        """Append one line, arc or wait.
+
+        Raises:
+            ExecutionStoppedError: the queue stays full.
+        """
         match item:
             case Line():
                 self._put_line(item)
@@ -59,20 +73,22 @@ class QueueWriter:
             case Wait():
                 self._put_wait(item)
 
+    def _ensure_room(self) -> None:
+        """See to the two slots that a line with a rounded corner needs."""
+        if free_slots(self.paths, self.path) < 2:
+            self.make_room()
+            if free_slots(self.paths, self.path) < 2:
+                raise ExecutionStoppedError
+
     def _put_line(self, item: Line) -> None:
-        speed = math.inf if item.rapid else self._speed(item.feed, self._line_length(item.start, item.end))
+        self._ensure_room()
+        speed = math.inf if item.rapid else self._speed(item.feed, self._line_length(item))
         flags = (RAPID if item.rapid else 0) | (STOP if item.exact_stop else 0)
         append_line(self.seg, self.paths, self.path, self.limits, np.array(item.end), speed, flags, item.line)
 
     def _put_arc(self, item: Arc) -> None:
+        self._ensure_room()
         p, q = item.plane[:2]
-        radius = math.hypot(item.start[p] - item.center[0], item.start[q] - item.center[1])
-        rest = [
-            (end - start) ** 2
-            for i, (start, end) in enumerate(zip(item.start, item.end, strict=True))
-            if i not in (p, q) and self.limits.feed_axis[i]
-        ]
-        length = math.sqrt((radius * item.sweep_rad) ** 2 + sum(rest))
         append_arc(
             self.seg,
             self.paths,
@@ -84,27 +100,43 @@ class QueueWriter:
             item.center[0],
             item.center[1],
             item.sweep_rad,
-            self._speed(item.feed, length),
+            self._speed(item.feed, self._arc_length(item)),
             STOP if item.exact_stop else 0,
             item.line,
         )
 
     def _put_wait(self, item: Wait) -> None:
-        duration = item.duration_s
-        if not item.events:
-            append_wait(self.seg, self.paths, self.path, duration, NO_EVENT, item.line)
         for word in item.events:
             self.events.append(Event(word, item.line))
-            append_wait(self.seg, self.paths, self.path, 0.0, len(self.events) - 1, item.line)
-        if item.events and duration > 0.0:
-            append_wait(self.seg, self.paths, self.path, duration, NO_EVENT, item.line)
+            self._append_wait(0.0, len(self.events) - 1, item.line)
+        if item.duration_s > 0.0 or not item.events:
+            self._append_wait(item.duration_s, NO_EVENT, item.line)
 
-    def _line_length(self, start: tuple[float, ...], end: tuple[float, ...]) -> float:
-        squares = [(b - a) ** 2 for a, b in zip(start, end, strict=True)]
+    def _append_wait(self, duration_s: float, event: int, line: int) -> None:
+        self._ensure_room()
+        append_wait(self.seg, self.paths, self.path, duration_s, event, line)
+
+    def _line_length(self, item: Line) -> float:
+        """Return the length as the kernel counts it: of the axes that count, else of the others."""
+        if item.feed.duration_s <= 0.0:
+            return 0.0  # nothing needs it
+        squares = [(b - a) ** 2 for a, b in zip(item.start, item.end, strict=True)]
         counted = math.sqrt(
             sum(s for s, counts in zip(squares, self.limits.feed_axis, strict=True) if counts)
         )
         return counted if counted > 0.0 else math.sqrt(sum(squares))
+
+    def _arc_length(self, item: Arc) -> float:
+        if item.feed.duration_s <= 0.0:
+            return 0.0
+        p, q = item.plane[:2]
+        radius = math.hypot(item.start[p] - item.center[0], item.start[q] - item.center[1])
+        rest = [
+            (end - start) ** 2
+            for i, (start, end) in enumerate(zip(item.start, item.end, strict=True))
+            if i not in (p, q) and self.limits.feed_axis[i]
+        ]
+        return math.sqrt((radius * item.sweep_rad) ** 2 + sum(rest))
 
     @staticmethod
     def _speed(feed: Feed, length: float) -> float:

@@ -1,8 +1,9 @@
-"""Draw a run: the path from above and in perspective, rapids apart from cuts, and the speed over time."""
+"""Draw a run: the path from above and in perspective, rapids apart from cuts, speed and axes over time."""
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,8 @@ import numpy.typing as npt
 from polycnc.errors import UsageError
 from polycnc.kernel import LEADING
 from polycnc.machine import MachineConfig
-from polycnc.runner._result import RunResult
+from polycnc.runner._files import check_output, complete_or_absent
+from polycnc.runner._result import RunResult, Trace, counted, time_text
 from polycnc.runner._trace import TraceCollector
 
 if TYPE_CHECKING:
@@ -20,11 +22,17 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
 
+PLOT_FORMATS = (".png", ".svg", ".pdf")
 _MOST_ROWS = 200_000
+_MOST_MARKS = 5_000
 _CUT = "#1f5fa8"
 _RAPID = "#d08a2b"
-_FORMATS = (".png", ".svg", ".pdf")
+_MARGIN = 0.15  # of the larger side of the cuts: how much of the rapids around them is drawn
+_CALM = 2.0  # rapids that are faster than so many times the fastest cut leave the picture of the speed
+_SIZE_INCH = (12.0, 9.0)
+_ROW_INCH = 1.5  # each row of an axis over time makes the picture so much higher
 
 
 class PlotCollector:
@@ -36,155 +44,255 @@ class PlotCollector:
         self._held = 0
         self._stride = 1
         self._next = 0  # rows to leave out before the next one that is kept
+        self._last: Floats | None = None
 
     def add(self, rows: Floats) -> None:
         """Take a piece of the record."""
         kept = rows[self._next :: self._stride].copy()
         self._next = (self._next - len(rows)) % self._stride
         self._pieces.append(kept)
+        self._last = rows[-1:].copy() if len(rows) else self._last
         self._held += len(kept)
-        if self._held > 2 * _MOST_ROWS:
+        while self._held > 2 * _MOST_ROWS:
             thinned = np.concatenate(self._pieces)[::2]
             self._pieces, self._held = [thinned], len(thinned)
             self._stride *= 2
 
     def with_trace(self, result: RunResult) -> RunResult:
-        """Return `result` with the collected rows as its trace."""
+        """Return `result` with the collected rows, and the last row in any case, as its trace."""
         width = len(self.config.axes)
-        collector = TraceCollector(
-            self.config, any(piece.shape[1] > LEADING + width for piece in self._pieces)
-        )
-        for piece in self._pieces:
+        pieces = self._pieces + ([self._last] if self._last is not None and self._stride > 1 else [])
+        collector = TraceCollector(self.config, any(piece.shape[1] > LEADING + width for piece in pieces))
+        for piece in pieces:
             collector.add(piece)
         return replace(result, trace=collector.trace())
 
 
-def plot(result: RunResult, path: str | Path) -> None:
-    """Draw `result`, which must hold a trace, to a .png, .svg or .pdf file.
+def check_plot_file(path: str | Path) -> Path:
+    """Return the path of a plot that could be written there.
 
     Raises:
-        UsageError: no trace, an unknown extension, or matplotlib is not installed.
+        UsageError: an unknown extension, no such folder, or matplotlib is not installed.
     """
-    path = Path(path)
-    if result.trace is None or not len(result.trace):
+    checked = check_output(path, PLOT_FORMATS, "a plot")
+    _figure_class()
+    return checked
+
+
+def plot(result: RunResult, path: str | Path | None = None) -> Figure:
+    """Draw `result`, which must hold a trace, to a .png, .svg or .pdf file; return the matplotlib figure.
+
+    Without a path nothing is written.
+
+    Raises:
+        UsageError: no trace, an unknown extension, no such folder, or matplotlib is not installed.
+    """
+    if result.trace is None:
         raise UsageError("there is nothing to plot: the result has no trace", hint="Run with trace=True.")
-    if path.suffix.lower() not in _FORMATS:
-        raise UsageError(f"a plot cannot be written as '{path.suffix}'", hint=f"Use {', '.join(_FORMATS)}.")
-    figure = _figure(result)
-    figure.savefig(path, dpi=150)
+    target = None if path is None else check_plot_file(path)
+    figure = _figure(result, result.trace)
+    if target is not None:
+        import matplotlib
+
+        undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(target.suffix.lower())
+        with complete_or_absent(target) as partial, matplotlib.rc_context({"svg.hashsalt": "polycnc"}):
+            figure.savefig(partial, dpi=150, metadata=undated)
+    return figure
 
 
-def _figure(result: RunResult) -> Figure:
+def _figure_class() -> type[Figure]:
     try:
         from matplotlib.figure import Figure
     except ImportError:
         raise UsageError("a plot needs matplotlib", hint="Install it: pip install 'polycnc[plot]'.") from None
-    trace = result.trace
-    assert trace is not None
+    return Figure
+
+
+def _figure(result: RunResult, trace: Trace) -> Figure:
     linear = [i for i, unit in enumerate(trace.units) if unit == "mm"]
-    figure = Figure(figsize=(12.0, 9.0), layout="constrained")
-    grid = figure.add_gridspec(2, 2, height_ratios=(2.0, 1.0))
-    figure.suptitle(
-        f"{Path(result.program).name}   on {result.machine}   {_clock(result.time_s)}   "
-        f"{result.path_mm:,.0f} mm   {result.blocks:,} blocks"
-    )
-    _plan(figure.add_subplot(grid[0, 0]), result, linear)
-    if len(linear) >= 3:
-        _perspective(figure.add_subplot(grid[0, 1], projection="3d"), result, linear)
-    else:
-        _positions(figure.add_subplot(grid[0, 1]), result)
-    _speed(figure.add_subplot(grid[1, :]), result)
+    solid = len(linear) >= 3
+    width, height = _SIZE_INCH
+    figure = _figure_class()(figsize=(width, height), layout="constrained")
+    figure.suptitle(_title(result), parse_math=False)
+    if not len(trace) or all(low == high for low, high in result.extents_mm.values()):
+        figure.text(0.5, 0.5, "The program moves no axis.", ha="center", size="x-large")
+        return figure
+    over_time = _over_time(trace, linear)
+    figure.set_size_inches(width, height + _ROW_INCH * max(len(over_time) - 1, 0))
+    has_plan = len(linear) >= 2
+    ratios = ([3.0] if has_plan else []) + [1.4] + [0.9] * len(over_time)
+    grid = figure.add_gridspec(len(ratios), 2, height_ratios=ratios)
+    if has_plan:
+        view = _view(trace, linear[:3])
+        _plan(figure.add_subplot(grid[0, 0] if solid else grid[0, :]), trace, view)
+        if solid:
+            _perspective(figure.add_subplot(grid[0, 1], projection="3d"), trace, view)
+    row = int(has_plan)
+    speed = figure.add_subplot(grid[row, :])
+    _speed(speed, trace)
+    for number, columns in enumerate(over_time, start=row + 1):
+        speed.tick_params(labelbottom=False)
+        axes = figure.add_subplot(grid[number, :], sharex=speed)
+        _positions(axes, trace, columns)
+        axes.tick_params(labelbottom=number == len(ratios) - 1)
+    figure.axes[-1].set_xlabel("time [s]")
     return figure
 
 
-def _runs(rapid: npt.NDArray[np.bool_]) -> list[tuple[int, int, bool]]:
-    """Return the stretches of equal kind as (first row, last row, is rapid); each begins where the last one ended."""
+def _title(result: RunResult) -> str:
+    parts = (Path(result.program).name, f"on {result.machine}", time_text(result.time_s))
+    return "    ".join((*parts, f"{result.path_mm:,.0f} mm", f"{counted(result.blocks, 'block')}"))
+
+
+def _over_time(trace: Trace, linear: list[int]) -> list[list[int]]:
+    """Return which axes to draw over time, row by row: those that the views do not show, if they move."""
+    shown = linear[:3] if len(linear) >= 3 else []
+    rows = [[i] for i in range(len(trace.axes)) if i not in shown and i not in linear[:2]]
+    rows = [row for row in rows if np.ptp(trace.setpoint[:, row[0]]) > 0.0]
+    return rows if shown else [linear[:2], *rows]
+
+
+@dataclass(frozen=True)
+class _View:
+    """The part of space that is drawn: the cuts and a margin; where nothing is cut, everything."""
+
+    columns: list[int]
+    low: Floats
+    high: Floats
+    points: Floats  # [rows, columns]
+    moving_cut: Flags
+
+    def seen(self, columns: list[int]) -> Floats:
+        """Return some columns of the points, NaN where one of them is outside."""
+        points, low, high = self.points[:, columns], self.low[columns], self.high[columns]
+        outside = np.any((points < low) | (points > high), axis=1)
+        return np.where(outside[:, None], np.nan, points)
+
+
+def _view(trace: Trace, columns: list[int]) -> _View:
+    points = trace.setpoint[:, columns]
+    moves = np.concatenate(([False], np.any(np.diff(points, axis=0) != 0.0, axis=1)))
+    moving_cut = ~trace.rapid & moves
+    inside = points[moving_cut] if moving_cut.any() else points
+    low, high = inside.min(axis=0), inside.max(axis=0)
+    margin = _MARGIN * float(np.max(high - low))
+    if margin <= 0.0:
+        low, high = points.min(axis=0), points.max(axis=0)
+        margin = max(_MARGIN * float(np.max(high - low)), 0.5)
+    low, high = np.maximum(low - margin, points.min(axis=0)), np.minimum(high + margin, points.max(axis=0))
+    flat = high - low < 2.0 * margin * _MARGIN
+    low, high = np.where(flat, low - margin, low), np.where(flat, high + margin, high)
+    return _View(columns, low, high, points, moving_cut)
+
+
+def _stretches(rapid: Flags) -> list[tuple[int, int, bool]]:
+    """Return the stretches of equal kind as (first row, last row, is rapid).
+
+    Each begins where the one before has ended.
+    """
     edges = np.flatnonzero(np.diff(rapid.astype(np.int8))) + 1
     bounds = [0, *edges.tolist(), len(rapid)]
-    return [
-        (max(first - 1, 0), last, bool(rapid[first]))
-        for first, last in zip(bounds[:-1], bounds[1:], strict=True)
-    ]
+    return [(max(first - 1, 0), last, bool(rapid[first])) for first, last in pairwise(bounds)]
 
 
-def _by_kind(result: RunResult, columns: list[int]) -> dict[bool, Floats]:
-    """Return the path of `columns` for cuts (False) and rapids (True), stretches parted by rows of NaN."""
-    trace = result.trace
-    assert trace is not None
-    points = trace.setpoint[:, columns]
-    gap = np.full((1, len(columns)), np.nan)
-    parts: dict[bool, list[Floats]] = {False: [], True: []}
-    for first, last, rapid in _runs(trace.rapid):
+def _draw_path(axes: Any, trace: Trace, points: Floats) -> None:
+    """Draw cuts and rapids, each as one line with gaps."""
+    gap = np.full((1, points.shape[1]), np.nan)
+    parts: dict[bool, list[Floats]] = {True: [], False: []}
+    for first, last, rapid in _stretches(trace.rapid):
         parts[rapid] += [points[first:last], gap]
-    return {kind: np.concatenate(pieces) for kind, pieces in parts.items() if pieces}
+    styles: dict[bool, dict[str, Any]] = {
+        True: {"color": _RAPID, "linewidth": 0.8, "linestyle": (0, (4, 3)), "label": "rapid"},
+        False: {"color": _CUT, "linewidth": 1.1, "label": "cut"},
+    }
+    for rapid, pieces in parts.items():
+        if pieces:
+            axes.plot(*np.concatenate(pieces).T, **styles[rapid])
 
 
-def _draw(axes: Any, paths: dict[bool, Floats]) -> None:
-    for rapid, points in paths.items():
-        style: dict[str, Any] = (
-            {"color": _RAPID, "linewidth": 0.7, "linestyle": "--", "label": "rapid"}
-            if rapid
-            else {"color": _CUT, "linewidth": 0.9, "label": "cut"}
-        )
-        axes.plot(*points.T, **style)
-
-
-def _plan(axes: Axes, result: RunResult, linear: list[int]) -> None:
-    trace = result.trace
-    assert trace is not None
-    first, second = (linear * 2)[:2] if len(linear) < 2 else linear[:2]
-    if len(linear) == 2 and trace.axes[first] == "X":
-        first, second = second, first  # a lathe is drawn with Z to the right
-    _draw(axes, _by_kind(result, [first, second]))
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set_xlabel(f"{trace.axes[first]} [mm]")
-    axes.set_ylabel(f"{trace.axes[second]} [mm]")
-    axes.set_title("Plan view")
-    axes.grid(alpha=0.3)
-    axes.legend(loc="upper right", fontsize="small")
-
-
-def _perspective(axes: Any, result: RunResult, linear: list[int]) -> None:
-    trace = result.trace
-    assert trace is not None
-    columns = linear[:3]
-    _draw(axes, _by_kind(result, columns))
-    for name, column in zip("xyz", columns, strict=True):
-        getattr(axes, f"set_{name}label")(f"{trace.axes[column]} [mm]")
-    spans = np.maximum(np.ptp(trace.setpoint[:, columns], axis=0), 1e-9)
-    axes.set_box_aspect(np.maximum(spans / spans.max(), 0.2))
-    axes.set_title("Perspective")
-
-
-def _positions(axes: Axes, result: RunResult) -> None:
-    trace = result.trace
-    assert trace is not None
-    for index, (name, unit) in enumerate(zip(trace.axes, trace.units, strict=True)):
-        axes.plot(trace.t_s, trace.setpoint[:, index], linewidth=0.8, label=f"{name} [{unit}]")
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("position")
-    axes.set_title("Positions")
-    axes.grid(alpha=0.3)
-    axes.legend(fontsize="small")
-
-
-def _speed(axes: Axes, result: RunResult) -> None:
-    trace = result.trace
-    assert trace is not None
-    speed = trace.feed_mm_s * 60.0
-    for rapid, color, label in ((False, _CUT, "cut"), (True, _RAPID, "rapid")):
+def _plan(axes: Axes, trace: Trace, view: _View) -> None:
+    first, second = 0, 1
+    if len(view.columns) == 2 and trace.axes[view.columns[0]] == "X":
+        first, second = 1, 0  # a lathe is drawn with Z to the right
+    points = view.seen([first, second])
+    _draw_path(axes, trace, points)
+    stays = np.concatenate(([False], np.all(np.diff(points, axis=0) == 0.0, axis=1)))
+    plunges = np.unique(points[view.moving_cut & stays], axis=0)[:_MOST_MARKS]
+    if len(plunges):
         axes.plot(
-            trace.t_s, np.where(trace.rapid == rapid, speed, np.nan), color=color, linewidth=0.8, label=label
+            *plunges.T,
+            linestyle="none",
+            marker="o",
+            markersize=4,
+            color=_CUT,
+            fillstyle="none",
+            label="plunge",
         )
-    axes.set_xlabel("time [s]")
-    axes.set_ylabel("path speed [mm/min]")
-    axes.set_title("Speed")
-    axes.set_ylim(bottom=0.0)
-    axes.margins(x=0.01)
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlabel(_label(trace, view.columns[first]))
+    axes.set_ylabel(_label(trace, view.columns[second]))
+    low, high = _framed(view)
+    axes.update_datalim([(low[first], low[second]), (high[first], high[second])])
+    axes.margins(0.0)
+    axes.autoscale_view()
+    axes.set_title("Plan view" if len(view.columns) > 2 else "Path", loc="left")
+    axes.grid(alpha=0.3)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False, fontsize="small")
+
+
+def _perspective(axes: Any, trace: Trace, view: _View) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    _draw_path(axes, trace, view.seen([0, 1, 2]))
+    low, high = _framed(view)
+    sides = np.maximum(high - low, 0.3 * np.max(high - low))
+    for name, column, side, first, last in zip("xyz", view.columns, sides, low, high, strict=True):
+        getattr(axes, f"set_{name}label")(_label(trace, column))
+        getattr(axes, f"set_{name}lim")(first, last)
+        ticks = 3 + int(4 * side / np.max(sides))
+        getattr(axes, f"{name}axis").set_major_locator(MaxNLocator(ticks))
+    axes.set_box_aspect(sides, zoom=0.85)
+    axes.set_title("Perspective", loc="left")
+
+
+def _framed(view: _View) -> tuple[Floats, Floats]:
+    """Return the limits of the drawing: the view with a little room around it."""
+    room = 0.03 * np.max(view.high - view.low)
+    return view.low - room, view.high + room
+
+
+def _speed(axes: Axes, trace: Trace) -> None:
+    speed = trace.feed_mm_s * 60.0
+    unit = "mm/min" if "deg" not in trace.units else "mm/min or deg/min"
+    for rapid, color, width in ((True, _RAPID, 0.6), (False, _CUT, 1.0)):
+        # A stretch goes up from the rest it begins with and down to the rest it ends with.
+        kind = (trace.rapid == rapid) & ((speed > 0.0) | np.roll(speed > 0.0, 1))
+        axes.plot(trace.t_s, np.where(kind, speed, np.nan), color=color, linewidth=width)
+    title = "Speed"
+    highest = float(speed.max())
+    cut = float(np.max(speed, where=~trace.rapid, initial=0.0))
+    if 0.0 < _CALM * cut < highest:
+        title += f"    (rapids leave the picture: they reach {highest:,.0f} {unit})"
+        highest = cut
+    axes.set_ylim(0.0, 1.2 * highest if highest > 0.0 else 1.0)
+    axes.yaxis.set_major_formatter("{x:,.0f}")
+    axes.set_ylabel(f"path speed [{unit}]")
+    axes.set_title(title, loc="left")
+    end = float(trace.t_s[-1])
+    axes.set_xlim(-0.01 * end, 1.01 * end)
     axes.grid(alpha=0.3)
 
 
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(seconds, 60.0)
-    hours, minutes = divmod(int(minutes), 60)
-    return f"{hours}:{minutes:02d}:{rest:06.3f}" if hours else f"{minutes}:{rest:06.3f} min"
+def _positions(axes: Axes, trace: Trace, columns: list[int]) -> None:
+    for column in columns:
+        axes.plot(trace.t_s, trace.setpoint[:, column], linewidth=0.9, label=_label(trace, column))
+    if len(columns) == 1:
+        axes.set_ylabel(_label(trace, columns[0]))
+    else:
+        axes.set_ylabel("position [mm]")
+        axes.legend(loc="upper left", fontsize="small")
+    axes.grid(alpha=0.3)
+
+
+def _label(trace: Trace, column: int) -> str:
+    return f"{trace.axes[column]} [{trace.units[column]}]"

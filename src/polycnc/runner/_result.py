@@ -15,7 +15,10 @@ Floats = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """Why a run stopped before its end: a program error or an alarm of the machine."""
+    """Why a run stopped before its end: a program error or an alarm of the machine, where and when.
+
+    `line` and `column` count from 1 and are 0 where there is none; `str()` shows the line and the hint too.
+    """
 
     kind: str  # "program" or "machine"
     text: str
@@ -23,7 +26,15 @@ class Alarm:
     line: int = 0
     column: int = 0
     time_s: float = 0.0
+    file: str = ""
+    hint: str = ""
     error: PolycncError | None = field(default=None, compare=False, repr=False)
+
+    def __str__(self) -> str:
+        if self.error is not None:
+            return str(self.error)
+        at = f"{self.time_s:.3f} s" + (f", line {self.line}" if self.line else "")
+        return f"{self.text} (at {at})" + (f"\n{self.hint}" if self.hint else "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +59,8 @@ class RunEvent:
 class Trace:
     """Hold one row per control cycle: time, block (line of the program), path speed and positions.
 
-    `axes` and `units` name the columns of `setpoint` [cycles, n] and `actual` (None without simulated servos).
+    `axes` and `units` name the columns of `setpoint` [cycles, n] and `actual`, which is None without
+    simulated servos. The first row is the end of the first cycle, the last row the end of the run.
     """
 
     axes: tuple[str, ...]
@@ -66,7 +78,11 @@ class Trace:
 
 @dataclass(frozen=True)
 class RunResult:
-    """Say how a program ran. Lengths are mm, times s; positions and extents are machine coordinates by axis."""
+    """Say how a program ran.
+
+    Times are s, lengths mm. Positions and extents are machine coordinates by axis, in the unit that
+    `axis_units` names: degree for rotary axes. Cutting is everything that is neither rapid nor waiting.
+    """
 
     program: str
     dialect: str
@@ -80,12 +96,18 @@ class RunResult:
     cutting_path_mm: float
     rapid_path_mm: float
     top_feed_mm_min: float
+    axis_units: dict[str, str]
     end_position_mm: dict[str, float]
     extents_mm: dict[str, tuple[float, float]]
     alarms: list[Alarm]
     messages: list[RunMessage]
-    events: list[RunEvent]
-    trace: Trace | None = None
+    events: list[RunEvent] = field(repr=False)
+    trace: Trace | None = field(default=None, repr=False)
+
+    def __str__(self) -> str:
+        state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"
+        blocks = counted(self.blocks, "block")
+        return f"{self.program} on {self.machine}: {time_text(self.time_s)}, {blocks}, {state}"
 
     @property
     def ok(self) -> bool:
@@ -128,6 +150,7 @@ class RunResult:
             "cutting_path_mm": self.cutting_path_mm,
             "rapid_path_mm": self.rapid_path_mm,
             "top_feed_mm_min": self.top_feed_mm_min,
+            "axis_units": self.axis_units,
             "end_position_mm": self.end_position_mm,
             "extents_mm": {axis: list(extent) for axis, extent in self.extents_mm.items()},
             "alarms": [
@@ -135,6 +158,8 @@ class RunResult:
                     "kind": alarm.kind,
                     "code": alarm.code,
                     "text": alarm.text,
+                    "hint": alarm.hint,
+                    "file": alarm.file,
                     "line": alarm.line,
                     "column": alarm.column,
                     "time_s": alarm.time_s,
@@ -144,3 +169,18 @@ class RunResult:
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
         }
+
+
+def counted(number: int, thing: str) -> str:
+    """Return a number of things: 1 block, 2 blocks, 1,000 blocks."""
+    return f"{number:,} {thing}" if number == 1 else f"{number:,} {thing}s"
+
+
+def time_text(seconds: float) -> str:
+    """Return a time as people write it: 0.250 s, 1:02.500 min, 2:03:04.500 h."""
+    milliseconds = round(seconds * 1000.0)
+    minutes, rest = divmod(milliseconds, 60_000)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours}:{minutes:02d}:{rest / 1000.0:06.3f} h"
+    return f"{minutes}:{rest / 1000.0:06.3f} min" if minutes else f"{rest / 1000.0:.3f} s"

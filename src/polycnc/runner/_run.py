@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.errors import ProgramError
+from polycnc.errors import ProgramError, UsageError
+from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Channel, Dialect, ProgramText, dialect_for
 from polycnc.runner._execution import Execution, Progress, Rows
@@ -32,10 +33,12 @@ def run(
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
-    `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file or a
-    configuration (the 3-axis mill if absent), `dialect` a name (chosen by the file's extension, else DIN). With
-    `trace` the result holds one row per control cycle; `rows` gets the same in pieces, [cycles, columns], as it is
-    recorded. `servo` simulates the position loops. Blocks with a skip mark `/n` are left out for n in `skip_levels`.
+    `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file
+    or a configuration (the 3-axis mill if absent), `dialect` a name (chosen by the file's extension, else
+    DIN). With `trace` the result holds one row per control cycle; `rows` gets the same in pieces,
+    [cycles, columns], as it is recorded. `servo` simulates the position loops. Blocks with a skip mark `/n`
+    are left out for n in `skip_levels`. `progress` is called now and then with the part that is done, 0 to 1;
+    it goes back where sub-programs repeat.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -46,14 +49,17 @@ def run(
     config = load_machine(machine)
     collector = TraceCollector(config, servo) if trace else None
     sinks = [sink for sink in (collector.add if collector else None, rows) if sink is not None]
+    every_cycle = bool(sinks) or servo or _has_limit_switches(config)
+    if every_cycle and progress is not None:
+        sinks.append(_progress_by_line(text, progress))
     simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if sinks else 0)
     channel = Channel(text, dialect_for(text.name, dialect), simulated, skip_levels=frozenset(skip_levels))
     execution = Execution(
         simulated,
         channel,
         rows=_to_all(sinks) if sinks else None,
-        progress=progress,
-        every_cycle=bool(sinks) or servo or _has_limit_switches(config),
+        progress=None if every_cycle else progress,
+        every_cycle=every_cycle,
     )
     execution.run()
     result = _result(text, config, channel, execution, collector)
@@ -85,7 +91,12 @@ def program_text(program: str | Path | ProgramText) -> ProgramText:
         return program
     if isinstance(program, str) and ("\n" in program or "\r" in program):
         return ProgramText.from_text(program)
-    return ProgramText.from_path(program)
+    try:
+        return ProgramText.from_path(program)
+    except UsageError as error:
+        if isinstance(program, str) and " " in program:
+            error.hint = "Check the name and the folder; a program text needs a newline at its end."
+        raise
 
 
 def _to_all(sinks: list[Rows]) -> Rows:
@@ -99,16 +110,25 @@ def _to_all(sinks: list[Rows]) -> Rows:
     return to_all
 
 
+def _progress_by_line(text: ProgramText, progress: Progress) -> Rows:
+    """Return a sink that tells how far the line of the last row is into the program."""
+    lines = max(text.content.count(b"\n"), text.content.count(b"\r"), 1)
+
+    def tell(rows: npt.NDArray[np.float64]) -> None:
+        progress(min(float(rows[-1, BLOCK]) / lines, 1.0))
+
+    return tell
+
+
 def _has_limit_switches(config: MachineConfig) -> bool:
     return any(
         limit not in (float("inf"), float("-inf")) for axis in config.axes for limit in axis.limit_switches
     )
 
 
-def _program_alarm(error: ProgramError) -> Alarm:
-    position = error.position
-    line, column = (position.line, position.column) if position else (0, 0)
-    return Alarm("program", str(error), error.code, line, column, error=error)
+def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
+    file, line, column = (at.file, at.line, at.column) if (at := error.position) else ("", 0, 0)
+    return Alarm("program", error.what, error.code, line, column, time_s, file, error.hint, error)
 
 
 def _result(
@@ -120,7 +140,7 @@ def _result(
 ) -> RunResult:
     state = execution.machine.state
     totals = execution.totals()
-    alarms = [_program_alarm(error) for error in channel.errors]
+    alarms = [_program_alarm(error, execution.machine.time_s) for error in channel.errors]
     if execution.alarm is not None:
         alarms.insert(0, execution.alarm)
     names = config.axis_names
@@ -137,6 +157,7 @@ def _result(
         cutting_path_mm=totals.feed_length,
         rapid_path_mm=totals.rapid_length,
         top_feed_mm_min=totals.top_speed * 60.0,
+        axis_units={axis.name: axis.unit for axis in config.axes},
         end_position_mm={name: float(value) for name, value in zip(names, state.setpoint, strict=True)},
         extents_mm={
             name: (float(low), float(high))

@@ -1,9 +1,10 @@
-"""Traces: the recorder's rows as arrays, or written to a file as they come."""
+"""Traces: the recorder's rows as arrays, written to a file as they come, and read from one."""
 
 from __future__ import annotations
 
-import io
+import re
 from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Protocol
@@ -14,16 +15,19 @@ import numpy.typing as npt
 from polycnc.errors import UsageError
 from polycnc.kernel import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
+from polycnc.runner._files import check_output, complete_or_absent
 from polycnc.runner._result import Trace
 
 Floats = npt.NDArray[np.float64]
 
 _COLUMNS = (TIME_S, BLOCK, FEED)
+_COLUMN_NAMES = ("t_s", "block", "feed_mm_s")
+_AXIS_COLUMN = re.compile(r"([A-Z][0-9]*)(_actual)?_(mm|deg)")
 
 
 def trace_columns(config: MachineConfig, actual: bool) -> list[str]:
     """Return the names of a trace file's columns."""
-    names = ["t_s", "block", "feed_mm_s", *(f"{axis.name}_{axis.unit}" for axis in config.axes)]
+    names = [*_COLUMN_NAMES, *(f"{axis.name}_{axis.unit}" for axis in config.axes)]
     if actual:
         names += [f"{axis.name}_actual_{axis.unit}" for axis in config.axes]
     return names
@@ -70,36 +74,44 @@ class TraceFile(Protocol):
     def add(self, rows: Floats) -> None:
         """Write a piece of the record."""
 
-    def close(self) -> None:
-        """Finish the file."""
+    def close(self, complete: bool) -> None:
+        """Finish the file; one that is not complete will be removed."""
 
 
 class CsvTrace:
-    """Write a trace as comma-separated text, one row per control cycle."""
+    """Write a trace as comma-separated text; numbers are the shortest that read back as the same double."""
 
     def __init__(self, path: Path, columns: Sequence[str]) -> None:
         self._file = path.open("w", encoding="ascii", newline="\n")
         self._file.write(",".join(columns) + "\n")
-        self._format = ",".join(["%.9f", "%d"] + ["%.15g"] * (len(columns) - 2))
 
     def add(self, rows: Floats) -> None:
         """Write a piece of the record."""
-        text = io.StringIO()
-        line = self._format + "\n"
-        for row in file_columns(rows).tolist():
-            text.write(line % tuple(row))
-        self._file.write(text.getvalue())
+        texts = [_number_texts(column) for column in file_columns(rows).T]
+        texts[_COLUMNS.index(BLOCK)] = list(map(str, rows[:, BLOCK].astype(np.int64).tolist()))
+        self._file.writelines(f"{line}\n" for line in map(",".join, zip(*texts, strict=True)))
 
-    def close(self) -> None:
+    def close(self, complete: bool) -> None:
         """Finish the file."""
         self._file.close()
+
+
+def _number_texts(column: Floats) -> list[str]:
+    """Return the numbers of a column as text; one that repeats the number before it is written once."""
+    bits = np.ascontiguousarray(column).view(np.int64)
+    starts = np.flatnonzero(np.diff(bits, prepend=~bits[:1]))
+    texts = list(map(float.__repr__, column[starts].tolist()))
+    if len(texts) == len(column):
+        return texts
+    repeated: list[str] = np.repeat(np.array(texts, object), np.diff(starts, append=len(column))).tolist()
+    return repeated
 
 
 class NpzTrace:
     """Collect a trace and write it as a NumPy archive, one array per column."""
 
     def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        self._path = path
+        self._file = path.open("wb")
         self._columns = list(columns)
         self._pieces: list[Floats] = []
 
@@ -107,29 +119,24 @@ class NpzTrace:
         """Keep a piece of the record."""
         self._pieces.append(file_columns(rows))
 
-    def close(self) -> None:
+    def close(self, complete: bool) -> None:
         """Write the file."""
-        rows = np.concatenate(self._pieces) if self._pieces else np.zeros((0, len(self._columns)))
-        arrays: dict[str, Any] = {name: rows[:, index] for index, name in enumerate(self._columns)}
-        arrays["block"] = arrays["block"].astype(np.int64)
-        np.savez_compressed(self._path, **arrays)
+        with self._file:
+            if complete:
+                rows = np.concatenate(self._pieces) if self._pieces else np.zeros((0, len(self._columns)))
+                arrays: dict[str, Any] = {name: rows[:, i] for i, name in enumerate(self._columns)}
+                arrays["block"] = arrays["block"].astype(np.int64)
+                np.savez(self._file, **arrays)
 
 
 class ParquetTrace:
     """Write a trace as a Parquet file, one row group per piece of the record."""
 
     def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        try:
-            import pyarrow
-            import pyarrow.parquet
-        except ImportError:
-            raise UsageError(
-                "a Parquet trace needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
-            ) from None
-        self._arrow = pyarrow
-        types = [pyarrow.int64() if name == "block" else pyarrow.float64() for name in columns]
-        self._schema = pyarrow.schema(list(zip(columns, types, strict=True)))
-        self._writer = pyarrow.parquet.ParquetWriter(str(path), self._schema)
+        self._arrow = _pyarrow()
+        types = [self._arrow.int64() if name == "block" else self._arrow.float64() for name in columns]
+        self._schema = self._arrow.schema(list(zip(columns, types, strict=True)))
+        self._writer = self._arrow.parquet.ParquetWriter(str(path), self._schema)
 
     def add(self, rows: Floats) -> None:
         """Write a piece of the record."""
@@ -140,32 +147,46 @@ class ParquetTrace:
         ]
         self._writer.write_table(self._arrow.table(arrays, schema=self._schema))
 
-    def close(self) -> None:
+    def close(self, complete: bool) -> None:
         """Finish the file."""
         self._writer.close()
 
 
-_FORMATS = {".csv": CsvTrace, ".npz": NpzTrace, ".parquet": ParquetTrace}
+def _pyarrow() -> Any:
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        raise UsageError(
+            "a Parquet trace needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
+        ) from None
+    return pyarrow
+
+
+_FORMATS: dict[str, type[CsvTrace] | type[NpzTrace] | type[ParquetTrace]] = {
+    ".csv": CsvTrace,
+    ".npz": NpzTrace,
+    ".parquet": ParquetTrace,
+}
+TRACE_FORMATS = tuple(_FORMATS)
 
 
 class TraceWriter:
     """Write a trace to a file whose extension names the format: .csv, .npz or .parquet.
 
-    The file appears under its name when it is complete; a run that fails leaves none behind.
+    The file appears under its name when it is complete; a run that is broken off leaves none behind.
+
+    Raises:
+        UsageError: an unknown extension, no such folder, or pyarrow is needed and not installed.
     """
 
-    def __init__(self, path: Path, config: MachineConfig, actual: bool) -> None:
-        kind = _FORMATS.get(path.suffix.lower())
-        if kind is None:
-            raise UsageError(
-                f"a trace cannot be written as '{path.suffix or path.name}'",
-                hint=f"Use {', '.join(_FORMATS)}.",
-            )
-        if not path.parent.is_dir():
-            raise UsageError(f"no such folder: {path.parent}", hint="Make it first.")
-        self._path = path
-        self._partial = path.with_name(f".{path.stem}.partial{path.suffix}")
-        self._file: TraceFile = kind(self._partial, trace_columns(config, actual))
+    def __init__(self, path: str | Path, config: MachineConfig, actual: bool) -> None:
+        checked = check_output(path, TRACE_FORMATS, "a trace")
+        with ExitStack() as stack:
+            partial = stack.enter_context(complete_or_absent(checked))
+            self._file: TraceFile = _FORMATS[checked.suffix.lower()](partial, trace_columns(config, actual))
+            stack.push(self._close)
+            self._stack = stack.pop_all()
 
     def __enter__(self) -> TraceWriter:
         return self
@@ -173,12 +194,64 @@ class TraceWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._file.close()
-        if kind is None:
-            self._partial.replace(self._path)
-        else:
-            self._partial.unlink(missing_ok=True)
+        self._stack.__exit__(kind, error, trace)
+
+    def _close(self, kind: type[BaseException] | None, *_: object) -> None:
+        self._file.close(complete=kind is None)
 
     def add(self, rows: Floats) -> None:
         """Write a piece of the record."""
         self._file.add(rows)
+
+
+def read_trace(path: str | Path) -> Trace:
+    """Read a trace file; which moves were rapids is not in it, so none is marked.
+
+    Raises:
+        UsageError: no such file, an unknown extension, or columns that are not those of a trace.
+    """
+    path = Path(path)
+    readers = {".csv": _read_csv, ".npz": _read_npz, ".parquet": _read_parquet}
+    read = readers.get(path.suffix.lower())
+    if read is None:
+        raise UsageError(
+            f"{path} is no trace file", hint=f"Its name must end with one of {', '.join(readers)}."
+        )
+    if not path.is_file():
+        raise UsageError(f"no such file: {path}", hint="Check the name and the folder.")
+    columns = read(path)
+    axes = [match for name in columns if (match := _AXIS_COLUMN.fullmatch(name))]
+    if not axes or tuple(columns)[: len(_COLUMN_NAMES)] != _COLUMN_NAMES:
+        raise UsageError(
+            f"{path} does not hold a trace", hint="Its columns begin with t_s, block, feed_mm_s."
+        )
+    setpoints = [match for match in axes if not match[2]]
+    actual = [columns[match[0]] for match in axes if match[2]]
+    return Trace(
+        axes=tuple(match[1] for match in setpoints),
+        units=tuple(match[3] for match in setpoints),
+        t_s=columns["t_s"],
+        block=columns["block"].astype(np.int64),
+        feed_mm_s=columns["feed_mm_s"],
+        rapid=np.zeros(len(columns["t_s"]), np.bool_),
+        setpoint=np.column_stack([columns[match[0]] for match in setpoints]),
+        actual=np.column_stack(actual) if actual else None,
+    )
+
+
+def _read_csv(path: Path) -> dict[str, Floats]:
+    with path.open(encoding="utf-8") as file:
+        names = file.readline().rstrip("\n").split(",")
+        lines = file.readlines()
+    rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(names)))
+    return dict(zip(names, rows.T, strict=True))
+
+
+def _read_npz(path: Path) -> dict[str, Floats]:
+    with np.load(path) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def _read_parquet(path: Path) -> dict[str, Floats]:
+    table = _pyarrow().parquet.read_table(path)
+    return {name: table[name].to_numpy() for name in table.column_names}

@@ -1,0 +1,107 @@
+"""Time the look-ahead over short lines: all at once, and as a stream with a window of 256 segments.
+
+All at once means limits and the backward pass (`prepare_path`), then the forward pass along all segments (`skip`).
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+from _measure import Figure, at_least, at_most
+from _programs import contour
+from _report import run_script
+
+from polycnc.kernel import KernelState, Paths, append_line, entry, prepare_path, skip, start_path
+from polycnc.kernel._limits import AxisLimits
+from polycnc.kernel._segments import Segments
+from polycnc.machine import Machine, load_machine
+
+Floats = npt.NDArray[np.float64]
+
+WINDOW = 256
+SPEED_MM_S = 100.0
+RUNS = 5
+
+
+@entry
+def append_points(
+    seg: Segments, paths: Paths, limits: AxisLimits, points: Floats, first: int, last: int, speed: float
+) -> None:
+    """Append lines to points `first` up to `last` to path 0."""
+    for i in range(first, last):
+        append_line(seg, paths, 0, limits, points[i], speed, 0, i)
+
+
+def started(slots: int, depth: int, points: Floats) -> KernelState:
+    """Return a machine that stands at the first point with its path started."""
+    state = Machine(load_machine("mill3"), segments=slots).state
+    state.paths.row["depth"] = depth
+    state.paths.position[0] = state.paths.queued[0] = points[0]
+    start_path(state.paths, 0)
+    return state
+
+
+def all_at_once(points: Floats) -> tuple[float, float]:
+    """Return the time of preparing all lines, and of going along them."""
+    state = started(len(points) + 8, 0, points)
+    append_points(state.seg, state.paths, state.limits, points, 1, len(points), SPEED_MM_S)
+    state.paths.row["closed"] = 1
+    begin = time.process_time()
+    prepare_path(state.seg, state.paths, 0, state.limits, 0.001, 0, state.work)
+    prepared = time.process_time()
+    skip(state, 0, len(points))
+    end = time.process_time()
+    assert state.paths.row[0]["head"] == state.paths.row[0]["tail"] > 0
+    return prepared - begin, end - prepared
+
+
+def streamed(points: Floats, depth: int, piece: int) -> float:
+    """Return the time of the look-ahead when lines come in pieces and run as soon as the window allows."""
+    state = started(1 << 14, depth, points)
+    row = state.paths.row[0]
+    spent = 0.0
+    for first in range(1, len(points), piece):
+        known = int(row["tail"])
+        last = min(first + piece, len(points))
+        append_points(state.seg, state.paths, state.limits, points, first, last, SPEED_MM_S)
+        row["closed"] = last == len(points)
+        begin = time.process_time()
+        prepare_path(state.seg, state.paths, 0, state.limits, 0.001, known, state.work)
+        skip(state, 0, int(row["tail"]) - (0 if row["closed"] else WINDOW))
+        spent += time.process_time() - begin
+    assert row["head"] == row["tail"] > 0
+    return spent
+
+
+def median(work: Callable[[], float]) -> float:
+    """Return the median of several results, after one that is not counted."""
+    return statistics.median([work() for _ in range(RUNS + 1)][1:])
+
+
+def figures(quick: bool) -> list[Figure]:
+    """Measure and return the figures."""
+    size = 50_000 if quick else 400_000
+    points = contour(np.random.default_rng(1), 0, size + 1)
+    all_at_once(points[:1000])
+    per_s = {}
+    for part in (size // 16, size // 4, size):
+        per_s[part] = part / median(lambda part=part: sum(all_at_once(points[: part + 1])))
+    backward = size / median(lambda: all_at_once(points)[0])
+    stream = size / median(lambda: streamed(points, WINDOW, WINDOW))
+    single = (size // 8) / median(lambda: streamed(points[: size // 8 + 1], WINDOW, 1))
+    spread = max(per_s.values()) / min(per_s.values())
+    return [
+        at_least("all at once, both passes", per_s[size], "segments/s", 3e6),
+        Figure("all at once, limits and backward pass", backward, "segments/s"),
+        at_most(f"fastest to slowest of {', '.join(f'{n:,}' for n in per_s)}", spread, "x", 1.5),
+        at_least(f"streamed, window {WINDOW}, in pieces of {WINDOW}", stream, "segments/s", 0.3e6),
+        Figure(f"streamed, window {WINDOW}, one by one from Python", single, "segments/s"),
+    ]
+
+
+if __name__ == "__main__":
+    run_script("Look-ahead", figures)

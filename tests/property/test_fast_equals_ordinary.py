@@ -1,0 +1,71 @@
+"""The compiled modal kernel and the ordinary interpreter give the same queue, bit for bit."""
+
+from __future__ import annotations
+
+import hypothesis.strategies as st
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+
+from polycnc.nc import DIALECTS, Channel, Dialect, load_dialect
+from support.block_strategies import programs
+from support.programs import FIVE, channel_state, prepare, queue_bytes
+
+INCREMENTS = load_dialect("fanuc").model_copy(
+    update={"numbers": load_dialect("fanuc").numbers.model_copy(update={"decimal_point": "least_input"})}
+)
+BLENDED = load_dialect("din").model_copy(
+    update={"initial": load_dialect("din").initial.model_copy(update={"units": "inch"})}
+)
+
+
+def both(program: str, dialect: str | Dialect, *, collect_errors: bool) -> tuple[Channel, Channel]:
+    """Prepare a program both ways."""
+    fast, ordinary = (
+        prepare(program, config=FIVE, dialect=dialect, collect_errors=collect_errors, fast=flag)
+        for flag in (True, False)
+    )
+    return fast, ordinary
+
+
+def assert_same(fast: Channel, ordinary: Channel) -> None:
+    assert [str(error) for error in fast.errors] == [str(error) for error in ordinary.errors]
+    assert queue_bytes(fast) == queue_bytes(ordinary)
+    assert channel_state(fast) == channel_state(ordinary)
+    assert fast.blocks == ordinary.blocks
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+@settings(max_examples=70, suppress_health_check=[HealthCheck.too_slow])
+@given(program=programs)
+@example(program="G2 X10 I5\nG91 G3 X10 J-0 I5\nX1\n")
+# Radius compensation fails at a contour outside the limits: where it stands then, every axis counts.
+@example(program="F500\nX290\nG42 D2\nG91 G2 X0 I0\nG90 X302\nG91 G2 X8 I4\n X0\n Y0\n")
+def test_shipped_dialects(dialect: str, program: str) -> None:
+    assert_same(*both(program, dialect, collect_errors=True))
+
+
+@settings(max_examples=50, suppress_health_check=[HealthCheck.too_slow])
+@given(programs, st.sampled_from([INCREMENTS, BLENDED]))
+def test_other_settings(program: str, dialect: Dialect) -> None:
+    assert_same(*both(program, dialect, collect_errors=True))
+
+
+@settings(max_examples=50, suppress_health_check=[HealthCheck.too_slow])
+@given(programs)
+def test_both_stop_at_the_same_error(program: str) -> None:
+    assert_same(*both(program, "din", collect_errors=False))
+
+
+def test_the_fast_path_takes_plain_blocks_and_only_those(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The comparison is worth something only if both ways are gone."""
+    taken: list[int] = []
+    ordinary_block = Channel._ordinary_block
+
+    def noting(self: Channel) -> None:
+        taken.append(self._next_block)
+        ordinary_block(self)
+
+    monkeypatch.setattr(Channel, "_ordinary_block", noting)
+    plain = "".join(f"N{n} G1 X{n % 50} Y.{n} F1000\n" for n in range(500))
+    prepare("G21 G90\n" + plain + "M8\nG2 X9 I-20.05 J.001\n")
+    assert taken == [0, 501, 502]

@@ -1,0 +1,133 @@
+"""Everything that README, docs/ and examples/ show runs, prints what they say, and links to what exists."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import polycnc
+from polycnc.conformance import load_conformance
+from support.command import environment
+from support.pages import PAGES, REPOSITORY, run_page, steps
+
+EXAMPLES = REPOSITORY / "examples"
+MACHINES = {"lathe_shaft": "lathe2", "five_axis": "mill5"}
+NO_TOOLS = "the machine has no tool table: lengths and radii of all tools are 0 mm"
+_LINK = re.compile(r"\[[^]]*\]\(([^)\s]+)\)")
+
+
+def _name(page: Path) -> str:
+    return str(page.relative_to(REPOSITORY))
+
+
+def _runs_something(page: Path) -> bool:
+    return any(step.kind != "file" for step in steps(page))
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if _runs_something(page)], ids=_name)
+def test_what_a_page_shows_runs(page: Path, tmp_path: Path) -> None:
+    shutil.copytree(EXAMPLES, tmp_path / "examples")
+    run_page(page, tmp_path)
+
+
+def test_readme_and_tutorial_have_something_to_run() -> None:
+    running = {_name(page) for page in PAGES if _runs_something(page)}
+    assert {"README.md", "docs/tutorials/first-program.md", "docs/reference/command-line.md"} <= running
+
+
+@pytest.mark.parametrize("program", sorted(EXAMPLES.glob("*.nc")), ids=lambda path: path.stem)
+def test_example_programs_run_clean_and_keep_the_limits(program: Path) -> None:
+    machine = polycnc.load_machine(MACHINES.get(program.stem, "mill3"))
+    result = polycnc.run(program, machine, trace=True)
+    assert result.ok
+    assert {message.text for message in result.messages} <= {NO_TOOLS}
+    assert 10.0 < result.time_s < 600.0
+    assert result.trace is not None
+    assert polycnc.verify_trace(result.trace, machine) == []
+    assert polycnc.check(program, machine) == []
+
+
+def test_bracket_runs_on_the_example_machine_too() -> None:
+    machine = polycnc.load_machine(EXAMPLES / "my_machine.toml")
+    result = polycnc.run(EXAMPLES / "bracket.nc", machine, trace=True, servo=True)
+    assert result.trace is not None
+    assert polycnc.verify_trace(result.trace, machine) == []
+    # Zero of the part is the work offset; three tool changes, and the spindle starts or stops four times.
+    assert result.end_position_mm == {"X": 120.0, "Y": 100.0, "Z": -100.0}
+    assert result.waiting_time_s == pytest.approx(3 * 8.0 + 4 * 2.0)
+    assert result.trace.actual is not None
+    lag = abs(result.trace.setpoint - result.trace.actual).max()
+    assert 0.0 < lag < 3.0
+
+
+def test_example_script_runs(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, str(EXAMPLES / "run_and_plot.py")],
+        cwd=tmp_path,
+        env=environment(),
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+    assert "82 blocks take 109.340 s" in done.stdout
+    assert (tmp_path / "bracket.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("page", PAGES, ids=_name)
+def test_links_lead_somewhere(page: Path) -> None:
+    text = re.sub(r"```.*?```", "", page.read_text(encoding="utf-8"), flags=re.DOTALL)
+    for link in _LINK.findall(text):
+        if "://" in link or link.startswith("mailto:"):
+            continue
+        target, _, anchor = link.partition("#")
+        path = (page.parent / target).resolve() if target else page
+        assert path.exists(), f"{_name(page)} links to {link}"
+        if anchor and path.suffix == ".md":
+            assert anchor in _anchors(path), f"{_name(page)} links to {link}"
+
+
+def _anchors(page: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings}
+
+
+def test_every_page_is_in_the_navigation() -> None:
+    named = set(re.findall(r"[\w/.-]+\.md", (REPOSITORY / "mkdocs.yml").read_text(encoding="utf-8")))
+    pages = {str(page.relative_to(REPOSITORY / "docs")) for page in REPOSITORY.glob("docs/**/*.md")}
+    assert named == pages
+
+
+def test_library_page_names_everything_public() -> None:
+    text = (REPOSITORY / "docs" / "reference" / "library.md").read_text(encoding="utf-8")
+    missing = [name for name in polycnc.__all__ if f"`{name}" not in text]
+    assert missing == []
+
+
+def test_result_page_names_every_field() -> None:
+    text = (REPOSITORY / "docs" / "reference" / "result-and-trace.md").read_text(encoding="utf-8")
+    result = polycnc.run("G1 X1 F100\n", trace=True)
+    missing = [name for name in result.as_dict() if f"`{name}`" not in text]
+    assert missing == []
+    assert [name for name in polycnc.Trace.__dataclass_fields__ if f"`{name}`" not in text] == []
+    assert [name for name in polycnc.Alarm.__dataclass_fields__ if f"`{name}`" not in text] == ["error"]
+
+
+def test_readme_counts_the_rows_of_the_manuals() -> None:
+    rows = load_conformance().total().rows
+    assert f"{rows:,} statements" in (REPOSITORY / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_picture_is_small_and_no_page_names_this_machine() -> None:
+    assert (REPOSITORY / "docs" / "images" / "demo.png").stat().st_size <= 300_000
+    for page in [*PAGES, *EXAMPLES.iterdir()]:
+        if page.is_file():
+            text = page.read_text(encoding="utf-8")
+            assert "/work/" not in text, page
+            assert "/tmp/" not in text, page
