@@ -5,7 +5,6 @@ from __future__ import annotations
 from _machines import full_machine
 from _measure import Figure, at_least, median_s
 from _report import run_script
-
 from polycnc.kernel import advance
 from polycnc.machine import Machine, load_machine
 

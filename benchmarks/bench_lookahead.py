@@ -8,13 +8,14 @@ from __future__ import annotations
 import statistics
 import time
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
+
 from _measure import Figure, at_least, at_most
 from _programs import contour
 from _report import run_script
-
 from polycnc.kernel import KernelState, Paths, append_line, entry, prepare_path, skip, start_path
 from polycnc.kernel._limits import AxisLimits
 from polycnc.kernel._segments import Segments
@@ -77,6 +78,10 @@ def streamed(points: Floats, depth: int, piece: int) -> float:
     return spent
 
 
+def _whole_time(points: Floats) -> float:
+    return sum(all_at_once(points))
+
+
 def median(work: Callable[[], float]) -> float:
     """Return the median of several results, after one that is not counted."""
     return statistics.median([work() for _ in range(RUNS + 1)][1:])
@@ -89,7 +94,7 @@ def figures(quick: bool) -> list[Figure]:
     all_at_once(points[:1000])
     per_s = {}
     for part in (size // 16, size // 4, size):
-        per_s[part] = part / median(lambda part=part: sum(all_at_once(points[: part + 1])))
+        per_s[part] = part / median(partial(_whole_time, points[: part + 1]))
     backward = size / median(lambda: all_at_once(points)[0])
     stream = size / median(lambda: streamed(points, WINDOW, WINDOW))
     single = (size // 8) / median(lambda: streamed(points[: size // 8 + 1], WINDOW, 1))

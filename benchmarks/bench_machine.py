@@ -8,7 +8,6 @@ import time
 from _machines import full_machine
 from _measure import Figure, at_least
 from _report import run_script
-
 from polycnc.kernel import FOLLOWING_ERROR, RECORDER_FULL, SWITCH_EDGE
 from polycnc.machine import Machine
 

@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 import numpy as np
 import numpy.typing as npt
-from _measure import Figure, at_most, median_s
-from _report import run_script
 from ruckig import InputParameter, Ruckig, Trajectory
 
+from _measure import Figure, at_most, median_s
+from _report import run_script
 from polycnc.kernel._jit import entry
 from polycnc.kernel._profile import SHORT_OVERSHOOT, plan_profile
 from polycnc.kernel._profile_shape import PROFILE_COLUMNS, PROFILE_PHASES, profile_at, profile_duration

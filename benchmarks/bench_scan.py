@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
+
 from _measure import Figure, median_s
 from _report import run_script
-
 from polycnc.nc._program import ProgramText, TextRules
 from polycnc.nc._scan import scan, scan_rules, word_columns
 from polycnc.nc._scan_plain import scan_blocks
@@ -58,7 +59,7 @@ def figures(quick: bool) -> list[Figure]:
     found = []
     for name, shape in SHAPES.items():
         text = make_program(shape, blocks)
-        seconds = median_s(lambda text=text: scan_all(text), RUNS)
+        seconds = median_s(partial(scan_all, text), RUNS)
         words = scan_all(text)[1] / seconds / 1e6
         found.append(Figure(name, blocks / seconds, "blocks/s", note=f"{words:.1f} M words/s"))
     text = make_program(SHAPES["full blocks"], SLOW_BLOCKS)

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+_EXCERPT_WIDTH = 100
+
 
 @dataclass(frozen=True, slots=True)
 class SourcePosition:
@@ -22,9 +24,12 @@ class SourcePosition:
         return f"{self.file}:{self.line}:{self.column}"
 
     def excerpt(self) -> str:
-        """Return the line with a caret below the column."""
-        lead = "".join("\t" if char == "\t" else " " for char in self.text[: self.column - 1])
-        return f"    {self.text}\n    {lead}^"
+        """Return the line with a caret below the column; of a long line, the part around it."""
+        caret = self.column - 1
+        first = max(0, min(caret - _EXCERPT_WIDTH // 2, len(self.text) - _EXCERPT_WIDTH))
+        shown = self.text[first : first + _EXCERPT_WIDTH]
+        lead = "".join("\t" if char == "\t" else " " for char in self.text[first:caret])
+        return f"    {shown}\n    {lead}^"
 
 
 class PolycncError(Exception):

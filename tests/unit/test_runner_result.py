@@ -108,6 +108,14 @@ def test_program_error_raises_with_the_result_so_far() -> None:
     assert "\n           ^\n" in str(alarm)
 
 
+def test_of_a_long_line_the_part_around_the_error_is_shown() -> None:
+    blocks = "G1 X1 F500" + " " * 300 + "Q" + " " * 300
+    error = polycnc.check(f"{blocks}\n")[0]
+    _, line, caret, _ = str(error).splitlines()
+    assert len(line) == 4 + 100
+    assert line[caret.index("^")] == "Q"
+
+
 def test_program_error_without_raising() -> None:
     result = polycnc.run("G1 X10 F600\nG1 X20 Q\n", check=False)
     assert not result.ok
