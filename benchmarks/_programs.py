@@ -62,8 +62,8 @@ def contour(rng: np.random.Generator, layer: int, points: int) -> Floats:
     angle = np.cumsum(step) / 60.0  # about 60 mm from the middle
     radius = 60.0 + 5.0 * np.sin(5.0 * angle) + np.sin(13.0 * angle + layer)
     height = -0.05 * (layer % 400) + 0.5 * np.sin(5.0 * angle + 0.1 * layer)
-    points = np.column_stack((radius * np.cos(angle), radius * np.sin(angle), height))
-    return np.asarray(np.round(points, 3), dtype=np.float64)
+    curve = np.column_stack((radius * np.cos(angle), radius * np.sin(angle), height))
+    return np.asarray(np.round(curve, 3), dtype=np.float64)
 
 
 def _centers(points: Floats) -> Floats:
