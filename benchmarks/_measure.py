@@ -48,12 +48,12 @@ class Figure:
 
 def at_least(name: str, value: float, unit: str, budget: float, note: str = "") -> Figure:
     """Return a figure that must not be below `budget`."""
-    return Figure(name, value, unit, f">= {budget:,g}", value >= budget, note)
+    return Figure(name, value, unit, f">= {budget:,.10g}", value >= budget, note)
 
 
 def at_most(name: str, value: float, unit: str, budget: float, note: str = "") -> Figure:
     """Return a figure that must not be above `budget`."""
-    return Figure(name, value, unit, f"<= {budget:,g}", value <= budget, note)
+    return Figure(name, value, unit, f"<= {budget:,.10g}", value <= budget, note)
 
 
 def run_process(command: Sequence[str | Path], environment: Mapping[str, str] | None = None) -> Process:

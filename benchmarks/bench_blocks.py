@@ -17,17 +17,17 @@ GROWTH_MB = 100.0
 
 def figures(quick: bool) -> list[Figure]:
     """Measure and return the figures."""
-    few, many = (100_000, 500_000) if quick else (1_000_000, 5_000_000)
+    few, many = 1_000_000, 2_000_000 if quick else 5_000_000
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         small = write_program(folder / "few.ngc", few)
         large = write_program(folder / "many.ngc", many)
-        found = _measured(folder, {"few": small, "many": large})
+        found = _measured(folder, {"few": small, "many": large}, 1 if quick else RUNS)
         grown_file_mb = (large.stat().st_size - small.stat().st_size) / 2**20
     return [*_own(found, few, many, grown_file_mb), *_against_peer(found, few, many)]
 
 
-def _measured(folder: Path, programs: dict[str, Path]) -> dict[str, Process]:
+def _measured(folder: Path, programs: dict[str, Path], runs: int) -> dict[str, Process]:
     commands: dict[str, list[str | Path]] = {
         f"polycnc {name}": polycnc_command("run", path, "--json") for name, path in programs.items()
     }
@@ -37,7 +37,7 @@ def _measured(folder: Path, programs: dict[str, Path]) -> dict[str, Process]:
         for name, path in programs.items():
             commands[f"rs274 {name}"] = [peer, "-t", folder / "tools.tbl", "-g", path]
     in_turn({"warm": commands["polycnc few"]}, 1)  # compiles, if nothing has compiled yet
-    return in_turn(commands, RUNS, {"HOME": str(folder), "POLYCNC_CACHE_DIR": _cache_folder()})
+    return in_turn(commands, runs, {"HOME": str(folder), "POLYCNC_CACHE_DIR": _cache_folder()})
 
 
 def _cache_folder() -> str:

@@ -63,7 +63,7 @@ def figures(quick: bool) -> list[Figure]:
         words = scan_all(text)[1] / seconds / 1e6
         found.append(Figure(name, blocks / seconds, "blocks/s", note=f"{words:.1f} M words/s"))
     text = make_program(SHAPES["full blocks"], SLOW_BLOCKS)
-    seconds = median_s(lambda: scan_all_plain(text), 3)
+    seconds = median_s(partial(scan_all_plain, text), 3)
     return [*found, Figure("full blocks, ordinary scanner", SLOW_BLOCKS / seconds, "blocks/s")]
 
 
