@@ -42,6 +42,7 @@ def collected_claims(request: pytest.FixtureRequest) -> list[tuple[str, str]]:
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--claims-file", metavar="PATH", help="write the claims of all tests to PATH")
+    parser.addoption("--update-goldens", action="store_true", help="write the golden texts anew")
 
 
 @pytest.hookimpl(tryfirst=True)  # before -k and -m take tests away

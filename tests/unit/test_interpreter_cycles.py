@@ -115,6 +115,16 @@ def test_levels_are_program_levels() -> None:
     ]
 
 
+def test_stored_levels_follow_a_new_work_offset() -> None:
+    config = machine_config(LINEAR, OFFSETS)
+    steps = moves("F100 G0 Z30\nG99 G81 X5 Z-3 R2\nG55 X5 Y0\n", config=config)[1:]
+    assert steps == [
+        *("rapid X5 stop", "rapid Z2 stop", "line Z-3 F100 stop", "rapid Z2 stop"),
+        *("rapid X105 Y50 stop", "rapid Z-18 stop", "line Z-23 F100 stop", "rapid Z-18 stop"),
+    ]
+    assert "R -1 lies below Z 1" in refusal("F100 G55 G81 X1 Z1 R-1\n", config=config)
+
+
 def test_in_inch() -> None:
     assert moves("G20 F10 G0 Z1\nG83 X1 Z-1 R.5 Q1\n")[1:] == [
         "rapid X25.4 stop",

@@ -115,6 +115,10 @@ def test_machine_coordinates_are_absolute_with_g91_too() -> None:
     assert moves("G91 G0 X5\nG53 X2\n") == ["rapid X5 stop", "rapid X2 stop"]
 
 
+def test_machine_coordinates_of_an_axis_that_turns_over() -> None:
+    assert moves("G0 C10\nG53 C350\n", config=FIVE) == ["rapid C10 stop", "rapid C-10 stop"]
+
+
 def test_machine_coordinates_with_feed() -> None:
     assert moves("G20 F10 G1 X1\nG53 X2\n") == ["line X25.4 F254", "line X50.8 F254"]
 

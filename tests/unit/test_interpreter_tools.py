@@ -197,7 +197,10 @@ def test_a_plane_that_the_machine_lacks() -> None:
 
 def test_limits_count_for_the_compensated_path() -> None:
     past = "axis Y would go to 304.000 mm, past its soft limit of 300.000 mm"
-    assert refusal("G1 F100 Y-10\nG41 D1 Y299\nX20\nG40 X30\n", config=FIVE) == f"2:1: compensated, {past}"
+    assert (
+        refusal("G1 F100 Y-10\nG41 D1 Y299\nX20\nG40 X30\n", config=FIVE)
+        == f"2:1: with radius compensation {past}"
+    )
     assert refusal("G1 F100 Y-10\nG41 D1 Y0\nX20 Z301\n", config=FIVE) == (
         "3:5: axis Z would go to 301.000 mm, past its soft limit of 300.000 mm"
     )
@@ -206,5 +209,5 @@ def test_limits_count_for_the_compensated_path() -> None:
     bulge = "G1 F100 X280\nG42 D1 X{}\nG3 Y20 J10\nG40 G1 X0\n"
     assert moves(bulge.format(285), config=FIVE)[2] == "arc X285 Y25 about X285 Y10 by 180 F100"  # up to 300
     assert refusal(bulge.format(286), config=FIVE) == (
-        "3:1: compensated, axis X would pass 301.000 mm, past its soft limit of 300.000 mm"
+        "3:1: with radius compensation axis X would pass 301.000 mm, past its soft limit of 300.000 mm"
     )

@@ -29,9 +29,9 @@ class Spindle:
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """Hold the active drilling cycle (its action, empty: none) and its words, levels in machine coordinates.
+    """Hold the active drilling cycle (its action, empty: none) and its words, levels of the program.
 
-    `initial` is where the drilling axis was when the first cycle began.
+    `initial` is where the drilling axis was when the first cycle began, in machine coordinates.
     """
 
     action: str = ""

@@ -1,4 +1,8 @@
-"""Drilling cycle blocks: words into levels, the expansion of `_cycles` into moves and waits."""
+"""Drilling cycle blocks: words into levels, the expansion of `_cycles` into moves and waits.
+
+Levels are those of the program, without work offset and tool length, until they become moves: so the stored words
+of a cycle follow a new work offset, and errors name the numbers that were written.
+"""
 
 from __future__ import annotations
 
@@ -112,10 +116,11 @@ class CycleBlocks:
         hole = self.motion.target(values)
         incremental = not whole[ABSOLUTE]
         spindle = self.state.spindle
+        offset = float(self.state.modal.offset[axes[2]])
         place = CyclePlace(
             hole_mm=(hole[axes[0]], hole[axes[1]]),
-            initial_mm=cycle.initial,
-            level_mm=start[axes[2]],
+            initial_mm=cycle.initial - offset,
+            level_mm=start[axes[2]] - offset,
             retract="initial" if cycle.retract_to_initial else "r",
             increment_mm=(hole[axes[0]] - start[axes[0]], hole[axes[1]] - start[axes[1]])
             if incremental
@@ -134,8 +139,6 @@ class CycleBlocks:
         modal = self.state.modal
         cycle = self.state.cycle
         scale = float(modal.scale[axes[2]])
-        offset = float(modal.offset[axes[2]])
-        absolute = bool(modal.whole[ABSOLUTE])
         is_back_bore = cycle.action == _BACK_BORE
 
         def length(letter: str) -> float | None:
@@ -145,12 +148,9 @@ class CycleBlocks:
         retract = None if "R" in self.state.axis_names else length("R")
         depth = length(self.state.axis_names[axes[2]])
         back = length("K") if is_back_bore else None
-        if absolute:
-            retract = None if retract is None else retract + offset
-            depth = None if depth is None else depth + offset
-            back = None if back is None else back + offset
-        else:
-            retract = None if retract is None else cycle.initial + retract
+        if not modal.whole[ABSOLUTE]:
+            initial = cycle.initial - float(modal.offset[axes[2]])
+            retract = None if retract is None else initial + retract
             r_level = retract if retract is not None else cycle.words.retract_mm
             if depth is not None and r_level is not None:
                 depth += r_level
@@ -180,6 +180,7 @@ class CycleBlocks:
         self, steps: list[CycleStep], start: Point, hole: Point, axes: tuple[int, int, int], line: int
     ) -> list[QueueItem]:
         items: list[QueueItem] = []
+        offset = float(self.state.modal.offset[axes[2]])
         at = list(start)
         for index, value in enumerate(hole):
             if index not in axes and value != at[index]:
@@ -192,10 +193,10 @@ class CycleBlocks:
                     at[axes[0]], at[axes[1]] = step.first_mm, step.second_mm
                     items.append(self._line(before, tuple(at), True, line))
                 case StepKind.RAPID_AXIS:
-                    at[axes[2]] = step.level_mm
+                    at[axes[2]] = step.level_mm + offset
                     items.append(self._line(before, tuple(at), True, line))
                 case StepKind.FEED_AXIS:
-                    at[axes[2]] = step.level_mm
+                    at[axes[2]] = step.level_mm + offset
                     items.append(self._line(before, tuple(at), False, line, step.feed_mm_s))
                 case StepKind.DWELL:
                     items.append(Wait(step.duration_s, line))

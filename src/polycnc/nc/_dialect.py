@@ -26,6 +26,7 @@ from polycnc.nc._modal import (
     EXACT_STOP,
     FEED,
     FEED_MODE,
+    FEED_NUMBER,
     FEED_PER_MINUTE,
     FEED_PER_REVOLUTION,
     MOTION,
@@ -238,7 +239,7 @@ class Dialect(StrictModel):
         modal.whole[EXACT_STOP] = initial.exact_stop
         modal.whole[RAPID_STOP] = self.rapid_exact_stop
         modal.whole[FEED_MODE] = FEED_PER_MINUTE if initial.feed_mode == "per_minute" else FEED_PER_REVOLUTION
-        modal.real[FEED] = initial.feed_mm_min
+        modal.real[FEED] = modal.real[FEED_NUMBER] = initial.feed_mm_min
         modal.real[ARC_TOLERANCE] = self.arcs.tolerance_mm
         modal.real[ARC_RELATIVE] = self.arcs.relative_tolerance
 

@@ -40,6 +40,7 @@ from polycnc.nc._modal import (
     EXACT_STOP,
     FEED,
     FEED_MODE,
+    FEED_NUMBER,
     FEED_PER_MINUTE,
     INCH,
     LARGEST,
@@ -177,11 +178,12 @@ def _run(
             return block, NOT_PLAIN
         seen = said[_SEEN]
         motion = said[_MOTION]
-        feed = modal.real[FEED]
+        feed, feed_number = modal.real[FEED], modal.real[FEED_NUMBER]
         if seen & _F_BIT:
-            if whole[FEED_MODE] != FEED_PER_MINUTE or work.value[_F] <= 0.0:
+            feed_number = work.value[_F]
+            feed = feed_number * inch
+            if whole[FEED_MODE] != FEED_PER_MINUTE or feed <= 0.0:
                 return block, NOT_PLAIN
-            feed = work.value[_F] * inch
         circular = seen & (said[_CENTERS] | said[_RADIUS])
         if (seen & said[_AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
@@ -199,16 +201,16 @@ def _run(
                 work,
             ):
                 return block, NOT_PLAIN
-            if (
-                inch != 1.0
-                and motion == MOTION_LINEAR
-                and _only_rotary(modal.rotary, modal.position, work.target)
-            ):
-                return block, NOT_PLAIN
             flags = RAPID if motion == MOTION_RAPID else 0
             if whole[EXACT_STOP] != 0 or (motion == MOTION_RAPID and whole[RAPID_STOP] != 0):
                 flags |= STOP
             speed = math.inf if motion == MOTION_RAPID else feed / 60.0
+            if (
+                feed != feed_number
+                and motion == MOTION_LINEAR
+                and _only_rotary(modal.rotary, modal.position, work.target)
+            ):
+                speed = feed_number / 60.0
             tag = words.line[block]
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
@@ -233,7 +235,7 @@ def _run(
                 modal.position[i] = work.target[i]
         whole[MOTION] = motion
         whole[ABSOLUTE] = said[_ABSOLUTE]
-        modal.real[FEED] = feed
+        modal.real[FEED], modal.real[FEED_NUMBER] = feed, feed_number
         block += 1
     return block, ALL_DONE
 
@@ -316,7 +318,7 @@ def _target(
     absolute = work.said[_ABSOLUTE]
     for i in range(work.target.shape[0]):
         at = position[i]
-        letter = work.axis_letter[i]
+        letter = int(work.axis_letter[i])  # uncompiled, the shift below would stay within 8 bits
         if letter >= 0 and seen & (1 << letter):
             step = work.value[letter] * scale[i]
             if absolute != 0:

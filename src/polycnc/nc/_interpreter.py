@@ -192,9 +192,9 @@ class Interpreter:
     def _execute(self, block: Block) -> tuple[Outcome, list[QueueItem]]:
         if block.flags & STATEMENT:
             raise ProgramError(
-                "this statement needs a language that the dialect does not have",
+                f"this statement needs a language, and dialect '{self.dialect.name}' has none",
                 position=self._text.line_position(block.line),
-                hint="Expressions, variables and statements are not part of plain DIN 66025 blocks.",
+                hint="Expressions, variables and program flow are no part of DIN 66025: write plain words.",
             )
         if block.flags & MESSAGE and block.message:
             self.messages.add(f"MSG: {block.message}")

@@ -26,7 +26,8 @@ WHOLE_COLUMNS = 14
 
 # Columns of `real`.
 FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2
-REAL_COLUMNS = 3
+FEED_NUMBER = 3  # the feed as it was programmed: of moves that only turn, it is in degrees in any unit
+REAL_COLUMNS = 4
 
 # Values of MOTION; a drilling cycle leaves it as it was.
 MOTION_NONE = -1

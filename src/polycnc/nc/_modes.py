@@ -22,6 +22,7 @@ from polycnc.nc._modal import (
     FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
+    FEED_NUMBER,
     FEED_PER_MINUTE,
     FEED_PER_REVOLUTION,
     INCH,
@@ -111,6 +112,7 @@ class Modes:
         state.feed_word = word.value
         if modal.whole[FEED_MODE] != FEED_INVERSE_TIME:
             modal.real[FEED] = word.value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
+            modal.real[FEED_NUMBER] = word.value
 
     def dwell(self, words: BlockWords, line: int) -> list[Wait]:
         """Return the wait of a dwell, if there is one.
@@ -124,8 +126,8 @@ class Modes:
         letter = self._dwell_letter(words)
         word = words.take(letter)
         if word is None:
-            letters = list(self.dialect.dwell)
-            raise self.fail(f"a dwell (G{g.code}) without a time", f"Add {' or '.join(letters)}.", g.word)
+            letters = " or ".join(", ".join(self.dialect.dwell).rsplit(", ", 1))
+            raise self.fail(f"a dwell (G{g.code}) without a time", f"Add {letters} and the time.", g.word)
         seconds = self._dwell_s(word, self.dialect.dwell[letter])
         if not 0.0 <= seconds <= LONGEST_DWELL_S:
             what = "negative" if seconds < 0.0 else "longer than anybody waits"

@@ -36,8 +36,8 @@ from polycnc.nc._modal import (
     FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
+    FEED_NUMBER,
     FEED_PER_REVOLUTION,
-    INCH,
     LARGEST,
     MODULO_AXIS,
     MOTION_ARC_CW,
@@ -51,7 +51,7 @@ from polycnc.nc._modal import (
 from polycnc.nc._moves import Arc, Feed, Line, Move, Point
 from polycnc.nc._scan_plain import Word
 from polycnc.nc._words import BlockWords, Fail, code_text
-from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
+from polycnc.units import SECONDS_PER_MINUTE
 
 LIMIT_ROUNDING = 1e-6
 """A position this little past a soft limit (mm or degree) is one on it, reached by rounding."""
@@ -157,7 +157,9 @@ class MotionBuilder:
         for point, what in _points(item):
             if trouble := self._limit_trouble(point, what):
                 _, text, hint = trouble
-                raise CompensationError(f"compensated, {text}", reason="limit", line=item.line, hint=hint)
+                raise CompensationError(
+                    f"with radius compensation {text}", reason="limit", line=item.line, hint=hint
+                )
 
     def _limit_trouble(
         self, point: Point, what: str, but: tuple[int, ...] = ()
@@ -223,12 +225,8 @@ class MotionBuilder:
             raise self.fail(
                 "a feed move without a feed", "Program F in this or an earlier block.", self.place()
             )
-        if (
-            modal.whole[INCH]
-            and straight
-            and all(rotary or a == b for a, b, rotary in zip(start, end, modal.rotary, strict=True))
-        ):
-            value /= MM_PER_INCH  # only rotary axes move: the feed is in degrees
+        if straight and all(rotary or a == b for a, b, rotary in zip(start, end, modal.rotary, strict=True)):
+            value = float(modal.real[FEED_NUMBER])  # only rotary axes move: the feed is in degrees
         if mode == FEED_PER_REVOLUTION:
             rpm = self.rpm(start, end) if self.state.spindle.direction else 0.0
             if rpm <= 0.0:

@@ -1,0 +1,32 @@
+%
+O1001 (pocket, as a CAM system writes it)
+(T1 D=10. CR=0. - flat end mill)
+G90 G94 G17 G49 G40 G80
+G21
+G28 G91 Z0.
+G90
+
+(Pocket)
+T1 M6
+S5000 M3
+G54
+M8
+G0 X-10. Y5.
+G43 Z15. H1
+Z5.
+G1 Z-1. F300.
+X10. F1000.
+G2 X15. Y0. I0. J-5.
+G1 Y-10.
+G3 X10. Y-15. I-5.
+G1 X-10.
+G2 X-10. Y-5. R5.
+X-10. Y5. R-5.
+G0 Z15.
+M5
+M9
+G28 G91 Z0.
+G90
+G49
+M30
+%

@@ -1,0 +1,24 @@
+(Feed per minute, per revolution, by time; cutting speed; stopping; dwells)
+G1 X10 F600
+S1200 M3
+G95 X20 F.2
+G96 S94.2478
+X30
+G97 S500
+X40
+G93 X50 F2
+X60 Y10 F6
+G2 X80 I10 F1
+G0 X0
+G1 G94 X10 F300
+G61 X20
+X30
+G64 X40
+G9 X50
+X60
+G4 P1.5
+G4 X2
+X70
+G64 P.1 X80
+Y20
+X90

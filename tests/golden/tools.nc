@@ -1,0 +1,21 @@
+(Tool length along Z, tool radius left and right of a contour)
+T1 M6
+G0 Z0
+G43 Z5
+H2 Z5
+G44 H2 Z60
+G49 Z5
+G1 F600 X-20 Y-20
+G41 D1 X0 Y-10
+Y20
+X30
+G2 X40 Y10 J-10
+G1 Y-10
+M8
+X0
+G40 X-20 Y-20
+G42 D2 X0 Y-10
+Y20
+X30
+G40 X40 Y30
+M30

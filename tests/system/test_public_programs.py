@@ -1,0 +1,42 @@
+"""Public NC programs of CAM systems are prepared without an error, both ways alike."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from polycnc.nc import ProgramText
+from support.programs import LINEAR, channel_state, machine_config, prepare, queue_bytes
+
+CONFIG = machine_config(LINEAR)
+NAMES = (
+    *("arc-ijk", "arc-xz-plane", "arc-yz-plane", "circle", "circle-inch", "full-circle-without-xyz"),
+    *("helical-thread-milling", "jsdc", "tball-pocket"),
+)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_public_program(name: str, data_nc: Path) -> None:
+    text = ProgramText.from_path(data_nc / f"{name}.gcode")
+    fast, ordinary = (prepare(text, config=CONFIG, segments=1 << 16, fast=flag) for flag in (True, False))
+    assert fast.error is None
+    assert ordinary.error is None
+    assert fast.blocks == ordinary.blocks > 0
+    assert queue_bytes(fast) == queue_bytes(ordinary)
+    assert channel_state(fast) == channel_state(ordinary)
+
+
+def test_the_engraving_with_an_arc_without_a_centre_runs_to_its_end(data_nc: Path) -> None:
+    """Its line 11 is `N55 X.75` with G2 in force: it goes straight, and that is said."""
+    text = ProgramText.from_path(data_nc / "full-circle-without-xyz.gcode")
+    channel = prepare(text, config=CONFIG)
+    assert channel.blocks == 18
+    assert [(message.line, message.count) for message in channel.messages.all()] == [(11, 2)]
+    assert channel.state.modal.position.tolist() == [-4.75, -3.4, 0.2]
+
+
+def test_plain_cam_programs_are_worth_no_message(data_nc: Path) -> None:
+    for name in ("circle", "circle-inch", "jsdc", "tball-pocket"):
+        channel = prepare(ProgramText.from_path(data_nc / f"{name}.gcode"), config=CONFIG, segments=1 << 16)
+        assert channel.messages.all() == [], name
