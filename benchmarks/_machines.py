@@ -42,5 +42,5 @@ def full_machine(record_cycles: int = 1 << 14) -> Machine:
     for i, point in enumerate(200.0 * np.sin(phase)):
         append_line(state.seg, state.paths, 0, state.limits, point, 40.0, 0, i)
     state.paths.row["closed"] = 1
-    prepare_path(state.seg, state.paths, 0, state.limits, config.cycle_s, 0, state.work)
+    prepare_path(state.seg, state.paths, 0, state.limits, config.cycle_s, state.work)
     return machine

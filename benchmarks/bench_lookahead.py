@@ -52,7 +52,7 @@ def all_at_once(points: Floats) -> tuple[float, float]:
     append_points(state.seg, state.paths, state.limits, points, 1, len(points), SPEED_MM_S)
     state.paths.row["closed"] = 1
     begin = time.process_time()
-    prepare_path(state.seg, state.paths, 0, state.limits, 0.001, 0, state.work)
+    prepare_path(state.seg, state.paths, 0, state.limits, 0.001, state.work)
     prepared = time.process_time()
     skip(state, 0, len(points))
     end = time.process_time()
@@ -66,12 +66,11 @@ def streamed(points: Floats, depth: int, piece: int) -> float:
     row = state.paths.row[0]
     spent = 0.0
     for first in range(1, len(points), piece):
-        known = int(row["tail"])
         last = min(first + piece, len(points))
         append_points(state.seg, state.paths, state.limits, points, first, last, SPEED_MM_S)
         row["closed"] = last == len(points)
         begin = time.process_time()
-        prepare_path(state.seg, state.paths, 0, state.limits, 0.001, known, state.work)
+        prepare_path(state.seg, state.paths, 0, state.limits, 0.001, state.work)
         skip(state, 0, int(row["tail"]) - (0 if row["closed"] else WINDOW))
         spent += time.process_time() - begin
     assert row["head"] == row["tail"] > 0

@@ -43,7 +43,7 @@ def stations() -> dict[str, str]:
     text = _program()
     config = load_machine("mill3")
     machine = Machine(config, record_cycles=_KEPT_CYCLES)
-    channel = Channel(text, dialect_for(text.name, None), machine)
+    channel = Channel(text, dialect_for(text.name, None), machine, ordinary_blocks=0)
     found = {"word columns": _words(channel)}
     before = _modal(channel)
     channel.fill()
@@ -53,7 +53,7 @@ def stations() -> dict[str, str]:
     give_to_path(state, 0)
     start_path(state.paths, 0)
     state.paths.row[0]["closed"] = True  # nothing follows
-    prepare_path(state.seg, state.paths, 0, state.limits, config.cycle_s, 0, state.work)
+    prepare_path(state.seg, state.paths, 0, state.limits, config.cycle_s, state.work)
     found["limits and junction"] = _segments(
         state.seg, ("cap", "full_accel", "junction", "share", "accel", "out")
     )
@@ -144,7 +144,7 @@ def _by_hand(state, cycle_s: float) -> str:  # type: ignore[no-untyped-def]
     part = 20.0 / length
     full = 5000.0 / part
     share = 0.5
-    corner = share / 1.1 * 5000.0 * cycle_s / part
+    corner = share / 1.125 * 5000.0 * cycle_s / part
     accel = full * (1.0 - share)
     for name, value in (("length", length), ("full_accel", full), ("junction", corner), ("accel", accel)):
         assert math.isclose(row[name], value, rel_tol=1e-12), name
@@ -152,7 +152,7 @@ def _by_hand(state, cycle_s: float) -> str:  # type: ignore[no-untyped-def]
         (
             f"length      sqrt(20² + 5²) mm               = {length:.6f} mm",
             f"full_accel  5000 mm/s² · length / 20 mm     = {full:.3f} mm/s²    X needs most of it",
-            f"junction    0.5 / 1.1 · 5000 mm/s² · 0.001 s / ({part:.6f}) = {corner:.6f} mm/s",
+            f"junction    0.5 / 1.125 · 5000 mm/s² · 0.001 s / ({part:.6f}) = {corner:.6f} mm/s",
             f"accel       (1 - 0.5) · full_accel          = {accel:.3f} mm/s²",
         )
     )

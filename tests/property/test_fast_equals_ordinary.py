@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import hypothesis.strategies as st
 import pytest
 from hypothesis import HealthCheck, example, given, settings
@@ -19,10 +21,10 @@ BLENDED = load_dialect("din").model_copy(
 
 
 def both(program: str, dialect: str | Dialect, *, collect_errors: bool) -> tuple[Channel, Channel]:
-    """Prepare a program both ways."""
+    """Prepare a program both ways; the compiled kernel takes over early or late."""
     fast, ordinary = (
-        prepare(program, config=FIVE, dialect=dialect, collect_errors=collect_errors, fast=flag)
-        for flag in (True, False)
+        prepare(program, config=FIVE, dialect=dialect, collect_errors=collect_errors, ordinary_blocks=blocks)
+        for blocks in (len(program) % 3, math.inf)
     )
     return fast, ordinary
 

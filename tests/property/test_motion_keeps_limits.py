@@ -97,18 +97,16 @@ def test_planning_in_pieces_gives_the_speeds_of_planning_at_once() -> None:
         pieces = machine(rng, PathSettings())
         maker = PathMaker(pieces, rng)
         count = int(rng.integers(2, 300))
-        first = 0
         chunks = np.random.default_rng(seed + 1)
         while count > 0:
             chunk = min(int(chunks.integers(1, 40)), count)
             maker.append(chunk)
-            prepare(pieces, first, closed=False)
+            prepare(pieces, closed=False)
             final = int(pieces.paths.row[0]["planned"])
             kept = pieces.seg.row["out"][:final].copy()
             assert np.array_equal(kept, whole.seg.row["out"][:final])
-            first = int(pieces.paths.row[0]["tail"])
             count -= chunk
-        prepare(pieces, first)
+        prepare(pieces)
         assert np.array_equal(pieces.seg.row["out"], whole.seg.row["out"])
 
 

@@ -50,12 +50,13 @@ def prepare(
     config: MachineConfig = MILL,
     dialect: str | Dialect = "din",
     segments: int = 4096,
+    ordinary_blocks: float = 0,
     **options: Any,
 ) -> Channel:
-    """Prepare a program completely, without running it."""
+    """Prepare a program completely, without running it; the compiled kernel takes what it can."""
     text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
     machine = Machine(config, segments=segments)
-    channel = Channel(text, load_dialect(dialect), machine, **options)
+    channel = Channel(text, load_dialect(dialect), machine, ordinary_blocks=ordinary_blocks, **options)
     give_to_path(machine.state, channel.path)
     channel.fill()
     assert channel.done, "the program does not fit into the queue"

@@ -104,10 +104,10 @@ class PathMaker:
         self.place, self.heading = end, self.heading + sweep
 
 
-def prepare(state: KernelState, first: int = 0, *, closed: bool = True) -> None:
-    """Take segments from count `first` on into the look-ahead."""
+def prepare(state: KernelState, *, closed: bool = True) -> None:
+    """Take what was appended into the look-ahead."""
     state.paths.row[0]["closed"] = closed
-    prepare_path(state.seg, state.paths, 0, state.limits, CYCLE_S, first, state.work)
+    prepare_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
 
 
 def random_path(seed: int, settings: PathSettings, length: float | None = None) -> KernelState:

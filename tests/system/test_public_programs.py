@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,9 @@ NAMES = (
 @pytest.mark.parametrize("name", NAMES)
 def test_a_public_program(name: str, data_nc: Path) -> None:
     text = ProgramText.from_path(data_nc / f"{name}.gcode")
-    fast, ordinary = (prepare(text, config=CONFIG, segments=1 << 16, fast=flag) for flag in (True, False))
+    fast, ordinary = (
+        prepare(text, config=CONFIG, segments=1 << 16, ordinary_blocks=blocks) for blocks in (0, math.inf)
+    )
     assert fast.error is None
     assert ordinary.error is None
     assert fast.blocks == ordinary.blocks > 0

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 import polycnc
-from polycnc.kernel import RAPID, STOP, KernelState, append_line, make_state
+from polycnc.kernel import RAPID, STOP, KernelState, append_line, make_state, prepare_path
 from polycnc.kernel._segments import CIRCLE3D, LINE
 from polycnc.machine import MachineConfig, load_machine
 
@@ -60,7 +60,6 @@ def test_short_lines_limit_the_arc_to_half_of_each() -> None:
         pytest.param([LEAD, (0, 0, 0), (0, 20, 0)], 0.1, RAPID, id="rapids"),
         pytest.param([LEAD, (0, 0, 0), (-9, 0, 0)], 0.1, 0, id="reversal"),
         pytest.param([LEAD, (0, 0, 0), (20, 0, 0)], 0.1, 0, id="straight on"),
-        pytest.param([(5, 0, 0), (5, 5, 0)], 0.1, 0, id="the line before may be running"),
     ],
 )
 def test_corners_that_stay_as_they_are(
@@ -69,6 +68,19 @@ def test_corners_that_stay_as_they_are(
     state = queue_of(points, tolerance, flags)
     assert kinds(state) == [LINE] * len(points)
     assert [tuple(end) for end in state.seg.end[: len(points)]] == [tuple(map(float, p)) for p in points]
+
+
+@pytest.mark.parametrize(("closed", "found"), [(0, [LINE, CIRCLE3D, LINE]), (1, [LINE, LINE])])
+def test_a_line_waits_for_the_corner_behind_it_unless_the_path_is_closed(
+    closed: int, found: list[int]
+) -> None:
+    state = queue_of([(5.0, 0.0, 0.0)], tolerance=0.1)
+    row = state.paths.row[0]
+    row["closed"] = closed
+    prepare_path(state.seg, state.paths, 0, state.limits, 0.001, state.work)
+    assert row["prepared"] == closed
+    append_line(state.seg, state.paths, 0, state.limits, np.array([5.0, 5.0, 0.0]), 50.0, 0, 1)
+    assert kinds(state) == found
 
 
 def distance_to(polyline: Floats, point: Floats) -> float:

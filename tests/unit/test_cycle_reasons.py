@@ -61,7 +61,7 @@ def lines(state: KernelState, *ends: tuple[float, ...], feed: float = 50.0, clos
 
 def finish(state: KernelState, closed: bool = True) -> None:
     state.paths.row[0]["closed"] = closed
-    prepare_path(state.seg, state.paths, 0, state.limits, CYCLE_S, 0, state.work)
+    prepare_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
     start_path(state.paths, 0)
 
 
@@ -233,7 +233,7 @@ def test_the_cycle_may_be_that_of_another_controller() -> None:
     give_to_path(state, 0)
     append_line(state.seg, state.paths, 0, state.limits, np.array([100.0, 0.0]), 50.0, 0, 1)
     state.paths.row[0]["closed"] = 1
-    prepare_path(state.seg, state.paths, 0, state.limits, 0.00128, 0, state.work)
+    prepare_path(state.seg, state.paths, 0, state.limits, 0.00128, state.work)
     start_path(state.paths, 0)
     # 0.5 s up, 1.5 s at 50 mm/s, 0.5 s down.
     assert run_until(state, PATH_RESTED) == math.ceil(2.5 / 0.00128)

@@ -234,10 +234,14 @@ def test_the_dwell_counts_in_the_units_of_the_dialect() -> None:
 
 def test_words_of_a_call_or_a_dwell_are_none_of_the_cycle() -> None:
     """P and L belong to M98, P to G4, though a cycle is active."""
-    program = START + "G81 Z-3 R2 L0\nM98 P100 L2\nG4 P1\nM30\nO100\nG91 X5\nG90\nM99\n"
-    steps = moves(program)
-    assert [step for step in steps if step.startswith("rapid X")] == ["rapid X5 stop", "rapid X10 stop"]
-    assert [step for step in steps if step.startswith("wait")] == ["wait 1"]
+    program = START + "G82 Z-3 R2 P.5 L0\nM98 P100 L2\nG4 P1\nX20\nM30\nO100\nG91 X5\nG90\nM99\n"
+    steps = [step for step in moves(program) if step.startswith(("rapid X", "wait"))]
+    assert steps == [
+        *("rapid X5 stop", "wait 0.5"),
+        *("rapid X10 stop", "wait 0.5"),
+        "wait 1",
+        *("rapid X20 stop", "wait 0.5"),
+    ]
 
 
 @pytest.mark.parametrize(

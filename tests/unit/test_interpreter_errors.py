@@ -117,7 +117,7 @@ def test_a_refused_block_leaves_everything_as_it_was(bad: str) -> None:
 
 def test_radius_compensation_is_taken_back_too() -> None:
     before = "G1 F100 Y-10\nG41 D1 Y0\nX20\n"
-    for bad in ("X40 Z400", "G40 X40 E5", "G3 X21 Y1 R1", "G42", "M30 E1"):
+    for bad in ("X40 Z400", "G40 X40 E5", "G3 X21 Y1 R1", "G42", "G40 G2 X40 I10", "M30 E1"):
         good = prepare(f"{before}(nothing)\nX40\nG40 X50\n", config=FIVE, collect_errors=True)
         spoiled = prepare(f"{before}{bad}\nX40\nG40 X50\n", config=FIVE, collect_errors=True)
         assert len(spoiled.errors) == 1, bad

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import pytest
 
 from polycnc.nc import Dialect, load_dialect
@@ -100,7 +102,9 @@ def test_what_is_no_length_counts_as_it_stands(increments: Dialect) -> None:
 
 def test_the_fast_path_hands_increments_over(increments: Dialect) -> None:
     program = "G1 F100 X1000\nX2.\nY500 X3.\nG2 X4. I500\n"
-    fast, ordinary = (moves(program, dialect=increments, config=MILL, fast=flag) for flag in (True, False))
+    fast, ordinary = (
+        moves(program, dialect=increments, config=MILL, ordinary_blocks=blocks) for blocks in (0, math.inf)
+    )
     assert (
         fast
         == ordinary

@@ -1,12 +1,18 @@
 """What happens in one control cycle: profiles, path geometry, look-ahead, interpolation, coupling, servo."""
 
 from polycnc.kernel._advance import advance, cycle, give_to_path, give_to_point_to_point, place_machine, skip
-from polycnc.kernel._append import add_line, append_arc, append_line, append_wait
+from polycnc.kernel._append import (
+    add_line,
+    append_arc,
+    append_circle3d,
+    append_line,
+    append_spline,
+    append_wait,
+)
 from polycnc.kernel._geometry import segment_point
-from polycnc.kernel._interpolate import replan_path, start_path
 from polycnc.kernel._jit import compiled, entry, is_cold
 from polycnc.kernel._limits import AxisLimits, make_limits
-from polycnc.kernel._lookahead import measure_queue, prepare_path
+from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._path import (
     FEED_LENGTH,
     FEED_S,
@@ -19,10 +25,12 @@ from polycnc.kernel._path import (
     free_slots,
     make_paths,
     slot,
+    start_path,
 )
 from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, stop_axis
 from polycnc.kernel._profile import SHORT_JUMP, SHORT_OVERSHOOT, SHORT_REDUCE_START
 from polycnc.kernel._recorder import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
+from polycnc.kernel._replan import prepare_path, replan_path
 from polycnc.kernel._segments import ARC, LINE, RAPID, STOP, WAIT, Segments, make_segments
 from polycnc.kernel._servo import IDEAL, PIDF
 from polycnc.kernel._state import (
@@ -87,7 +95,9 @@ __all__ = [
     "add_line",
     "advance",
     "append_arc",
+    "append_circle3d",
     "append_line",
+    "append_spline",
     "append_wait",
     "compiled",
     "cycle",

@@ -10,7 +10,7 @@ from polycnc.kernel._curve import curve_cycle
 from polycnc.kernel._follower import follower_cycle
 from polycnc.kernel._interpolate import EVENT, RESTED, path_cycle, settle, skip_path
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._path import READY
+from polycnc.kernel._path import IDLE, READY
 from polycnc.kernel._point_to_point import ADDED, MAIN, place_axis, profile_cycle
 from polycnc.kernel._recorder import is_full, record
 from polycnc.kernel._segments import RAPID
@@ -33,28 +33,27 @@ from polycnc.kernel._table import table_cycle
 
 
 @compiled
-def _raise(state: KernelState, reason: int, axis: int) -> None:
-    clock = state.clock[0]
-    clock["raised"] |= reason
-    if axis >= 0:
-        clock["axis"] = axis
+def _settle_path(state: KernelState, g: int) -> None:
+    """Report what stands where path `g` rests: an event, or nothing more to come."""
+    row = state.paths.row[g]
+    while settle(state.seg, state.paths, g) == EVENT:
+        state.clock[0]["raised"] |= PATH_EVENT
+        if state.clock[0]["mask"] & PATH_EVENT:
+            break
+    if row["state"] == READY and row["head"] >= row["tail"]:
+        state.clock[0]["raised"] |= PATH_RESTED
 
 
 @compiled
 def _run_paths(state: KernelState, dt: float) -> None:
     for g in range(state.paths.row.shape[0]):
-        if state.paths.row[g]["state"] == 0:
-            continue
-        result = path_cycle(state.seg, state.paths, g, dt)
-        while result == RESTED and settle(state.seg, state.paths, g) == EVENT:
-            _raise(state, PATH_EVENT, -1)
-            if state.clock[0]["mask"] & PATH_EVENT:
-                break
         row = state.paths.row[g]
-        if result == RESTED and row["state"] == READY and row["head"] >= row["tail"]:
-            _raise(state, PATH_RESTED, -1)
+        if row["state"] == IDLE:
+            continue
+        if path_cycle(state.seg, state.paths, g, dt) == RESTED:
+            _settle_path(state, g)
         if row["closed"] == 0 and row["planned"] - row["head"] <= state.clock[0]["low_water"]:
-            _raise(state, QUEUE_LOW, -1)
+            state.clock[0]["raised"] |= QUEUE_LOW
 
 
 @compiled
@@ -62,10 +61,12 @@ def _position_sources(state: KernelState, dt: float) -> None:
     """Put what owns each axis, and what is added to it, into the setpoints."""
     for i in range(state.setpoint.shape[0]):
         if profile_cycle(state.ptp, ADDED, i, dt):
-            _raise(state, PROFILE_ENDED, i)
+            state.clock[0]["raised"] |= PROFILE_ENDED
+            state.clock[0]["axis"] = i
         if state.owner[i] == POINT_TO_POINT:
             if profile_cycle(state.ptp, MAIN, i, dt):
-                _raise(state, PROFILE_ENDED, i)
+                state.clock[0]["raised"] |= PROFILE_ENDED
+                state.clock[0]["axis"] = i
             state.base[i] = state.ptp.row[MAIN, i]["position"]
     for g in range(state.paths.row.shape[0]):
         for m in range(state.paths.axis.shape[1]):
@@ -83,7 +84,7 @@ def _coupled_sources(state: KernelState) -> None:
     for k in range(table.running.shape[0]):
         running = table.running[k]
         if running != 0 and table_cycle(k, table) == 0:
-            _raise(state, TABLE_EMPTY, -1)
+            state.clock[0]["raised"] |= TABLE_EMPTY
         for column in range(table.axis.shape[1]):
             axis = table.axis[k, column]
             if axis >= 0:
@@ -109,13 +110,16 @@ def _follow(state: KernelState, i: int, last_setpoint: float, dt: float) -> None
     state.servo.profile_at_rest[i] = 1 if velocity == 0.0 else 0
     servo_cycle(i, state.servo, state.plant, state.setpoint[i], velocity, state.acceleration[i], dt)
     if state.servo.error_tripped[i] != 0:
-        _raise(state, FOLLOWING_ERROR, i)
+        state.clock[0]["raised"] |= FOLLOWING_ERROR
+        state.clock[0]["axis"] = i
     switches_cycle(i, state.switches, state.servo.actual[i], last_actual)
     for j in range(SWITCHES_PER_AXIS):
         if state.switches.rising[i, j] != 0 or state.switches.falling[i, j] != 0:
-            _raise(state, SWITCH_EDGE, i)
+            state.clock[0]["raised"] |= SWITCH_EDGE
+            state.clock[0]["axis"] = i
     if soft_limit(i, state.switches, state.setpoint[i]) != SOFT_INSIDE:
-        _raise(state, SOFT_LIMIT, i)
+        state.clock[0]["raised"] |= SOFT_LIMIT
+        state.clock[0]["axis"] = i
 
 
 @compiled
@@ -140,7 +144,7 @@ def cycle(state: KernelState) -> None:
     rapid = path["flags"] & RAPID
     record(state.recorder, time_s, path["tag"], path["speed"], rapid, state.setpoint, state.servo.actual)
     if is_full(state.recorder):
-        _raise(state, RECORDER_FULL, -1)
+        state.clock[0]["raised"] |= RECORDER_FULL
 
 
 @entry
@@ -148,15 +152,18 @@ def advance(state: KernelState, cycles: int) -> int:
     """Run up to `cycles` control cycles; return how many were run.
 
     Stops after a cycle in which a reason in the clock's `mask` was met; the clock's `raised` tells which. Stops at
-    once, with 0, when a path stands at an event that has not been reported yet.
+    once, with 0, when a path stands at waits of no duration that lead to an event or to the end of the queue.
     """
     clock = state.clock[0]
-    if clock["mask"] & PATH_EVENT:
-        clock["raised"] = 0
-        for g in range(state.paths.row.shape[0]):
-            if settle(state.seg, state.paths, g) == EVENT:
-                _raise(state, PATH_EVENT, -1)
-                return 0
+    clock["raised"] = 0
+    clock["axis"] = -1
+    for g in range(state.paths.row.shape[0]):
+        row = state.paths.row[g]
+        row["event"] = -1
+        if row["state"] == READY and row["head"] < row["prepared"] and not clock["raised"] & PATH_EVENT:
+            _settle_path(state, g)
+    if clock["raised"] & clock["mask"]:
+        return 0
     for done in range(cycles):
         cycle(state)
         if clock["raised"] & clock["mask"]:
@@ -164,42 +171,36 @@ def advance(state: KernelState, cycles: int) -> int:
     return cycles
 
 
-@entry
 def skip(state: KernelState, g: int, until: int) -> int:
     """Go along path `g` in closed form up to segment count `until` or the next event; return the cycles it took.
 
     The clock goes on as if all cycles had been run; servos are taken as ideal and nothing is recorded.
     """
-    clock = state.clock[0]
-    cycles = skip_path(state.seg, state.paths, g, clock["dt"], until)
+    clock, paths = state.clock[0], state.paths
+    cycles = int(skip_path(state.seg, paths, g, clock["dt"], until))
     clock["cycle"] += cycles
-    for m in range(state.paths.axis.shape[1]):
-        axis = state.paths.axis[g, m]
+    for m, axis in enumerate(paths.axis[g]):
         if axis >= 0 and state.owner[axis] == g:
-            state.base[axis] = state.paths.position[g, m]
+            state.base[axis] = paths.position[g, m]
             state.setpoint[axis] = state.base[axis]
     return cycles
 
 
-@entry
 def give_to_path(state: KernelState, g: int) -> None:
     """Hand the axes of path `g` over to it, at rest where they are; its queue must be empty."""
-    for m in range(state.paths.axis.shape[1]):
-        axis = state.paths.axis[g, m]
+    for m, axis in enumerate(state.paths.axis[g]):
         if axis >= 0:
             state.paths.position[g, m] = state.base[axis]
             state.paths.queued[g, m] = state.base[axis]
             state.owner[axis] = g
 
 
-@entry
 def give_to_point_to_point(state: KernelState, axis: int) -> None:
     """Hand an axis over to its point-to-point source, at rest where it is."""
     place_axis(state.ptp, MAIN, axis, state.base[axis])
     state.owner[axis] = POINT_TO_POINT
 
 
-@entry
 def place_machine(state: KernelState, axis: int, position: float) -> None:
     """Put an axis at rest at `position`: setpoint, actual position and point-to-point source alike."""
     place_axis(state.ptp, MAIN, axis, position)

@@ -1,4 +1,4 @@
-"""Append lines, arcs and waits to a path."""
+"""Append lines, arcs, circles, splines and waits to a path. The caller sees to free slots."""
 
 from __future__ import annotations
 
@@ -10,10 +10,23 @@ import numpy.typing as npt
 from polycnc.kernel._blend import blend_corner
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import AxisLimits
-from polycnc.kernel._path import Paths, slot, slot_of
-from polycnc.kernel._segments import RAPID, STOP, Floats, Segments, set_arc, set_line, set_wait
+from polycnc.kernel._path import Paths, free_slots, slot, slot_of
+from polycnc.kernel._segments import (
+    RAPID,
+    STOP,
+    Floats,
+    Segments,
+    set_arc,
+    set_circle3d,
+    set_line,
+    set_spline,
+    set_wait,
+)
+from polycnc.kernel._spline import Splines, spline_next_cut
 
 Rows: TypeAlias = npt.NDArray[np.void]
+
+SAME_POINT = 1e-12  # how far a spline may begin from where the path ends
 
 
 @compiled
@@ -44,7 +57,7 @@ def _keep_rapids_apart(row: Rows, path: Rows, g: int, flags: int) -> None:
 def append_line(
     seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, feed: float, flags: int, tag: int
 ) -> bool:
-    """Append a straight line to path `g`; False if it has no length. The caller sees to two free slots.
+    """Append a straight line to path `g`; False if it has no length. It may take two slots.
 
     With a path tolerance the corner before it is rounded where that is possible.
     """
@@ -95,25 +108,72 @@ def append_arc(
 ) -> bool:
     """Append an arc or helix to path `g`; False if it has no length."""
     k = slot(paths, g, paths.row[g]["tail"])
+    start = paths.queued[g]
     if not set_arc(
-        seg,
-        k,
-        limits.feed_axis,
-        paths.queued[g],
-        end,
-        axis_p,
-        axis_q,
-        center_p,
-        center_q,
-        sweep,
-        feed,
-        flags,
-        tag,
+        seg, k, limits.feed_axis, start, end, axis_p, axis_q, center_p, center_q, sweep, feed, flags, tag
     ):
         return False
     _keep_rapids_apart(seg.row, paths.row, g, flags)
     _appended(seg.end, paths.row, paths.queued, g, k)
     return True
+
+
+@entry
+def append_circle3d(
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    axis_p: int,
+    axis_q: int,
+    axis_r: int,
+    center: Floats,
+    normal: Floats,
+    sweep_deg: float,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Append a circle in three axes about `center[3]` to path `g`; False if there is none (`set_circle3d`)."""
+    k = slot(paths, g, paths.row[g]["tail"])
+    start = paths.queued[g]
+    if not set_circle3d(seg, k, start, axis_p, axis_q, axis_r, center, normal, sweep_deg, feed, flags, tag):
+        return False
+    _keep_rapids_apart(seg.row, paths.row, g, flags)
+    _appended(seg.end, paths.row, paths.queued, g, k)
+    return True
+
+
+@entry
+def append_spline(
+    seg: Segments, splines: Splines, paths: Paths, g: int, index: int, feed: float, flags: int, tag: int
+) -> int:
+    """Append spline `index` of the path's store, a segment per piece; return how many segments it took.
+
+    0 if it does not begin where the path ends, or needs more slots than are free. STOP is for its end.
+    """
+    for i in range(seg.end.shape[1]):
+        first = splines.vectors[index, 0, i]
+        if abs(first - paths.queued[g, i]) > SAME_POINT * max(1.0, abs(first)):
+            return 0
+    length = splines.length[index]
+    needed = 0
+    s = 0.0
+    while s < length:
+        s = spline_next_cut(splines, index, s)
+        needed += 1
+    if needed > free_slots(paths, g):
+        return 0
+    _keep_rapids_apart(seg.row, paths.row, g, flags)
+    count = 0
+    s = 0.0
+    while s < length:
+        k = slot(paths, g, paths.row[g]["tail"])
+        s = set_spline(seg, splines, k, index, s, paths.queued[g], feed, flags & ~STOP, tag)
+        if s >= length:
+            seg.row[k]["flags"] = flags
+        _appended(seg.end, paths.row, paths.queued, g, k)
+        count += 1
+    return count
 
 
 @entry

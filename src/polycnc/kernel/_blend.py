@@ -42,7 +42,7 @@ def blend_corner(
     """
     row = paths.row[g]
     tolerance = row["tolerance"]
-    if tolerance <= 0.0 or row["tail"] - row["head"] < 2:  # the segment at `head` may be running
+    if tolerance <= 0.0 or row["tail"] <= row["prepared"]:  # what has been planned cannot be shortened
         return False
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]

@@ -8,9 +8,8 @@ from __future__ import annotations
 import math
 
 from polycnc.kernel._circle3d import circle3d_point, circle3d_tangent
-from polycnc.kernel._jit import allocating, compiled, entry
+from polycnc.kernel._jit import compiled
 from polycnc.kernel._segments import (
-    ANGLE_START,
     ARC,
     CENTER_P,
     CENTER_Q,
@@ -19,6 +18,7 @@ from polycnc.kernel._segments import (
     RADIUS_END,
     RADIUS_START,
     SPLINE,
+    SPLINE_FROM,
     SPLINE_INDEX,
     SWEEP,
     WAIT,
@@ -26,99 +26,129 @@ from polycnc.kernel._segments import (
     Floats,
     Segments,
 )
-from polycnc.kernel._spline import spline_point, spline_tangent
+from polycnc.kernel._spline import Splines, spline_point, spline_tangent, spline_tangent_before
 
 HALF_PI = 0.5 * math.pi
 
 
-@entry
-def segment_point(seg: Segments, k: int, s: float, out: Floats) -> None:
-    """Write the point of segment `k` at path length `s` to `out[n]`."""
-    n = out.shape[0]
-    length = seg.row[k]["length"]
-    kind = seg.row[k]["kind"]
-    if s >= length or kind == WAIT:
-        for i in range(n):
-            out[i] = seg.end[k, i]
-        return
-    fraction = s / length
-    if kind == SPLINE:
-        spline_point(seg.splines, int(seg.geo[k, SPLINE_INDEX]), s, out)
-        return
-    for i in range(n):
-        out[i] = seg.start[k, i] + (seg.end[k, i] - seg.start[k, i]) * fraction
-    if kind == ARC and s > 0.0:
-        geo = seg.geo[k]
-        radius = geo[RADIUS_START] + (geo[RADIUS_END] - geo[RADIUS_START]) * fraction
-        angle = geo[ANGLE_START] + geo[SWEEP] * fraction
-        out[seg.plane[k, 0]] = geo[CENTER_P] + radius * math.cos(angle)
-        out[seg.plane[k, 1]] = geo[CENTER_Q] + radius * math.sin(angle)
-    elif kind == CIRCLE3D and s > 0.0:
-        three = seg.geo[k, WORK_POINT:]
-        circle3d_point(seg.geo[k], fraction, three)
-        out[seg.plane[k, 0]], out[seg.plane[k, 1]], out[seg.plane[k, 2]] = three[0], three[1], three[2]
+@compiled
+def _spline_point(splines: Splines | None, geo: Floats, s: float, out: Floats) -> None:
+    if splines is not None:  # known when it is compiled
+        spline_point(splines, int(geo[SPLINE_INDEX]), geo[SPLINE_FROM] + s, out)
 
 
 @compiled
-def segment_tangent(seg: Segments, k: int, at_end: bool, out: Floats) -> None:
-    """Write d(position)/ds of segment `k` at its start or end to `out[n]`."""
-    n = out.shape[0]
-    kind = seg.row[k]["kind"]
-    length = seg.row[k]["length"]
-    if kind == WAIT:
-        for i in range(n):
-            out[i] = 0.0
+def _spline_tangent(splines: Splines | None, geo: Floats, length: float, at: float, out: Floats) -> None:
+    if splines is not None:
+        index, begin = int(geo[SPLINE_INDEX]), geo[SPLINE_FROM]
+        if at > 0.0:
+            spline_tangent_before(splines, index, begin + length, out)
+        else:
+            spline_tangent(splines, index, begin, out)
+
+
+@compiled
+def segment_point(seg: Segments, k: int, s: float, out: Floats) -> None:
+    """Write the point of segment `k` at path length `s` to `out[n]`."""
+    row = seg.row[k]
+    kind = row["kind"]
+    if s >= row["length"] or kind == WAIT:
+        for i in range(out.shape[0]):
+            out[i] = seg.end[k, i]
         return
     if kind == SPLINE:
-        spline_tangent(seg.splines, int(seg.geo[k, SPLINE_INDEX]), length if at_end else 0.0, out)
+        _spline_point(seg.splines, seg.geo[k], s, out)
         return
-    for i in range(n):
-        out[i] = (seg.end[k, i] - seg.start[k, i]) / length
+    fraction = s / row["length"]
+    for i in range(out.shape[0]):
+        out[i] = seg.start[k, i] + (seg.end[k, i] - seg.start[k, i]) * fraction
     if kind == ARC:
-        geo = seg.geo[k]
-        angle = geo[ANGLE_START]
-        radius = geo[RADIUS_START]
-        if at_end:
-            angle += geo[SWEEP]
-            radius = geo[RADIUS_END]
-        turn = geo[SWEEP] / length
-        shrink = (geo[RADIUS_END] - geo[RADIUS_START]) / length
-        cos, sin = math.cos(angle), math.sin(angle)
-        out[seg.plane[k, 0]] = shrink * cos - radius * turn * sin
-        out[seg.plane[k, 1]] = shrink * sin + radius * turn * cos
+        _arc_point(seg, k, fraction, out)
     elif kind == CIRCLE3D:
         three = seg.geo[k, WORK_POINT:]
-        circle3d_tangent(seg.geo[k], 1.0 if at_end else 0.0, three)
-        out[seg.plane[k, 0]], out[seg.plane[k, 1]], out[seg.plane[k, 2]] = three[0], three[1], three[2]
+        circle3d_point(seg.geo[k], fraction, three)
+        for j in range(3):
+            out[seg.plane[k, j]] = three[j]
 
 
-@allocating
-def grow_extents(seg: Segments, k: int, low: Floats, high: Floats) -> None:
-    """Widen the box `low[n]`, `high[n]` to hold segment `k`, with the quadrant points of an arc."""
-    n = low.shape[0]
-    for i in range(n):
+@compiled
+def _arc_point(seg: Segments, k: int, fraction: float, out: Floats) -> None:
+    """Turn and stretch the radius vector of the start; the change is added to the start, so nothing cancels."""
+    p, q = seg.plane[k, 0], seg.plane[k, 1]
+    geo = seg.geo[k]
+    half = 0.5 * geo[SWEEP] * fraction
+    sine, cosine = math.sin(half), math.cos(half)
+    scale = 1.0 + (geo[RADIUS_END] / geo[RADIUS_START] - 1.0) * fraction
+    along = (scale - 1.0) - 2.0 * scale * sine * sine
+    across = 2.0 * scale * sine * cosine
+    start_p, start_q = seg.start[k, p], seg.start[k, q]
+    radius_p, radius_q = start_p - geo[CENTER_P], start_q - geo[CENTER_Q]
+    out[p] = start_p + (along * radius_p - across * radius_q)
+    out[q] = start_q + (along * radius_q + across * radius_p)
+
+
+@compiled
+def segment_tangent(seg: Segments, k: int, at: float, out: Floats) -> None:
+    """Write d(position)/ds of segment `k` at its start (`at` 0) or its end (1) to `out[n]`; a wait has none."""
+    row = seg.row[k]
+    kind = row["kind"]
+    length = row["length"]
+    if kind == SPLINE:
+        _spline_tangent(seg.splines, seg.geo[k], length, at, out)
+        return
+    for i in range(out.shape[0]):
+        out[i] = (seg.end[k, i] - seg.start[k, i]) / length
+    if kind == ARC:
+        p, q = seg.plane[k, 0], seg.plane[k, 1]
+        geo = seg.geo[k]
+        radius = geo[RADIUS_END] if at > 0.0 else geo[RADIUS_START]
+        at_p = (seg.end[k, p] if at > 0.0 else seg.start[k, p]) - geo[CENTER_P]
+        at_q = (seg.end[k, q] if at > 0.0 else seg.start[k, q]) - geo[CENTER_Q]
+        turn = geo[SWEEP] / length
+        stretch = (geo[RADIUS_END] - geo[RADIUS_START]) / (length * radius)
+        out[p] = stretch * at_p - turn * at_q
+        out[q] = stretch * at_q + turn * at_p
+    elif kind == CIRCLE3D:
+        three = seg.geo[k, WORK_POINT:]
+        circle3d_tangent(seg.geo[k], at, three)
+        for j in range(3):
+            out[seg.plane[k, j]] = three[j]
+
+
+@compiled
+def grow_extents(seg: Segments, k: int, low: Floats, high: Floats, work: Floats) -> None:
+    """Widen the box `low[n]`, `high[n]` to hold segment `k`, with the quadrant points of an arc.
+
+    `work[n]` is scratch. Other curves are sampled: 64 points are within 0.1 % of a turn's radius.
+    """
+    for i in range(low.shape[0]):
         low[i] = min(low[i], seg.start[k, i], seg.end[k, i])
         high[i] = max(high[i], seg.start[k, i], seg.end[k, i])
     kind = seg.row[k]["kind"]
     if kind == ARC:
         _grow_by_quadrants(seg, k, low, high)
     elif kind in (SPLINE, CIRCLE3D):
-        # No closed form worth its lines: 64 points are within 0.1 % of a turn's radius.
-        _grow_by_points(seg, k, low, high)
+        for step in range(1, 64):
+            segment_point(seg, k, seg.row[k]["length"] * step / 64.0, work)
+            for i in range(low.shape[0]):
+                low[i] = min(low[i], work[i])
+                high[i] = max(high[i], work[i])
 
 
 @compiled
 def _grow_by_quadrants(seg: Segments, k: int, low: Floats, high: Floats) -> None:
+    p, q = seg.plane[k, 0], seg.plane[k, 1]
     geo = seg.geo[k]
-    first = min(geo[ANGLE_START], geo[ANGLE_START] + geo[SWEEP])
-    last = max(geo[ANGLE_START], geo[ANGLE_START] + geo[SWEEP])
+    begin = math.atan2(seg.start[k, q] - geo[CENTER_Q], seg.start[k, p] - geo[CENTER_P])
+    first = min(begin, begin + geo[SWEEP])
+    last = max(begin, begin + geo[SWEEP])
     radius = max(geo[RADIUS_START], geo[RADIUS_END])
     quadrant = math.ceil(first / HALF_PI)
     for _ in range(4):
         if quadrant * HALF_PI > last:
             break
         which = int(quadrant) % 4
-        axis = seg.plane[k, which % 2]
+        axis = p if which % 2 == 0 else q
         center = geo[CENTER_P] if which % 2 == 0 else geo[CENTER_Q]
         if which < 2:
             high[axis] = max(high[axis], center + radius)
@@ -127,17 +157,8 @@ def _grow_by_quadrants(seg: Segments, k: int, low: Floats, high: Floats) -> None
         quadrant += 1
 
 
-@allocating
-def _grow_by_points(seg: Segments, k: int, low: Floats, high: Floats) -> None:
-    point = low.copy()
-    for step in range(1, 64):
-        segment_point(seg, k, seg.row[k]["length"] * step / 64.0, point)
-        for i in range(low.shape[0]):
-            low[i] = min(low[i], point[i])
-            high[i] = max(high[i], point[i])
-
-
 @compiled
 def is_curved(seg: Segments, k: int) -> bool:
     """Tell whether the direction of segment `k` changes along it."""
-    return bool(seg.row[k]["kind"] != LINE and seg.row[k]["kind"] != WAIT)
+    kind = seg.row[k]["kind"]
+    return bool(kind != LINE and kind != WAIT)

@@ -1,11 +1,11 @@
 """How fast a segment and a junction may be taken so that no axis breaks its limits, cycle by cycle.
 
-An axis has a speed and an acceleration limit and, optionally, a velocity step that it stands at a junction.
-Without that step (`jump` < 0) a corner is taken so slowly that the change of velocity fits into the axis'
-acceleration over one control cycle, or over the time of the shorter neighbour where segments are shorter than a
-cycle's travel. What the corner uses up is taken from the tangential acceleration of the lines beside it, so that
-the sum stays within the limit. On a curve the centripetal and the tangential part share what is left after the
-corners' fixed part, as a circle where they are a quarter turn apart (arcs), as a sum elsewhere (splines).
+What an axis does in two neighbouring cycles weighs the motion with a triangle two cycles wide. A corner's change of
+velocity must fit under it together with the ramps beside it and with the other corners nearby. It does if every
+change is at most `share / CORNER_MARGIN` of what the axis' acceleration gives in a cycle, or in the time to the
+next corner where that is shorter, and if the ramps on both sides leave that share alone. On a curve the
+centripetal and the tangential part share what is left after the corners' fixed part: as a circle where they are a
+quarter turn apart (arcs), as a sum elsewhere (splines). See docs/explanation/motion.md.
 """
 
 from __future__ import annotations
@@ -23,27 +23,29 @@ from polycnc.kernel._segments import (
     ARC,
     CIRCLE3D,
     CIRCLE3D_RADIUS,
-    IN_PLANE,
     LINE,
     RADIUS_END,
     RADIUS_START,
     SPLINE,
+    SPLINE_FROM,
     SPLINE_INDEX,
     STOP,
+    SWEEP,
     WAIT,
     WORK_POINT,
     Floats,
     Segments,
 )
-from polycnc.kernel._spline import spline_curvature_bound, spline_tangent_bound
+from polycnc.kernel._spline import Splines, spline_bounds_between
 
 CORNER_SHARE = 0.5  # highest part of an axis' acceleration that a corner between lines may use
 CURVE_CORNER_SHARE = 0.1  # the same beside a curve, which needs the rest for itself
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
 CENTRIPETAL_SHARE = 0.75  # highest part that the curvature of an arc may use
 SPLINE_CENTRIPETAL_SHARE = 0.45
-CORNER_MARGIN = 1.1  # several corners in one cycle do not sum up evenly; measured worst 1.09
+CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
+LEAST_PART = 0.5  # of `full_accel` is left whatever the corners and the override turn out to be
 
 
 class AxisLimits(NamedTuple):
@@ -56,7 +58,7 @@ class AxisLimits(NamedTuple):
 
 
 def make_limits(axes: int) -> AxisLimits:
-    """Allocate limits of `axes` axes: unlimited, all counting."""
+    """Allocate limits of `axes` axes: unlimited, all counting. Rapids need a speed limit."""
     return AxisLimits(
         speed=np.full(axes, np.inf),
         acceleration=np.full(axes, np.inf),
@@ -66,35 +68,28 @@ def make_limits(axes: int) -> AxisLimits:
 
 
 @compiled
-def limit_segment(
-    seg: Segments, k: int, limits: AxisLimits, override: float, top: float, jerkrel: float, work: Floats
-) -> None:
-    """Set the caps and `full_accel` of segment `k`: feed times override, within what every axis allows.
+def limit_segment(seg: Segments, k: int, limits: AxisLimits, override: float, work: Floats) -> None:
+    """Set `cap` and `full_accel` of segment `k`: programmed feed times override, within what every axis allows.
 
-    Curvature and corners take their part of the acceleration as at the highest override so far (`top`): when
-    the override falls, the path is still faster than the new cap, and must keep the limits while it brakes.
-    Peak acceleration of an S-shaped ramp is (1 + jerkrel) times the mean one, so the mean is lowered to keep
-    the peak within the limit. `work` is scratch, [2, n].
+    `work` is scratch, [2, n].
     """
-    kind = seg.row[k]["kind"]
-    if kind == WAIT:
-        seg.row[k]["full_cap"] = 0.0
-        seg.row[k]["cap"] = 0.0
-        seg.row[k]["full_accel"] = 1.0
-        return
-    cap = seg.row[k]["feed"] * top
+    row = seg.row[k]
+    kind = row["kind"]
+    cap = row["feed"] * override
     accel = math.inf
-    if kind == LINE:
+    if kind == WAIT:
+        cap = 0.0
+        accel = 1.0
+    elif kind == LINE:
         for i in range(limits.speed.shape[0]):
-            part = abs(seg.end[k, i] - seg.start[k, i]) / seg.row[k]["length"]
+            part = abs(seg.end[k, i] - seg.start[k, i]) / row["length"]
             if part > 0.0:
                 cap = min(cap, limits.speed[i] / part)
                 accel = min(accel, limits.acceleration[i] / part)
     else:
         cap, accel = _limit_curve(seg, k, limits, cap, work)
-    seg.row[k]["full_cap"] = cap
-    seg.row[k]["cap"] = min(cap, seg.row[k]["feed"] * override)
-    seg.row[k]["full_accel"] = accel / (1.0 + jerkrel)
+    row["cap"] = cap
+    row["full_accel"] = accel
 
 
 @compiled
@@ -122,30 +117,52 @@ def _limit_curve(seg: Segments, k: int, limits: AxisLimits, feed: float, work: F
 @compiled
 def _curve_bounds(seg: Segments, k: int, tangent: Floats, bend: Floats) -> None:
     """Write the greatest |dp/ds| and |d2p/ds2| of every axis over curve `k`."""
-    kind = seg.row[k]["kind"]
-    n = tangent.shape[0]
+    row, geo = seg.row[k], seg.geo[k]
+    kind = row["kind"]
     if kind == SPLINE:
-        index = int(seg.geo[k, SPLINE_INDEX])
-        spline_tangent_bound(seg.splines, index, tangent)
-        spline_curvature_bound(seg.splines, index, bend)
+        _spline_bounds(seg.splines, geo, row["length"], tangent, bend)
         return
-    for i in range(n):
-        tangent[i] = abs(seg.end[k, i] - seg.start[k, i]) / seg.row[k]["length"]
+    for i in range(tangent.shape[0]):
+        tangent[i] = abs(seg.end[k, i] - seg.start[k, i]) / row["length"]
         bend[i] = 0.0
     if kind == ARC:
-        geo = seg.geo[k]
         small = min(geo[RADIUS_START], geo[RADIUS_END])
         large = max(geo[RADIUS_START], geo[RADIUS_END])
-        speed = geo[IN_PLANE] * large / (0.5 * (small + large))
+        turn = abs(geo[SWEEP]) / row["length"]
+        # A changing radius adds a part along the radius, and as much again across it by turning.
+        spiral = 1.0 + 2.0 * (large - small) / (abs(geo[SWEEP]) * small)
         for j in range(2):
-            tangent[seg.plane[k, j]] = speed
-            bend[seg.plane[k, j]] = speed * speed / small
+            tangent[seg.plane[k, j]] = spiral * turn * large
+            bend[seg.plane[k, j]] = spiral * turn * turn * large
     elif kind == CIRCLE3D:
         three = seg.geo[k, WORK_POINT:]
-        circle3d_tangent_bound(seg.geo[k], three)
+        circle3d_tangent_bound(geo, three)
         for j in range(3):
             tangent[seg.plane[k, j]] = three[j]
-            bend[seg.plane[k, j]] = three[j] / seg.geo[k, CIRCLE3D_RADIUS]
+            bend[seg.plane[k, j]] = three[j] / geo[CIRCLE3D_RADIUS]
+
+
+@compiled
+def _spline_bounds(
+    splines: Splines | None, geo: Floats, length: float, tangent: Floats, bend: Floats
+) -> None:
+    if splines is not None:  # known when it is compiled
+        begin = geo[SPLINE_FROM]
+        spline_bounds_between(splines, int(geo[SPLINE_INDEX]), begin, begin + length, tangent, bend)
+
+
+@compiled
+def _gap_s(row: np.void, speed: float) -> float:
+    """Return the shortest time that a segment takes when one of its ends is passed with `speed`."""
+    length = row["length"]
+    return float(2.0 * length / (speed + math.sqrt(speed * speed + 2.0 * row["full_accel"] * length)))
+
+
+@compiled
+def _fitting_square(allowed: float, change: float, row: np.void) -> float:
+    """Return the square of the speed v at which v change = allowed times the shortest time of the segment."""
+    step = 2.0 * allowed / change
+    return float(step * step * row["length"] / (2.0 * (row["full_accel"] + step)))
 
 
 @compiled
@@ -153,38 +170,55 @@ def limit_junction(
     seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats
 ) -> None:
     """Set `junction` and `share` at the end of segment `k`, which segment `following` continues."""
-    if seg.row[k]["flags"] & STOP or seg.row[k]["kind"] == WAIT or seg.row[following]["kind"] == WAIT:
-        seg.row[k]["junction"] = 0.0
-        seg.row[k]["share"] = 0.0
+    row, after = seg.row[k], seg.row[following]
+    row["junction"] = 0.0
+    row["share"] = 0.0
+    if row["flags"] & STOP or row["kind"] == WAIT or after["kind"] == WAIT:
         return
-    before, after = work[0], work[1]
-    segment_tangent(seg, k, True, before)
-    segment_tangent(seg, following, False, after)
+    segment_tangent(seg, k, 1.0, work[0])
+    segment_tangent(seg, following, 0.0, work[1])
     curved = is_curved(seg, k) or is_curved(seg, following)
-    budget = (CURVE_CORNER_SHARE if curved else CORNER_SHARE) / CORNER_MARGIN
-    shorter = min(seg.row[k]["length"], seg.row[following]["length"])
-    speed = min(seg.row[k]["full_cap"], seg.row[following]["full_cap"])
-    for i in range(before.shape[0]):
-        change = abs(after[i] - before[i])
-        if change > STRAIGHT:
-            if limits.jump[i] >= 0.0:
-                speed = min(speed, limits.jump[i] / change)
-            else:
-                allowed = budget * limits.acceleration[i]
-                speed = min(speed, allowed * dt / change, math.sqrt(allowed * shorter / change))
-    share = 0.0
-    if speed > 0.0:
-        window = min(dt, shorter / speed)
-        for i in range(before.shape[0]):
-            change = abs(after[i] - before[i])
-            if change > STRAIGHT and limits.jump[i] < 0.0:
-                share = max(share, CORNER_MARGIN * speed * change / (limits.acceleration[i] * window))
-    seg.row[k]["junction"] = min(speed, seg.row[k]["cap"], seg.row[following]["cap"])
-    seg.row[k]["share"] = share
+    most = CURVE_CORNER_SHARE if curved else CORNER_SHARE
+    speed = min(row["cap"], after["cap"])
+    square = speed * speed
+    corner = False
+    for i in range(work.shape[1]):
+        change = abs(work[1, i] - work[0, i])
+        if change <= STRAIGHT:
+            work[0, i] = 0.0
+            continue
+        corner = True
+        jump = limits.jump[i]
+        allowed = (jump / dt if jump >= 0.0 else most * limits.acceleration[i]) / CORNER_MARGIN
+        top = jump if jump >= 0.0 else allowed * dt
+        # What share of its acceleration the axis needs per speed and time, for the second pass.
+        work[0, i] = change / limits.acceleration[i] if jump < 0.0 else 0.0
+        if allowed < math.inf:
+            square = min(square, top * top / (change * change))
+            square = min(square, _fitting_square(allowed, change, row))
+            square = min(square, _fitting_square(allowed, change, after))
+    if corner:
+        speed = math.sqrt(square)
+    row["junction"] = speed
+    need = 0.0
+    for i in range(work.shape[1]):
+        need = max(need, work[0, i])
+    if corner and need > 0.0 and speed > 0.0:
+        row["share"] = CORNER_MARGIN * need * speed / min(dt, min(_gap_s(row, speed), _gap_s(after, speed)))
 
 
 @compiled
-def share_acceleration(seg: Segments, k: int, share_before: float, share_after: float) -> None:
-    """Set `accel` of segment `k` to what the corners at its two ends leave; a curve has put their part aside."""
-    left = 1.0 if is_curved(seg, k) else 1.0 - max(share_before, share_after)
-    seg.row[k]["accel"] = seg.row[k]["full_accel"] * left
+def share_acceleration(seg: Segments, k: int, share_before: float, jerkrel: float) -> None:
+    """Set `accel` of segment `k` to what the corners at its two ends leave; a curve has put their part aside.
+
+    An S-shaped ramp has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
+    """
+    row = seg.row[k]
+    left = 1.0 if is_curved(seg, k) else 1.0 - max(share_before, row["share"])
+    row["accel"] = row["full_accel"] * left / (1.0 + jerkrel)
+
+
+@compiled
+def least_accel(row: np.void, jerkrel: float) -> float:
+    """Return an acceleration that the segment will allow whatever comes behind it."""
+    return float(row["full_accel"] * LEAST_PART / (1.0 + jerkrel))

@@ -34,13 +34,13 @@ PATH_ROW = np.dtype(
         ("capacity", np.int64),
         ("head", np.int64),  # count of the segment that is running or comes next
         ("tail", np.int64),  # count of segments appended
+        ("prepared", np.int64),  # segments before this count are in the look-ahead and may run
         ("planned", np.int64),  # segments before this count have their final end speed
         ("depth", np.int64),  # look-ahead in segments, 0 = unlimited
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
-        ("override", np.float64),
-        ("top_override", np.float64),  # the highest so far, at least 1
-        ("jerkrel", np.float64),
+        ("override", np.float64),  # factor of the programmed feeds; 0 holds the path
+        ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
         ("tolerance", np.float64),  # how far the path may leave a corner between lines appended from now on
         ("lead", np.float64),  # time into the running segment at sample 0
         ("entry_share", np.float64),  # what the corner last passed takes of the acceleration
@@ -48,7 +48,7 @@ PATH_ROW = np.dtype(
         ("tag", np.int32),  # tag of the segment that gave the last setpoint
         ("flags", np.int8),  # of that segment
         ("state", np.int8),
-        ("hold", np.int8),
+        ("hold", np.int8),  # feed hold
         ("pending", np.int8),  # a change waits for the end of the S-shaped ramp that is under way
         ("closed", np.int8),  # nothing will be appended: the last segment ends the path
     ],
@@ -74,7 +74,6 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
     row["capacity"] = slots // paths
     row["base"] = np.arange(paths) * (slots // paths)
     row["override"] = 1.0
-    row["top_override"] = 1.0
     row["event"] = -1
     return Paths(
         row=row,
@@ -85,6 +84,18 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
         blend=np.zeros((paths, BLEND_COLUMNS)),
         axis=np.tile(np.arange(coordinates, dtype=np.int64), (paths, 1)),
     )
+
+
+def start_path(paths: Paths, g: int) -> None:
+    """Let path `g` begin with its queue in the next cycle."""
+    if paths.row[g]["state"] == IDLE:
+        paths.row[g]["state"] = READY
+
+
+@compiled
+def is_held(path: np.void) -> bool:
+    """Tell whether a path may not move."""
+    return bool(path["hold"] != 0 or path["override"] <= 0.0)
 
 
 @compiled

@@ -25,6 +25,8 @@ MAIN = 0
 ADDED = 1
 LAYERS = 2
 
+REST_SLACK = 1e-9  # part of a cycle by which rounding may make a rest late
+
 Floats = npt.NDArray[np.float64]
 
 PROFILE_ROW = np.dtype(
@@ -131,7 +133,8 @@ def profile_cycle(ptp: PointToPoint, layer: int, i: int, dt: float) -> bool:
     phases = ptp.phases[layer, i]
     count = row["count"]
     # A rest that rounding would make one cycle late is taken in time, as on a path.
-    reached = t >= row["duration"] - 1e-6 * dt
+    end = row["duration"] - REST_SLACK * dt
+    reached = t >= end
     at_rest = phases[count, VELOCITY] == 0.0
     if reached and at_rest:
         t = row["duration"]
@@ -144,15 +147,15 @@ def profile_cycle(ptp: PointToPoint, layer: int, i: int, dt: float) -> bool:
         row["active"] = 0
         row["ended"] = 1
         return True
-    first = (row["cycles"] - 1) * dt < row["duration"] - 1e-6 * dt
+    first = row["cycles"] == 1 or t - dt < end
     row["ended"] = 1 if first else 0
     return bool(first)
 
 
-@compiled
 def place_axis(ptp: PointToPoint, layer: int, i: int, position: float) -> None:
     """Put axis `i` of a layer at rest at `position`."""
     row = ptp.row[layer, i]
     row["active"] = 0
+    row["ended"] = 0
     row["position"] = position
     row["velocity"] = 0.0

@@ -19,7 +19,7 @@ Floats = npt.NDArray[np.float64]
 SPEED_IN, SPEED_PEAK, SPEED_OUT, TIME_IN, TIME_CRUISE, TIME_OUT, FROM_S, LENGTH = 0, 1, 2, 3, 4, 5, 6, 7
 REGISTERS = 8
 
-ROUNDING = 1e-12  # a rest that is missed by less than this is a rest
+ROUNDING = 4e-15  # by which a speed that can just be braked to may seem too low, on squares
 
 
 @compiled
@@ -30,51 +30,59 @@ def plan_ramps(
 
     The end speed is lowered to what can be reached, or raised to what cannot be braked away.
     """
+    square = speed_in * speed_in
     gain = 2.0 * accel * length
-    least = speed_in * speed_in - gain
-    out = min(speed_out, math.sqrt(speed_in * speed_in + gain))
-    if out * out < least - ROUNDING * speed_in * speed_in:
-        out = math.sqrt(least)
-    highest = math.sqrt(0.5 * (gain + speed_in * speed_in + out * out))
-    peak = min(max(cap, out), max(highest, speed_in, out))
-    distance_in = abs(peak * peak - speed_in * speed_in) / (2.0 * accel)
-    distance_out = abs(peak * peak - out * out) / (2.0 * accel)
-    if speed_in > peak and distance_in + distance_out > length:
-        peak = speed_in  # too fast on arrival and no room: brake all the way
-        distance_in = 0.0
-        distance_out = length
-    cruise = length - distance_in - distance_out
     ramps[SPEED_IN] = speed_in
-    ramps[SPEED_PEAK] = peak
-    ramps[SPEED_OUT] = out
-    ramps[TIME_IN] = abs(peak - speed_in) / accel
-    ramps[TIME_CRUISE] = cruise / peak if cruise > 0.0 and peak > 0.0 else 0.0
-    ramps[TIME_OUT] = abs(peak - out) / accel
+    ramps[TIME_IN] = 0.0
+    ramps[TIME_CRUISE] = 0.0
+    ramps[TIME_OUT] = 0.0
     ramps[FROM_S] = s
     ramps[LENGTH] = length
+    if speed_out * speed_out >= square + gain:  # faster all the way
+        top = math.sqrt(square + gain)
+        ramps[SPEED_PEAK] = top
+        ramps[SPEED_OUT] = top
+        if top > 0.0:
+            ramps[TIME_IN] = 2.0 * length / (speed_in + top)
+        return
+    least = square - gain
+    if speed_out * speed_out <= least:  # slower all the way
+        if speed_out * speed_out < least - ROUNDING * (square + 2.0 * accel * (s + length)):
+            speed_out = math.sqrt(least)
+        ramps[SPEED_PEAK] = speed_in
+        ramps[SPEED_OUT] = speed_out
+        ramps[TIME_OUT] = 2.0 * length / (speed_in + speed_out)
+        return
+    peak = min(max(cap, speed_out), math.sqrt(0.5 * (gain + square + speed_out * speed_out)))
+    distance_in = abs(peak - speed_in) * (peak + speed_in) / (2.0 * accel)
+    distance_out = (peak - speed_out) * (peak + speed_out) / (2.0 * accel)
+    cruise = length - distance_in - distance_out
+    ramps[SPEED_PEAK] = peak
+    ramps[SPEED_OUT] = speed_out
+    ramps[TIME_IN] = abs(peak - speed_in) / accel
+    ramps[TIME_OUT] = (peak - speed_out) / accel
+    if cruise > 0.0:
+        ramps[TIME_CRUISE] = cruise / peak
 
 
 @compiled
-def plan_halt(ramps: Floats, speed_in: float, length: float, accel: float, s: float) -> bool:
-    """Fill `ramps` to brake at once; True if the path comes to rest within `length`."""
+def plan_halt(ramps: Floats, speed_in: float, length: float, accel: float, s: float) -> None:
+    """Fill `ramps` to brake at once, to rest if there is room; the arguments are those of `plan_ramps`."""
     needed = speed_in * speed_in / (2.0 * accel)
-    if needed >= length:
-        plan_ramps(ramps, speed_in, length, speed_in, accel, 0.0, s)
-        return False
-    plan_ramps(ramps, speed_in, needed, speed_in, accel, 0.0, s)
-    return True
+    plan_ramps(ramps, speed_in, min(needed, length), speed_in, accel, 0.0, s)
+
+
+@compiled
+def plan_pause(ramps: Floats, duration: float) -> None:
+    """Fill `ramps` to stand still for `duration`."""
+    plan_ramps(ramps, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
+    ramps[TIME_CRUISE] = duration
 
 
 @compiled
 def ramps_duration(ramps: Floats) -> float:
     """Return the time of the planned stretch in s."""
     return float(ramps[TIME_IN] + ramps[TIME_CRUISE] + ramps[TIME_OUT])
-
-
-@compiled
-def in_ramp(ramps: Floats, t: float) -> bool:
-    """Tell whether the speed changes at time `t` of the planned stretch."""
-    return bool(t < ramps[TIME_IN] or t > ramps[TIME_IN] + ramps[TIME_CRUISE])
 
 
 @compiled
@@ -93,10 +101,8 @@ def shaped_ramp(
         return from_speed * t + jerk * t * t * t / 6.0, from_speed + 0.5 * jerk * t * t
     left = duration - t
     if left < edge:  # mirror image from the end
-        distance = 0.5 * (from_speed + to_speed) * duration - (
-            to_speed * left - jerk * left * left * left / 6.0
-        )
-        return distance, to_speed - 0.5 * jerk * left * left
+        back = to_speed * left - jerk * left * left * left / 6.0
+        return 0.5 * (from_speed + to_speed) * duration - back, to_speed - 0.5 * jerk * left * left
     u = t - edge
     speed = from_speed + 0.5 * jerk * edge * edge
     distance = from_speed * edge + jerk * edge * edge * edge / 6.0
@@ -106,18 +112,17 @@ def shaped_ramp(
 @compiled
 def ramps_at(ramps: Floats, t: float, jerkrel: float) -> tuple[float, float]:
     """Return path length within the segment and speed at time `t` of the planned stretch."""
-    start = ramps[FROM_S]
+    begin, peak, out = ramps[FROM_S], ramps[SPEED_PEAK], ramps[SPEED_OUT]
     if t < ramps[TIME_IN]:
-        distance, speed = shaped_ramp(t, ramps[TIME_IN], ramps[SPEED_IN], ramps[SPEED_PEAK], jerkrel)
-        return start + distance, speed
-    t -= ramps[TIME_IN]
-    gone = 0.5 * (ramps[SPEED_IN] + ramps[SPEED_PEAK]) * ramps[TIME_IN]
-    if t < ramps[TIME_CRUISE]:
-        return start + gone + ramps[SPEED_PEAK] * t, ramps[SPEED_PEAK]
-    t -= ramps[TIME_CRUISE]
-    if t >= ramps[TIME_OUT]:
-        return start + ramps[LENGTH], ramps[SPEED_OUT]
-    # Measured from the end, so that the segment's end is met exactly.
-    left, _ = shaped_ramp(ramps[TIME_OUT] - t, ramps[TIME_OUT], ramps[SPEED_OUT], ramps[SPEED_PEAK], jerkrel)
-    _, speed = shaped_ramp(t, ramps[TIME_OUT], ramps[SPEED_PEAK], ramps[SPEED_OUT], jerkrel)
-    return start + ramps[LENGTH] - left, speed
+        gone, speed = shaped_ramp(t, ramps[TIME_IN], ramps[SPEED_IN], peak, jerkrel)
+        return begin + gone, speed
+    # Everything else is measured from the end, so that the segment's end is met exactly.
+    left = ramps_duration(ramps) - t
+    end = begin + ramps[LENGTH]
+    if left <= 0.0:
+        return end, float(out)
+    if left < ramps[TIME_OUT]:
+        to_go, speed = shaped_ramp(left, ramps[TIME_OUT], out, peak, jerkrel)
+        return end - to_go, speed
+    to_go = 0.5 * (peak + out) * ramps[TIME_OUT]
+    return end - to_go - peak * (left - ramps[TIME_OUT]), float(peak)

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._jit import allocating, compiled
-from polycnc.kernel._spline import Splines, make_splines, spline_next_corner, spline_point
+from polycnc.kernel._spline import Splines, spline_next_cut, spline_point
 
 LINE = 0
 ARC = 1  # circle in two axes; every other axis moves linearly with the angle (helix)
@@ -28,12 +28,12 @@ TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of
 
 GEO = 16
 # Geometry of an ARC.
-CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, ANGLE_START, SWEEP, IN_PLANE = 0, 1, 2, 3, 4, 5, 6
+CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP = 0, 1, 2, 3, 4
 # Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point behind it.
 CIRCLE3D_RADIUS, CIRCLE3D_LENGTH = 10, 11
 WORK_POINT = 13
-# Geometry of a SPLINE, a WAIT.
-SPLINE_INDEX = 0
+# Geometry of a SPLINE (which one, and where on it the segment begins), a WAIT.
+SPLINE_INDEX, SPLINE_FROM = 0, 1
 WAIT_S, WAIT_EVENT = 0, 1
 
 TINY = 1e-12
@@ -46,10 +46,9 @@ SEGMENT_ROW = np.dtype(
         ("length", np.float64),
         ("feed", np.float64),  # programmed path speed, inf for rapids
         ("end_speed", np.float64),  # prescribed speed at the end, or negative: the look-ahead decides
-        ("full_cap", np.float64),  # highest path speed that feed and axes allow, at the top override
-        ("cap", np.float64),  # the same at the present override
+        ("cap", np.float64),  # highest path speed that feed and axes allow
         ("full_accel", np.float64),  # path acceleration that the axes allow, before corners take their share
-        ("accel", np.float64),
+        ("accel", np.float64),  # mean acceleration of its ramps
         ("junction", np.float64),  # highest speed through the end
         ("share", np.float64),  # part of the acceleration that the corner at the end uses up
         ("out", np.float64),  # planned speed at the end
@@ -72,18 +71,21 @@ class Segments(NamedTuple):
     end: Floats  # [S, n]
     plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC (first two) or a CIRCLE3D
     geo: Floats  # [S, GEO]
-    splines: Splines
+    splines: Splines | None  # what spline segments refer to
 
 
 def make_segments(slots: int, axes: int, splines: Splines | None = None) -> Segments:
-    """Allocate `slots` empty segments of `axes` axes."""
+    """Allocate `slots` empty segments of `axes` axes, splines among them if there is a store of them.
+
+    Without one the functions that go along a path are compiled without splines, which saves seconds.
+    """
     return Segments(
         row=np.zeros(slots, SEGMENT_ROW),
         start=np.zeros((slots, axes)),
         end=np.zeros((slots, axes)),
         plane=np.zeros((slots, 3), np.int8),
         geo=np.zeros((slots, GEO)),
-        splines=make_splines(axes, 1, 1, 1) if splines is None else splines,
+        splines=splines,
     )
 
 
@@ -192,9 +194,7 @@ def set_arc(
     seg.geo[k, CENTER_Q] = center_q
     seg.geo[k, RADIUS_START] = radius_start
     seg.geo[k, RADIUS_END] = radius_end
-    seg.geo[k, ANGLE_START] = math.atan2(dq, dp)
     seg.geo[k, SWEEP] = sweep
-    seg.geo[k, IN_PLANE] = in_plane / seg.row[k]["length"]
     return True
 
 
@@ -233,23 +233,33 @@ def set_circle3d(
 
 
 @allocating
-def set_spline(seg: Segments, k: int, index: int, feed: float, flags: int, tag: int) -> bool:
-    """Fill slot `k` with spline `index` of the store; its first point must be where the path stands.
+def set_spline(
+    seg: Segments,
+    splines: Splines,
+    k: int,
+    index: int,
+    begin: float,
+    start: Floats,
+    feed: float,
+    flags: int,
+    tag: int,
+) -> float:
+    """Fill slot `k` with the stretch of spline `index` from path length `begin` on; return where it ends.
 
-    False if it has no length, or a corner inside: a segment is smooth, so a curve with corners is cut there.
+    A stretch is one piece of the spline, so that every piece is as fast as its own curvature allows.
     """
-    length = seg.splines.length[index]
-    if length < TINY or spline_next_corner(seg.splines, index, 0.0) < length:
-        return False
-    point = np.empty(seg.start.shape[1])
-    spline_point(seg.splines, index, 0.0, point)
-    seg.start[k, :] = point
-    spline_point(seg.splines, index, length, point)
-    set_common(seg, k, seg.start[k].copy(), point, feed, flags, tag)
+    end = spline_next_cut(splines, index, begin)
+    length = splines.length[index]
+    while end < length and (end - begin < TINY or length - end < TINY):  # too short for a segment of its own
+        end = spline_next_cut(splines, index, end)
+    point = np.empty(start.shape[0])
+    spline_point(splines, index, end, point)
+    set_common(seg, k, start, point, feed, flags, tag)
     seg.row[k]["kind"] = SPLINE
-    seg.row[k]["length"] = length
+    seg.row[k]["length"] = end - begin
     seg.geo[k, SPLINE_INDEX] = index
-    return True
+    seg.geo[k, SPLINE_FROM] = begin
+    return float(end)
 
 
 @compiled

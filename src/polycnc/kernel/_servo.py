@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.kernel._jit import compiled
+from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._plant import Plant, drive_cycle, drive_measured, drive_place, limited
 
 IDEAL = 0
@@ -183,7 +183,7 @@ def servo_cycle(
     servo.error_tripped[i] |= _tripped(row, int(servo.profile_at_rest[i]))
 
 
-@compiled
+@entry
 def servo_place(i: int, servo: Servo, plant: Plant, position: float) -> None:
     """Put axis `i` at rest at `position` and forget what its filter remembers."""
     row = servo.row[i]

@@ -273,3 +273,16 @@ def spline_next_corner(store: Splines, k: int, s: float) -> float:
         if store.span_row[span, 1] != 0:
             return float(store.span[span, START])
     return float(store.length[k])
+
+
+@compiled
+def spline_next_cut(store: Splines, k: int, s: float) -> float:
+    """Return the path length of the first corner or start of a piece after `s`, or of the end of the spline."""
+    last = wrap(store.rows[k, 2] + store.rows[k, 3] - 1, store.span.shape[0])
+    span = _span_at(store, k, s, False)
+    piece = store.span_row[span, 0]
+    while span != last:
+        span = wrap(span + 1, store.span.shape[0])
+        if store.span_row[span, 0] != piece or store.span_row[span, 1] != 0:
+            return float(store.span[span, START])
+    return float(store.length[k])

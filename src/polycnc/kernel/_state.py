@@ -16,21 +16,22 @@ from polycnc.kernel._point_to_point import PointToPoint, make_point_to_point
 from polycnc.kernel._recorder import Recorder, make_recorder
 from polycnc.kernel._segments import Segments, make_segments
 from polycnc.kernel._servo import Servo, make_servo
+from polycnc.kernel._spline import Splines
 from polycnc.kernel._switches import Switches, make_switches
 from polycnc.kernel._table import Table, make_table
 
 Floats = npt.NDArray[np.float64]
 
 # Reasons to stop, bits of `mask` and `raised`.
-QUEUE_LOW = 1  # few planned segments are left of a path that is not closed
-PATH_RESTED = 2  # a path came to rest and has nothing queued
+QUEUE_LOW = 1  # few planned segments are left of a path that is started and not closed
+PATH_RESTED = 2  # a path came to rest, or passed its last wait, and has nothing queued
 PROFILE_ENDED = 4
 SWITCH_EDGE = 8
 SOFT_LIMIT = 16  # a setpoint is beyond a software limit
 FOLLOWING_ERROR = 32
 RECORDER_FULL = 64
 PATH_EVENT = 128  # a path stands at an event
-TABLE_EMPTY = 256
+TABLE_EMPTY = 256  # a running table had no row left
 
 CLOCK_ROW = np.dtype(
     [
@@ -85,8 +86,12 @@ def make_state(
     curve_points: int = 2,
     record_cycles: int = 0,
     record_actual: bool = False,
+    splines: Splines | None = None,
 ) -> KernelState:
-    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits."""
+    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits.
+
+    `splines` is the store that spline segments refer to; without one there can be none.
+    """
     clock = np.zeros(1, CLOCK_ROW)
     clock["dt"] = cycle_s
     clock["axis"] = -1
@@ -100,7 +105,7 @@ def make_state(
         acceleration=np.zeros(axes),
         ptp=make_point_to_point(axes),
         paths=make_paths(paths, segments, axes),
-        seg=make_segments(segments, axes),
+        seg=make_segments(segments, axes, splines),
         limits=make_limits(axes),
         table=make_table(tables, axes, table_rows),
         follower=make_follower(followers),

@@ -1,7 +1,7 @@
 """A channel: prepares a program ahead of its execution and fills the channel queue with it.
 
-Runs of plain blocks go through the compiled kernel (`_fast`), every other block through the ordinary
-interpreter.
+Runs of plain blocks go through the compiled kernel (`_fast`), every other block, and the first blocks of a
+program, through the ordinary interpreter.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from polycnc.nc._queue import ExecutionStoppedError, QueueWriter
 from polycnc.nc._scan import COMMENT, LABEL, PERCENT, WordColumns, scan, scan_rules, word_columns
 from polycnc.nc._scan_plain import Block, Word, scan_block
 
+ORDINARY_BLOCKS = 2000
 _CHUNK_BLOCKS = 1 << 14
 _JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are short, and jumps many
 _MOST_ERRORS = 1000
@@ -34,7 +35,8 @@ class Channel:
     """Prepare one program for one path of a machine.
 
     With `collect_errors` a refused block is noted in `errors` and left out; else preparation ends there with
-    `error`. Without `fast` every block goes through the ordinary interpreter, which gives the same queue.
+    `error`. The ordinary interpreter gives the same queue as the compiled kernel, which takes over after the
+    first `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
     """
 
     def __init__(
@@ -46,7 +48,7 @@ class Channel:
         path: int = 0,
         skip_levels: frozenset[int] = frozenset(),
         collect_errors: bool = False,
-        fast: bool = True,
+        ordinary_blocks: float = ORDINARY_BLOCKS,
     ) -> None:
         self.dialect = dialect
         self.machine = machine
@@ -58,7 +60,7 @@ class Channel:
         self._collect_errors = collect_errors
         self._known_errors: set[str] = set()
         self._skip_levels = skip_levels
-        self._fast = fast
+        self._ordinary_blocks = ordinary_blocks
         self._calls = Calls(program, dialect)
         self._place = Place(program)
         self._chunk = word_columns(_CHUNK_BLOCKS)
@@ -96,7 +98,7 @@ class Channel:
         while not self.done and free_slots(self.writer.paths, self.path) > RESERVE:
             if self._next_block >= self._words.n_blocks:
                 self._next_chunk()
-            elif self._fast and not whole[ORDINARY]:
+            elif self.blocks >= self._ordinary_blocks and not whole[ORDINARY]:
                 reason = self._plain_blocks()
                 if reason == QUEUE_FULL:
                     return

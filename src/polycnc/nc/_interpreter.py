@@ -95,10 +95,6 @@ _OUTCOMES = {
 }
 
 
-def _no_sub_programs(program: int) -> Trouble | None:
-    return f"there is no sub-program {program}", "Sub-programs are found by a channel."
-
-
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
@@ -111,7 +107,7 @@ class Interpreter:
         state: ChannelState,
         messages: Messages,
         queue: QueueWriter,
-        call_trouble: Callable[[int], Trouble | None] = _no_sub_programs,
+        call_trouble: Callable[[int], Trouble | None],
     ) -> None:
         self.dialect = dialect
         self.state = state

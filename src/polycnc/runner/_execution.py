@@ -75,8 +75,6 @@ class Execution:
     def __post_init__(self) -> None:
         state = self.machine.state
         self._row = state.paths.row[self.channel.path]
-        self._measured = 0
-        self._prepared = 0
         self.low = state.setpoint.copy()
         self.high = state.setpoint.copy()
         depth = int(self._row["depth"])
@@ -109,17 +107,9 @@ class Execution:
     def _prepare(self) -> None:
         state = self.machine.state
         path = self.channel.path
-        prepare_path(
-            state.seg,
-            state.paths,
-            path,
-            state.limits,
-            self.machine.config.cycle_s,
-            self._prepared,
-            state.work,
-        )
-        measure_queue(state.seg, state.paths, path, self._prepared, self.low, self.high)
-        self._prepared = int(self._row["tail"])
+        first = int(self._row["prepared"])
+        prepare_path(state.seg, state.paths, path, state.limits, self.machine.config.cycle_s, state.work)
+        measure_queue(state.seg, state.paths, path, first, self.low, self.high)
 
     def _make_room(self) -> None:
         """Run part of the queue while a block is still being prepared."""
@@ -131,7 +121,7 @@ class Execution:
         row = self._row
         if row["closed"]:
             return int(row["tail"])
-        known = int(row["tail"]) if row["depth"] else int(row["planned"])
+        known = int(row["prepared"]) if row["depth"] else int(row["planned"])
         until = known - self._low_water
         if (
             until <= row["head"]

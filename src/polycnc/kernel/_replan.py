@@ -1,0 +1,124 @@
+"""Take over what is new while a path runs: segments appended, another override, feed hold and its release.
+
+Speeds may fall at once, but what they were planned with (corners and their shares, accelerations) stays as it is
+within the distance that braking takes, because the motion has already been planned and partly gone along with it.
+"""
+
+from __future__ import annotations
+
+from polycnc.kernel._geometry import is_curved
+from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
+from polycnc.kernel._jit import compiled, entry
+from polycnc.kernel._limits import AxisLimits, least_accel
+from polycnc.kernel._lookahead import limit_queue, plan_path
+from polycnc.kernel._path import HELD, RUNNING, Paths, slot
+from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
+from polycnc.kernel._segments import LINE, RAPID, STOP, WAIT, Floats, Segments
+
+
+@compiled
+def _next_plan(seg: Segments, paths: Paths, g: int, dt: float) -> tuple[int, float, float]:
+    """Return where path `g` can first be planned anew: segment count, path length in it, and speed there."""
+    path, ramps = paths.row[g], paths.ramps[g]
+    head = int(path["head"])
+    row = seg.row[slot(paths, g, head)]
+    if (path["state"] != RUNNING and path["state"] != HELD) or row["kind"] == WAIT:
+        return head, 0.0, 0.0
+    t = path["lead"] + path["cycles"] * dt
+    if path["state"] == RUNNING and not in_ramp(paths, g, t):
+        s, speed = ramps_at(ramps, t, path["jerkrel"])
+        return head, s, speed
+    if path["state"] == RUNNING and t < ramps[TIME_IN] and ramps[TIME_CRUISE] > 2.0 * dt:
+        s, speed = ramps_at(ramps, ramps[TIME_IN], path["jerkrel"])
+        return head, s, speed
+    if ends_within(row, ramps):
+        return head, float(ramps[FROM_S] + ramps[LENGTH]), 0.0
+    return head + 1, 0.0, float(ramps[SPEED_OUT])
+
+
+@compiled
+def frozen_until(seg: Segments, paths: Paths, g: int, dt: float) -> int:
+    """Return the count of the first segment in which path `g` could come to rest with the least acceleration.
+
+    Those before it keep what they were planned with. Two more cycles are put in front of the braking: a corner
+    counts in the two cycles around it, so nothing may change in the last two before it.
+    """
+    path = paths.row[g]
+    first, s, speed = _next_plan(seg, paths, g, dt)
+    if path["state"] != RUNNING and path["state"] != HELD:
+        return first
+    margin = 0.0
+    if first < path["prepared"]:
+        speed += 2.0 * dt * seg.row[slot(paths, g, first)]["full_accel"]
+        margin = 2.0 * dt * speed
+    square = speed * speed
+    for count in range(first, int(path["prepared"])):
+        row = seg.row[slot(paths, g, count)]
+        if row["kind"] == WAIT:
+            return count
+        left = row["length"] - s
+        s = 0.0
+        used = min(margin, left)
+        margin -= used
+        square -= 2.0 * least_accel(row, path["jerkrel"]) * (left - used)
+        if square <= 0.0 and margin <= 0.0:
+            return count
+    return int(path["prepared"])
+
+
+@compiled
+def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
+    """Return the count up to which segments will not change: a line that may yet be rounded off waits."""
+    path = paths.row[g]
+    tail = int(path["tail"])
+    if tail > path["prepared"] and path["tolerance"] > 0.0 and path["closed"] == 0:
+        row = seg.row[slot(paths, g, tail - 1)]
+        if row["kind"] == LINE and not row["flags"] & (RAPID | STOP):
+            return tail - 1
+    return tail
+
+
+@entry
+def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
+    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [2, n].
+
+    If the last segment before is running, the path goes on through its end, unless that is too close. With a
+    path tolerance a line waits for the one after it, or for `closed`.
+    """
+    path = paths.row[g]
+    head, first = int(path["head"]), int(path["prepared"])
+    path["prepared"] = _ready_count(seg, paths, g)
+    first_end = max(first - 1, head)
+    goes_on = first_end == head and head < first < path["prepared"]
+    if goes_on and frozen_until(seg, paths, g, dt) > head:
+        goes_on = False
+        first_end = first
+    limit_queue(seg, paths, g, limits, dt, first, first_end, work)
+    plan_path(seg, paths, g)
+    if goes_on:
+        plan_again(seg, paths, g, dt)
+
+
+@entry
+def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
+    """Take over a new override, feed hold or its release from where path `g` stands now."""
+    path = paths.row[g]
+    head, last = int(path["head"]), int(path["prepared"])
+    first = frozen_until(seg, paths, g, dt)
+    k = slot(paths, g, first)
+    keeps = first < last and is_curved(seg, k)
+    accel = seg.row[k]["full_accel"]
+    if path["override"] > 0.0:
+        for count in range(head, first):
+            row = seg.row[slot(paths, g, count)]
+            row["cap"] = min(row["cap"], row["feed"] * path["override"])
+    limit_queue(seg, paths, g, limits, dt, first, first, work)
+    if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
+        seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
+        seg.row[k]["full_accel"] = accel
+    for count in range(head, min(first, last - 1)):
+        row, after = seg.row[slot(paths, g, count)], seg.row[slot(paths, g, count + 1)]
+        row["junction"] = min(row["junction"], row["cap"], after["cap"])
+    path["planned"] = head
+    plan_path(seg, paths, g)
+    plan_again(seg, paths, g, dt)
