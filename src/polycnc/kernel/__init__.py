@@ -1,6 +1,15 @@
 """What happens in one control cycle: profiles, path geometry, look-ahead, interpolation, coupling, servo."""
 
-from polycnc.kernel._advance import advance, cycle, give_to_path, give_to_point_to_point, place_machine, skip
+from polycnc.kernel._advance import (
+    advance,
+    cycle,
+    follow_cycle,
+    give_to_path,
+    give_to_point_to_point,
+    place_machine,
+    skip,
+    sources_cycle,
+)
 from polycnc.kernel._append import (
     add_line,
     append_arc,
@@ -9,7 +18,7 @@ from polycnc.kernel._append import (
     append_spline,
     append_wait,
 )
-from polycnc.kernel._geometry import segment_point
+from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
 from polycnc.kernel._jit import compiled, entry, is_cold
 from polycnc.kernel._limits import AxisLimits, make_limits
 from polycnc.kernel._lookahead import measure_queue
@@ -28,13 +37,41 @@ from polycnc.kernel._path import (
     start_path,
 )
 from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, stop_axis
-from polycnc.kernel._profile import SHORT_JUMP, SHORT_OVERSHOOT, SHORT_REDUCE_START
+from polycnc.kernel._profile import (
+    SHORT_JUMP,
+    SHORT_OVERSHOOT,
+    SHORT_REDUCE_START,
+    plan_profile,
+    stop_profile,
+)
+from polycnc.kernel._profile_shape import (
+    PROFILE_COLUMNS,
+    PROFILE_PHASES,
+    VELOCITY,
+    add_ramp,
+    close_profile,
+    profile_at,
+    profile_duration,
+    ramp_distance,
+)
 from polycnc.kernel._recorder import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
 from polycnc.kernel._replan import prepare_path, replan_path
-from polycnc.kernel._segments import ARC, LINE, RAPID, STOP, WAIT, Segments, make_segments
+from polycnc.kernel._segments import (
+    ARC,
+    LINE,
+    RAPID,
+    STOP,
+    WAIT,
+    Segments,
+    make_segments,
+    set_arc,
+    set_circle3d,
+    set_line,
+)
 from polycnc.kernel._servo import IDEAL, PIDF
 from polycnc.kernel._state import (
     FOLLOWING_ERROR,
+    OTHER_SOURCE,
     PATH_EVENT,
     PATH_RESTED,
     POINT_TO_POINT,
@@ -64,11 +101,14 @@ __all__ = [
     "LIMIT_LOW",
     "LINE",
     "MAIN",
+    "OTHER_SOURCE",
     "PATH_EVENT",
     "PATH_RESTED",
     "PIDF",
     "POINT_TO_POINT",
+    "PROFILE_COLUMNS",
     "PROFILE_ENDED",
+    "PROFILE_PHASES",
     "QUEUE_LOW",
     "RAPID",
     "RAPID_LENGTH",
@@ -85,6 +125,7 @@ __all__ = [
     "TABLE_EMPTY",
     "TIME_S",
     "TOP_SPEED",
+    "VELOCITY",
     "WAIT",
     "WAIT_S",
     "AxisLimits",
@@ -93,15 +134,18 @@ __all__ = [
     "PointToPoint",
     "Segments",
     "add_line",
+    "add_ramp",
     "advance",
     "append_arc",
     "append_circle3d",
     "append_line",
     "append_spline",
     "append_wait",
+    "close_profile",
     "compiled",
     "cycle",
     "entry",
+    "follow_cycle",
     "free_slots",
     "give_to_path",
     "give_to_point_to_point",
@@ -113,11 +157,22 @@ __all__ = [
     "measure_queue",
     "move_to",
     "place_machine",
+    "plan_profile",
     "prepare_path",
+    "profile_at",
+    "profile_duration",
+    "ramp_distance",
     "replan_path",
+    "segment_coordinate",
     "segment_point",
+    "segment_slope",
+    "set_arc",
+    "set_circle3d",
+    "set_line",
     "skip",
     "slot",
+    "sources_cycle",
     "start_path",
     "stop_axis",
+    "stop_profile",
 ]

@@ -1,7 +1,7 @@
 """Run control cycles: every source gives its part, the sum is the setpoint, the servos follow, the record is kept.
 
 `advance` never enters Python between two cycles. A controller with logic of its own per cycle writes a compiled loop
-around `cycle`.
+around `cycle`, or around its two halves where it has to see or change the setpoints between them.
 """
 
 from __future__ import annotations
@@ -123,8 +123,8 @@ def _follow(state: KernelState, i: int, last_setpoint: float, dt: float) -> None
 
 
 @compiled
-def cycle(state: KernelState) -> None:
-    """Run one control cycle."""
+def sources_cycle(state: KernelState) -> None:
+    """Begin a control cycle: let every source give its part; the sum is in `setpoint`."""
     clock = state.clock[0]
     dt = clock["dt"]
     clock["raised"] = 0
@@ -135,6 +135,14 @@ def cycle(state: KernelState) -> None:
     _run_paths(state, dt)
     _position_sources(state, dt)
     _coupled_sources(state)
+
+
+@compiled
+def follow_cycle(state: KernelState) -> None:
+    """End a control cycle: let the servos follow `setpoint`, watch the switches, keep the record."""
+    clock = state.clock[0]
+    dt = clock["dt"]
+    last = state.work[0]
     for i in range(last.shape[0]):
         _follow(state, i, last[i], dt)
     clock["cycle"] += 1
@@ -144,7 +152,14 @@ def cycle(state: KernelState) -> None:
     rapid = path["flags"] & RAPID
     record(state.recorder, time_s, path["tag"], path["speed"], rapid, state.setpoint, state.servo.actual)
     if is_full(state.recorder):
-        state.clock[0]["raised"] |= RECORDER_FULL
+        clock["raised"] |= RECORDER_FULL
+
+
+@compiled
+def cycle(state: KernelState) -> None:
+    """Run one control cycle."""
+    sources_cycle(state)
+    follow_cycle(state)
 
 
 @entry

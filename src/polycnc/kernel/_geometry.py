@@ -62,18 +62,23 @@ def segment_point(seg: Segments, k: int, s: float, out: Floats) -> None:
     fraction = s / row["length"]
     for i in range(out.shape[0]):
         out[i] = seg.start[k, i] + (seg.end[k, i] - seg.start[k, i]) * fraction
-    if kind == ARC:
-        _arc_point(seg, k, fraction, out)
-    elif kind == CIRCLE3D:
+    if kind in (ARC, CIRCLE3D):
         three = seg.geo[k, WORK_POINT:]
-        circle3d_point(seg.geo[k], fraction, three)
-        for j in range(3):
-            out[seg.plane[k, j]] = three[j]
+        if kind == ARC:
+            _arc_point(seg, k, fraction, three)
+            out[seg.plane[k, 0]], out[seg.plane[k, 1]] = three[0], three[1]
+        else:
+            circle3d_point(seg.geo[k], fraction, three)
+            for j in range(3):
+                out[seg.plane[k, j]] = three[j]
 
 
 @compiled
 def _arc_point(seg: Segments, k: int, fraction: float, out: Floats) -> None:
-    """Turn and stretch the radius vector of the start; the change is added to the start, so nothing cancels."""
+    """Write both plane coordinates to `out[0:2]`.
+
+    The radius vector of the start is turned and stretched; the change is added to the start, so nothing cancels.
+    """
     p, q = seg.plane[k, 0], seg.plane[k, 1]
     geo = seg.geo[k]
     half = 0.5 * geo[SWEEP] * fraction
@@ -83,8 +88,54 @@ def _arc_point(seg: Segments, k: int, fraction: float, out: Floats) -> None:
     across = 2.0 * scale * sine * cosine
     start_p, start_q = seg.start[k, p], seg.start[k, q]
     radius_p, radius_q = start_p - geo[CENTER_P], start_q - geo[CENTER_Q]
-    out[p] = start_p + (along * radius_p - across * radius_q)
-    out[q] = start_q + (along * radius_q + across * radius_p)
+    out[0] = start_p + (along * radius_p - across * radius_q)
+    out[1] = start_q + (along * radius_q + across * radius_p)
+
+
+@compiled
+def segment_coordinate(seg: Segments, k: int, i: int, s: float) -> float:
+    """Return coordinate `i` of segment `k` (not a spline) at path length `s`, which may lie beyond its ends."""
+    row = seg.row[k]
+    start, end = seg.start[k, i], seg.end[k, i]
+    if s == row["length"] or row["length"] <= 0.0:
+        return float(end)
+    fraction = s / row["length"]
+    kind = row["kind"]
+    if kind == ARC and (seg.plane[k, 0] == i or seg.plane[k, 1] == i):
+        _arc_point(seg, k, fraction, seg.geo[k, WORK_POINT:])
+        return float(seg.geo[k, WORK_POINT + (0 if seg.plane[k, 0] == i else 1)])
+    if kind == CIRCLE3D:
+        three = seg.geo[k, WORK_POINT:]
+        for j in range(3):
+            if seg.plane[k, j] == i:
+                circle3d_point(seg.geo[k], fraction, three)
+                return float(three[j])
+    return float(start + (end - start) * fraction)
+
+
+@compiled
+def segment_slope(seg: Segments, k: int, i: int, s: float) -> float:
+    """Return d(coordinate `i`)/ds of segment `k` (not a spline) at path length `s`, which may lie beyond its ends."""
+    row = seg.row[k]
+    length = row["length"]
+    if length <= 0.0:
+        return 0.0
+    kind = row["kind"]
+    geo = seg.geo[k]
+    if kind == ARC and (seg.plane[k, 0] == i or seg.plane[k, 1] == i):
+        three = seg.geo[k, WORK_POINT:]
+        _arc_point(seg, k, s / length, three)
+        at_p, at_q = three[0] - geo[CENTER_P], three[1] - geo[CENTER_Q]
+        stretch = (geo[RADIUS_END] - geo[RADIUS_START]) / (length * math.sqrt(at_p * at_p + at_q * at_q))
+        turn = geo[SWEEP] / length
+        return float(stretch * at_p - turn * at_q if seg.plane[k, 0] == i else stretch * at_q + turn * at_p)
+    if kind == CIRCLE3D:
+        three = seg.geo[k, WORK_POINT:]
+        for j in range(3):
+            if seg.plane[k, j] == i:
+                circle3d_tangent(geo, s / length, three)
+                return float(three[j])
+    return float((seg.end[k, i] - seg.start[k, i]) / length)
 
 
 @compiled

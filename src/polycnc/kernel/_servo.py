@@ -32,6 +32,7 @@ SERVO_ROW = np.dtype(
         ("kfca", np.float64),  # s, on the setpoint's acceleration
         ("output_limit", np.float64),
         ("command", np.float64),  # what is put out with the loop open
+        ("blocked", np.int64),  # -1 or 1: the drive is off in that direction
         ("in_position_window", np.float64),
         ("following_error_limit", np.float64),
         # Results.
@@ -141,6 +142,10 @@ def _moved(
 ) -> float:
     """Let the axis follow for one cycle from the `last` actual position; return the new one."""
     if row["loop_closed"] != 0 and row["mode"] == IDEAL:
+        if row["blocked"] != 0 and (setpoint - last) * row["blocked"] > 0.0:
+            _take_ideal(row, drive, last, 0.0)
+            row["following_error"] = setpoint - last
+            return last
         _take_ideal(row, drive, setpoint, velocity)
         return setpoint
     drive_cycle(drive, row["output"], dt)
@@ -153,6 +158,8 @@ def _moved(
     else:
         row["running"] = 0
         row["output"] = limited(row["command"], row["output_limit"])
+    if row["output"] * row["blocked"] > 0.0:
+        row["output"] = 0.0
     return actual
 
 

@@ -48,13 +48,14 @@ CLOCK_ROW = np.dtype(
 
 # Who gives an axis its position; a path g is g.
 POINT_TO_POINT = -1
+OTHER_SOURCE = -2  # whoever writes `base` before the cycle
 
 
 class KernelState(NamedTuple):
     """A machine of n axes; `setpoint` is the sum of what its sources give."""
 
     clock: npt.NDArray[np.void]  # [1] of CLOCK_ROW
-    owner: npt.NDArray[np.int64]  # [n] POINT_TO_POINT or a path
+    owner: npt.NDArray[np.int64]  # [n] POINT_TO_POINT, OTHER_SOURCE or a path
     base: Floats  # [n] what the owner gives
     setpoint: Floats  # [n]
     velocity: Floats  # [n] of the setpoint

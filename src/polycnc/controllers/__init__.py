@@ -1,0 +1,1 @@
+"""The rebuilt controllers, one package each: their state, their functions, codes and limits."""

@@ -1,0 +1,284 @@
+"""One axis as programs see it: its parameters and registers by the manual's names, in the axis' own units."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, overload
+
+import numpy as np
+
+from polycnc.controllers.apci._registers import Axst, Digi
+from polycnc.controllers.apci._state import LEFT, RIGHT
+from polycnc.controllers.apci._system_axis import SERVO_MCP_LIMIT, STEPPER_MCP_LIMIT, AxisSetup
+from polycnc.controllers.apci._units import seconds
+
+if TYPE_CHECKING:
+    from polycnc.controllers.apci._board import Board
+
+
+class Parameter:
+    """A number of the axis' row; `per` says how often the axis' time unit divides it."""
+
+    def __init__(self, name: str, per: int = 0) -> None:
+        self.name = name
+        self.per = per
+
+    @overload
+    def __get__(self, axis: None, owner: type) -> Parameter: ...
+    @overload
+    def __get__(self, axis: Axis, owner: type) -> float: ...
+    def __get__(self, axis: Axis | None, owner: type) -> Parameter | float:
+        """Return the number in the axis' units."""
+        if axis is None:
+            return self
+        return float(axis.row[self.name] * axis.time_unit_s**self.per)
+
+    def __set__(self, axis: Axis, value: float) -> None:
+        """Store the number; one that is none is left out, so that it cannot get into a profile."""
+        if math.isfinite(value):
+            axis.row[self.name] = value / axis.time_unit_s**self.per
+
+
+class Axis:
+    """Axis `index` of a board."""
+
+    jvl = Parameter("jvl", 1)
+    jtvl = Parameter("jtvl", 1)
+    hac = Parameter("hac", 2)
+    hvl = Parameter("hvl", 1)
+    sdec = Parameter("sdec", 2)
+    sll = Parameter("sll")
+    slr = Parameter("slr")
+    ipw = Parameter("ipw")
+    mpe = Parameter("mpe")
+    gf = Parameter("gf")
+    gfaux = Parameter("gfaux")
+    slsp = Parameter("slsp")
+    effradius = Parameter("effradius")
+    MaxVel = Parameter("MaxVel")  # these three in the units of interpolation, as they were written
+    MaxAcc = Parameter("MaxAcc")
+    MDVEL = Parameter("MDVEL")
+    dvoffset = Parameter("dvoffset", 1)
+    aux = Parameter("aux")
+    tp = Parameter("tp")
+    kp = Parameter("kp")
+    ki = Parameter("ki")
+    kd = Parameter("kd")
+    kpl = Parameter("kpl")
+    kfca = Parameter("kfca")
+    kfcv = Parameter("kfcv")
+
+    def __init__(self, board: Board, index: int, setup: AxisSetup) -> None:
+        self.board = board
+        self.index = index
+        self.setup = setup
+        self.row: Any = board.state.axis[index]
+        self.servo: Any = board.kernel.servo.row[index]
+        self.time_unit_s = seconds(setup.velocity_time_unit, board.config.sample_time_s)
+        self.varint = np.zeros(100, np.int32)  # application-specific axis variables
+        self.vardbl = np.zeros(100)
+        self.ctrlparams = np.zeros((15, 15))
+        self.zero_offsets = [0.0] * 5
+        self.ControllerFlags = 0
+        self.GCR = 0
+
+    # ------------------------------------------------------------------ parameters with a meaning of their own
+
+    @property
+    def jac(self) -> float:
+        """Jog acceleration; a negative one sets the slope of the braking ramp (Manual 002, 2.2.3)."""
+        return float(self.row["jac"] * self.time_unit_s**2)
+
+    @jac.setter
+    def jac(self, value: float) -> None:
+        if not math.isfinite(value):
+            return
+        rate = abs(value) / self.time_unit_s**2
+        self.row["jdec"] = rate
+        if value >= 0.0:
+            self.row["jac"] = rate
+
+    @property
+    def jdec(self) -> float:
+        """Slope of the jog braking ramp."""
+        return float(self.row["jdec"] * self.time_unit_s**2)
+
+    @property
+    def jovr(self) -> float:
+        """Jog override."""
+        return float(self.row["jovr"])
+
+    @jovr.setter
+    def jovr(self, value: float) -> None:
+        if value > 0.0 and math.isfinite(value):
+            self.board.change_jog_override(self.index, value)
+
+    @property
+    def jerkrel(self) -> float:
+        """Part of a ramp that is bent, 0 to 1 (Manual 002, 4.4.76.1)."""
+        return float(self.row["jerkrel"])
+
+    @jerkrel.setter
+    def jerkrel(self, value: float) -> None:
+        if not math.isnan(value):
+            self.row["jerkrel"] = min(max(value, 0.0), 1.0)
+
+    @property
+    def dpoffset(self) -> float:
+        """Offset added to the setpoint."""
+        return float(self.row["dpoffset"])
+
+    @dpoffset.setter
+    def dpoffset(self, value: float) -> None:
+        if math.isfinite(value):
+            self.row["dpoffset"] = value
+            self.board.move_offset(self.index)
+
+    # ------------------------------------------------------------------ positions
+
+    @property
+    def origin(self) -> float:
+        """Machine position of what is 0 for programs: machine zero and zero offset."""
+        return float(self.row["zero"] + self.row["offset"])
+
+    @property
+    def rp(self) -> float:
+        """Actual position."""
+        return float(self.board.kernel.servo.actual[self.index]) - self.origin
+
+    @property
+    def dp(self) -> float:
+        """Setpoint position."""
+        return float(self.board.kernel.setpoint[self.index]) - self.origin
+
+    @property
+    def rv(self) -> float:
+        """Actual velocity."""
+        return float(self.row["rv"] * self.time_unit_s)
+
+    @property
+    def dv(self) -> float:
+        """Setpoint velocity of the profile generator."""
+        return self.board.profile_velocity(self.index) * self.time_unit_s
+
+    @property
+    def position_error(self) -> float:
+        """Setpoint less actual position."""
+        return float(self.servo["following_error"])
+
+    @property
+    def counts_per_unit(self) -> float:
+        """Encoder counts or steps in one unit of position."""
+        return self.slsp * self.gf
+
+    def displayed(self, position: float) -> float:
+        """Return a position in the display unit."""
+        return position * (self.setup.display_ratio(self.counts_per_unit) or 1.0)
+
+    # ------------------------------------------------------------------ latches
+
+    @property
+    def lp(self) -> float:
+        """Latched position; reading it clears lpsf."""
+        self.row["lpsf"] = 0
+        self.row["lp_source"] = 0
+        return float(self.row["lp"] - self.row["offset"])
+
+    @lp.setter
+    def lp(self, value: float) -> None:
+        if math.isfinite(value):
+            self.row["lp"] = value + self.row["offset"]
+
+    @property
+    def lpndx(self) -> float:
+        """Position latched at the encoder's index."""
+        return float(self.row["lpndx"] - self.row["offset"])
+
+    @lpndx.setter
+    def lpndx(self, value: float) -> None:
+        if math.isfinite(value):
+            self.row["lpndx"] = value + self.row["offset"]
+
+    # ------------------------------------------------------------------ motor command
+
+    @property
+    def mcp(self) -> int:
+        """Motor command port (Manual 002, 4.4.88 and 4.4.162)."""
+        if not self.row["closed"]:
+            return int(self.row["mcp"])
+        return self._command_of(float(self.servo["output"]))
+
+    def velocity_of(self, mcp: int) -> float:
+        """Return the velocity that a motor command gives (axis units/s)."""
+        sign = -1.0 if self.setup.mcp_inverted else 1.0
+        if self.setup.motor == "servo":
+            return sign * mcp / SERVO_MCP_LIMIT * self.setup.plant.velocity_at_10_v / self.time_unit_s
+        return sign * self.step_frequency_hz(mcp) / self.counts_per_unit
+
+    def step_frequency_hz(self, mcp: int) -> float:
+        """Return the signed step frequency of a stepper's motor command."""
+        if mcp == 0:
+            return 0.0
+        return math.copysign(self.board.config.stepper_clock_hz / 2.0 / (abs(mcp) + 1), mcp)
+
+    def _command_of(self, velocity: float) -> int:
+        sign = -1.0 if self.setup.mcp_inverted else 1.0
+        low, high = self.setup.mcp_range
+        if self.setup.motor == "servo":
+            at_10_v = self.setup.plant.velocity_at_10_v / self.time_unit_s
+            return int(min(max(round(sign * velocity / at_10_v * SERVO_MCP_LIMIT), low), high))
+        frequency = abs(velocity) * self.counts_per_unit
+        if frequency * 2.0 * (STEPPER_MCP_LIMIT + 1) < self.board.config.stepper_clock_hz:
+            return 0
+        delay = max(round(self.board.config.stepper_clock_hz / 2.0 / frequency) - 1, 1)
+        return int(min(max(math.copysign(delay, sign * velocity), low), high))
+
+    # ------------------------------------------------------------------ status
+
+    @property
+    def axst(self) -> Axst:
+        """Axis status word."""
+        row, plan, inputs = self.row, self.board.state.plan[self.index], self.board.inputs
+        drive_ready = int(plan["DR"])
+        status = {
+            Axst.eo: inputs & int(plan["EO"]),
+            Axst.dnr: drive_ready and inputs & drive_ready != drive_ready,
+            Axst.lslh: row["hard_limit"] & LEFT,
+            Axst.lsrh: row["hard_limit"] & RIGHT,
+            Axst.lsls: row["soft_limit"] & LEFT,
+            Axst.lsrs: row["soft_limit"] & RIGHT,
+            Axst.mpe: row["position_error"],
+            Axst.dhef: row["dhef"],
+            Axst.cef: row["cef"],
+            Axst.pe: row["pe"],
+            Axst.cl: row["closed"],
+            Axst.ip: row["in_position"],
+            Axst.ui: inputs & int(plan["UI"]),
+            Axst.lpsf: row["lpsf"],
+            Axst.referenced: row["referenced"],
+            Axst.refh: inputs & int(plan["REF"]),
+            Axst.saf: row["saf"],
+        }
+        return Axst(sum(bit for bit, value in status.items() if value))
+
+    @property
+    def digi(self) -> Digi:
+        """Digital inputs, and the encoder signals of this axis; reading leaves the latched bits (see rdigi)."""
+        row = self.row
+        signals = {
+            Digi.index: row["index_now"],
+            Digi.encoder_error: row["encoder_error"],
+            Digi.index_latched: row["index_seen"],
+            Digi.strobe_latched: row["strobe_seen"],
+        }
+        return Digi(self.board.inputs | sum(bit for bit, value in signals.items() if value))
+
+    @property
+    def is_busy(self) -> bool:
+        """Tell whether a profile is being run, or the queue works."""
+        return not self.row["pe"]
+
+    @property
+    def queued(self) -> int:
+        """Entries in the spooler."""
+        return int(self.row["tail"] - self.row["head"])

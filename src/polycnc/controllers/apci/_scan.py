@@ -1,0 +1,241 @@
+"""One scan of the board, and many: commands of the queues, profiles, limits, position control, searches, latches.
+
+Python is entered again only when something happens that it waits for (`Attention`).
+"""
+
+from __future__ import annotations
+
+from polycnc.controllers.apci._latches import latches_cycle
+from polycnc.controllers.apci._limits import limits_cycle
+from polycnc.controllers.apci._motion import (
+    INSIDE,
+    PASSED,
+    brake,
+    override_cycle,
+    position_at,
+    rest,
+    sample,
+)
+from polycnc.controllers.apci._registers import ErrorReg, ModeReg
+from polycnc.controllers.apci._spool import end_entry, leave_path, look_at_waits, stop_out_of_step, take_next
+from polycnc.controllers.apci._state import (
+    IDLE,
+    JOG,
+    MOVE,
+    NO_SEARCH,
+    SEARCH_ENDS,
+    SEARCH_INDEX,
+    SEARCH_REFERENCE,
+    TABLE,
+    WAITING,
+    BoardState,
+)
+from polycnc.kernel import (
+    LIMIT_HIGH,
+    LIMIT_LOW,
+    REFERENCE,
+    KernelState,
+    compiled,
+    entry,
+    follow_cycle,
+    segment_slope,
+    sources_cycle,
+)
+
+_TARGET_VELOCITY = int(ErrorReg.errTargetVel)
+_FORBID_TARGET_VELOCITY = int(ModeReg.ForbidTargetVel)
+
+# What stops `run_scans`, bits of `attention` and of its mask.
+INTERRUPT = 1  # the board interrupts the PC
+PROFILE_END = 2  # an axis came to its profile end
+RESET = 4  # the board demands a reset of itself
+RECORD_FULL = 8
+COMMON = 16  # a spooled command wrote a common variable or an output
+
+
+@compiled
+def _read_inputs(b: BoardState, state: KernelState) -> None:
+    """Bring the input register up to date: what is wired to terminals, and the simulated switches."""
+    board = b.board[0]
+    inputs = board["external"]
+    for i in range(b.axis.shape[0]):
+        plan = b.plan[i]
+        if state.switches.switch[i, LIMIT_LOW]["level"] != 0:
+            inputs |= plan["left_switch"]
+        if state.switches.switch[i, LIMIT_HIGH]["level"] != 0:
+            inputs |= plan["right_switch"]
+        if state.switches.switch[i, REFERENCE]["level"] != 0:
+            inputs |= plan["reference_switch"]
+    board["inputs"] = inputs ^ board["inverted"]
+
+
+@compiled
+def _table_cycle(b: BoardState, state: KernelState, i: int) -> bool:
+    """Give axis `i` the next point of its table; False when there is none."""
+    row = b.axis[i]
+    table = b.entry[row["entry"]]
+    if row["point"] >= table["points"]:
+        return False
+    value = b.points[(table["first"] + row["point"]) % b.points.shape[0]]
+    if table["relative"] == 1:  # each point from the one before
+        row["anchor"] += value
+        value = row["anchor"]
+    if table["index"] >= 0:
+        row["pcap_index"] = table["index"] + row["point"]
+    state.base[i] = value
+    row["point"] += 1
+    return True
+
+
+@compiled
+def _end_of_queue(b: BoardState, state: KernelState, i: int, lead: float) -> None:
+    """Let axis `i` go on with the velocity its last entry ended with, or demand a reset where that is forbidden."""
+    row, board = b.axis[i], b.board[0]
+    slope = segment_slope(b.seg, row["entry"], i, row["place"]) / b.weight[row["entry"], i]
+    position, velocity = position_at(b, i, row["place"]), slope * row["speed"]
+    spooled = row["direct"] == 0
+    end_entry(b, i)
+    if spooled:
+        row["running"] = 0
+        if board["mode_register"] & _FORBID_TARGET_VELOCITY:
+            board["error_register"] |= _TARGET_VELOCITY
+            board["attention"] |= RESET
+    leave_path(b, state, i, position, velocity, lead)
+    board["attention"] |= PROFILE_END
+
+
+@compiled
+def _path_goes_on(b: BoardState, state: KernelState, i: int) -> bool:
+    """Take axis `i` over the end of an entry that it passes with a velocity; False if that was the last."""
+    row = b.axis[i]
+    lead = row["lead"] + row["cycles"] * b.board[0]["dt"] - row["duration"]
+    if row["direct"] != 0 or row["running"] == 0 or row["tail"] - row["head"] < 2:
+        _end_of_queue(b, state, i, lead)
+        return False
+    position, speed = position_at(b, i, row["place"]), abs(row["speed"])
+    velocity = segment_slope(b.seg, row["entry"], i, row["place"]) / b.weight[row["entry"], i] * row["speed"]
+    end_entry(b, i)
+    state.base[i] = position
+    if take_next(b, state, i, speed, lead):
+        return True
+    row["entry"] = -1
+    if row["motion"] == WAITING:
+        return False
+    leave_path(b, state, i, position, velocity, lead)
+    b.board[0]["attention"] |= PROFILE_END
+    return False
+
+
+@compiled
+def _profile_cycle(b: BoardState, state: KernelState, i: int) -> None:
+    """Take axis `i` one scan on along its profile, and over the ends of as many entries as that takes."""
+    row = b.axis[i]
+    row["cycles"] += 1
+    while True:
+        result = sample(b, state, i)
+        if result == INSIDE:
+            return
+        if row["motion"] == MOVE:
+            if result == PASSED:
+                if not _path_goes_on(b, state, i):
+                    return
+                if row["motion"] == TABLE:
+                    _table_cycle(b, state, i)
+                    return
+                continue
+            end_entry(b, i)
+        elif result == PASSED:  # a jog goes on with its target velocity
+            row["endless"] = 1
+            row["pe"] = 1
+            b.board[0]["attention"] |= PROFILE_END
+            continue
+        _come_to_rest(b, i)
+        return
+
+
+@compiled
+def _come_to_rest(b: BoardState, i: int) -> None:
+    row = b.axis[i]
+    more = row["running"] != 0 and row["head"] < row["tail"]
+    rest(b, i)
+    if more:
+        row["pe"] = 0  # the queue is not done: it goes on with the next scan
+    else:
+        row["running"] = 0
+        b.board[0]["attention"] |= PROFILE_END
+
+
+@compiled
+def _axis_cycle(b: BoardState, state: KernelState, i: int) -> None:
+    """Let whatever moves axis `i` give its part of the setpoint."""
+    row = b.axis[i]
+    override_cycle(b, i)
+    if row["motion"] == WAITING or (row["motion"] == IDLE and row["running"] != 0):
+        if row["motion"] == WAITING and row["met"] == 0:
+            return
+        if not take_next(b, state, i, 0.0, 0.0):
+            if row["motion"] == IDLE:
+                row["pe"] = 1
+                b.board[0]["attention"] |= PROFILE_END
+            return
+    if row["motion"] == TABLE:
+        if _table_cycle(b, state, i):
+            return
+        end_entry(b, i)
+        if not take_next(b, state, i, 0.0, 0.0):
+            if row["motion"] == IDLE:
+                rest(b, i)
+                b.board[0]["attention"] |= PROFILE_END
+            return
+        if row["motion"] == TABLE:
+            _table_cycle(b, state, i)
+            return
+    if row["motion"] == JOG or row["motion"] == MOVE:
+        _profile_cycle(b, state, i)
+
+
+@compiled
+def _search_cycle(b: BoardState, state: KernelState, i: int) -> None:
+    """End the search run of axis `i` when it has found what it searches."""
+    row = b.axis[i]
+    if row["search"] == NO_SEARCH or row["search"] == SEARCH_ENDS:
+        return
+    found = row["search"] == SEARCH_REFERENCE and b.board[0]["inputs"] & b.plan[i]["REF"] != 0
+    found = found or (row["search"] == SEARCH_INDEX and row["index_now"] != 0)
+    if found:
+        row["search"] = SEARCH_ENDS
+        brake(b, i, state.base[i], row["speed"], row["hac"])
+
+
+@compiled
+def scan(b: BoardState, state: KernelState) -> None:
+    """Run one scan of the board."""
+    board = b.board[0]
+    n = b.axis.shape[0]
+    board["scan"] += 1
+    _read_inputs(b, state)
+    look_at_waits(b)
+    stop_out_of_step(b, state)
+    for i in range(n):
+        _axis_cycle(b, state, i)
+    sources_cycle(state)
+    for i in range(n):
+        limits_cycle(b, state, i)
+    follow_cycle(state)
+    for i in range(n):
+        latches_cycle(b, state, i)
+        _search_cycle(b, state, i)
+
+
+@entry
+def run_scans(b: BoardState, state: KernelState, scans: int, mask: int) -> int:
+    """Run up to `scans` scans, fewer when something of `mask` happens; return how many were run."""
+    board = b.board[0]
+    for done in range(scans):
+        board["attention"] = 0
+        scan(b, state)
+        if state.clock[0]["raised"] & state.clock[0]["mask"]:
+            board["attention"] |= RECORD_FULL
+        if board["attention"] & mask:
+            return done + 1
+    return scans
