@@ -41,9 +41,9 @@ def _measured(folder: Path, programs: dict[str, Path], runs: int) -> dict[str, P
 
 
 def _cache_folder() -> str:
-    from polycnc.kernel._jit import CACHE_FOLDER
+    from polycnc.kernel._jit import CACHE_BASE
 
-    return str(CACHE_FOLDER.parents[1])
+    return str(CACHE_BASE.parent)
 
 
 def _own(found: dict[str, Process], few: int, many: int, grown_file_mb: float) -> list[Figure]:

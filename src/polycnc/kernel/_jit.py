@@ -1,7 +1,8 @@
 """Compile kernel functions with numba, cached on disk under a stamp of all compiled sources.
 
 numba's own cache notices a change in the file of a function but not in the files of the functions it calls.
-The stamp covers every module of the package, so a stale callee is never loaded.
+A unit (the kernel, the part programs, each controller) has a stamp of its own modules and of those below it, so a stale
+callee is never loaded, and a change of one controller leaves everything else compiled.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import hashlib
 import os
 import shutil
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, ParamSpec, TypeVar, cast
 
@@ -28,45 +30,67 @@ OPEN_INTERNALS = bool(os.environ.get("POLYCNC_OPEN_INTERNALS"))
 """Whether Python may call functions that are not entries: tests may, at the price of longer compilation."""
 
 
-def _source_stamp(package: Path) -> str:
+_PACKAGE = Path(__file__).resolve().parents[1]
+_BELOW = ("units.py", "errors.py", "kernel", "machine")  # what compiled functions anywhere may use
+
+
+def _unit_of(module: str) -> str:
+    """Return the package that a module's compiled functions stand or fall with: a layer, or one controller."""
+    parts = module.split(".")[1:]
+    return "/".join(parts[:2] if parts[:1] == ["controllers"] else parts[:1])
+
+
+def _sources(unit: str) -> list[Path]:
+    places = ("units.py", "errors.py", unit) if unit == "kernel" else (*_BELOW, unit)
+    found: list[Path] = []
+    for place in places:
+        path = _PACKAGE / place
+        found += [path] if path.suffix else sorted(path.rglob("*.py"))
+    return found
+
+
+def _source_stamp(unit: str) -> str:
     digest = hashlib.blake2b(digest_size=8)
-    for source in sorted(package.rglob("*.py")):
+    for source in _sources(unit):
         info = source.stat()
-        digest.update(f"{source.relative_to(package)}:{info.st_size}:{info.st_mtime_ns};".encode())
+        digest.update(f"{source.relative_to(_PACKAGE)}:{info.st_size}:{info.st_mtime_ns};".encode())
     return digest.hexdigest()
 
 
-def _cache_folder() -> Path:
-    """Return the folder of this source tree's compiled functions (not created yet)."""
-    package = Path(__file__).resolve().parents[1]
+def _cache_base() -> Path:
     base = (
         os.environ.get("POLYCNC_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
     )
-    place = hashlib.blake2b(str(package).encode(), digest_size=4).hexdigest()
-    kind = "-open" if OPEN_INTERNALS else ""
-    return Path(base) / "polycnc" / f"{place}-{_source_stamp(package)}{kind}"
+    return Path(base) / "polycnc"
 
 
-CACHE_FOLDER = _cache_folder()
+CACHE_BASE = _cache_base()
 _KEPT_FOLDERS = 8
 
 
-def _forget_old_folders() -> None:
-    """Remove the oldest folders of earlier versions of this source tree."""
-    siblings = CACHE_FOLDER.parent.glob(f"{CACHE_FOLDER.name.split('-')[0]}-*")
+@lru_cache
+def _cache_folder(unit: str) -> Path:
+    """Return the folder of one unit's compiled functions, for this source tree as it is now (not created yet)."""
+    tree = hashlib.blake2b(str(_PACKAGE).encode(), digest_size=4).hexdigest()
+    name = f"{tree}-{unit.replace('/', '.')}"
+    folder = CACHE_BASE / f"{name}-{_source_stamp(unit)}{'-open' if OPEN_INTERNALS else ''}"
+    if not folder.exists():
+        with contextlib.suppress(OSError):
+            _forget_old_folders(name)
+    return folder
+
+
+def _forget_old_folders(name: str) -> None:
+    """Remove the oldest folders of earlier versions of a unit."""
+    siblings = CACHE_BASE.glob(f"{name}-*")
     old = sorted((each for each in siblings if each.is_dir()), key=lambda each: each.stat().st_mtime)
     for folder in old[: -_KEPT_FOLDERS or None]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
-if not CACHE_FOLDER.exists():
-    with contextlib.suppress(OSError):
-        _forget_old_folders()
-
-
 def is_cold(name: str) -> bool:
-    """Tell whether the entry of this name still has to be compiled on this machine."""
-    return not _CONFIG.DISABLE_JIT and not any(CACHE_FOLDER.rglob(f"*.{name}-*.nbi"))
+    """Tell whether the kernel's entry of this name still has to be compiled on this machine."""
+    return not _CONFIG.DISABLE_JIT and not any(_cache_folder("kernel").rglob(f"*.{name}-*.nbi"))
 
 
 class _Internal(CPUDispatcher):
@@ -112,7 +136,7 @@ def entry(function: Callable[P, R]) -> Callable[P, R]:
 
 def _cached(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
     before = _CONFIG.CACHE_DIR
-    _CONFIG.CACHE_DIR = str(CACHE_FOLDER)
+    _CONFIG.CACHE_DIR = str(_cache_folder(_unit_of(function.__module__)))
     try:
         dispatcher = _njit(cache=True, error_model="numpy", fastmath=False, _nrt=counted)(function)
         return cast("Callable[P, R]", dispatcher)

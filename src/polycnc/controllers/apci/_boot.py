@@ -61,7 +61,7 @@ class Application:
         Without initialisation, or after the board was booted again or has stopped, there is no connection.
         """
         slot = self.slot
-        if slot is None or not slot.running or self._connected.get(slot) != slot.boots:
+        if slot is None or self._unreachable() is not None or self._connected.get(slot) != slot.boots:
             return Status.TIMEOUT
         if since and revision_numbers(slot.revision) < revision_numbers(since):
             return Status.NOT_AVAILABLE

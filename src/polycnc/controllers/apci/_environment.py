@@ -8,12 +8,16 @@ from typing import TypeAlias
 
 from polycnc.controllers.apci._codes import boot_text, init_text, transfer_text
 from polycnc.controllers.apci._records import ENVIRONMENT_STRING_BYTES
-from polycnc.controllers.apci._registers import Ifs
+from polycnc.controllers.apci._registers import BoardType, Ifs
 from polycnc.errors import UsageError
 
 InterruptRoutine: TypeAlias = Callable[[int], None]  # gets the bits of the interrupt lines
 Show: TypeAlias = Callable[[str], None]
 
+LED_PLACES = {  # on the board: green, yellow, red
+    BoardType.APCI_8001: ("D29", "D30", "D31"),
+    BoardType.APCI_8008: ("D53", "D55", "D56"),
+}
 _POWER_UP = int(Ifs.pfe | Ifs.scpfe)
 
 
@@ -45,7 +49,7 @@ class EnvironmentStrings:
 
 @dataclass(slots=True)
 class Leds:
-    """The three lights for diagnosis, each 1 (on) or 0; D29, D30, D31 of an APCI-8001."""
+    """The three lights for diagnosis, each 1 (on) or 0."""
 
     green: int = 0
     yellow: int = 0

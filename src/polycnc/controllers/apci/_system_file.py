@@ -143,7 +143,7 @@ class SystemFile(StrictModel):
     @property
     def sample_time_s(self) -> float:
         """Return the time of a scan."""
-        return self.sample_time_us * 1e-6
+        return self.sample_time_us / 1_000_000
 
     @property
     def stepper_clock_hz(self) -> float:
