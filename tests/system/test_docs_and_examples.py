@@ -65,9 +65,20 @@ def test_bracket_runs_on_the_example_machine_too() -> None:
     assert 0.0 < lag < 3.0
 
 
-def test_example_script_runs(tmp_path: Path) -> None:
+SCRIPTS = {  # each example script: what it says, what it draws
+    "run_and_plot.py": ("82 blocks take 109.340 s", "bracket.png"),
+    "apci_session.py": ("stopped at 151.41 mm by the limit: True\nrecovered: True", "apci_session.png"),
+}
+
+
+def test_every_example_script_is_known() -> None:
+    assert {path.name for path in EXAMPLES.glob("*.py")} == set(SCRIPTS)
+
+
+@pytest.mark.parametrize("script", SCRIPTS)
+def test_example_script_runs(script: str, tmp_path: Path) -> None:
     done = subprocess.run(
-        [sys.executable, str(EXAMPLES / "run_and_plot.py")],
+        [sys.executable, str(EXAMPLES / script)],
         cwd=tmp_path,
         env=environment(),
         capture_output=True,
@@ -75,9 +86,10 @@ def test_example_script_runs(tmp_path: Path) -> None:
         timeout=240,
         check=False,
     )
+    said, drawn = SCRIPTS[script]
     assert done.returncode == 0, done.stderr
-    assert "82 blocks take 109.340 s" in done.stdout
-    assert (tmp_path / "bracket.png").stat().st_size > 10_000
+    assert said in done.stdout
+    assert (tmp_path / drawn).stat().st_size > 10_000
 
 
 @pytest.mark.parametrize("page", PAGES, ids=_name)

@@ -7,7 +7,7 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _machine, _run
+from polycnc.cli import _check, _conformance, _machine, _run, _sap
 from polycnc.cli._errors import end_on_termination, guarded
 
 app = typer.Typer(
@@ -43,6 +43,7 @@ app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
 )
+app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 
 def main() -> None:

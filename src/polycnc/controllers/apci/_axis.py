@@ -16,6 +16,33 @@ if TYPE_CHECKING:
     from polycnc.controllers.apci._board import Board
 
 
+# In the order of `Axis.status_word`.
+_STATUS_BITS = tuple(
+    map(
+        int,
+        (
+            Axst.eo,
+            Axst.dnr,
+            Axst.lslh,
+            Axst.lsrh,
+            Axst.lsls,
+            Axst.lsrs,
+            Axst.mpe,
+            Axst.dhef,
+            Axst.cef,
+            Axst.pe,
+            Axst.cl,
+            Axst.ip,
+            Axst.ui,
+            Axst.lpsf,
+            Axst.referenced,
+            Axst.refh,
+            Axst.saf,
+        ),
+    )
+)
+
+
 class Parameter:
     """A number of the axis' row; `per` says how often the axis' time unit divides it."""
 
@@ -238,28 +265,33 @@ class Axis:
     @property
     def axst(self) -> Axst:
         """Axis status word."""
+        return Axst(self.status_word)
+
+    @property
+    def status_word(self) -> int:
+        """Axis status word as a number, quickly: programs poll it."""
         row, plan, inputs = self.row, self.board.state.plan[self.index], self.board.inputs
         drive_ready = int(plan["DR"])
-        status = {
-            Axst.eo: inputs & int(plan["EO"]),
-            Axst.dnr: drive_ready and inputs & drive_ready != drive_ready,
-            Axst.lslh: row["hard_limit"] & LEFT,
-            Axst.lsrh: row["hard_limit"] & RIGHT,
-            Axst.lsls: row["soft_limit"] & LEFT,
-            Axst.lsrs: row["soft_limit"] & RIGHT,
-            Axst.mpe: row["position_error"],
-            Axst.dhef: row["dhef"],
-            Axst.cef: row["cef"],
-            Axst.pe: row["pe"],
-            Axst.cl: row["closed"],
-            Axst.ip: row["in_position"],
-            Axst.ui: inputs & int(plan["UI"]),
-            Axst.lpsf: row["lpsf"],
-            Axst.referenced: row["referenced"],
-            Axst.refh: inputs & int(plan["REF"]),
-            Axst.saf: row["saf"],
-        }
-        return Axst(sum(bit for bit, value in status.items() if value))
+        status = (
+            inputs & int(plan["EO"]),
+            drive_ready and inputs & drive_ready != drive_ready,
+            row["hard_limit"] & LEFT,
+            row["hard_limit"] & RIGHT,
+            row["soft_limit"] & LEFT,
+            row["soft_limit"] & RIGHT,
+            row["position_error"],
+            row["dhef"],
+            row["cef"],
+            row["pe"],
+            row["closed"],
+            row["in_position"],
+            inputs & int(plan["UI"]),
+            row["lpsf"],
+            row["referenced"],
+            inputs & int(plan["REF"]),
+            row["saf"],
+        )
+        return sum(bit for bit, value in zip(_STATUS_BITS, status, strict=True) if value)
 
     @property
     def digi(self) -> Digi:

@@ -67,8 +67,8 @@ _AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own
 class Tasks(Protocol):
     """What runs SAP programs within the board's time."""
 
-    def scans_to_wait(self) -> int:
-        """Return for how many scans no task has anything to do; 0 if one can go on now."""
+    def scans_to_wait(self) -> float:
+        """Return for how many scans no task has anything to do; 0 if one can go on, inf if all wait for profiles."""
         ...
 
     def run_scan(self) -> None:
@@ -93,6 +93,7 @@ class Variables:
     ledrd: int = 0
     ledyl: int = 0
     irqpc: int = 0
+    ifs: int = 0  # interface status, kept by whoever boots the board
     buffers: list[bytearray] = field(
         default_factory=lambda: [bytearray(COMMON_BUFFER_BYTES) for _ in range(CNC_TASKS)]
     )
@@ -328,24 +329,29 @@ class Board:
         """
         done = 0
         while done < scans:
+            self._carry_out()
+            mask = INTERRUPT | RESET | RECORD_FULL | until
             piece = scans - done
-            if self._pending:
-                piece = min(piece, max(self._pending[0][0] - self.clock.cycles, 0))
             if self.tasks is not None:
                 waiting = self.tasks.scans_to_wait()
                 if waiting == 0:
                     self.tasks.run_scan()
-                piece = min(piece, max(waiting, 1))
-            mask = INTERRUPT | RESET | RECORD_FULL | until
-            ran = int(run_scans(self.state, self.kernel, piece, mask)) if piece else 0
+                piece = int(min(piece, max(waiting, 1)))
+                mask |= PROFILE_END  # a task may wait for it
+            if self._pending:
+                piece = min(piece, max(self._pending[0][0] - self.clock.cycles, 1))
+            ran = int(run_scans(self.state, self.kernel, piece, mask))
             done += ran
             self.clock.tick(ran)
-            attention = self._attend()
-            while self._pending and self._pending[0][0] <= self.clock.cycles:
-                self._pending.pop(0)[1]()
-            if attention & (RECORD_FULL | until):
+            if self._attend() & (RECORD_FULL | until):
                 break
+        self._carry_out()
         return done
+
+    def _carry_out(self) -> None:
+        """Carry out the direct commands that are due."""
+        while self._pending and self._pending[0][0] <= self.clock.cycles:
+            self._pending.pop(0)[1]()
 
     def _attend(self) -> int:
         """Do what the last scan asked for, and return it."""
@@ -353,12 +359,17 @@ class Board:
         attention = int(board["attention"])
         board["attention"] = 0
         if attention & INTERRUPT:
-            self.variables.irqpc = 1
-            for routine in self.interrupts:
-                routine()
+            self.raise_interrupt(True)
         if attention & RESET:
             self.reset()
         return attention
+
+    def raise_interrupt(self, active: bool) -> None:
+        """Set or reset the interrupt request to the PC; setting it calls the routines that are installed."""
+        rises = active and not self.variables.irqpc
+        self.variables.irqpc = int(active)
+        for routine in self.interrupts if rises else ():
+            routine()
 
     def run(self, way: Way) -> int:
         """Let the board run in one of the ways of its clock (`Step`, `Free`, ...); return the scans done."""

@@ -52,6 +52,7 @@ def _jog(board: Board, i: int, value: float, relative: bool) -> None:
         return
     here = float(board.kernel.base[i])
     target = here + value if relative else value + axis.origin
+    row["tp"] = target - axis.origin
     direction = math.copysign(1.0, target - here)
     jvl, jac, jdec = float(row["jvl"]), float(row["jac"]), float(row["jdec"])
     tvl = direction * float(row["jtvl"])
@@ -71,6 +72,7 @@ def _search_index(board: Board, i: int, distance: float) -> None:
     row = board.state.axis[i]
     row["commanded"] -= 1
     target = float(board.kernel.base[i]) + distance
+    row["tp"] = target - board.axes[i].origin
     hvl, hac = float(row["hvl"]), float(row["hac"])
     begin_jog(board.state, board.kernel, i, SEARCH_INDEX, False, target, 0.0, hvl, hac, hac)
 

@@ -213,6 +213,8 @@ def _entry(
     if shape(board, e, units, begin) <= 0.0:
         give_back(board, e)
         return -1
+    for i in axes:
+        state.axis[i]["tp"] = state.seg.end[e, i] / state.weight[e, i] - board.axes[i].origin
     entry["kind"] = MOVE
     entry["mask"] = sum(1 << i for i in axes)
     entry["refs"] = len(axes)

@@ -1,0 +1,60 @@
+"""``polycnc sap``: stand-alone programs of the APCI board."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from polycnc.cli._errors import guarded
+from polycnc.cli._output import bold, say
+
+sap_app = typer.Typer(
+    help="Compile stand-alone programs (SAP) of the APCI board.",
+    no_args_is_help=True,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+@sap_app.callback()
+def _options() -> None:
+    """Keep `compile` a subcommand, though it is the only one."""
+
+
+def compile_command(
+    source: Annotated[Path, typer.Argument(help="The program in rw_SymPas.", metavar="FILE")],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "-o", "--out", help="The file to write (default: FILE with the ending .CNC).", metavar="OUT"
+        ),
+    ] = None,
+    task: Annotated[int, typer.Option("--task", help="The task that runs it, 0 to 3.", metavar="N")] = 0,
+) -> None:
+    """Compile a stand-alone program to a .CNC file, or report every error of it."""
+    from polycnc.controllers.apci import sap
+    from polycnc.errors import UsageError
+
+    target = out or source.with_suffix(".CNC")
+    if target.resolve() == source.resolve():
+        raise UsageError(f"{target} is the program itself", hint="Name another file with -o.")
+    try:
+        text = source.read_text(encoding="utf-8-sig", errors="replace")
+    except OSError as error:
+        raise UsageError(
+            f"cannot read {source}: {error.strerror}", hint="Give the path of a program."
+        ) from None
+    program, errors = sap.check(text, str(source), task)
+    for mistake in errors:
+        say(str(mistake))
+    if program is None:
+        say(lead=bold(f"{len(errors)} error{'' if len(errors) == 1 else 's'}"))
+        sys.exit(1)
+    target.write_bytes(sap.write_cnc(program))
+    say(f"wrote {target}: task {task}, {len(program.code)} instructions")
+
+
+sap_app.command("compile", short_help="Compile a program to a .CNC file.")(guarded(compile_command))

@@ -1,0 +1,248 @@
+"""One CNC task: a program, where it is, what it waits for, and the message string that it writes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple
+
+from polycnc.controllers.apci.sap._faults import REFUSED, VALUE_RANGE, Fault
+from polycnc.controllers.apci.sap._host import Host
+from polycnc.controllers.apci.sap._linker import link
+from polycnc.controllers.apci.sap._machine import CELL_BYTES, FRAME_CELLS, STACK_CELLS, Pause, Step
+from polycnc.controllers.apci.sap._program import Program, cell_values
+from polycnc.errors import PolycncError
+
+WAIT_UNIT_S = 0.001
+"""Ruling: `wt (t)` waits t ms, rounded up to whole scans; Part 1 of the manual does not say."""
+
+STRING_BYTES = 512
+HALT_AT_WRITELN = 1 << 26  # in MODEREG
+
+RUNNING, HALTED_BY_WRITELN, WAITING = 0x1, 0x4, 0x8  # 0x2, single step, is declared as not implemented
+INCOMPLETE, COMPLETE = 0x1, 0x2
+
+
+class State(Enum):
+    """What a task does: nothing, its program, or nothing until it is continued."""
+
+    IDLE = "idle"
+    RUNNING = "running"
+    STOPPED = "stopped"
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """What a task waits for: the scan number `until`, or, where that is None, the ends of profiles of `axes`."""
+
+    until: int | None
+    axes: tuple[int, ...]
+
+
+class TaskStatus(NamedTuple):
+    """The record CNCTS (Manual 002, table 11); `stackfree` is in bytes."""
+
+    errnum: int
+    errline: int
+    stackfree: int
+    running: int
+    csrcline: int
+
+
+class Task:
+    """Run the program of one task a number of instructions at a time; see `Tasks` for the public calls."""
+
+    def __init__(self, number: int, host: Host, control: Callable[[str, int], None]) -> None:
+        self.number = number
+        self.host = host
+        self.control = control
+        self.program: Program | None = None
+        self.state = State.IDLE
+        self.waiting: Wait | None = None
+        self.error = ""  # of the last run-time error, for people
+        self.stack: list[Any] = []
+        self.memory: list[Any] = []
+        self.frames: list[tuple[int, int]] = []
+        self.base = 0
+        self.next = 0
+        self._errnum = self._errline = 0
+        self._steps: list[Step] = []
+        self._by_writeln = False
+        self._in_event = False
+        self._waiting_before: Wait | None = None  # of the program that an event handler interrupts
+        self._armed: list[bool] = []
+        self._text = ""
+        self._text_bits = 0
+
+    # Control
+
+    def load(self, program: Program) -> None:
+        """Halt the task and overwrite its program."""
+        self._reset()
+        self.program = program
+
+    def start(self) -> None:
+        """Run the program from its beginning, with all variables zero; a running one is stopped first."""
+        self._reset()
+        if self.program is not None:
+            self.memory.extend(cell_values(self.program.variables))
+            self._armed = [True] * len(self.program.events)
+            self._steps = link(self, self.program)
+            self.state = State.RUNNING
+
+    def end(self, stop: bool) -> None:
+        """End the program: to be continued (`stop`), or for good."""
+        if self.state is State.RUNNING or not stop:
+            self.state = State.STOPPED if stop else State.IDLE
+            self._by_writeln = False
+
+    def resume(self) -> None:
+        """Go on after a stop; a program that has ended stays so."""
+        if self.state is State.STOPPED:
+            self.state = State.RUNNING
+            self._by_writeln = False
+
+    def is_halted(self) -> bool:
+        """Return whether the task is not to run any further."""
+        return self.state is not State.RUNNING
+
+    def _reset(self) -> None:
+        self.state = State.IDLE
+        self.waiting = self._waiting_before = None
+        self.error = ""
+        self.stack.clear()
+        self.memory.clear()
+        self.frames.clear()
+        self.base = self.next = self._errnum = self._errline = 0
+        self._by_writeln = self._in_event = False
+
+    # Running
+
+    def run(self, budget: int) -> None:
+        """Run at most `budget` instructions, as one scan does; return early when the program waits or ends."""
+        if self.state is not State.RUNNING:
+            return
+        at = self.next
+        try:
+            if self._armed and not self._in_event:
+                self._raise_event()
+            if self.waiting is not None:
+                if not self._is_over(self.waiting):
+                    return
+                self.waiting = None
+            steps = self._steps
+            at = self.next
+            for _ in range(budget):
+                at = steps[at]()
+            self.next = at
+        except Pause:
+            pass
+        except Fault as fault:
+            self._fail(at, fault.number, str(fault))
+        except PolycncError as error:
+            self._fail(at, REFUSED, str(error))
+
+    def _fail(self, at: int, number: int, text: str) -> None:
+        self.state, self.waiting = State.IDLE, None
+        self.next = at
+        self._errnum, self._errline, self.error = number, self._line(at), text
+
+    def _raise_event(self) -> None:
+        """Begin the first handler whose condition has become true; it interrupts the program and its wait."""
+        assert self.program is not None
+        for index, (condition, handler) in enumerate(self.program.events):
+            if not self._holds(condition):
+                self._armed[index] = True
+            elif self._armed[index]:
+                self._armed[index] = False
+                entry = self.program.routines[handler]
+                self.frames.append((self.next, self.base))
+                self.base = len(self.stack)
+                self.stack.extend(cell_values(entry.cells))
+                self.next = entry.start
+                self._waiting_before, self.waiting = self.waiting, None
+                self._in_event = True
+                return
+
+    def leave_event(self) -> None:
+        """Return to what the event handler has interrupted."""
+        self.waiting, self._waiting_before = self._waiting_before, None
+        self._in_event = False
+
+    def _holds(self, condition: int) -> bool:
+        at = condition
+        try:
+            while at >= 0:
+                at = self._steps[at]()
+        except Fault as fault:
+            self._fail(condition, fault.number, str(fault))
+            raise Pause from None
+        except PolycncError as error:
+            self._fail(condition, REFUSED, str(error))
+            raise Pause from None
+        return bool(self.stack.pop())
+
+    # Waiting
+
+    def wait(self, time_ms: float, axes: tuple[int, ...]) -> bool:
+        """Begin to wait, for the ends of profiles if there are axes; return False if there is nothing to wait for."""
+        scans = max(time_ms * WAIT_UNIT_S / self.host.scan_s, 0.0)
+        if not scans < 2.0**53:
+            raise Fault(VALUE_RANGE)
+        until = None if axes else self.host.scan + math.ceil(round(scans, 6))
+        wait = Wait(until, axes)
+        self.waiting = None if self._is_over(wait) else wait
+        return self.waiting is not None
+
+    def _is_over(self, wait: Wait) -> bool:
+        if wait.until is None:
+            return self.host.profile_ended(wait.axes)
+        return self.host.scan >= wait.until
+
+    @property
+    def has_events(self) -> bool:
+        """Return whether conditions of event handlers must be looked at in every scan."""
+        return bool(self._armed) and not self._in_event
+
+    # Messages
+
+    def write(self, text: str) -> None:
+        """Append to the message string, which begins anew behind a complete one; it ends at 512 characters."""
+        if self._text_bits & COMPLETE:
+            self._text, self._text_bits = "", 0
+        self._text = (self._text + text)[:STRING_BYTES]
+        self._text_bits = INCOMPLETE
+
+    def write_line(self) -> None:
+        """Complete the message string; with MODEREG bit 26 the task stops here."""
+        if self._text_bits & COMPLETE:
+            self._text = ""
+        self._text_bits = COMPLETE
+        if int(self.host.read_system("modereg", None)) & HALT_AT_WRITELN:
+            self.end(stop=True)
+            self._by_writeln = True
+
+    @property
+    def text_bits(self) -> int:
+        """Return bit 0 for an incomplete and bit 1 for a complete message that nobody has read."""
+        return self._text_bits
+
+    def take_text(self, size: int) -> str:
+        """Return the message string, at most `size` characters of it, and forget it."""
+        text, self._text, self._text_bits = self._text[: max(0, size)], "", 0
+        return text
+
+    # Status
+
+    def status(self) -> TaskStatus:
+        """Return the record that rdcncts reads."""
+        running = RUNNING * (self.state is State.RUNNING) | HALTED_BY_WRITELN * self._by_writeln
+        running |= WAITING * (self.state is State.RUNNING and self.waiting is not None)
+        used = len(self.stack) + FRAME_CELLS * len(self.frames)
+        free = CELL_BYTES * max(0, STACK_CELLS - used)
+        return TaskStatus(self._errnum, self._errline, free, running, self._line(self.next))
+
+    def _line(self, at: int) -> int:
+        return self.program.code[at][2] if self.program is not None else 0

@@ -1,0 +1,160 @@
+"""Stand-alone programs on the simulated board itself: what a command in a program does to the axes."""
+
+from __future__ import annotations
+
+import pytest
+
+from polycnc.controllers.apci import sap
+from polycnc.controllers.apci._board import Board
+from polycnc.controllers.apci._sap_host import BoardTasks
+from polycnc.controllers.apci._system_axis import AxisSetup
+from polycnc.controllers.apci._system_file import SystemFile
+
+REFERENCED, LATCHED, RIGHT_SOFT_LIMIT = 1 << 17, 1 << 16, 1 << 6
+JOG = "A1.jac := 100; A1.jvl := 50; A1.jtvl := 0; "
+
+
+class Sap:
+    """A board with three axes whose task 0 runs programs; axis A1 has a right software limit at 5."""
+
+    def __init__(self) -> None:
+        limited = AxisSetup(name="A1", sll=-5.0, slr=5.0, soft_right="SMD")
+        self.board = Board(SystemFile(axis=(limited, AxisSetup(name="A2"), AxisSetup(name="A3"))))
+        self.board_tasks = BoardTasks(self.board)
+        self.tasks = self.board_tasks.tasks
+
+    def run(self, text: str, scans: int = 2000) -> None:
+        """Run a program to its end."""
+        self.board_tasks.load(sap.compile_program(text))
+        self.tasks.startcnct(0)
+        self.board.advance(scans)
+        assert self.tasks.error_text(0) == ""
+        assert self.tasks.rdcncts(0).running == 0
+
+    def cd(self, index: int) -> float:
+        """Return a common double."""
+        return float(self.board.state.cd[index])
+
+    def ci(self, index: int) -> int:
+        """Return a common integer."""
+        return int(self.board.state.ci[index])
+
+
+def test_every_register_of_the_tables_exists_on_the_board() -> None:
+    axis = Sap()
+    for table, prefix in ((sap.AXIS_QUALIFIERS, "A2."), (sap.SYSTEM_VARIABLES, "")):
+        for register in table.values():
+            name = prefix + register.name + ("[1]" if register.indexed else "")
+            # Writing back what was read changes nothing, whatever the register does.
+            axis.run(f"C{register.kind}2 := {name};", scans=2)
+            if register.writable:
+                axis.run(f"{name} := {name};", scans=2)
+
+
+def test_a_move_takes_trac_trvl_trtvl_and_wt_waits_for_its_end() -> None:
+    axis = Sap()
+    axis.run(
+        "cl (A2, A3); TRAC := 1000; TRVL := 100; TRTVL := 0; mlr (A2 := 30, A3 := 40); wt (A2, A3);"
+        "CD0 := A2.dp; CD1 := A3.dp; CI0 := 1;"
+    )
+    assert (axis.cd(0), axis.cd(1), axis.ci(0)) == (30.0, 40.0, 1)
+    slow = Sap()
+    slow.board_tasks.load(
+        sap.compile_program("cl (A2); TRAC := 1000; TRVL := 100; mlr (A2 := 50); wt (A2); CI0 := 1;")
+    )
+    slow.tasks.startcnct(0)
+    scans = 0
+    while slow.ci(0) == 0:
+        scans += slow.board.advance(1)
+    # 50 mm at 100 mm/s with two ramps of 0.1 s: 0.6 s, and some scans until the command takes effect.
+    assert scans * 0.00128 == pytest.approx(0.6, abs=6 * 0.00128)
+
+
+@pytest.mark.covers("sap.JS")
+def test_js_stops_with_the_stop_deceleration() -> None:
+    axis = Sap()
+    axis.run(
+        "cl (A2); A2.jac := 100; A2.jvl := 50; A2.sdec := 200; jr (A2 := 1000); wt (1000); CD0 := A2.dp; CD2 := A2.dv;"
+        "js (A2); wt (A2); CD1 := A2.dp; CD3 := A2.dv;"
+    )
+    assert axis.cd(2) == pytest.approx(50.0)
+    latency = 3 * 0.00128 * 50.0
+    assert 6.25 - 1e-9 <= axis.cd(1) - axis.cd(0) <= 6.25 + latency  # v²/2a
+    assert axis.cd(3) == 0.0
+
+
+@pytest.mark.covers("sap.SHP")
+def test_shp_sets_the_home_position_and_arms_the_software_limits() -> None:
+    free = Sap()
+    free.run(f"cl (A1); {JOG} jr (A1 := 8); wt (A1); CD0 := A1.dp; CI0 := A1.axst;")
+    assert free.cd(0) == 8.0
+    assert not free.ci(0) & (REFERENCED | RIGHT_SOFT_LIMIT)
+    armed = Sap()
+    armed.run(
+        f"cl (A1); shp (A1 := 2); CD0 := A1.rp; {JOG} jr (A1 := 50); wt (A1); CD1 := A1.dp; CI0 := A1.axst;"
+    )
+    assert armed.cd(0) == 2.0
+    assert 5.0 < armed.cd(1) < 7.0  # caught behind the limit at 5
+    assert armed.ci(0) & REFERENCED
+    assert armed.ci(0) & RIGHT_SOFT_LIMIT
+
+
+@pytest.mark.covers("sap.RA")
+def test_ra_resets_an_axis_its_override_and_its_software_limits() -> None:
+    axis = Sap()
+    axis.run(
+        "cl (A1, A2); shp (A1 := 2); A1.jovr := 0.5; A2.jovr := 0.5; ra (A1); wt (10); CD0 := A1.jovr; CD1 := A2.jovr;"
+    )
+    assert (axis.cd(0), axis.cd(1)) == (1.0, 0.5)
+    axis.run(f"cl (A1); {JOG} jr (A1 := 8); wt (A1); CD0 := A1.dp; CI0 := A1.axst;")
+    assert axis.cd(0) == 8.0  # past the limit at 5
+    assert not axis.ci(0) & (REFERENCED | RIGHT_SOFT_LIMIT)
+
+
+@pytest.mark.covers("sap.RS")
+def test_rs_resets_all_axes_and_halts_the_program() -> None:
+    axis = Sap()
+    axis.run("cl (A1, A2); shp (A1 := 2); A1.jovr := 0.5; A2.jovr := 0.5; CI5 := 7; rs; CI6 := 1;")
+    assert [one.jovr for one in axis.board.axes] == [1.0, 1.0, 1.0]
+    assert not axis.board.axes[0].status_word & REFERENCED
+    assert (axis.ci(5), axis.ci(6)) == (7, 0)
+
+
+@pytest.mark.covers("sap.UTROVR", "sap.TROVR")
+def test_utrovr_takes_over_the_trajectory_override() -> None:
+    axis = Sap()
+    axis.run(
+        "cl (A1, A2); TROVR := 0.5; CD0 := A1.jovr; utrovr (A1); wt (10); CD1 := A1.jovr; CD2 := A2.jovr;"
+    )
+    assert (axis.cd(0), axis.cd(1), axis.cd(2)) == (1.0, 0.5, 1.0)
+
+
+@pytest.mark.covers("sap.SSMS")
+def test_ssms_starts_spooled_moves_and_ends_a_wait_in_the_spooler() -> None:
+    axis = Sap()
+    axis.run(
+        "cl (A2, A3); TRAC := 1000; TRVL := 100; smlr (A2 := 10, A3 := 5); ssf (A2, 1003, 100000); smlr (A2 := 10);"
+        "wt (500); CD0 := A2.dp; ssms (A2, A3); wt (500); CD1 := A2.dp; ssms (A2); wt (500); CD2 := A2.dp;"
+    )
+    assert (axis.cd(0), axis.cd(1), axis.cd(2)) == (0.0, 10.0, 20.0)
+
+
+@pytest.mark.covers("sap.axis.lp")
+def test_reading_lp_takes_the_latched_position_and_clears_its_flag() -> None:
+    axis = Sap()
+    axis.run(
+        "cl (A2); shp (A2 := 7); lps (A2, 10); wt (50); CI0 := A2.axst; lps (A2, 0); CD0 := A2.lp; CI1 := A2.axst;"
+    )
+    assert axis.ci(0) & LATCHED
+    assert axis.cd(0) == 7.0
+    assert not axis.ci(1) & LATCHED
+
+
+def test_events_watch_the_board_in_every_scan() -> None:
+    axis = Sap()
+    axis.run(
+        "EVENT past ON A2.dp >= 10; BEGIN js (A2); CD0 := A2.dp END;"
+        "BEGIN cl (A2); A2.jac := 1000; A2.jvl := 100; jr (A2 := 50); wt (A2); CI0 := 1 END."
+    )
+    assert 10.0 <= axis.cd(0) <= 10.0 + 100.0 * 0.00128 + 1e-9
+    assert axis.ci(0) == 1
