@@ -25,7 +25,9 @@ SCRIPTS = {
     "bench_lookahead.py": "Look-ahead",
     "bench_profile.py": "Point-to-point planning",
     "bench_machine.py": "Whole virtual machine",
+    "bench_apci.py": "APCI board",
     "bench_cycle_calls.py": "One cycle per call",
+    "bench_post.py": "Post-processor macros",
 }
 
 

@@ -4,12 +4,19 @@ from __future__ import annotations
 
 from typing import Any
 
+import pytest
+
 from polycnc.controllers.apci import pcap
 from polycnc.controllers.apci._board import Board
 from polycnc.controllers.apci._system_file import parse_system_file
 
 SCAN_S = 0.00128
 LATENCY = 2  # scans until a direct command takes effect
+
+
+def near(value: Any, **tolerance: Any) -> Any:
+    """Return what compares equal to numbers near `value`, in tuples too."""
+    return pytest.approx(value, **tolerance)
 
 
 class Pc:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import pytest
 
 from polycnc.controllers.apci import sap
+from polycnc.controllers.apci._axis_commands import cl
 from polycnc.controllers.apci._board import Board
+from polycnc.controllers.apci._move_commands import Speeds, mlr
 from polycnc.controllers.apci._sap_host import BoardTasks
 from polycnc.controllers.apci._system_axis import AxisSetup
 from polycnc.controllers.apci._system_file import SystemFile
@@ -68,6 +72,32 @@ def test_a_move_takes_trac_trvl_trtvl_and_wt_waits_for_its_end() -> None:
         scans += slow.board.advance(1)
     # 50 mm at 100 mm/s with two ramps of 0.1 s: 0.6 s, and some scans until the command takes effect.
     assert scans * 0.00128 == pytest.approx(0.6, abs=6 * 0.00128)
+
+
+@pytest.mark.covers("apci.rwmos")
+def test_four_tasks_and_the_pc_command_axes_that_are_interpolated_scan_by_scan() -> None:
+    axis = Sap()
+    board = axis.board
+    for number in range(4):
+        text = f"WHILE CI10 = 0 DO CI{number} := CI{number} + 1;"
+        axis.board_tasks.load(sap.compile_program(text, task=number))
+        axis.tasks.startcnct(number)
+    cl(board, (1, 2))
+    mlr(board, (1, 2), (30.0, 40.0), Speeds(1000.0, 100.0))
+    places = []
+    while board.axes[1].is_busy:
+        assert board.advance(1) == 1
+        places.append((board.axes[1].dp, board.axes[2].dp))
+    assert board.clock.cycle_s == 0.00128
+    moving = [place for place in places if 0.0 < place[0] < 30.0]
+    assert len(moving) > 400  # one new setpoint a scan, both axes in every one of them
+    assert all(later[0] > earlier[0] for earlier, later in pairwise(moving))
+    assert all(y == pytest.approx(x * 4.0 / 3.0) for x, y in moving)
+    counts = [axis.ci(number) for number in range(4)]
+    assert min(counts) == max(counts) > len(places)  # equal priority, all of them all the time
+    board.state.ci[10] = 1  # the PC ends them
+    board.advance(3)
+    assert [axis.tasks.rdcncts(number).running for number in range(4)] == [0] * 4
 
 
 @pytest.mark.covers("sap.JS")

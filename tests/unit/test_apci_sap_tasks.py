@@ -373,7 +373,7 @@ def test_at_most_512_characters_of_a_message_are_returned() -> None:
     assert board.tasks.gettskstr(0, 10_000) == ("0123456789" * 52)[:512]
 
 
-@pytest.mark.covers("apci.CNCTS.running.bit2", "sap.WRITELN")
+@pytest.mark.covers("apci.CNCTS.running.bit2", "apci.MODEREG.26", "sap.WRITELN")
 def test_writeln_stops_the_task_with_modereg_bit_26() -> None:
     text = "WRITELN ('a'); CI0 := 1; STOP; CI0 := 2;"
     board = run_text(text, system={("modereg", None): 1 << 26})

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from polycnc.controllers.apci._motor_command import counts_for
+from polycnc.controllers.apci._parameter import Parameter
 from polycnc.controllers.apci._registers import Axst, Digi
 from polycnc.controllers.apci._state import LEFT, RIGHT
-from polycnc.controllers.apci._system_axis import SERVO_MCP_LIMIT, STEPPER_MCP_LIMIT, AxisSetup
+from polycnc.controllers.apci._system_axis import AxisSetup
 from polycnc.controllers.apci._units import seconds
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci._board import Board
+    from polycnc.controllers.apci._system_file import SystemFile
 
 
 # In the order of `Axis.status_word`.
@@ -43,29 +46,6 @@ _STATUS_BITS = tuple(
 )
 
 
-class Parameter:
-    """A number of the axis' row; `per` says how often the axis' time unit divides it."""
-
-    def __init__(self, name: str, per: int = 0) -> None:
-        self.name = name
-        self.per = per
-
-    @overload
-    def __get__(self, axis: None, owner: type) -> Parameter: ...
-    @overload
-    def __get__(self, axis: Axis, owner: type) -> float: ...
-    def __get__(self, axis: Axis | None, owner: type) -> Parameter | float:
-        """Return the number in the axis' units."""
-        if axis is None:
-            return self
-        return float(axis.row[self.name] * axis.time_unit_s**self.per)
-
-    def __set__(self, axis: Axis, value: float) -> None:
-        """Store the number; one that is none is left out, so that it cannot get into a profile."""
-        if math.isfinite(value):
-            axis.row[self.name] = value / axis.time_unit_s**self.per
-
-
 class Axis:
     """Axis `index` of a board."""
 
@@ -78,10 +58,10 @@ class Axis:
     slr = Parameter("slr")
     ipw = Parameter("ipw")
     mpe = Parameter("mpe")
-    gf = Parameter("gf")
+    gf = Parameter("gf", units=True, above_zero=True)
     gfaux = Parameter("gfaux")
-    slsp = Parameter("slsp")
-    effradius = Parameter("effradius")
+    slsp = Parameter("slsp", units=True, above_zero=True)
+    effradius = Parameter("effradius", units=True)
     MaxVel = Parameter("MaxVel")  # these three in the units of interpolation, as they were written
     MaxAcc = Parameter("MaxAcc")
     MDVEL = Parameter("MDVEL")
@@ -108,6 +88,7 @@ class Axis:
         self.zero_offsets = [0.0] * 5
         self.ControllerFlags = 0
         self.GCR = 0
+        self.alarms = 0  # of an encoder that evaluates its signals: digi bits AEA to AES
 
     # ------------------------------------------------------------------ parameters with a meaning of their own
 
@@ -171,12 +152,12 @@ class Axis:
     @property
     def rp(self) -> float:
         """Actual position."""
-        return float(self.board.kernel.servo.actual[self.index]) - self.origin
+        return float(self.board.kernel.servo.actual[self.index] - self.row["shift"]) - self.origin
 
     @property
     def dp(self) -> float:
         """Setpoint position."""
-        return float(self.board.kernel.setpoint[self.index]) - self.origin
+        return float(self.board.kernel.setpoint[self.index] - self.row["shift"]) - self.origin
 
     @property
     def rv(self) -> float:
@@ -233,14 +214,7 @@ class Axis:
         """Motor command port (Manual 002, 4.4.88 and 4.4.162)."""
         if not self.row["closed"]:
             return int(self.row["mcp"])
-        return self._command_of(float(self.servo["output"]))
-
-    def velocity_of(self, mcp: int) -> float:
-        """Return the velocity that a motor command gives (axis units/s)."""
-        sign = -1.0 if self.setup.mcp_inverted else 1.0
-        if self.setup.motor == "servo":
-            return sign * mcp / SERVO_MCP_LIMIT * self.setup.plant.velocity_at_10_v / self.time_unit_s
-        return sign * self.step_frequency_hz(mcp) / self.counts_per_unit
+        return counts_for(self, float(self.servo["output"]))
 
     def step_frequency_hz(self, mcp: int) -> float:
         """Return the signed step frequency of a stepper's motor command."""
@@ -248,17 +222,9 @@ class Axis:
             return 0.0
         return math.copysign(self.board.config.stepper_clock_hz / 2.0 / (abs(mcp) + 1), mcp)
 
-    def _command_of(self, velocity: float) -> int:
-        sign = -1.0 if self.setup.mcp_inverted else 1.0
-        low, high = self.setup.mcp_range
-        if self.setup.motor == "servo":
-            at_10_v = self.setup.plant.velocity_at_10_v / self.time_unit_s
-            return int(min(max(round(sign * velocity / at_10_v * SERVO_MCP_LIMIT), low), high))
-        frequency = abs(velocity) * self.counts_per_unit
-        if frequency * 2.0 * (STEPPER_MCP_LIMIT + 1) < self.board.config.stepper_clock_hz:
-            return 0
-        delay = max(round(self.board.config.stepper_clock_hz / 2.0 / frequency) - 1, 1)
-        return int(min(max(math.copysign(delay, sign * velocity), low), high))
+    def check_configuration(self, planned: SystemFile) -> None:
+        """Compare the board with the system file that was loaded."""
+        self.row["cef"] = bool(planned.differences(self.board.config))
 
     # ------------------------------------------------------------------ status
 
@@ -303,7 +269,12 @@ class Axis:
             Digi.index_latched: row["index_seen"],
             Digi.strobe_latched: row["strobe_seen"],
         }
-        return Digi(self.board.inputs | sum(bit for bit, value in signals.items() if value))
+        return Digi(self.board.inputs | self.alarms | sum(bit for bit, value in signals.items() if value))
+
+    @property
+    def relay(self) -> bool:
+        """Enable relay: on while the position loop is closed."""
+        return bool(self.row["closed"])
 
     @property
     def is_busy(self) -> bool:

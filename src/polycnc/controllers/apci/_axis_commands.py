@@ -6,8 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from polycnc.controllers.apci._entries import go_on_with, reject_queue
+from polycnc.controllers.apci._command_port import set_command
+from polycnc.controllers.apci._motion_entries import go_on_with, stand
 from polycnc.controllers.apci._registers import ModeReg
+from polycnc.kernel import ADDED
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci._board import Board
@@ -25,16 +27,16 @@ def clv(board: Board, axes: Sequence[int]) -> None:
         velocity = float(board.state.axis[i]["rv"])
         _close(board, i)
         if velocity != 0.0:
+            board.kernel.velocity[i] = velocity
             go_on_with(board.state, i, float(board.kernel.base[i]), velocity)
 
 
 def _close(board: Board, i: int) -> None:
     row, kernel = board.state.axis[i], board.kernel
-    reject_queue(board.state, i, False)
-    _stand(board, i)
-    actual = float(kernel.servo.actual[i]) - _offset(board, i)
-    kernel.base[i] = actual
-    kernel.setpoint[i] = actual + _offset(board, i)
+    board.cancel_commands(i)
+    stand(board.state, i)
+    kernel.base[i] = _base_at_actual(board, i)
+    kernel.setpoint[i] = kernel.servo.actual[i]
     kernel.velocity[i] = 0.0
     kernel.servo.row[i]["running"] = 0
     kernel.servo.row[i]["loop_closed"] = 1
@@ -45,16 +47,10 @@ def _close(board: Board, i: int) -> None:
     board.outputs |= int(board.state.plan[i]["PAE"])
 
 
-def _offset(board: Board, i: int) -> float:
-    return float(board.kernel.ptp.row[1, i]["position"])
-
-
-def _stand(board: Board, i: int) -> None:
-    """Take an axis out of any motion, at rest where its setpoint is."""
-    row = board.state.axis[i]
-    row["motion"] = row["search"] = row["stopping"] = row["endless"] = 0
-    row["speed"] = 0.0
-    row["pe"] = 1
+def _base_at_actual(board: Board, i: int) -> float:
+    """Return what the profile must give for the setpoint to be where the axis is."""
+    added = board.kernel.ptp.row[ADDED, i]["position"] + board.state.axis[i]["shift"]
+    return float(board.kernel.servo.actual[i] - added)
 
 
 def ol(board: Board, axes: Sequence[int]) -> None:
@@ -66,23 +62,20 @@ def ol(board: Board, axes: Sequence[int]) -> None:
 
 def _open(board: Board, i: int) -> None:
     row = board.state.axis[i]
-    reject_queue(board.state, i, False)
-    _stand(board, i)
-    row["closed"] = 0
+    board.cancel_commands(i)
+    stand(board.state, i)
+    row["closed"] = row["held"] = 0
     if row["stepper"]:
         row["referenced"] = 0
     write_mcp(board, i, 0)
-    board.kernel.servo.row[i]["loop_closed"] = 0
+    servo = board.kernel.servo.row[i]
+    servo["loop_closed"] = 0
+    servo["output"] = 0.0
 
 
 def write_mcp(board: Board, i: int, value: int) -> None:
     """Write the motor command port; it lasts while the loop is open (Manual 002, 4.4.162)."""
-    axis = board.axes[i]
-    if not axis.row["closed"]:
-        low, high = axis.setup.mcp_range
-        value = min(max(int(value), low), high)
-        axis.row["mcp"] = value
-        axis.servo["command"] = axis.velocity_of(value)
+    set_command(board.state, board.kernel, i, value)
 
 
 def ra(board: Board, axes: Sequence[int]) -> None:
@@ -91,7 +84,7 @@ def ra(board: Board, axes: Sequence[int]) -> None:
         row = board.state.axis[i]
         _open(board, i)
         board.outputs = _at_reset(board, int(board.state.plan[i]["PAE"]))
-        row["zero"] = board.kernel.servo.actual[i]
+        row["zero"] = board.kernel.servo.actual[i] - row["shift"]
         row["offset"] = 0.0
         _clear(board, i)
         row["saf"] = 0
@@ -107,6 +100,7 @@ def reset_system(board: Board) -> None:
     for axis in board.axes:
         _open(board, axis.index)
         _clear(board, axis.index)
+        axis.check_configuration(board.planned)
     board.outputs = board.config.outputs_at_reset
     board.trovr = 1.0
     if board.tasks is not None:
@@ -127,11 +121,11 @@ def _at_reset(board: Board, group: int) -> int:
 def RPtoDP(board: Board, axes: Sequence[int]) -> None:  # noqa: N802  the manual's name
     """Make the setpoint of `axes` their actual position, where no profile runs (Manual 002, 4.4.112)."""
     for i in axes:
-        row, kernel = board.state.axis[i], board.kernel
-        if row["pe"] and not row["endless"]:
-            kernel.base[i] = float(kernel.servo.actual[i]) - _offset(board, i)
-        elif row["endless"] and row["pe"]:
-            go_on_with(board.state, i, float(kernel.servo.actual[i]) - _offset(board, i), float(row["speed"]))
+        row, actual = board.state.axis[i], _base_at_actual(board, i)
+        if row["past"]:
+            go_on_with(board.state, i, actual, float(row["speed"]))
+        elif row["pe"] and row["closed"]:
+            board.kernel.base[i] = actual
 
 
 def shp(board: Board, i: int, position: float) -> None:
@@ -143,22 +137,23 @@ def shp(board: Board, i: int, position: float) -> None:
     if axis.is_busy or axis.queued or not math.isfinite(position):
         return
     row = axis.row
-    row["zero"] = float(board.kernel.servo.actual[i]) - position - float(row["offset"])
+    row["zero"] = axis.rp + float(row["zero"]) - position
     row["referenced"] = 1
 
 
 def write_rp(board: Board, i: int, position: float) -> None:
     """Write the actual position register, with the loop open (Manual 002, 4.4.167)."""
-    row = board.state.axis[i]
+    axis = board.axes[i]
+    row = axis.row
     if not row["closed"] and math.isfinite(position):
-        row["zero"] = float(board.kernel.servo.actual[i]) - position - float(row["offset"])
+        row["zero"] = axis.rp + float(row["zero"]) - position
         row["referenced"] = 0
 
 
 def write_dp(board: Board, i: int, position: float) -> None:
     """Write the setpoint, with the loop closed; the axis goes there at once (Manual 002, 4.4.140)."""
     axis = board.axes[i]
-    if axis.row["closed"] and axis.row["pe"] and math.isfinite(position):
+    if axis.row["closed"] and axis.row["pe"] and not axis.row["past"] and math.isfinite(position):
         board.kernel.base[i] = position + axis.origin
 
 

@@ -8,95 +8,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Protocol
+from dataclasses import dataclass
 
 import numpy as np
 
 from polycnc.controllers.apci._axis import Axis
 from polycnc.controllers.apci._axis_commands import reset_system
-from polycnc.controllers.apci._entries import change_override
+from polycnc.controllers.apci._board_variables import COMMON_VARIABLES, Tasks, Variables
 from polycnc.controllers.apci._motion import profile_velocity
-from polycnc.controllers.apci._registers import ErrorReg, ModeReg
+from polycnc.controllers.apci._motion_entries import change_override
+from polycnc.controllers.apci._path_units import PathUnits
+from polycnc.controllers.apci._registers import OUTPUTS, ErrorReg, ModeReg
 from polycnc.controllers.apci._scan import INTERRUPT, PROFILE_END, RECORD_FULL, RESET, run_scans
-from polycnc.controllers.apci._state import SMA, SMD, TOM, BoardState, make_board_state
-from polycnc.controllers.apci._system_file import InputFunction, SystemFile
-from polycnc.controllers.apci._units import PositionUnit, TimeUnit
-from polycnc.kernel import (
-    ADDED,
-    LIMIT_HIGH,
-    LIMIT_LOW,
-    OTHER_SOURCE,
-    PIDF,
-    REFERENCE,
-    SHORT_OVERSHOOT,
-    KernelState,
-    make_state,
-    move_to,
-    place_machine,
-)
+from polycnc.controllers.apci._setup import load_parameters, set_up_plant
+from polycnc.controllers.apci._state import BoardState, Floats, make_board_state
+from polycnc.controllers.apci._system_file import SystemFile
+from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
 from polycnc.machine import Clock, Way
 
 LATENCY_SCANS = 2  # after which a direct command takes effect (Manual 002, 2.2.8.1)
-COMMON_VARIABLES = 1000
-COMMON_BUFFER_BYTES = 1000
-CNC_TASKS = 4
-_LIMIT_FUNCTIONS = {"none": 0, "TOM": TOM, "SMA": SMA, "SMD": SMD}
-_INPUT_FUNCTIONS: tuple[InputFunction, ...] = (
-    "EO",
-    "DR",
-    "LSL_TOM",
-    "LSL_SMA",
-    "LSL_SMD",
-    "LSR_TOM",
-    "LSR_SMA",
-    "LSR_SMD",
-    "UI",
-    "REF",
-    "LP",
-)
-_PARAMETERS = (
-    *("jac", "jvl", "jtvl", "hac", "hvl", "sdec", "jerkrel", "MaxVel", "MaxAcc", "MDVEL"),
-    *("kp", "ki", "kd", "kpl", "kfca", "kfcv", "ipw", "mpe"),
-    *("sll", "slr", "gf", "slsp", "effradius"),
-)
-_STROBE_INPUTS = (13, 14, 15)  # bits of the inputs that latch axes 0, 1, 2 by hardware
 _AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own begins
 
 
-class Tasks(Protocol):
-    """What runs SAP programs within the board's time."""
+@dataclass(slots=True)
+class _Command:
+    """A direct command on its way."""
 
-    def scans_to_wait(self) -> float:
-        """Return for how many scans no task has anything to do; 0 if one can go on, inf if all wait for profiles."""
-        ...
-
-    def run_scan(self) -> None:
-        """Let every task do what it can within one scan."""
-        ...
-
-    def halt(self) -> None:
-        """Halt all tasks."""
-        ...
-
-
-@dataclass
-class Variables:
-    """Variables of the whole board, by the manual's names in lower case."""
-
-    pu: int = 0
-    tu: int = 0
-    trac: float = 1000.0
-    trvl: float = 100.0
-    trtvl: float = 0.0
-    ledgn: int = 0
-    ledrd: int = 0
-    ledyl: int = 0
-    irqpc: int = 0
-    ifs: int = 0  # interface status, kept by whoever boots the board
-    buffers: list[bytearray] = field(
-        default_factory=lambda: [bytearray(COMMON_BUFFER_BYTES) for _ in range(CNC_TASKS)]
-    )
+    due: int  # clock cycles
+    axes: tuple[int, ...]
+    orders: tuple[int, ...]  # of these axes, when it was given
+    begin: Callable[[], None]
 
 
 class Board:
@@ -120,96 +61,16 @@ class Board:
         self.axes = tuple(Axis(self, i, setup) for i, setup in enumerate(self.config.axes))
         self.tasks: Tasks | None = None
         self.interrupts: list[Callable[[], None]] = []
-        self._pending: list[tuple[int, Callable[[], None]]] = []
-        for i in range(n):
-            place_machine(self.kernel, i, 0.0)
-        self._set_up_plant()
-        self.load_parameters(self.config)
-
-    # ------------------------------------------------------------------ set-up
-
-    def _set_up_plant(self) -> None:
-        """Set up what stays with the board: drives, encoders, switches."""
-        kernel = self.kernel
-        kernel.owner[:] = OTHER_SOURCE
-        for axis in self.axes:
-            i, plant = axis.index, axis.setup.plant
-            kernel.servo.row[i]["loop_closed"] = 0
-            if plant.kind == "lag":
-                kernel.servo.row[i]["mode"] = PIDF
-                kernel.plant.row[i]["lag_s"] = plant.lag_s
-            if plant.encoder == "counts":
-                kernel.plant.row[i]["resolution"] = 1.0 / axis.setup.counts_per_unit
-            kernel.plant.row[i]["backlash"] = plant.play
-            switch, marks = kernel.switches.switch[i], kernel.switches.marks[i]
-            if plant.limit_left is not None:
-                switch[LIMIT_LOW]["on_from"], switch[LIMIT_LOW]["on_to"] = -math.inf, plant.limit_left
-            if plant.limit_right is not None:
-                switch[LIMIT_HIGH]["on_from"], switch[LIMIT_HIGH]["on_to"] = plant.limit_right, math.inf
-            if plant.reference is not None:
-                switch[REFERENCE]["on_from"], switch[REFERENCE]["on_to"] = plant.reference
-            if plant.index is not None:
-                marks["index_origin"] = plant.index
-                marks["index_pitch"] = 1.0 / axis.setup.gf  # one pulse per turn of the motor
+        self.units_in_use: dict[tuple[tuple[int, ...], int, int, int], PathUnits | None] = {}
+        self.planned = self.config  # the system file that was loaded last
+        self._pending: list[_Command] = []
+        self._orders = [0] * n  # a command is void when its axes have had another since
+        set_up_plant(self)
+        load_parameters(self, self.config)
 
     def load_parameters(self, system: SystemFile) -> None:
         """Take over the parameters and the planning of a system file, as loading system.dat does."""
-        variables, board = self.variables, self.state.board[0]
-        for axis, setup in zip(self.axes, system.axes, strict=False):
-            for name in [
-                "jac",
-                "jvl",
-                "jtvl",
-                "hac",
-                "hvl",
-                "sdec",
-                "kp",
-                "ki",
-                "kd",
-                "kpl",
-                "kfca",
-                "kfcv",
-                "sll",
-                "slr",
-                "ipw",
-                "mpe",
-                "gf",
-                "slsp",
-                "effradius",
-                "MaxVel",
-                "MaxAcc",
-                "MDVEL",
-                "jerkrel",
-            ]:
-                setattr(axis, name, getattr(setup, name))
-            axis.row["soft_left"] = _LIMIT_FUNCTIONS[setup.soft_left]
-            axis.row["soft_right"] = _LIMIT_FUNCTIONS[setup.soft_right]
-            axis.row["stepper"] = setup.motor == "stepper"
-            axis.row["rotary"] = setup.is_rotary
-            axis.row["cef"] = bool(system.differences(self.config))
-            if not setup.mcp_limits_are_possible:
-                self.raise_error(ErrorReg.LimitDefError)
-            self.update_filter(axis.index)
-            self._plan_inputs(system, axis.index)
-        planned = system.board
-        variables.pu = int(PositionUnit[planned.pu])
-        variables.tu = int(TimeUnit[planned.tu])
-        variables.trac, variables.trvl, variables.trtvl = planned.trac, planned.trvl, planned.trtvl
-        board["trovrst"] = planned.trovrst
-        board["mode_register"] = int(system.modereg)
-        board["nfrax"] = system.nfrax
-        board["inverted"] = system.inverted_inputs
-        board["outputs"] = system.outputs_at_reset
-
-    def _plan_inputs(self, system: SystemFile, i: int) -> None:
-        plan = self.state.plan[i]
-        for function in _INPUT_FUNCTIONS:
-            plan[function] = system.inputs_for(function, i)
-        plan["PAE"] = system.outputs_for(i)
-        plan["strobe"] = 1 << _STROBE_INPUTS[i] if i < len(_STROBE_INPUTS) else 0
-        plan["left_switch"] = plan["LSL_TOM"] | plan["LSL_SMA"] | plan["LSL_SMD"]
-        plan["right_switch"] = plan["LSR_TOM"] | plan["LSR_SMA"] | plan["LSR_SMD"]
-        plan["reference_switch"] = plan["REF"]
+        load_parameters(self, system)
 
     def update_filter(self, i: int) -> None:
         """Hand the six filter coefficients of an axis to its position loop."""
@@ -225,7 +86,7 @@ class Board:
         return ErrorReg(int(self.state.board[0]["error_register"]))
 
     def raise_error(self, error: ErrorReg) -> None:
-        """Set a bit of the error register."""
+        """Set a bit of the error register, also one for a fault that only hardware has."""
         self.state.board[0]["error_register"] |= int(error)
 
     @property
@@ -255,7 +116,7 @@ class Board:
 
     @outputs.setter
     def outputs(self, value: int) -> None:
-        self.state.board[0]["outputs"] = value & 0xFF
+        self.state.board[0]["outputs"] = value & ((1 << OUTPUTS) - 1)
 
     @property
     def nfrax(self) -> int:
@@ -265,6 +126,7 @@ class Board:
     @nfrax.setter
     def nfrax(self, value: int) -> None:
         self.state.board[0]["nfrax"] = value & 0xFFFFFFFF
+        self.state.feed_axis[:] = [1 - (value >> i & 1) for i in range(len(self.axes))]
 
     @property
     def trovr(self) -> float:
@@ -294,7 +156,7 @@ class Board:
 
     def profile_velocity(self, i: int) -> float:
         """Return the velocity of an axis' profile (axis units/s)."""
-        return float(profile_velocity(self.state, self.kernel, i))
+        return float(profile_velocity(self.state, i))
 
     def move_offset(self, i: int) -> None:
         """Bring what is added to the setpoint to `dpoffset`, at once or with `dvoffset`."""
@@ -308,6 +170,17 @@ class Board:
             ptp.row[ADDED, i]["position"] = row["dpoffset"]
             ptp.row[ADDED, i]["velocity"] = 0.0
 
+    def start_analysis(self, axes: tuple[int, ...], *, every: int = 1) -> None:
+        """Record setpoint, actual position and commanded velocity of `axes`, in every so many scans."""
+        row = self.state.board[0]
+        row["record_axes"] = sum(1 << i for i in axes)
+        row["record_every"] = max(every, 1)
+        row["record_count"] = row["recorded"] = 0
+
+    def analysis(self, i: int) -> Floats:
+        """Return what was recorded of an axis, one row a time: machine positions, and a velocity."""
+        return self.state.analysis[: self.state.board[0]["recorded"], i].copy()
+
     # ------------------------------------------------------------------ time
 
     @property
@@ -315,12 +188,31 @@ class Board:
         """Time since the board was booted."""
         return self.clock.now_s
 
-    def later(self, command: Callable[[], None], scans: int = LATENCY_SCANS) -> None:
-        """Carry out `command` after so many scans; at once for 0."""
-        if scans <= 0:
-            command()
-        else:
-            self._pending.append((self.clock.cycles + scans, command))
+    def command(self, axes: tuple[int, ...], begin: Callable[[], None]) -> None:
+        """Let `axes` have a direct command: no profile end from now on; `begin` is called when it takes effect."""
+        for i in axes:
+            row = self.state.axis[i]
+            row["commanded"] += 1
+            row["pe"] = row["saf"] = 0
+        orders = tuple(self._orders[i] for i in axes)
+        self._pending.append(_Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
+
+    def cancel_commands(self, i: int) -> None:
+        """Make void what was commanded to an axis and has not taken effect."""
+        self._orders[i] += 1
+        self.state.axis[i]["commanded"] = 0
+
+    def _carry_out(self) -> None:
+        """Carry out the direct commands that are due."""
+        while self._pending and self._pending[0].due <= self.clock.cycles:
+            command = self._pending.pop(0)
+            valid = [
+                i for i, order in zip(command.axes, command.orders, strict=True) if order == self._orders[i]
+            ]
+            for i in valid:
+                self.state.axis[i]["commanded"] -= 1
+            if len(valid) == len(command.axes):
+                command.begin()
 
     def advance(self, scans: int, *, until: int = 0) -> int:
         """Run up to `scans` scans; return how many were run.
@@ -339,7 +231,7 @@ class Board:
                 piece = int(min(piece, max(waiting, 1)))
                 mask |= PROFILE_END  # a task may wait for it
             if self._pending:
-                piece = min(piece, max(self._pending[0][0] - self.clock.cycles, 1))
+                piece = min(piece, max(self._pending[0].due - self.clock.cycles, 1))
             ran = int(run_scans(self.state, self.kernel, piece, mask))
             done += ran
             self.clock.tick(ran)
@@ -347,11 +239,6 @@ class Board:
                 break
         self._carry_out()
         return done
-
-    def _carry_out(self) -> None:
-        """Carry out the direct commands that are due."""
-        while self._pending and self._pending[0][0] <= self.clock.cycles:
-            self._pending.pop(0)[1]()
 
     def _attend(self) -> int:
         """Do what the last scan asked for, and return it."""

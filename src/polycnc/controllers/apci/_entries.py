@@ -1,159 +1,242 @@
-"""Fill an entry of the spooler with a path, and hand it to the axes' queues."""
+"""Hand entries to the axes' queues; a straight line in one call, because contours are many short lines."""
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
+import math
 
-from polycnc.controllers.apci._motion import axis_velocity, keep_going, override_changed, plan_motion
-from polycnc.controllers.apci._spool import drop_entries, give_up, leave_and_brake, start_move
-from polycnc.controllers.apci._state import JOG, MOVE, BoardState, Floats
-from polycnc.kernel import (
-    SHORT_JUMP,
-    KernelState,
-    Segments,
-    entry,
-    set_arc,
-    set_circle3d,
-    set_line,
-    stop_profile,
+from polycnc.controllers.apci._look_ahead import look_ahead
+from polycnc.controllers.apci._registers import ErrorReg, ModeReg
+from polycnc.controllers.apci._spool import bytes_of
+from polycnc.controllers.apci._state import (
+    BY_SYSTEM,
+    MOVE,
+    SPECIAL,
+    SPOOL_BYTES,
+    SPOOL_ENTRIES,
+    TABLE,
+    BoardState,
+    Floats,
+    Whole,
 )
+from polycnc.kernel import LINE, compiled, entry, set_line
 
-Mask = npt.NDArray[np.uint8]
+HARDLY_ANY = 1e-9  # path units: a distance or a radius below it is none
 
-
-@entry
-def fill_line(seg: Segments, e: int, feed_axis: Mask, start: Floats, end: Floats) -> float:
-    """Make entry `e` a straight line; return its length, 0 if there is none."""
-    if not set_line(seg.row, seg.start, seg.end, e, feed_axis, start, end, 0.0, 0, 0):
-        return 0.0
-    return float(seg.row[e]["length"])
-
-
-@entry
-def fill_arc(
-    seg: Segments,
-    e: int,
-    feed_axis: Mask,
-    start: Floats,
-    end: Floats,
-    axis_p: int,
-    axis_q: int,
-    center_p: float,
-    center_q: float,
-    sweep: float,
-) -> float:
-    """Make entry `e` an arc or a helix through `sweep` rad; return its length, 0 if there is none."""
-    if not set_arc(seg, e, feed_axis, start, end, axis_p, axis_q, center_p, center_q, sweep, 0.0, 0, 0):
-        return 0.0
-    return float(seg.row[e]["length"])
+_OVERRUN = int(ErrorReg.errSpoolerOverrun)
+_LOAD_ERROR = int(ErrorReg.SpoolerLoadError)
+_ZERO_PROFILE = int(ErrorReg.ZeroProfile)
+_TOO_LESS = int(ErrorReg.SpoolerDeepTooLess)
+_LOOK_AHEAD = int(ModeReg.lookahead)
+_MAX_CHECK = int(ModeReg.maxcheck)
 
 
-@entry
-def fill_circle3d(
-    seg: Segments,
-    e: int,
-    start: Floats,
-    axis_p: int,
-    axis_q: int,
-    axis_r: int,
-    center: Floats,
-    normal: Floats,
-    sweep_deg: float,
-) -> float:
-    """Make entry `e` a circle in space; return its length, 0 if there is none."""
-    if not set_circle3d(seg, e, start, axis_p, axis_q, axis_r, center, normal, sweep_deg, 0.0, 0, 0):
-        return 0.0
-    return float(seg.row[e]["length"])
+@compiled
+def take_entry(b: BoardState) -> int:
+    """Take an entry from the free list; -1, with the reason in the error register, if there is none."""
+    board = b.board[0]
+    if board["free"] <= 0:
+        board["error_register"] |= _OVERRUN
+        return -1
+    board["free"] -= 1
+    e = int(b.free[board["free"]])
+    row = b.entry[e]
+    row["started"] = -1
+    row["index"] = -1
+    row["out"] = math.nan
+    row["join"] = 0.0
+    row["begun"] = 0
+    row["points"] = 0
+    return e
 
 
 @entry
-def begin_move(b: BoardState, state: KernelState, e: int, speed: float) -> None:
-    """Let the axes of entry `e` leave what they do and go along it, entered with path speed `speed`."""
+def new_entry(b: BoardState) -> int:
+    """Take an entry from the free list; -1, with the reason in the error register, if there is none."""
+    return take_entry(b)
+
+
+@entry
+def give_back(b: BoardState, e: int) -> None:
+    """Return an entry that was not used."""
+    board = b.board[0]
+    b.free[board["free"]] = e
+    board["free"] += 1
+
+
+@compiled
+def position_behind_queue(b: BoardState, base: Floats, i: int) -> float:
+    """Return the machine position of axis `i` behind everything it has queued."""
+    row = b.axis[i]
+    for count in range(row["tail"] - 1, row["head"] - 1, -1):
+        e = int(b.ring[i, count % SPOOL_ENTRIES])
+        if b.entry[e]["kind"] == MOVE:
+            return float(b.seg.end[e, i] / b.weight[e, i])
+        if b.entry[e]["kind"] == TABLE:
+            return float(b.entry[e]["value"])
+    return float(base[i])
+
+
+@entry
+def queued_position(b: BoardState, base: Floats, i: int) -> float:
+    """Return the machine position of axis `i` behind everything it has queued; `base[n]` are those they have now."""
+    return position_behind_queue(b, base, i)
+
+
+@compiled
+def _refusal(b: BoardState, e: int) -> int:
+    """Return the error that keeps entry `e` out of the queues of its axes, -1 for an open loop, 0 for none."""
     mask = b.entry[e]["mask"]
     for i in range(b.axis.shape[0]):
-        if mask >> i & 1:
-            give_up(b, i)
-            b.axis[i]["direct"] = 1
-            start_move(b, i, e, speed, 0.0)
+        row = b.axis[i]
+        if mask >> i & 1 == 0:
+            continue
+        if row["closed"] == 0:
+            return -1
+        if row["stopping"] == BY_SYSTEM:
+            return _LOAD_ERROR
+        if row["tail"] - row["head"] >= SPOOL_ENTRIES or row["used"] + bytes_of(b, e) > SPOOL_BYTES:
+            return _OVERRUN
+    return 0
+
+
+@compiled
+def put_into_queues(b: BoardState, e: int, velocity_unit: float) -> bool:
+    """Put entry `e` at the end of the queues of its axes; False, with nothing queued, if one does not take it."""
+    board, this = b.board[0], b.entry[e]
+    refusal = _refusal(b, e)
+    if refusal != 0:
+        if refusal > 0:
+            board["error_register"] |= refusal
+        b.free[board["free"]] = e
+        board["free"] += 1
+        return False
+    for i in range(b.axis.shape[0]):
+        if this["mask"] >> i & 1:
+            row = b.axis[i]
+            b.ring[i, row["tail"] % SPOOL_ENTRIES] = e
+            row["tail"] += 1
+            row["used"] += bytes_of(b, e)
+            row["points"] += this["points"]
+    if this["kind"] != SPECIAL and board["mode_register"] & _LOOK_AHEAD:
+        look_again(b, this["mask"], velocity_unit)
+    return True
+
+
+@compiled
+def look_again(b: BoardState, mask: int, velocity_unit: float) -> None:
+    """Look ahead over the queues of these axes."""
+    for i in range(b.axis.shape[0]):
+        if mask >> i & 1 and look_ahead(b, i, velocity_unit):
+            b.board[0]["error_register"] |= _TOO_LESS
 
 
 @entry
-def begin_jog(
-    b: BoardState,
-    state: KernelState,
-    i: int,
-    search: int,
-    endless: bool,
-    target: float,
-    tvl: float,
-    vl: float,
-    ac: float,
-    dec: float,
+def queue_entry(b: BoardState, e: int, velocity_unit: float) -> bool:
+    """Put entry `e` at the end of the queues of its axes; False, with nothing queued, if one does not take it."""
+    return put_into_queues(b, e, velocity_unit)
+
+
+@entry
+def look_ahead_again(b: BoardState, mask: int, velocity_unit: float) -> None:
+    """Look ahead over the queues of these axes, because something in them has changed."""
+    if b.board[0]["mode_register"] & _LOOK_AHEAD:
+        look_again(b, mask, velocity_unit)
+
+
+@compiled
+def fill_move(b: BoardState, e: int, axes: Whole, weight: Floats, ac: float, vl: float, tvl: float) -> None:
+    """Make entry `e`, which has its path, a move of `axes`; numbers in path units."""
+    this = b.entry[e]
+    mask = 0
+    for k in range(axes.shape[0]):
+        mask |= 1 << axes[k]
+    for i in range(b.axis.shape[0]):
+        b.weight[e, i] = 1.0
+    for k in range(axes.shape[0]):
+        b.weight[e, axes[k]] = weight[k]
+    this["kind"] = MOVE
+    this["mask"] = mask
+    this["refs"] = axes.shape[0]
+    this["ac"] = ac
+    this["vl"] = vl
+    this["tvl"] = tvl
+
+
+@compiled
+def _keep_axis_limits(
+    b: BoardState, e: int, axes: Whole, velocity_unit: float, acceleration_unit: float
 ) -> None:
-    """Let axis `i` leave what it does and run a profile of its own from its present position and velocity."""
-    row = b.axis[i]
-    velocity = axis_velocity(b, state, i)
-    give_up(b, i)
-    row["motion"] = JOG
-    row["search"] = search
-    row["stopping"] = 0
-    row["endless"] = 1 if endless else 0
-    row["target"] = target
-    row["tvl"] = tvl
-    row["vl"] = vl
-    row["ac"] = ac
-    row["dec"] = dec
-    row["policy"] = SHORT_JUMP
-    row["pe"] = 0
-    plan_motion(b, i, state.base[i], velocity, 0.0)
+    """Lower velocity and acceleration of a line to MaxVel and MaxAcc of its axes."""
+    this, length = b.entry[e], b.seg.row[e]["length"]
+    for k in range(axes.shape[0]):
+        i = axes[k]
+        part = abs(b.seg.end[e, i] - b.seg.start[e, i]) / length
+        row = b.axis[i]
+        if part > 0.0 and row["MaxVel"] > 0.0:
+            this["vl"] = min(this["vl"], row["MaxVel"] * velocity_unit / part)
+            this["tvl"] = min(this["tvl"], this["vl"])
+        if part > 0.0 and row["MaxAcc"] > 0.0:
+            this["ac"] = min(this["ac"], row["MaxAcc"] * acceleration_unit / part)
 
 
 @entry
-def go_on_with(b: BoardState, i: int, position: float, velocity: float) -> None:
-    """Let axis `i` go on from `position` with `velocity`, past the end of any profile."""
-    b.axis[i]["pe"] = 1
-    keep_going(b, i, position, velocity, 0.0)
+def spool_move(
+    b: BoardState,
+    e: int,
+    axes: Whole,
+    weight: Floats,
+    ac: float,
+    vl: float,
+    tvl: float,
+    velocity_unit: float,
+    acceleration_unit: float,
+) -> bool:
+    """Make entry `e`, which has its path, a move of `axes` and put it into their queues."""
+    fill_move(b, e, axes, weight, ac, vl, tvl)
+    if b.seg.row[e]["kind"] == LINE and b.board[0]["mode_register"] & _MAX_CHECK:
+        _keep_axis_limits(b, e, axes, velocity_unit, acceleration_unit)
+    return put_into_queues(b, e, velocity_unit)
 
 
 @entry
-def reject_queue(b: BoardState, i: int, keep_running: bool) -> None:
-    """Empty axis `i`'s queue; with `keep_running` the entry that is carried out stays."""
-    row = b.axis[i]
-    busy = row["direct"] == 0 and row["entry"] >= 0
-    drop_entries(b, i, 1 if keep_running and busy else 0)
-    if not keep_running:
-        give_up(b, i)
+def spool_line(
+    b: BoardState,
+    base: Floats,
+    axes: Whole,
+    weight: Floats,
+    ends: Floats,
+    relative: bool,
+    ac: float,
+    vl: float,
+    tvl: float,
+    velocity_unit: float,
+    acceleration_unit: float,
+    index: int,
+) -> bool:
+    """Queue a straight line of `axes` to `ends`, path units from the axes' origins or from where their queues end."""
+    e = take_entry(b)
+    if e < 0:
+        return False
+    start, end = b.work[0], b.work[1]
+    for i in range(b.axis.shape[0]):
+        start[i] = 0.0
+        end[i] = 0.0
+    for k in range(axes.shape[0]):
+        i = axes[k]
+        start[i] = position_behind_queue(b, base, i) * weight[k]
+        end[i] = ends[k] + (start[i] if relative else (b.axis[i]["zero"] + b.axis[i]["offset"]) * weight[k])
+    if not line_between(b, e, start, end):
+        give_back(b, e)
+        return False
+    b.entry[e]["index"] = index
+    return spool_move(b, e, axes, weight, ac, vl, tvl, velocity_unit, acceleration_unit)
 
 
-@entry
-def brake_axis(b: BoardState, state: KernelState, i: int, rate: float) -> None:
-    """Let axis `i` leave what it does, and brake it to rest by itself."""
-    leave_and_brake(b, state, i, rate)
-
-
-@entry
-def brake_on_path(b: BoardState, i: int, rate: float) -> None:
-    """Brake axis `i` to rest along its path, and reject what its queue holds behind that."""
-    row = b.axis[i]
-    if row["motion"] == MOVE and row["direct"] == 0:
-        drop_entries(b, i, 1)
-    row["running"] = 0
-    row["stopping"] = 1
-    row["endless"] = 0
-    count = stop_profile(b.phases[i], row["place"], row["speed"], rate, row["jerkrel"])
-    row["phases"] = count
-    row["lead"] = 0.0
-    row["cycles"] = 0
-    row["duration"] = 0.0
-    for phase in range(count):
-        row["duration"] += b.phases[i, phase, 0]
-
-
-@entry
-def change_override(b: BoardState, i: int, value: float) -> None:
-    """Give axis `i` another jog override, at once."""
-    row = b.axis[i]
-    row["jovr"] = value
-    if row["motion"] == JOG:
-        override_changed(b, i)
+@compiled
+def line_between(b: BoardState, e: int, start: Floats, end: Floats) -> bool:
+    """Make entry `e` a straight line; False, with the reason in the error register, if there is none."""
+    found = set_line(b.seg.row, b.seg.start, b.seg.end, e, b.feed_axis, start, end, 0.0, 0, 0)
+    if not found or b.seg.row[e]["length"] < HARDLY_ANY:
+        b.board[0]["error_register"] |= _ZERO_PROFILE
+        return False
+    return bool(math.isfinite(b.seg.row[e]["length"]))

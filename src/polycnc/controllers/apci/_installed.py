@@ -29,8 +29,13 @@ class InstalledBoard:
         self.interface = InterfaceStatus()
         self.on_new_board: list[Callable[[Board], None]] = []
         self.load_cnc: Callable[[Board, bytes], TransferCode] | None = None
-        self.board = Board(hardware, record_scans=record_scans)
+        self.take(Board(hardware, record_scans=record_scans))
         self.eprom_cycles = 0
+
+    def take(self, board: Board) -> None:
+        """Let `board` be the one in the slot."""
+        self.board = board
+        board.variables.interface = self.interface
 
     @property
     def board_type(self) -> int:
@@ -55,7 +60,7 @@ class InstalledBoard:
             self.board.load_parameters(config)
 
     def _replace(self, config: SystemFile | None) -> None:
-        self.board = Board(config, record_scans=self.record_scans)
+        self.take(Board(config, record_scans=self.record_scans))
         for announce in self.on_new_board:
             announce(self.board)
 

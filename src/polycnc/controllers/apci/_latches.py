@@ -26,7 +26,7 @@ def _latch(b: BoardState, i: int, position: float, source: int) -> None:
 def latches_cycle(b: BoardState, state: KernelState, i: int) -> None:
     """Look what axis `i` has latched in this scan, and whether its position error is too large."""
     row, plan, inputs = b.axis[i], b.plan[i], b.board[0]["inputs"]
-    at = state.servo.actual[i] - row["zero"]
+    at = state.servo.actual[i] - row["shift"] - row["zero"]
     row["rv"] = state.servo.row[i]["actual_velocity"]
     if row["latch_scans"] > 0:
         row["latch_count"] += 1
@@ -45,7 +45,7 @@ def latches_cycle(b: BoardState, state: KernelState, i: int) -> None:
     marks = state.switches.marks[i]
     row["index_now"] = 1 if marks["index_crossed"] != 0 else 0
     if row["index_now"] != 0:
-        row["lpndx"] = marks["index_position"] - row["zero"]
+        row["lpndx"] = marks["index_position"] - row["shift"] - row["zero"]
         row["index_seen"] = 1
     error = abs(state.servo.row[i]["following_error"])
     row["position_error"] = 1 if row["mpe"] > 0.0 and row["closed"] != 0 and error > row["mpe"] else 0

@@ -66,18 +66,32 @@ def _plan_endless(
 
 
 @compiled
-def plan_motion(b: BoardState, i: int, place: float, speed: float, lead: float) -> None:
+def _rate_needed(row: np.void, place: float, speed: float, last: float) -> float:
+    """Return the deceleration that takes a running profile to its target with velocity `last`, or less."""
+    to_go = row["target"] - place
+    if to_go * speed <= 0.0 or last * speed < 0.0 or abs(last) >= abs(speed):
+        return 0.0
+    return float((speed * speed - last * last) / abs(2.0 * to_go))
+
+
+@compiled
+def plan_motion(b: BoardState, i: int, place: float, speed: float, lead: float, runs: bool) -> None:
     """Plan the commanded motion of axis `i` from `place` and `speed`, `lead` seconds ago, with its present override.
 
-    The override acts on velocities and on accelerations (Manual 002, 2.2.6).
+    The override acts on velocities and on accelerations (Manual 002, 2.2.6). A profile that `runs` already keeps the
+    braking that it needs: a lower override does not make its distance too short.
     """
     row = b.axis[i]
     k = override_of(row)
     phases = b.phases[i]
-    jerkrel = jerk_of(b, i)
+    # While the override goes to its goal a ramp of its own begins with every scan: bent, it would never get under way.
+    jerkrel = 0.0 if runs and row["tovr"] != row["override_goal"] else jerk_of(b, i)
     if row["endless"] != 0:
         count = _plan_endless(phases, place, speed, k * row["tvl"], k * row["ac"], jerkrel)
     else:
+        dec = k * row["dec"]
+        if runs:
+            dec = max(dec, _rate_needed(row, place, speed, k * row["tvl"]))
         count = plan_profile(
             phases,
             place,
@@ -86,12 +100,15 @@ def plan_motion(b: BoardState, i: int, place: float, speed: float, lead: float) 
             k * row["tvl"],
             k * row["vl"],
             k * row["ac"],
-            k * row["dec"],
+            dec,
             jerkrel,
             row["policy"],
         )
-        if count < 0:  # the numbers allow no motion, as an override of 0: stay
-            count = stop_profile(phases, place, 0.0, 0.0, 0.0)
+        if count < 0:  # nothing can move it: it stands for ever
+            close_profile(phases, 0, 0, place, place, 0.0)
+            _begin(b, i, 0, place, 0.0, lead)
+            row["duration"] = math.inf
+            return
     _begin(b, i, count, place, speed, lead)
 
 
@@ -107,32 +124,39 @@ def _begin(b: BoardState, i: int, count: int, place: float, speed: float, lead: 
 
 
 @compiled
-def brake(b: BoardState, i: int, position: float, velocity: float, rate: float) -> None:
-    """Let axis `i` brake to rest from here, on its own; a rate of 0 stops it at once."""
+def brake(b: BoardState, i: int, position: float, velocity: float, rate: float, who: int) -> None:
+    """Let axis `i` brake to rest from here, on its own; a rate of 0 stops it at once. `who` wants it so."""
     row = b.axis[i]
     count = stop_profile(b.phases[i], position, velocity, rate, jerk_of(b, i))
     row["motion"] = JOG
-    row["stopping"] = 1
+    row["stopping"] = who
+    row["past"] = 0
     row["endless"] = 0
     _begin(b, i, count, position, velocity, 0.0)
 
 
 @compiled
-def axis_velocity(b: BoardState, state: KernelState, i: int) -> float:
+def axis_velocity(b: BoardState, i: int) -> float:
     """Return the velocity of axis `i`'s setpoint (axis units/s), as its motion has it and not as a difference."""
     row = b.axis[i]
-    if row["motion"] == JOG:
-        return float(row["speed"])
     if row["motion"] == MOVE:
         slope = segment_slope(b.seg, row["entry"], i, row["place"])
         return float(slope * row["speed"] / b.weight[row["entry"], i])
-    return float(state.velocity[i]) if row["motion"] == TABLE else 0.0
+    return float(row["speed"]) if row["motion"] == JOG or row["motion"] == TABLE else 0.0
 
 
 @entry
-def profile_velocity(b: BoardState, state: KernelState, i: int) -> float:
+def profile_velocity(b: BoardState, i: int) -> float:
     """Return the velocity of axis `i`'s profile (axis units/s)."""
-    return axis_velocity(b, state, i)
+    return axis_velocity(b, i)
+
+
+@compiled
+def has_ended(row: np.void) -> bool:
+    """Tell whether no profile is to be run: the axis rests, or goes on past the end of one."""
+    if row["commanded"] != 0 or row["running"] != 0:
+        return False
+    return bool(row["motion"] == IDLE or row["past"] != 0)
 
 
 @compiled
@@ -141,6 +165,7 @@ def keep_going(b: BoardState, i: int, position: float, velocity: float, lead: fl
     row = b.axis[i]
     row["motion"] = JOG
     row["stopping"] = 0
+    row["past"] = 1
     row["endless"] = 1
     row["tvl"] = velocity
     row["ac"] = 0.0
@@ -199,9 +224,9 @@ def override_changed(b: BoardState, i: int) -> None:
     """Plan the motion of axis `i` again from its last sample, because its override is another."""
     row = b.axis[i]
     moving = row["motion"] == JOG or row["motion"] == MOVE
-    past_its_end = row["pe"] != 0  # it keeps the velocity that it was left with
-    if moving and not past_its_end and row["stopping"] == 0 and row["search"] != SEARCH_ENDS:
-        plan_motion(b, i, row["place"], row["speed"], 0.0)
+    # Past its end it keeps the velocity that it was left with.
+    if moving and row["past"] == 0 and row["stopping"] == 0 and row["search"] != SEARCH_ENDS:
+        plan_motion(b, i, row["place"], row["speed"], 0.0, True)
 
 
 @compiled
@@ -211,6 +236,6 @@ def rest(b: BoardState, i: int) -> None:
     row["motion"] = IDLE
     row["search"] = 0
     row["stopping"] = 0
+    row["past"] = 0
     row["endless"] = 0
     row["speed"] = 0.0
-    row["pe"] = 1 if row["commanded"] == 0 else 0

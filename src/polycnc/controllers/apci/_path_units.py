@@ -11,33 +11,54 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from polycnc.controllers.apci._registers import ModeReg
+from polycnc.controllers.apci._state import Floats, Whole
 from polycnc.controllers.apci._units import DEGREES, MILLIMETRES, PositionUnit, TimeUnit, seconds
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci._board import Board
 
+_ROTARY = int(ModeReg.rotaxisunit)
+_KEPT = 64
+
 
 @dataclass(frozen=True, slots=True)
 class PathUnits:
-    """How the numbers of one interpolation are meant."""
+    """How the numbers of one interpolation are meant; the arrays go with its axes, in their order."""
 
-    length: float  # path units per position unit
-    time_s: float  # seconds per time unit
-    weight: dict[int, float]  # path units per unit of each axis
-    distance: dict[int, float]  # path units per unit in which the axis' distances are given
+    velocity_unit: float  # path units/s per unit of velocity
+    acceleration_unit: float  # path units/s2 per unit of acceleration
+    axes: Whole
+    weight: Floats  # path units per unit of each axis
+    distance: Floats  # path units per unit in which the axis' distances are given
 
     def velocity(self, value: float) -> float:
         """Return a velocity in path units/s."""
-        return value * self.length / self.time_s
+        return value * self.velocity_unit
 
     def acceleration(self, value: float) -> float:
         """Return an acceleration in path units/s2."""
-        return value * self.length / (self.time_s * self.time_s)
+        return value * self.acceleration_unit
 
 
 def path_units(board: Board, axes: Sequence[int]) -> PathUnits | None:
-    """Return the units in force for an interpolation of `axes`; None if an axis does not fit the position unit."""
+    """Return the units in force for an interpolation of `axes`; None if an axis does not fit the position unit.
+
+    They are kept on the board until something changes that they depend on.
+    """
+    variables = board.variables
+    key = (tuple(axes), variables.pu, variables.tu, int(board.state.board[0]["mode_register"]) & _ROTARY)
+    known = board.units_in_use
+    if key not in known:
+        if len(known) >= _KEPT:
+            known.clear()
+        known[key] = _units(board, axes)
+    return known[key]
+
+
+def _units(board: Board, axes: Sequence[int]) -> PathUnits | None:
     variables = board.variables
     if (
         variables.pu not in PositionUnit.__members__.values()
@@ -45,22 +66,23 @@ def path_units(board: Board, axes: Sequence[int]) -> PathUnits | None:
     ):
         return None
     unit = PositionUnit(variables.pu)
-    weight: dict[int, float] = {}
-    distance: dict[int, float] = {}
+    weight = np.ones(len(axes))
+    distance = np.ones(len(axes))
     length = MILLIMETRES.get(unit) or DEGREES.get(unit) or 1.0
-    for i in axes:
+    for k, i in enumerate(axes):
         axis = board.axes[i]
         own = axis.setup.position_unit
         per_unit = _weight(axis.counts_per_unit, own, unit)
-        distance[i] = length
+        distance[k] = length
         if per_unit is None and own in DEGREES and unit in MILLIMETRES and axis.effradius > 0.0:
             per_unit = DEGREES[own] * math.radians(1.0) * axis.effradius * length
             if board.modereg & ModeReg.rotaxisunit:
-                distance[i] = per_unit
+                distance[k] = per_unit
         if per_unit is None:
             return None
-        weight[i] = per_unit
-    return PathUnits(length, seconds(TimeUnit(variables.tu), board.config.sample_time_s), weight, distance)
+        weight[k] = per_unit
+    time_s = seconds(TimeUnit(variables.tu), board.config.sample_time_s)
+    return PathUnits(length / time_s, length / (time_s * time_s), np.array(axes, np.int64), weight, distance)
 
 
 def _weight(counts_per_unit: float, own: PositionUnit, unit: PositionUnit) -> float | None:

@@ -37,7 +37,13 @@ rddigi = AxisRegister(
     "digi", "the digital inputs and the signals of the encoder", 0, _digi, None, "", (52,), True
 ).read_record("digi")
 rddigo, wrdigo = AxisRegister(
-    *("digo", "the digital outputs", 0, lambda axis: axis.board.outputs, _set_outputs, "", (54, 138), True),
+    "digo",
+    "the digital outputs",
+    0,
+    lambda axis: axis.board.outputs,
+    _set_outputs,
+    sections=(54, 138),
+    polled=True,
     note="Outputs belong to the board, whatever the axis.",
 ).in_record("digo")
 
@@ -104,7 +110,6 @@ def rifs(tsrp: TSRP) -> None:
     installed = _interface(tsrp.an)
     if installed is not None:
         installed.interface.reset_errors()
-        installed.board.variables.ifs = installed.interface.word  # what the tasks see
 
 
 # ---------------------------------------------------------------------- lights and interrupt

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from polycnc.controllers.apci._pcap_library import Recording, library, selected, usable_axis
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.controllers.apci._pcap_library import selected, usable_axis, usable_board
 from polycnc.controllers.apci._records import AS, LATCH_INFOS
 
 
@@ -14,18 +17,33 @@ def lps(an: int, mst: int) -> None:
 
 
 def lpr(latch_infos: LATCH_INFOS) -> None:
-    """Start recording axis `latch_infos.san`; `recording` returns it (Manual 002, 4.4.25)."""
+    """Start recording axis `latch_infos.san`; `recording` returns what was recorded (Manual 002, 4.4.25)."""
     lprs(AS(1, [latch_infos.san]), latch_infos)
 
 
 def lprs(asel: AS, latch_infos: LATCH_INFOS) -> None:
-    """Start recording the selected axes together; `latch_infos.san` is ignored (Manual 002, 4.4.26)."""
+    """Start recording the selected axes together; `latch_infos.san` is ignored (Manual 002, 4.4.26).
+
+    Ruling: every scan is recorded, until the board's memory for it is full; a new call begins anew.
+    """
     found = selected(asel)
     if found is not None:
         board, axes = found
-        library().recording = Recording(board, axes, int(board.kernel.recorder.filled[0]))
+        row = board.state.board[0]
+        row["record_axes"] = sum(1 << axis for axis in set(axes))
+        row["record_every"] = 1
+        row["record_count"] = row["recorded"] = 0
 
 
-def recording() -> Recording | None:
-    """Return the recording that lpr or lprs started last; mcfg.exe shows it on the real board."""
-    return library().recording
+def recording(an: int) -> npt.NDArray[np.float64]:
+    """Return what lpr or lprs has recorded of an axis; mcfg.exe shows it on the real board.
+
+    A row per scan: setpoint and actual machine position in axis units, commanded velocity in axis units/s. No rows for
+    an axis that is not recorded.
+    """
+    board = usable_board()
+    if board is None or not 0 <= an < len(board.axes):
+        return np.zeros((0, 3))
+    row = board.state.board[0]
+    rows = int(row["recorded"]) if int(row["record_axes"]) >> an & 1 else 0
+    return np.array(board.state.analysis[:rows, an])

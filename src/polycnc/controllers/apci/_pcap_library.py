@@ -8,13 +8,9 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
-
-import numpy as np
-import numpy.typing as npt
 
 from polycnc.controllers.apci._axis import Axis
 from polycnc.controllers.apci._board import Board
@@ -28,7 +24,6 @@ from polycnc.controllers.apci._sap_host import BoardTasks
 from polycnc.controllers.apci._scan import INTERRUPT, PROFILE_END
 from polycnc.controllers.apci._slots import REVISION, Pc, Slot, revision_numbers
 from polycnc.controllers.apci.sap import CncFileError, read_cnc
-from polycnc.kernel import LEADING, TIME_S
 from polycnc.machine import Poll, Way
 
 UNKNOWN_ERROR = 1
@@ -47,21 +42,6 @@ _STATUS_BITS_SINCE = {Axst.referenced: "V2.5.3.16", Axst.refh: "V2.5.3.47", Axst
 _log = logging.getLogger("polycnc.apci")
 
 
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """What the board records of some axes since a moment, in the buffer of its recorder."""
-
-    board: Board
-    axes: tuple[int, ...]
-    first: int  # row of the recorder
-
-    def rows(self) -> npt.NDArray[np.float64]:
-        """Return a row per scan: time in s, then setpoint and actual machine position of each axis in its unit."""
-        recorder, n = self.board.kernel.recorder, len(self.board.axes)
-        columns = [TIME_S, *(LEADING + column for i in self.axes for column in (i, n + i))]
-        return recorder.rows[self.first : int(recorder.filled[0]), columns]
-
-
 class Library:
     """The library in one program."""
 
@@ -70,7 +50,6 @@ class Library:
         self.messages = Messages(show)
         self.clock = clock
         self.lines: dict[InstalledBoard, InterruptLine] = {}
-        self.recording: Recording | None = None
 
     def installed(self) -> InstalledBoard | None:
         """Return the selected board if it can be used: there, booted and initialised."""
@@ -150,14 +129,13 @@ def board() -> Board:
 
 def _in_slot(board: Board) -> InstalledBoard:
     installed = InstalledBoard(board.config)
-    installed.board = board
+    installed.take(board)
     return installed
 
 
 def _connect(installed: InstalledBoard, line: InterruptLine, board: Board) -> None:
     """Join a board to its tasks and to the interrupt routine of the PC."""
     board.interrupts.append(partial(line.raise_interrupt, INTERRUPT_LINES))
-    board.variables.ifs = installed.interface.word
     if board.tasks is None:
         BoardTasks(board)
 

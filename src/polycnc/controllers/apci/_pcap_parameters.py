@@ -63,9 +63,19 @@ def _not_negative(value: float) -> bool:
 
 
 def _parameter(
-    stem: str, name: str, what: str, unit: str, *sections: int, fits: Callable[[float], bool] = is_number
+    stem: str,
+    name: str,
+    what: str,
+    unit: str,
+    *sections: int,
+    fits: Callable[[float], bool] = is_number,
+    note: str = "",
 ) -> AxisRegister[float]:
-    return AxisRegister(stem, what, 0.0, attrgetter(name), _at(name), unit, sections, fits=fits)
+    return AxisRegister(stem, what, 0.0, attrgetter(name), _at(name), unit, sections, fits=fits, note=note)
+
+
+def _limit(stem: str, name: str, what: str, unit: str, *sections: int) -> AxisRegister[float]:
+    return _parameter(stem, name, what, unit, *sections, fits=_not_negative, note="0: not checked.")
 
 
 def _flags(stem: str, what: str, *sections: int) -> AxisRegister[int]:
@@ -86,7 +96,11 @@ rdjac, wrjac = _parameter("jac", "jac", "the jog acceleration", ACCELERATION, 75
 rdjvl, wrjvl = _parameter("jvl", "jvl", "the jog velocity", VELOCITY, 78, 154).in_record("jvl")
 rdjtvl, wrjtvl = _parameter("jtvl", "jtvl", "the jog target velocity", VELOCITY, 77, 153).in_record("jtv")
 rdjovr, wrjovr = AxisRegister(
-    *("jovr", "the jog override", 0.0, attrgetter("jovr"), _at("jovr")),
+    "jovr",
+    "the jog override",
+    0.0,
+    attrgetter("jovr"),
+    _at("jovr"),
     sections=(152, 152),
     polled=True,
     fits=_positive,
@@ -108,23 +122,38 @@ rdmpe, wrmpe = _parameter("mpe", "mpe", "the limit of the position error", POSIT
 rdgf, wrgf = _parameter("gf", "gf", "the gear factor", "", 66, 145, fits=_positive).in_record("gf")
 rdaux, wraux = _parameter("aux", "aux", "the auxiliary register", "", 44, 133).in_record("aux")
 rdtp, wrtp = AxisRegister(
-    *("tp", "the target of the last travel command, absolute,", 0.0, attrgetter("tp"), _at("tp")),
-    *(POSITION, (103, 172)),
+    "tp",
+    "the absolute target of the last travel command",
+    0.0,
+    attrgetter("tp"),
+    _at("tp"),
+    POSITION,
+    sections=(103, 172),
     polled=True,
 ).in_record("tp")
 
 # ---------------------------------------------------------------------- positions and velocities
 
 rdrp, wrrp = AxisRegister(
-    *("rp", "the actual position", 0.0, attrgetter("rp")),
+    "rp",
+    "the actual position",
+    0.0,
+    attrgetter("rp"),
     lambda axis, value: write_rp(axis.board, axis.index, value),
-    *(POSITION, (95, 167), True),
+    POSITION,
+    sections=(95, 167),
+    polled=True,
     note="Written with open loop only; that shifts the machine zero, and the axis is not referenced any more.",
 ).in_record("rp")
 rddp, wrdp = AxisRegister(
-    *("dp", "the setpoint", 0.0, attrgetter("dp")),
+    "dp",
+    "the setpoint",
+    0.0,
+    attrgetter("dp"),
     lambda axis, value: write_dp(axis.board, axis.index, value),
-    *(POSITION, (56, 140), True),
+    POSITION,
+    sections=(56, 140),
+    polled=True,
     note="Written with closed loop only; the axis goes there as fast as it can.",
 ).in_record("dp")
 rdrpd = AxisRegister(
@@ -134,8 +163,14 @@ rddpd = AxisRegister(
     "dpd", "the setpoint", 0.0, lambda a: a.displayed(a.dp), None, "display unit", (58,), True
 ).read_record("dp")
 rdtpd = AxisRegister(
-    *("tpd", "the target of the last travel command, absolute,", 0.0, lambda a: a.displayed(a.tp), None),
-    *("display unit", (104,), True),
+    "tpd",
+    "the absolute target of the last travel command",
+    0.0,
+    lambda a: a.displayed(a.tp),
+    None,
+    "display unit",
+    (104,),
+    True,
 ).read_record("tp")
 rddv = AxisRegister(
     "dv", "the velocity of the profile", 0.0, attrgetter("dv"), None, VELOCITY, (59,), True
@@ -145,17 +180,34 @@ rdPosErr = AxisRegister(
     "PosErr", "the position error", 0.0, attrgetter("position_error"), None, POSITION, (93,), True
 ).read()
 rdlp, wrlp = AxisRegister(
-    *("lp", "the latched position", 0.0, attrgetter("lp"), _at("lp"), POSITION, (82, 158), True),
+    "lp",
+    "the latched position",
+    0.0,
+    attrgetter("lp"),
+    _at("lp"),
+    POSITION,
+    sections=(82, 158),
+    polled=True,
     note="Reading it clears the status bit lpsf.",
 ).in_record("lp")
 rdlpndx, wrlpndx = AxisRegister(
-    *("lpndx", "the position latched at the encoder's index", 0.0, attrgetter("lpndx"), _at("lpndx")),
-    *(POSITION, (83, 159), True),
+    "lpndx",
+    "the position latched at the encoder's index",
+    0.0,
+    attrgetter("lpndx"),
+    _at("lpndx"),
+    POSITION,
+    sections=(83, 159),
+    polled=True,
 ).in_record("lp")
 rdmcp, wrmcp = AxisRegister(
-    *("mcp", "the motor command port", 0, attrgetter("mcp")),
+    "mcp",
+    "the motor command port",
+    0,
+    attrgetter("mcp"),
     lambda axis, value: write_mcp(axis.board, axis.index, value),
-    *("", (88, 162), True),
+    sections=(88, 162),
+    polled=True,
     note=(
         "Servo: -32767 to 32767 is -10 to 10 V. Stepper: the frequency is CLOCK / 2 / (|mcp| + 1) in the direction of "
         "the sign, 0 stops. It lasts only while the loop is open."
@@ -165,19 +217,39 @@ rdmcp, wrmcp = AxisRegister(
 # ---------------------------------------------------------------------- status words and counters, read only
 
 rdaxst = AxisRegister(
-    "axst", "the axis status", 0, lambda axis: axis.status_word & status_mask(revision()), None, "", (45,), True
+    "axst",
+    "the axis status",
+    0,
+    lambda axis: axis.status_word & status_mask(revision()),
+    None,
+    "",
+    (45,),
+    True,
 ).read_record("axst")
 rdlsm = AxisRegister(
-    *("lsm", "the free spooler memory", 0, lambda axis: free_bytes(axis.board, axis.index), None),
-    *("byte", (84,), True),
+    "lsm",
+    "the free spooler memory",
+    0,
+    lambda axis: free_bytes(axis.board, axis.index),
+    unit="byte",
+    sections=(84,),
+    polled=True,
 ).read_record("lsm")
 rdMCiS = AxisRegister(
-    *("MCiS", "the number of motion commands in the spooler", 0),
-    *(lambda axis: moves_queued(axis.board, axis.index), None, "", (87,), True),
+    "MCiS",
+    "the number of motion commands in the spooler",
+    0,
+    lambda axis: moves_queued(axis.board, axis.index),
+    sections=(87,),
+    polled=True,
 ).read()
 rdPcapIndex = AxisRegister(
-    *("PcapIndex", "the index of the spooled command that is being executed", 0),
-    *(lambda axis: int(axis.row["pcap_index"]), None, "", (94,), True),
+    "PcapIndex",
+    "the index of the spooled command that is being executed",
+    0,
+    lambda axis: int(axis.row["pcap_index"]),
+    sections=(94,),
+    polled=True,
     note="-1 until a command with an index has been executed.",
 ).read_coded()
 
@@ -186,22 +258,12 @@ rdPcapIndex = AxisRegister(
 rdEffRadius, wrEffRadius = _parameter(
     "EffRadius", "effradius", "the effective radius", "PU", 61, 143, fits=_not_negative
 ).both()
-rdJerkRel, wrJerkRel = _parameter("JerkRel", "jerkrel", "the relative jerk, 0 to 1,", "", 76, 151).both()
-rdMaxAcc, wrMaxAcc = _parameter(
-    *("MaxAcc", "MaxAcc", "the maximum acceleration of the axis, 0: not checked,", PATH_ACCELERATION),
-    *(85, 160),
-    fits=_not_negative,
+rdJerkRel, wrJerkRel = _parameter(
+    "JerkRel", "jerkrel", "the relative jerk", "", 76, 151, note="0 to 1; other values are limited to it."
 ).both()
-rdMaxVel, wrMaxVel = _parameter(
-    *("MaxVel", "MaxVel", "the maximum velocity of the axis, 0: not checked,", PATH_VELOCITY),
-    *(86, 161),
-    fits=_not_negative,
-).both()
-rdMDVel, wrMDVel = _parameter(
-    *("MDVel", "MDVEL", "the maximum velocity jump of the axis, 0: not checked,", PATH_VELOCITY),
-    *(89, 163),
-    fits=_not_negative,
-).both()
+rdMaxAcc, wrMaxAcc = _limit("MaxAcc", "MaxAcc", "the maximum acceleration", PATH_ACCELERATION, 85, 160).both()
+rdMaxVel, wrMaxVel = _limit("MaxVel", "MaxVel", "the maximum velocity", PATH_VELOCITY, 86, 161).both()
+rdMDVel, wrMDVel = _limit("MDVel", "MDVEL", "the maximum velocity jump", PATH_VELOCITY, 89, 163).both()
 rdGCR, wrGCR = _flags("GCR", "the gear configuration register", 65, 144).both()
 rdControllerFlags, wrControllerFlags = _flags(
     "ControllerFlags", "the flags of the control algorithm", 51, 137
@@ -213,7 +275,7 @@ rddpoffset, wrdpoffset = _parameter(
     "dpoffset", "dpoffset", "the offset added to the setpoint", POSITION, 57, 141
 ).coded()
 rddvoffset, wrdvoffset = _parameter(
-    "dvoffset", "dvoffset", "the velocity at which dpoffset changes, 0: at once,", VELOCITY, 60, 142
+    "dvoffset", "dvoffset", "the velocity at which dpoffset changes", VELOCITY, 60, 142, note="0: at once."
 ).coded()
 rdgfaux, wrgfaux = _parameter(
     "gfaux", "gfaux", "the ratio of motor steps to encoder counts", "", 67, 146
@@ -228,28 +290,47 @@ rdModeReg, wrModeReg = BoardRegister(
     "ModeReg", "the mode register", 0, lambda board: longint(board.modereg), _at("modereg"), "", (90, 164)
 ).both()
 rdnfrax, wrnfrax = BoardRegister(
-    "nfrax", "the axes that do not count for the path, bit by bit,", 0, attrgetter("nfrax"), _at("nfrax")
+    "nfrax",
+    "the axes that do not count for the path, bit by bit",
+    0,
+    lambda board: longint(board.nfrax),
+    _at("nfrax"),
+    sections=(92, 166),
 ).both()
 rdErrorReg = BoardRegister(
     "ErrorReg", "the error register", 0, lambda board: int(board.errorreg), None, "", (63,), True
 ).read()
 rdtrovr, wrtrovr = BoardRegister(
-    *("trovr", "the trajectory override as it is programmed", 0.0, attrgetter("trovr"), _at("trovr")),
-    *("", (106, 174)),
+    "trovr",
+    "the trajectory override as it is programmed",
+    0.0,
+    attrgetter("trovr"),
+    _at("trovr"),
+    sections=(106, 174),
     fits=_positive,
     note="utrovr puts it in force.",
 ).both()
 rdtrovrst, wrtrovrst = BoardRegister(
-    *("trovrst", "the time in which the trajectory override changes by 1, 0: at once,", 0.0),
-    *(attrgetter("trovrst"), _at("trovrst"), "s", (107, 175)),
+    "trovrst",
+    "the time in which the trajectory override changes by 1",
+    0.0,
+    attrgetter("trovrst"),
+    _at("trovrst"),
+    "s",
+    (107, 175),
     fits=_not_negative,
+    note="0: at once.",
 ).coded()
 rdtrac, wrtrac = _system(
-    *("trac", "TRAC, the trajectory acceleration of SAP programs", PATH_ACCELERATION, 105, 173),
+    "trac",
+    "TRAC, the trajectory acceleration of SAP programs",
+    PATH_ACCELERATION,
+    105,
+    173,
     fits=_not_negative,
 ).coded()
 rdtrvl, wrtrvl = _system(
-    *("trvl", "TRVL, the trajectory velocity of SAP programs", PATH_VELOCITY, 108, 176), fits=_not_negative
+    "trvl", "TRVL, the trajectory velocity of SAP programs", PATH_VELOCITY, 108, 176, fits=_not_negative
 ).coded()
 rdtrtvl, wrtrtvl = _system(
     "trtvl", "TRTVL, the trajectory target velocity of SAP programs", PATH_VELOCITY, 109, 177

@@ -134,7 +134,7 @@ def ssfi(axis: int, command: int, value: float, PcapIndex: int) -> None:
 
 
 def ssfni(axis: int, command: int, value: float, PcapIndex: int) -> None:
-    """Queue a special function with an index, as ssfi: the manual names both without a difference."""
+    """Queue a special function with an index, as ssfi; only named in the manual (Manual 002, 4.4.94)."""
     ssfi(axis, command, value, PcapIndex)
 
 

@@ -5,6 +5,7 @@ Four forms, as in the manual: through a record (TSRP), by axis number without or
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
@@ -32,6 +33,7 @@ PATH_ACCELERATION = "unit of interpolation, PU/TU²"
 MODULE = "polycnc.controllers.apci.pcap"
 
 N = TypeVar("N", int, float)
+Read = TypeVar("Read", int, float, covariant=True)
 Owner = TypeVar("Owner", Axis, Board)
 C = TypeVar("C", bound=Callable[..., Any])
 
@@ -42,10 +44,10 @@ class WithRecord(Protocol):
     def __call__(self, tsrp: TSRP) -> None: ...
 
 
-class ReadAxis(Protocol[N]):
+class ReadAxis(Protocol[Read]):
     """Return a register of an axis."""
 
-    def __call__(self, an: int) -> N: ...
+    def __call__(self, an: int) -> Read: ...
 
 
 class WriteAxis(Protocol):
@@ -54,10 +56,10 @@ class WriteAxis(Protocol):
     def __call__(self, an: int, value: float) -> None: ...
 
 
-class ReadAxisCoded(Protocol[N]):
+class ReadAxisCoded(Protocol[Read]):
     """Return a code and a register of an axis."""
 
-    def __call__(self, an: int) -> tuple[int, N]: ...
+    def __call__(self, an: int) -> tuple[int, Read]: ...
 
 
 class WriteAxisCoded(Protocol):
@@ -66,10 +68,10 @@ class WriteAxisCoded(Protocol):
     def __call__(self, an: int, value: float) -> int: ...
 
 
-class ReadBoard(Protocol[N]):
+class ReadBoard(Protocol[Read]):
     """Return a register of the board."""
 
-    def __call__(self) -> N: ...
+    def __call__(self) -> Read: ...
 
 
 class WriteBoard(Protocol):
@@ -78,10 +80,10 @@ class WriteBoard(Protocol):
     def __call__(self, value: float) -> None: ...
 
 
-class ReadBoardCoded(Protocol[N]):
+class ReadBoardCoded(Protocol[Read]):
     """Return a code and a register of the board."""
 
-    def __call__(self) -> tuple[int, N]: ...
+    def __call__(self) -> tuple[int, Read]: ...
 
 
 class WriteBoardCoded(Protocol):
@@ -120,6 +122,8 @@ class _Row(Generic[Owner, N]):
         """Give a function its name and its description."""
         function.__name__ = function.__qualname__ = f"{'rd' if verb == 'Read' else 'wr'}{self.stem}"
         function.__module__ = MODULE
+        returned = str(function.__annotations__["return"])
+        function.__annotations__["return"] = re.sub(r"\bN\b", type(self.zero).__name__, returned)
         unit = f" [{self.unit}]" if self.unit else ""
         section = f" (Manual 002, 4.4.{self.sections[number]})" if number < len(self.sections) else ""
         note = f"\n\n{self.note}" if self.note else ""

@@ -108,28 +108,28 @@ def gettskstr(TaskNr: int, szbuffer: int = TASK_STRING_BYTES) -> tuple[int, str]
 
 
 def rdcd(ndx: int, cdbuf: CDBUF) -> None:
-    """Read CD<ndx> into element `ndx` of `cdbuf.cd`; 100 and 1000 read all below that number (Manual 002, 4.4.48)."""
+    """Read variable `ndx` of CD into `cdbuf.cd[ndx]`; 100 and 1000 read all below (Manual 002, 4.4.48)."""
     board = polled_board()
     if board is not None:
         _read(board.state.cd, cdbuf.cd, ndx)
 
 
 def rdci(ndx: int, cibuf: CIBUF) -> None:
-    """Read CI<ndx> into element `ndx` of `cibuf.ci`; 100 and 1000 read all below that number (Manual 002, 4.4.49)."""
+    """Read variable `ndx` of CI into `cibuf.ci[ndx]`; 100 and 1000 read all below (Manual 002, 4.4.49)."""
     board = polled_board()
     if board is not None:
         _read(board.state.ci, cibuf.ci, ndx)
 
 
 def wrcd(ndx: int, cdbuf: CDBUF) -> None:
-    """Write CD<ndx>, 0 to 999, from element `ndx` of `cdbuf.cd` (Manual 002, 4.4.135)."""
+    """Write variable `ndx` of CD, 0 to 999, from `cdbuf.cd[ndx]` (Manual 002, 4.4.135)."""
     board = usable_board()
     if board is not None and 0 <= ndx < COMMON_VARIABLES and is_number(cdbuf.cd[ndx]):
         board.state.cd[ndx] = cdbuf.cd[ndx]
 
 
 def wrci(ndx: int, cibuf: CIBUF) -> None:
-    """Write CI<ndx>, 0 to 999, from element `ndx` of `cibuf.ci`; ClearCI99 releases waits (Manual 002, 4.4.136)."""
+    """Write variable `ndx` of CI, 0 to 999, from `cibuf.ci[ndx]`; ClearCI99 releases waits (Manual 002, 4.4.136)."""
     board = usable_board()
     if board is not None and 0 <= ndx < COMMON_VARIABLES and is_number(cibuf.ci[ndx]):
         board.state.ci[ndx] = longint(cibuf.ci[ndx])

@@ -11,7 +11,6 @@ from polycnc.controllers.apci import _jog_commands as jogs
 from polycnc.controllers.apci import _move_commands as moves
 from polycnc.controllers.apci import _spool_commands as spooler
 from polycnc.controllers.apci._move_commands import Speeds
-from polycnc.controllers.apci._registers import Ifs
 from polycnc.controllers.apci.sap import Call, Program, Tasks
 from polycnc.errors import UsageError
 
@@ -108,7 +107,7 @@ def _rdigi(board: Board, call: Call) -> None:
 
 
 def _rifs(board: Board, _: Call) -> None:
-    board.variables.ifs = Ifs.cleared(board.variables.ifs, "rifs")
+    board.variables.interface.reset_errors()
 
 
 COMMANDS: Mapping[str, Command] = {
@@ -219,7 +218,7 @@ class BoardHost:
             return float(getattr(one, name)[_checked(index, 100)])
         special: Mapping[str, Callable[[], float]] = {
             "digo": lambda: self.board.outputs,
-            "ifs": lambda: self.board.variables.ifs,
+            "ifs": lambda: self.board.variables.interface.word,
             "lsm": lambda: spooler.free_bytes(self.board, axis),
             "MCiS": lambda: spooler.moves_queued(self.board, axis),
             "PcapIndex": lambda: float(one.row["pcap_index"]),

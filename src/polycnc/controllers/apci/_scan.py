@@ -5,24 +5,32 @@ Python is entered again only when something happens that it waits for (`Attentio
 
 from __future__ import annotations
 
+from polycnc.controllers.apci._analysis import analysis_cycle
+from polycnc.controllers.apci._backlash import backlash_cycle
+from polycnc.controllers.apci._command_port import command_cycle
 from polycnc.controllers.apci._latches import latches_cycle
 from polycnc.controllers.apci._limits import limits_cycle
 from polycnc.controllers.apci._motion import (
     INSIDE,
     PASSED,
+    axis_velocity,
     brake,
+    has_ended,
     override_cycle,
     position_at,
     rest,
     sample,
 )
 from polycnc.controllers.apci._registers import ErrorReg, ModeReg
-from polycnc.controllers.apci._spool import end_entry, leave_path, look_at_waits, stop_out_of_step, take_next
+from polycnc.controllers.apci._special import look_at_waits
+from polycnc.controllers.apci._spool import end_entry, leave_path, stop_out_of_step, take_next, watch_step
 from polycnc.controllers.apci._state import (
+    BY_COMMAND,
     IDLE,
     JOG,
     MOVE,
     NO_SEARCH,
+    POINTS,
     SEARCH_ENDS,
     SEARCH_INDEX,
     SEARCH_REFERENCE,
@@ -38,7 +46,6 @@ from polycnc.kernel import (
     compiled,
     entry,
     follow_cycle,
-    segment_slope,
     sources_cycle,
 )
 
@@ -50,7 +57,6 @@ INTERRUPT = 1  # the board interrupts the PC
 PROFILE_END = 2  # an axis came to its profile end
 RESET = 4  # the board demands a reset of itself
 RECORD_FULL = 8
-COMMON = 16  # a spooled command wrote a common variable or an output
 
 
 @compiled
@@ -76,12 +82,13 @@ def _table_cycle(b: BoardState, state: KernelState, i: int) -> bool:
     table = b.entry[row["entry"]]
     if row["point"] >= table["points"]:
         return False
-    value = b.points[(table["first"] + row["point"]) % b.points.shape[0]]
-    if table["relative"] == 1:  # each point from the one before
+    value = b.points[i, (table["first"] + row["point"]) % POINTS]
+    if table["relative"] != 0:  # each point from the one before
         row["anchor"] += value
         value = row["anchor"]
     if table["index"] >= 0:
         row["pcap_index"] = table["index"] + row["point"]
+    row["speed"] = (value - state.base[i]) / b.board[0]["dt"]
     state.base[i] = value
     row["point"] += 1
     return True
@@ -91,17 +98,15 @@ def _table_cycle(b: BoardState, state: KernelState, i: int) -> bool:
 def _end_of_queue(b: BoardState, state: KernelState, i: int, lead: float) -> None:
     """Let axis `i` go on with the velocity its last entry ended with, or demand a reset where that is forbidden."""
     row, board = b.axis[i], b.board[0]
-    slope = segment_slope(b.seg, row["entry"], i, row["place"]) / b.weight[row["entry"], i]
-    position, velocity = position_at(b, i, row["place"]), slope * row["speed"]
-    spooled = row["direct"] == 0
-    end_entry(b, i)
-    if spooled:
-        row["running"] = 0
-        if board["mode_register"] & _FORBID_TARGET_VELOCITY:
+    position, velocity = position_at(b, i, row["place"]), axis_velocity(b, i)
+    if row["direct"] == 0:
+        forbidden = row["running"] != 0 and board["mode_register"] & _FORBID_TARGET_VELOCITY != 0
+        if forbidden:
             board["error_register"] |= _TARGET_VELOCITY
             board["attention"] |= RESET
+        row["running"] = 0
+    end_entry(b, i)
     leave_path(b, state, i, position, velocity, lead)
-    board["attention"] |= PROFILE_END
 
 
 @compiled
@@ -113,16 +118,14 @@ def _path_goes_on(b: BoardState, state: KernelState, i: int) -> bool:
         _end_of_queue(b, state, i, lead)
         return False
     position, speed = position_at(b, i, row["place"]), abs(row["speed"])
-    velocity = segment_slope(b.seg, row["entry"], i, row["place"]) / b.weight[row["entry"], i] * row["speed"]
+    velocity = axis_velocity(b, i)
     end_entry(b, i)
     state.base[i] = position
     if take_next(b, state, i, speed, lead):
         return True
     row["entry"] = -1
-    if row["motion"] == WAITING:
-        return False
-    leave_path(b, state, i, position, velocity, lead)
-    b.board[0]["attention"] |= PROFILE_END
+    if row["motion"] != WAITING:
+        leave_path(b, state, i, position, velocity, lead)
     return False
 
 
@@ -146,23 +149,13 @@ def _profile_cycle(b: BoardState, state: KernelState, i: int) -> None:
             end_entry(b, i)
         elif result == PASSED:  # a jog goes on with its target velocity
             row["endless"] = 1
-            row["pe"] = 1
-            b.board[0]["attention"] |= PROFILE_END
+            row["past"] = 1
             continue
-        _come_to_rest(b, i)
+        rest(b, i)  # a queue that holds more goes on with the next scan
+        if row["head"] >= row["tail"]:
+            row["running"] = 0
+            row["short_entries"] = 0
         return
-
-
-@compiled
-def _come_to_rest(b: BoardState, i: int) -> None:
-    row = b.axis[i]
-    more = row["running"] != 0 and row["head"] < row["tail"]
-    rest(b, i)
-    if more:
-        row["pe"] = 0  # the queue is not done: it goes on with the next scan
-    else:
-        row["running"] = 0
-        b.board[0]["attention"] |= PROFILE_END
 
 
 @compiled
@@ -174,9 +167,6 @@ def _axis_cycle(b: BoardState, state: KernelState, i: int) -> None:
         if row["motion"] == WAITING and row["met"] == 0:
             return
         if not take_next(b, state, i, 0.0, 0.0):
-            if row["motion"] == IDLE:
-                row["pe"] = 1
-                b.board[0]["attention"] |= PROFILE_END
             return
     if row["motion"] == TABLE:
         if _table_cycle(b, state, i):
@@ -185,7 +175,6 @@ def _axis_cycle(b: BoardState, state: KernelState, i: int) -> None:
         if not take_next(b, state, i, 0.0, 0.0):
             if row["motion"] == IDLE:
                 rest(b, i)
-                b.board[0]["attention"] |= PROFILE_END
             return
         if row["motion"] == TABLE:
             _table_cycle(b, state, i)
@@ -204,7 +193,16 @@ def _search_cycle(b: BoardState, state: KernelState, i: int) -> None:
     found = found or (row["search"] == SEARCH_INDEX and row["index_now"] != 0)
     if found:
         row["search"] = SEARCH_ENDS
-        brake(b, i, state.base[i], row["speed"], row["hac"])
+        brake(b, i, state.base[i], row["speed"], row["hac"], BY_COMMAND)
+
+
+@compiled
+def _profile_ends(b: BoardState, i: int) -> None:
+    row = b.axis[i]
+    ended = 1 if has_ended(row) else 0
+    if ended > row["pe"]:
+        b.board[0]["attention"] |= PROFILE_END
+    row["pe"] = ended
 
 
 @compiled
@@ -218,13 +216,18 @@ def scan(b: BoardState, state: KernelState) -> None:
     stop_out_of_step(b, state)
     for i in range(n):
         _axis_cycle(b, state, i)
+    watch_step(b)
     sources_cycle(state)
     for i in range(n):
+        backlash_cycle(b, state, i)
         limits_cycle(b, state, i)
+        _profile_ends(b, i)
     follow_cycle(state)
     for i in range(n):
+        command_cycle(b, state, i)
         latches_cycle(b, state, i)
         _search_cycle(b, state, i)
+    analysis_cycle(b, state)
 
 
 @entry

@@ -8,11 +8,15 @@ from __future__ import annotations
 
 import math
 
-from polycnc.controllers.apci._motion import axis_velocity, brake, keep_going, plan_motion
+from polycnc.controllers.apci._motion import axis_velocity, brake, keep_going, plan_motion, rest
 from polycnc.controllers.apci._registers import ErrorReg, ModeReg
+from polycnc.controllers.apci._special import MET, NOT_MET, STOPS, carry_out
 from polycnc.controllers.apci._state import (
+    BY_SYSTEM,
+    ENTRY_BYTES,
     IDLE,
     MOVE,
+    POINT_BYTES,
     SPECIAL,
     SPOOL_ENTRIES,
     TABLE,
@@ -22,17 +26,14 @@ from polycnc.controllers.apci._state import (
 from polycnc.kernel import SHORT_REDUCE_START, KernelState, compiled
 
 _SAF_DONE = int(ErrorReg.JSatSAFdone)
-_WAIT_REFUSED = int(ErrorReg.SsfWaitRefused)
 _TOO_SMALL = int(ErrorReg.ProfileTooSmall)
 _STOP_AT_SAF = int(ModeReg.JSatSAF)
 
-SYNC_VARIABLE = 99  # CI99
-WAIT_UNIT_S = 64e-6  # of a wait (ssf 1003)
 
-# What a spooled command says.
-MET = 0
-NOT_MET = 1
-STOPS = 2
+@compiled
+def bytes_of(b: BoardState, e: int) -> int:
+    """Return the spooler memory that entry `e` takes."""
+    return int(ENTRY_BYTES + POINT_BYTES * b.entry[e]["points"])
 
 
 @compiled
@@ -52,7 +53,10 @@ def drop_entries(b: BoardState, i: int, keep: int) -> None:
     row = b.axis[i]
     while row["tail"] - row["head"] > keep:
         row["tail"] -= 1
-        release(b, int(b.ring[i, row["tail"] % SPOOL_ENTRIES]))
+        e = int(b.ring[i, row["tail"] % SPOOL_ENTRIES])
+        row["used"] -= bytes_of(b, e)
+        row["points"] -= b.entry[e]["points"]
+        release(b, e)
 
 
 @compiled
@@ -69,13 +73,11 @@ def end_entry(b: BoardState, i: int) -> None:
 
 @compiled
 def _pass(b: BoardState, i: int) -> None:
-    """Take the first entry out of axis `i`'s queue; if others have not begun it, they are out of step."""
+    """Take the first entry out of axis `i`'s queue."""
     row = b.axis[i]
     e = int(b.ring[i, row["head"] % SPOOL_ENTRIES])
-    entry = b.entry[e]
-    if entry["kind"] == MOVE and entry["begun"] < _count(entry["mask"]):
-        _note_asynchrony(b, entry["mask"])
     row["head"] += 1
+    row["used"] -= bytes_of(b, e)
     release(b, e)
 
 
@@ -86,6 +88,18 @@ def _count(mask: int) -> int:
         mask &= mask - 1
         count += 1
     return count
+
+
+@compiled
+def watch_step(b: BoardState) -> None:
+    """Look whether all axes of each interpolation that began in this scan have begun it."""
+    scan = b.board[0]["scan"]
+    for i in range(b.axis.shape[0]):
+        row = b.axis[i]
+        if row["motion"] == MOVE and row["direct"] == 0:
+            entry = b.entry[row["entry"]]
+            if entry["started"] == scan and entry["begun"] < _count(entry["mask"]):
+                _note_asynchrony(b, entry["mask"])
 
 
 @compiled
@@ -107,26 +121,27 @@ def stop_out_of_step(b: BoardState, state: KernelState) -> None:
     board["stop_all"] = 0
     board["error_register"] |= _SAF_DONE
     for i in range(b.axis.shape[0]):
-        leave_and_brake(b, state, i, b.axis[i]["sdec"])
+        leave_and_brake(b, state, i, b.axis[i]["sdec"], BY_SYSTEM)
 
 
 @compiled
-def leave_and_brake(b: BoardState, state: KernelState, i: int, rate: float) -> None:
+def leave_and_brake(b: BoardState, state: KernelState, i: int, rate: float, who: int) -> None:
     """Take axis `i` out of whatever it does, reject its queue, and brake it to rest by itself."""
     row = b.axis[i]
-    velocity = axis_velocity(b, state, i)
+    velocity = axis_velocity(b, i)
     moves = row["motion"] != IDLE and row["motion"] != WAITING
     give_up(b, i)
     if moves:
-        row["pe"] = 0
-        brake(b, i, state.base[i], velocity, rate)
+        brake(b, i, state.base[i], velocity, rate, who)
+    else:
+        rest(b, i)
 
 
 @compiled
 def give_up(b: BoardState, i: int) -> None:
     """Take axis `i` out of its entry and reject its queue; its motion is up to the caller."""
     row = b.axis[i]
-    if row["direct"] != 0 and row["entry"] >= 0:
+    if row["direct"] != 0:
         row["direct"] = 0
         release(b, int(row["entry"]))
     if row["motion"] == WAITING:
@@ -134,6 +149,8 @@ def give_up(b: BoardState, i: int) -> None:
     row["entry"] = -1
     row["running"] = 0
     row["search"] = 0
+    row["past"] = 0
+    row["ends_at_speed"] = 0
     drop_entries(b, i, 0)
 
 
@@ -144,15 +161,16 @@ def take_next(b: BoardState, state: KernelState, i: int, speed: float, lead: flo
     True if it moves from now on; False if it waits, or nothing is left: then it is in direct mode again.
     """
     row = b.axis[i]
+    waited = row["motion"] == WAITING
     row["motion"] = IDLE
-    while row["running"] != 0 and row["head"] < row["tail"]:
+    while row["head"] < row["tail"] and (row["running"] != 0 or waited):
         e = int(b.ring[i, row["head"] % SPOOL_ENTRIES])
         entry = b.entry[e]
         if entry["index"] >= 0:
             row["pcap_index"] = entry["index"]
         if entry["kind"] == SPECIAL:
-            answer = MET if row["met"] != 0 else _special(b, i, e, speed)
-            row["met"] = 0
+            answer = MET if waited else carry_out(b, state, i, e)
+            waited = False
             row["skip_wait"] = 0
             if answer == NOT_MET:
                 row["motion"] = WAITING
@@ -163,15 +181,17 @@ def take_next(b: BoardState, state: KernelState, i: int, speed: float, lead: flo
                 return False
             continue
         row["entry"] = e
-        row["pe"] = 0
         if entry["kind"] == TABLE:
             row["motion"] = TABLE
             row["point"] = 0
+            row["speed"] = 0.0
+            row["ends_at_speed"] = 0
             row["anchor"] = state.base[i]
         else:
             _begin_move(b, i, e, speed, lead)
         return True
     row["running"] = 0
+    row["short_entries"] = 0
     return False
 
 
@@ -185,6 +205,7 @@ def _begin_move(b: BoardState, i: int, e: int, speed: float, lead: float) -> Non
     elif entry["started"] != board["scan"] or entry["lead"] != lead:
         _note_asynchrony(b, entry["mask"])
     entry["begun"] += 1
+    row["ends_at_speed"] = 1 if entry["tvl"] != 0.0 else 0
     length = b.seg.row[e]["length"]
     short = length < entry["vl"] * board["dt"]
     row["short_entries"] = row["short_entries"] + 1 if short else 0
@@ -200,6 +221,7 @@ def start_move(b: BoardState, i: int, e: int, speed: float, lead: float) -> None
     row["motion"] = MOVE
     row["entry"] = e
     row["stopping"] = 0
+    row["past"] = 0
     row["endless"] = 0
     row["target"] = b.seg.row[e]["length"]
     row["tvl"] = entry["tvl"] if math.isnan(entry["out"]) else entry["out"]
@@ -207,112 +229,8 @@ def start_move(b: BoardState, i: int, e: int, speed: float, lead: float) -> None
     row["ac"] = entry["ac"]
     row["dec"] = entry["ac"]
     row["policy"] = SHORT_REDUCE_START
-    row["pe"] = 0
-    plan_motion(b, i, 0.0, speed, lead)
-
-
-@compiled
-def _special(b: BoardState, i: int, e: int, speed: float) -> int:
-    """Carry out a spooled command (ssf), or tell that its condition is not met yet."""
-    entry = b.entry[e]
-    command = int(entry["command"])
-    if command < 1000 or command >= 10000:
-        _write_variable(b, command, entry["value"])
-        return MET
-    if command in (1000, 1003, 1004, 1005, 1006, 1015, 1025):
-        if speed != 0.0:
-            b.board[0]["error_register"] |= _WAIT_REFUSED
-            return MET
-        return _arrive(b, i, e)
-    value = int(entry["value"])
-    board = b.board[0]
-    if command == 1001:
-        board["outputs"] |= value
-    elif command == 1002:
-        board["outputs"] &= ~value
-    elif command == 1101:
-        board["irq"] = 1
-        board["attention"] |= 1
-    elif 1200 <= command <= 1207 and command - 1200 < b.axis.shape[0]:
-        other = command - 1200
-        if b.axis[other]["closed"] == 0:
-            b.axis[other]["mcp"] = value
-            b.axis[other]["mcp_written"] = 1
-    return MET
-
-
-@compiled
-def _write_variable(b: BoardState, command: int, value: float) -> None:
-    if command < 1000:
-        b.ci[command] = int(value)
-    elif 10000 <= command < 11000:
-        b.ci[command - 10000] |= int(value)
-    elif 11000 <= command < 12000:
-        b.ci[command - 11000] &= ~int(value)
-    elif 20000 <= command < 21000:
-        b.cd[command - 20000] = value
-
-
-@compiled
-def _arrive(b: BoardState, i: int, e: int) -> int:
-    """Begin the wait `e` of axis `i`, which is at rest; tell whether there is nothing to wait for."""
-    row, entry = b.axis[i], b.entry[e]
-    command, value = int(entry["command"]), int(entry["value"])
-    row["met"] = 0
-    if command == 1000:
-        return STOPS
-    if command == 1003:
-        row["wait_scans"] = math.ceil(entry["value"] * WAIT_UNIT_S / b.board[0]["dt"] - 1e-9)
-        return MET if row["wait_scans"] <= 0 else NOT_MET
-    if command == 1004:
-        return MET if b.board[0]["inputs"] & value == value else NOT_MET
-    if command == 1005:
-        b.ci[SYNC_VARIABLE] = value
-    elif command == 1015:
-        b.ci[SYNC_VARIABLE] += value
-    elif command == 1025:
-        b.ci[SYNC_VARIABLE] |= 1 << i
-    return NOT_MET
-
-
-@compiled
-def look_at_waits(b: BoardState) -> None:
-    """Find out which waits are over, for all axes from one state, so that they go on in the same scan."""
-    for i in range(b.axis.shape[0]):
-        row = b.axis[i]
-        if row["motion"] == WAITING:
-            row["met"] = 1 if _is_over(b, i) else 0
-
-
-@compiled
-def _is_over(b: BoardState, i: int) -> bool:
-    row = b.axis[i]
-    entry = b.entry[b.ring[i, row["head"] % SPOOL_ENTRIES]]
-    command, value = int(entry["command"]), int(entry["value"])
-    if command == 1003:
-        row["wait_scans"] -= 1
-        return bool(row["wait_scans"] <= 0 or row["skip_wait"] != 0)
-    if command == 1004:
-        return bool(b.board[0]["inputs"] & value == value or row["skip_wait"] != 0)
-    if command == 1006:
-        return _all_arrived(b, value)
-    if command == 1025:
-        return bool(b.ci[SYNC_VARIABLE] & (1 << i) == 0)
-    return bool(b.ci[SYNC_VARIABLE] == 0)
-
-
-@compiled
-def _all_arrived(b: BoardState, mask: int) -> bool:
-    """Tell whether every axis of a barrier stands at it."""
-    for j in range(b.axis.shape[0]):
-        if mask >> j & 1:
-            row = b.axis[j]
-            if row["motion"] != WAITING:
-                return False
-            entry = b.entry[b.ring[j, row["head"] % SPOOL_ENTRIES]]
-            if entry["command"] != 1006 or int(entry["value"]) != mask:
-                return False
-    return True
+    row["tp"] = b.seg.end[e, i] / b.weight[e, i] - row["zero"] - row["offset"]
+    plan_motion(b, i, 0.0, speed, lead, False)
 
 
 @compiled
@@ -320,7 +238,5 @@ def leave_path(
     b: BoardState, state: KernelState, i: int, position: float, velocity: float, lead: float
 ) -> None:
     """Let axis `i`, whose queue has ended with a velocity, go on with it."""
-    row = b.axis[i]
-    row["pe"] = 1
     keep_going(b, i, position, velocity, lead)
     state.base[i] = position + velocity * lead

@@ -30,6 +30,10 @@ SEARCH_INDEX = 1
 SEARCH_REFERENCE = 2
 SEARCH_ENDS = 3  # found: brakes to rest, then it is a motion like any other
 
+# Who brakes a stopping axis.
+BY_COMMAND = 1
+BY_SYSTEM = 2  # a limit, or the monitor of the spoolers
+
 # Limit functions, and the sides they act on.
 NO_LIMIT = 0
 TOM = 1  # turn off motor
@@ -61,6 +65,7 @@ AXIS_ROW = np.dtype(
         ("motion", np.int64),
         ("search", np.int64),
         ("stopping", np.int64),  # brakes to rest: the override and the limits leave it alone
+        ("past", np.int64),  # goes on past the end of its profile
         ("commanded", np.int64),  # direct commands on their way to it
         ("direct", np.int64),  # the MOVE was commanded directly
         ("entry", np.int64),  # what a MOVE or a TABLE goes along
@@ -81,10 +86,16 @@ AXIS_ROW = np.dtype(
         ("override_goal", np.float64),  # `tovr` moves there
         ("point", np.int64),  # of a TABLE: rows taken
         ("anchor", np.float64),  # of a TABLE: where relative setpoints count from
+        ("heading", np.int64),  # direction of the last movement, for the backlash
+        ("backlash", np.float64),
+        ("shift", np.float64),  # by which the backlash has the setpoint moved
         # The spooler.
         ("running", np.int64),
         ("head", np.int64),
         ("tail", np.int64),
+        ("used", np.int64),  # bytes of its memory
+        ("points", np.int64),  # rows of the points store ever filled
+        ("ends_at_speed", np.int64),  # the last move was to end with a velocity
         ("wait_scans", np.int64),  # left of a wait
         ("met", np.int64),  # the wait it stands at is over
         ("skip_wait", np.int64),  # ssms ends a wait of time or inputs
@@ -99,7 +110,7 @@ AXIS_ROW = np.dtype(
         ("in_position", np.int64),
         ("hard_limit", np.int64),  # bits LEFT and RIGHT
         ("soft_limit", np.int64),
-        ("held", np.int64),  # SMA: the setpoint is held at `held_at`
+        ("held", np.int64),  # SMA: the setpoint is held at `held_at`, side as a sign, twofold by software
         ("held_at", np.float64),
         ("dhef", np.int64),
         ("cef", np.int64),
@@ -116,9 +127,13 @@ AXIS_ROW = np.dtype(
         ("index_seen", np.int64),
         ("strobe_seen", np.int64),
         ("encoder_error", np.int64),
-        ("mcp", np.int64),
-        ("mcp_written", np.int64),
         ("rv", np.float64),
+        # The motor command port.
+        ("mcp", np.int64),  # as it was written with the loop open
+        ("mcp_low", np.int64),
+        ("mcp_high", np.int64),
+        ("mcp_gain", np.float64),  # of a servo: velocity per count; its sign is the planned inversion
+        ("mcp_clock", np.float64),  # of a stepper: velocity of one step per half clock pulse, signed
     ],
     align=True,
 )
@@ -132,6 +147,7 @@ ENTRY_ROW = np.dtype(
         ("vl", np.float64),
         ("tvl", np.float64),
         ("out", np.float64),  # target velocity that the look-ahead allows; NaN if it did not look
+        ("join", np.float64),  # at which sstvl lets it end in front of a table or nothing
         ("started", np.int64),  # scan in which its first axis began, -1 none
         ("lead", np.float64),  # time into that scan
         ("begun", np.int64),  # axes that have begun
@@ -160,39 +176,34 @@ BOARD_ROW = np.dtype(
         ("outputs", np.int64),
         ("irq", np.int64),  # interrupts raised that nobody has fetched
         ("free", np.int64),  # entries on the free list
-        ("point", np.int64),  # next row of the points store
         ("stop_all", np.int64),  # axes out of step: all are to brake
         ("attention", np.int64),  # something happened that Python waits for
         ("nfrax", np.int64),
+        # Recording for the graphical system analysis.
+        ("record_axes", np.int64),  # bit by index
+        ("record_every", np.int64),  # scans, 0 off
+        ("record_count", np.int64),
+        ("recorded", np.int64),  # rows filled
     ],
     align=True,
 )
 
 # Digital inputs planned for an axis, as bit masks of inputs; one row per axis.
 _PLANNED = (
-    *(
-        "EO",
-        "DR",
-        "UI",
-        "REF",
-        "LP",
-        "LSL_TOM",
-        "LSL_SMA",
-        "LSL_SMD",
-        "LSR_TOM",
-        "LSR_SMA",
-        "LSR_SMD",
-        "strobe",
-    ),
+    *("EO", "DR", "UI", "REF", "LP", "strobe"),
+    *("LSL_TOM", "LSL_SMA", "LSL_SMD", "LSR_TOM", "LSR_SMA", "LSR_SMD"),
     *("left_switch", "right_switch", "reference_switch"),  # that the simulated switches drive
     "PAE",  # outputs
 )
 PLAN_ROW = np.dtype([(name, np.int64) for name in _PLANNED], align=True)
 
 ENTRY_BYTES = 145  # of the 145 kByte of spooler memory of an axis
+POINT_BYTES = 8
 SPOOL_BYTES = 145_000
 SPOOL_ENTRIES = SPOOL_BYTES // ENTRY_BYTES
-POINTS = 1 << 17
+POINTS = SPOOL_BYTES // POINT_BYTES
+ANALYSIS_ROWS = 4096
+QUANTITIES = 3  # recorded of each axis: setpoint and actual machine position, commanded velocity
 
 
 class BoardState(NamedTuple):
@@ -207,7 +218,10 @@ class BoardState(NamedTuple):
     entry: npt.NDArray[np.void]  # [E] of ENTRY_ROW
     free: Whole  # [E] stack of free entries
     seg: Segments  # [E] the path of each MOVE, in path units
-    points: Floats  # [POINTS] setpoints of tables, one axis after the other
+    points: Floats  # [n, POINTS] setpoints of tables, a ring for each axis
+    feed_axis: npt.NDArray[np.uint8]  # [n] counts for the length of paths
+    work: Floats  # [2, n] scratch
+    analysis: Floats  # [ANALYSIS_ROWS, n, QUANTITIES] what lpr and lprs record
     ci: npt.NDArray[np.int32]  # [1000] common integer variables
     cd: Floats  # [1000]
 
@@ -235,7 +249,10 @@ def make_board_state(axes: int, dt: float) -> BoardState:
         entry=np.zeros(entries, ENTRY_ROW),
         free=np.arange(entries - 1, -1, -1),
         seg=make_segments(entries, axes),
-        points=np.zeros(POINTS),
+        points=np.zeros((axes, POINTS)),
+        feed_axis=np.ones(axes, np.uint8),
+        work=np.zeros((2, axes)),
+        analysis=np.zeros((ANALYSIS_ROWS, axes, QUANTITIES)),
         ci=np.zeros(1000, np.int32),
         cd=np.zeros(1000),
     )

@@ -70,7 +70,6 @@ from polycnc.controllers.apci._pcap_latch import (
     recording,
 )
 from polycnc.controllers.apci._pcap_library import (
-    Recording,
     attach,
     board,
     detach,
@@ -236,7 +235,6 @@ from polycnc.controllers.apci._pcap_system import (
     txbfErrorReport,
 )
 from polycnc.controllers.apci._pcap_tasks import (
-    V,
     contcnct,
     gettskinfo,
     gettskstr,
@@ -300,8 +298,6 @@ __all__ = [
     "MCUG3_SetBoardIntRoutine",
     "MsgToScreen",
     "RPtoDP",
-    "Recording",
-    "V",
     "attach",
     "azo",
     "board",

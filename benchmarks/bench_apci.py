@@ -1,0 +1,80 @@
+"""Time the APCI board: scans of 18 axes that work through their spoolers, and commands that fill these."""
+
+from __future__ import annotations
+
+import statistics
+import time
+
+from _measure import Figure, at_least
+from _report import run_script
+from polycnc.controllers.apci._axis_commands import cl
+from polycnc.controllers.apci._board import Board
+from polycnc.controllers.apci._move_commands import Speeds, mlr
+from polycnc.controllers.apci._registers import ModeReg
+from polycnc.controllers.apci._spool_commands import ssms
+from polycnc.controllers.apci._system_file import parse_system_file
+
+RUNS = 3
+AXES = 18
+ENTRIES = 900  # in the spooler at once
+SCANS_PER_LINE = 20
+GOES_ON = Speeds(1e5, 1000.0, 1000.0)
+
+
+def closed_board(mode: int = 0) -> Board:
+    """Return a board of 18 axes with closed loops."""
+    board = Board(parse_system_file(f"number_of_axes = {AXES}"))
+    board.modereg = mode
+    cl(board, range(AXES))
+    board.advance(1)
+    return board
+
+
+def fill(board: Board, axes: range) -> float:
+    """Spool lines of `axes`; return the seconds that took."""
+    step = 1000.0 * board.config.sample_time_s * SCANS_PER_LINE / len(axes) ** 0.5
+    distances = [step] * len(axes)
+    begin = time.process_time()
+    for _ in range(ENTRIES):
+        mlr(board, axes, distances, GOES_ON, spool=True)
+    return time.process_time() - begin
+
+
+def run(board: Board, scans: int) -> float:
+    """Start all spoolers and run scans; return the seconds that took."""
+    ssms(board, range(AXES))
+    begin = time.process_time()
+    board.advance(scans)
+    spent = time.process_time() - begin
+    assert board.axes[0].queued > 0, "the spooler ran empty"
+    assert not board.axes[0].row["saf"]
+    return spent
+
+
+def figures(quick: bool) -> list[Figure]:
+    """Measure and return the figures."""
+    scans = (ENTRIES - 20) * SCANS_PER_LINE
+    runs = 1 if quick else RUNS
+    warm = closed_board(int(ModeReg.lookahead))
+    fill(warm, range(2))
+    run(warm, 10)
+    rates: list[float] = []
+    spooled: dict[str, list[float]] = {"3 axes": [], "3 axes, look-ahead": [], "18 axes": []}
+    for _ in range(runs):
+        board = closed_board()
+        spooled["18 axes"].append(ENTRIES / fill(board, range(AXES)))
+        rates.append(scans * board.config.sample_time_s / run(board, scans))
+        spooled["3 axes"].append(ENTRIES / fill(closed_board(), range(3)))
+        spooled["3 axes, look-ahead"].append(ENTRIES / fill(closed_board(int(ModeReg.lookahead)), range(3)))
+    found = [at_least("18 axes interpolate from their spoolers", statistics.median(rates), "x real", 1000.0)]
+    for name, each in spooled.items():
+        rate = statistics.median(each)
+        title = f"lines spooled from Python, {name}"
+        found.append(
+            at_least(title, rate, "1/s", 50_000.0) if name == "3 axes" else Figure(title, rate, "1/s")
+        )
+    return found
+
+
+if __name__ == "__main__":
+    run_script("APCI board", figures)
