@@ -20,9 +20,23 @@ def life_of_a_block_page() -> str:
     return page()
 
 
+def apci_functions_page() -> str:
+    """Return the page of the APCI function library."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_apci_functions.py"))["page"]
+    return page()
+
+
+def post_events_page() -> str:
+    """Return the page of the post-processor's events."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_post_events.py"))["page"]
+    return page()
+
+
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
+    "docs/reference/apci-functions.md": apci_functions_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/post-events.md": post_events_page,
 }
 """Every generated page: its path in the repository, and what returns its text."""
 

@@ -7,7 +7,7 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _machine, _run, _sap
+from polycnc.cli import _check, _conformance, _machine, _post, _run, _sap
 from polycnc.cli._errors import end_on_termination, guarded
 
 app = typer.Typer(
@@ -39,6 +39,7 @@ def _options(
 
 app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
 app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
+app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)

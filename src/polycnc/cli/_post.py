@@ -1,0 +1,146 @@
+"""``polycnc post``: a tool path in, a program for a control out, proven on the virtual machine if wanted."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from polycnc.cli._output import bold, bold_red, print_json, progress_bar, say, say_error, say_if_cold
+from polycnc.errors import UsageError
+
+if TYPE_CHECKING:
+    from polycnc.runner import PostResult, PostVerification
+
+_TOLERANCE_MM = 1e-3
+
+
+def post_command(
+    tool_path: Annotated[
+        Path | None,
+        typer.Argument(help="The tool path: APT words (ISO 4343), or JSON (.json).", metavar="TOOLPATH"),
+    ] = None,
+    control: Annotated[
+        str | None,
+        typer.Option(
+            "--control",
+            "-c",
+            help="The control file: bosch-pnc, din, fanuc-lathe, fanuc-mill or a file.",
+            metavar="FILE|NAME",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output", "-o", help="Write the program to a file, not to the screen.", metavar="FILE"
+        ),
+    ] = None,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Run the program and compare its path with the tool path.")
+    ] = False,
+    tolerance: Annotated[
+        float,
+        typer.Option(
+            help="Greatest deviation that --verify accepts, in mm.", metavar="MM", min=1e-6, max=10.0
+        ),
+    ] = _TOLERANCE_MM,
+    machine: Annotated[
+        str | None,
+        typer.Option(
+            "--machine",
+            "-m",
+            help="Machine for --verify: a preset or a TOML file (default: the control file's).",
+            metavar="FILE|PRESET",
+        ),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print one JSON object instead of text; needs --output.")
+    ] = False,
+    show_control: Annotated[
+        bool, typer.Option("--show-control", help="Print the control file, to start one's own from.")
+    ] = False,
+) -> None:
+    """Turn a tool path into a program for a control, and show with --verify that it cuts what was meant."""
+    from polycnc import post, runner
+
+    if control is None:
+        raise UsageError(
+            "no control file", hint=f"Name one with --control: {', '.join(post.CONTROLS)}, or a file."
+        )
+    if show_control:
+        typer.echo(post.shipped_text(control), nl=False)
+        return
+    if tool_path is None:
+        raise UsageError("no tool path", hint="Name the file of a tool path.")
+    if as_json and output is None:
+        raise UsageError("--json needs --output", hint="Name a file for the program, with -o.")
+    if verify:
+        say_if_cold()
+        say_if_cold(every_cycle=True)
+    with progress_bar(tool_path.name) as bar:
+        result = runner.post_file(
+            tool_path,
+            control,
+            output,
+            verify=verify,
+            machine=machine,
+            tolerance_mm=tolerance,
+            progress=bar,
+        )
+    if as_json:
+        print_json(result.as_dict())
+    else:
+        _report(result)
+    sys.exit(0 if result.ok else 1)
+
+
+def _report(result: PostResult) -> None:
+    """Print the program, if it has no file, to standard output, and then the summary to standard error."""
+    from polycnc.runner import counted
+
+    summary = result.summary
+    tell: Callable[..., None] = say
+    if result.text is not None:
+        typer.echo(result.text, nl=False)
+        tell = say_error
+    tell(f"tool path  {result.tool_path}")
+    tell(f"           {counted(summary.records, 'record')}, {counted(summary.tools, 'tool')}, "
+         f"{counted(summary.arcs, 'arc')}, {counted(summary.holes, 'hole')}")  # fmt: skip
+    tell(f"program    {counted(summary.blocks, 'block')}, control {result.control}")
+    tell(f"path       feed {summary.feed_mm:,.3f} mm, rapid {summary.rapid_mm:,.3f} mm")
+    for remark in summary.remarks:
+        times = f" ({remark.count} times)" if remark.count > 1 else ""
+        tell(f"remark     line {remark.line}: {remark.text}{times}")
+    if result.verification is not None:
+        _report_proof(result.verification, tell)
+    if result.output is not None:
+        tell(f"wrote      {result.output}")
+
+
+def _report_proof(proof: PostVerification, tell: Callable[..., None]) -> None:
+    from polycnc.runner import time_text
+
+    run = proof.run
+    tell(f"run        {time_text(run.time_s)} on {run.machine}, feed {run.cutting_path_mm:,.3f} mm, "
+         f"rapid {run.rapid_path_mm:,.3f} mm")  # fmt: skip
+    for alarm in run.alarms:
+        tell(str(alarm), lead=bold_red("alarm: "))
+    if run.alarms:
+        return
+    for what, found in (("off path", proof.off_path), ("missed", proof.missed)):
+        at = (
+            f" at line {found.block} of the program, line {found.line} of the tool path"
+            if found.block
+            else ""
+        )
+        tell(f"{what:<10} {found.mm:.6f} mm{at}")
+    if proof.rapid_cuts:
+        tell(f"rapids     where the tool path has feed: {proof.rapid_cuts} records")
+    verdict = bold("verified") if proof.ok else bold_red("deviates")
+    tell(
+        f" within {proof.tolerance_mm:g} mm" if proof.ok else f": more than {proof.tolerance_mm:g} mm",
+        lead=verdict,
+    )

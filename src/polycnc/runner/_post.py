@@ -1,0 +1,121 @@
+"""Post a tool path: from its file and a control file to a program, and to a proof of it if wanted."""
+
+from __future__ import annotations
+
+import io
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from polycnc.errors import ProgramError
+from polycnc.machine import MachineConfig
+from polycnc.nc import ProgramText
+from polycnc.post import (
+    BlockMap,
+    ControlFile,
+    PostSummary,
+    ToolPath,
+    load_control,
+    open_tool_path,
+    post_program,
+    program_file,
+)
+from polycnc.runner._execution import Progress
+from polycnc.runner._verify_post import DEFAULT_TOLERANCE_MM, PostVerification, verify_post
+
+
+@dataclass(frozen=True, slots=True)
+class PostResult:
+    """What posting gave: the program's text or file, what it was made from, and its verification if wanted."""
+
+    tool_path: str
+    control: str
+    summary: PostSummary
+    output: Path | None
+    text: str | None
+    verification: PostVerification | None = None
+
+    @property
+    def ok(self) -> bool:
+        """Whether the program is proven, or was not to be."""
+        return self.verification is None or self.verification.ok
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON, without the program's text."""
+        summary = self.summary
+        return {
+            "tool_path": self.tool_path,
+            "control": self.control,
+            "output": None if self.output is None else str(self.output),
+            "blocks": summary.blocks,
+            "records": summary.records,
+            "feed_mm": summary.feed_mm,
+            "rapid_mm": summary.rapid_mm,
+            "arcs": summary.arcs,
+            "holes": summary.holes,
+            "tools": summary.tools,
+            "remarks": [{"text": r.text, "line": r.line, "count": r.count} for r in summary.remarks],
+            "verification": None if self.verification is None else self.verification.as_dict(),
+        }
+
+
+def post_file(
+    tool_path: str | Path | ToolPath,
+    control: str | Path | ControlFile,
+    output: str | Path | None = None,
+    *,
+    verify: bool = False,
+    machine: str | MachineConfig | None = None,
+    tolerance_mm: float = DEFAULT_TOLERANCE_MM,
+    progress: Progress | None = None,
+) -> PostResult:
+    """Turn a tool path into a program for a control, and with `verify` run it and compare both.
+
+    `control` is the name of a control file that comes with polycnc, or a path. The program goes to `output`,
+    which gets its name when it is complete, or into the result. `machine` stands for the one that the control
+    file names.
+
+    Raises:
+        UsageError: no such file, control file or machine, or the program cannot be written.
+        ConfigurationError: the control file is wrong.
+        ProgramError: the tool path cannot be posted.
+    """
+    chosen = control if isinstance(control, ControlFile) else load_control(control)
+    path = tool_path if isinstance(tool_path, ToolPath) else open_tool_path(tool_path)
+    block_map = BlockMap() if verify else None
+    text = io.StringIO()
+    with ExitStack() as stack:
+        file = text if output is None else stack.enter_context(program_file(output, chosen.parameters))
+        try:
+            summary = post_program(path, chosen, file.write, progress=progress, block_map=block_map)
+        except UnicodeEncodeError as error:
+            raise ProgramError(
+                f"the character '{error.object[error.start]}' cannot be written in {error.encoding}",
+                hint="Use other characters in the tool path, or another 'encoding' in the control file.",
+            ) from None
+    proof = None
+    if block_map is not None:
+        written = (
+            ProgramText.from_text(text.getvalue(), f"{path.name} posted")
+            if output is None
+            else ProgramText.from_path(output)
+        )
+        parameters = chosen.parameters
+        proof = verify_post(
+            written,
+            path,
+            block_map,
+            machine or parameters.machine,
+            parameters.dialect,
+            tolerance_mm,
+            progress,
+        )
+    return PostResult(
+        tool_path=path.name,
+        control=chosen.parameters.name or chosen.file,
+        summary=summary,
+        output=None if output is None else Path(output),
+        text=text.getvalue() if output is None else None,
+        verification=proof,
+    )

@@ -1,0 +1,141 @@
+"""How far points lie from moves: lines, arcs and helices in space, many at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.post import Sweep
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+_TWO_PI = 2.0 * np.pi
+_NEWTON_STEPS = 6
+_WITNESSES = 8  # points of an arc that a program must pass
+
+
+class Moves:
+    """The moves of a tool path in arrays, in the order of its records.
+
+    `first[r]` is the first move of record r, `first[r + 1]` the one behind its last; `only_rapid` and `only_feed`
+    tell of each record whether all its moves are, from points that are known.
+    """
+
+    def __init__(self, sweeps: Iterable[Sweep], records: int) -> None:
+        rows = []
+        owner = []
+        for move in sweeps:
+            start = move.start if move.start is not None else move.end
+            owner.append((move.record, move.line, move.rapid, move.start is not None))
+            rows.append((*start, *move.end, *move.center, *move.normal, move.angle))
+        table = np.array(rows, dtype=np.float64).reshape(len(rows), 13)
+        owners = np.array(owner, dtype=np.int64).reshape(len(rows), 4)
+        self.record, self.line = owners[:, 0], owners[:, 1]
+        self.rapid, self.known = owners[:, 2] != 0, owners[:, 3] != 0
+        self.start, self.end = table[:, 0:3], table[:, 3:6]
+        self.center, self.normal, self.angle = table[:, 6:9], table[:, 9:12], table[:, 12]
+        self.first = np.searchsorted(self.record, np.arange(records + 1))
+        self.only_rapid = np.ones(records, np.bool_)
+        self.only_feed = np.zeros(records, np.bool_)
+        used = np.flatnonzero(self.first[1:] > self.first[:-1])
+        if len(used):
+            begins = self.first[used]
+            self.only_rapid[used] = np.logical_and.reduceat(self.rapid, begins)
+            self.only_feed[used] = ~np.logical_or.reduceat(self.rapid | ~self.known, begins)
+
+    def lengths(self) -> Floats:
+        """Return the length of each move."""
+        way = self.end - self.start
+        straight = np.sqrt((way * way).sum(axis=1))
+        out = _across(self.start - self.center, self.normal)
+        rise = (way * self.normal).sum(axis=1)
+        arc = np.hypot(self.angle * np.sqrt((out * out).sum(axis=1)), rise)
+        lengths: Floats = np.where(self.angle > 0.0, arc, straight)
+        return lengths
+
+    def distances(self, points: Floats, moves: Indices) -> Floats:
+        """Return how far each point lies from the move of the same place in `moves`."""
+        found = to_segments(points, self.start[moves], self.end[moves])
+        bent = np.flatnonzero(self.angle[moves] > 0.0)
+        if len(bent):
+            found[bent] = self._to_arcs(points[bent], moves[bent])
+        return found
+
+    def _to_arcs(self, points: Floats, moves: Indices) -> Floats:
+        start, end, normal = self.start[moves], self.end[moves], self.normal[moves]
+        angle = self.angle[moves]
+        out = _across(start - self.center[moves], normal)
+        size = np.sqrt((out * out).sum(axis=1))
+        side = np.cross(normal, out)
+        away = points - self.center[moves]
+        flat = _across(away, normal)
+        radius = np.sqrt((flat * flat).sum(axis=1))
+        turned = np.arctan2((flat * side).sum(axis=1), (flat * out).sum(axis=1)) % _TWO_PI
+        rise = ((end - start) * normal).sum(axis=1)
+        height = ((points - start) * normal).sum(axis=1)
+        end_size = _norm(_across(end - self.center[moves], normal))
+        slope = rise / angle
+        with np.errstate(divide="ignore", invalid="ignore"):
+            by_height = np.where(np.abs(rise) > 1e-9, height / slope, turned)
+        turns = np.round((by_height - turned) / _TWO_PI)
+        most = np.maximum(np.floor((angle - turned) / _TWO_PI), 0.0)
+        found = np.minimum(_norm(points - start), _norm(points - end))
+        # The nearest point has the direction of the point if the helix is flat, its height if it is steep.
+        for first in (turned + _TWO_PI * np.clip(turns, 0.0, most), by_height):
+            at = first
+            for _ in range(_NEWTON_STEPS):
+                off = at - turned
+                pull = radius * size * np.sin(off) - slope * (height - slope * at)
+                curve = radius * size * np.cos(off) + slope * slope
+                at = np.where(curve > 0.0, at - pull / np.where(curve > 0.0, curve, 1.0), at)
+            part = at / angle
+            here = size + part * (end_size - size)
+            off = at - turned
+            flat_square = (radius - here) ** 2 + 4.0 * radius * here * np.sin(0.5 * off) ** 2
+            away_square = flat_square + (height - slope * at) ** 2
+            inside = (at >= 0.0) & (at <= angle)
+            found = np.where(inside, np.minimum(found, np.sqrt(away_square)), found)
+        return found
+
+    def witnesses(self) -> tuple[Indices, Floats]:
+        """Return points that a program must pass, with their move: ends, and points along arcs."""
+        owner = [np.arange(len(self.angle))]
+        points = [self.end]
+        bent = np.flatnonzero(self.angle > 0.0)
+        out = _across(self.start[bent] - self.center[bent], self.normal[bent])
+        side = np.cross(self.normal[bent], out)
+        foot = self.start[bent] - out
+        rise = ((self.end[bent] - self.start[bent]) * self.normal[bent]).sum(axis=1)[:, None]
+        last = _norm(_across(self.end[bent] - self.center[bent], self.normal[bent]))
+        grow = (last / np.maximum(_norm(out), 1e-12))[:, None] - 1.0
+        for number in range(1, _WITNESSES):
+            part = number / _WITNESSES
+            angle = (self.angle[bent] * part)[:, None]
+            bow = (np.cos(angle) * out + np.sin(angle) * side) * (1.0 + part * grow)
+            owner.append(bent)
+            points.append(foot + bow + part * rise * self.normal[bent])
+        owners = np.concatenate(owner)
+        order = np.argsort(owners, kind="stable")
+        return owners[order], np.concatenate(points)[order]
+
+
+def _across(way: Floats, normal: Floats) -> Floats:
+    across: Floats = way - (way * normal).sum(axis=1)[:, None] * normal
+    return across
+
+
+def _norm(way: Floats) -> Floats:
+    length: Floats = np.sqrt((way * way).sum(axis=1))
+    return length
+
+
+def to_segments(points: Floats, start: Floats, end: Floats) -> Floats:
+    """Return how far each point lies from the segment of the same place."""
+    way = end - start
+    square = (way * way).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = np.where(square > 0.0, ((points - start) * way).sum(axis=1) / square, 0.0)
+    return _norm(points - start - np.clip(part, 0.0, 1.0)[:, None] * way)

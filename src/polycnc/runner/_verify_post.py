@@ -1,0 +1,253 @@
+"""Hold a posted program against its tool path: run it, and compare what the machine sweeps with what was meant.
+
+Both ways: how far the machine goes off the tool path, and how far the tool path has points that the machine
+does not come to. Each cycle of the run is compared with the record that its block came from.
+
+The program runs on the machine as it is, for time and alarms, and once more with less acceleration, so that the
+machine's positions lie close enough together to see every corner.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel import BLOCK, IS_RAPID, LEADING
+from polycnc.machine import MachineConfig, PathConfig, TimesConfig, load_machine
+from polycnc.nc import ProgramText
+from polycnc.post import BlockMap, ToolPath, sweep_tool_path
+from polycnc.runner._execution import Progress
+from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
+from polycnc.runner._result import RunResult
+from polycnc.runner._run import run
+
+DEFAULT_TOLERANCE_MM = 1e-3
+_SAMPLING = 0.1  # part of the tolerance that the distance of the machine's positions may cost
+_AXES = "XYZ"
+
+
+@dataclass(frozen=True, slots=True)
+class Deviation:
+    """A distance, and where it is: lines of the program and of the tool path, 0 if there is none."""
+
+    mm: float = 0.0
+    block: int = 0
+    line: int = 0
+    point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class PostVerification:
+    """Say whether a program cuts what its tool path means.
+
+    `off_path` is the farthest that a feed move goes off the tool path, `missed` the farthest that a point of the
+    tool path stays from the machine's way, `detour_mm` how far rapids leave the straight line, which is allowed.
+    `rapid_cuts` counts records with feed that the program goes along by rapid. `run` is the run on the machine.
+    """
+
+    tolerance_mm: float
+    off_path: Deviation
+    missed: Deviation
+    detour_mm: float
+    rapid_cuts: int
+    path_feed_mm: float
+    path_rapid_mm: float
+    run: RunResult
+
+    @property
+    def deviation_mm(self) -> float:
+        """Greatest deviation, both ways."""
+        return max(self.off_path.mm, self.missed.mm)
+
+    @property
+    def ok(self) -> bool:
+        """Whether the program runs to its end and stays within the tolerance."""
+        return self.run.ok and not self.rapid_cuts and self.deviation_mm <= self.tolerance_mm
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data for JSON."""
+        return {
+            "ok": self.ok,
+            "tolerance_mm": self.tolerance_mm,
+            "deviation_mm": self.deviation_mm,
+            "off_path": {"mm": self.off_path.mm, "block": self.off_path.block, "line": self.off_path.line},
+            "missed": {"mm": self.missed.mm, "block": self.missed.block, "line": self.missed.line},
+            "detour_mm": self.detour_mm,
+            "rapid_cuts": self.rapid_cuts,
+            "path_feed_mm": self.path_feed_mm,
+            "path_rapid_mm": self.path_rapid_mm,
+            "time_s": self.run.time_s,
+            "cutting_path_mm": self.run.cutting_path_mm,
+            "rapid_path_mm": self.run.rapid_path_mm,
+            "alarms": [str(alarm) for alarm in self.run.alarms],
+        }
+
+
+def verify_post(
+    program: ProgramText,
+    tool_path: ToolPath,
+    block_map: BlockMap,
+    machine: str | MachineConfig,
+    dialect: str,
+    tolerance_mm: float = DEFAULT_TOLERANCE_MM,
+    progress: Progress | None = None,
+) -> PostVerification:
+    """Run a posted program and compare its path with the tool path; `block_map` is what posting filled.
+
+    Work offsets, tool lengths and tool radii count as 0: the comparison is in the coordinates of the part. The
+    machine starts where the tool path does, if that says so (FROM). Rotary axes are not compared.
+
+    Raises:
+        UsageError: no such machine or dialect.
+    """
+    config = load_machine(machine)
+    moves = Moves(sweep_tool_path(tool_path), len(block_map.line))
+    plain = config.model_copy(update={"tools": {}, "offsets": {}, "start": _start(config, moves)})
+    result = run(program, plain, dialect, check=False)
+    comparison = _Comparison(moves, block_map, plain)
+    if result.ok:
+        close = _with_close_positions(plain, tolerance_mm * _SAMPLING)
+        run(program, close, dialect, check=False, rows=comparison.add, progress=progress)
+    lengths = moves.lengths()
+    return PostVerification(
+        tolerance_mm=tolerance_mm,
+        off_path=comparison.off_path,
+        missed=comparison.missed() if result.ok else Deviation(),
+        detour_mm=comparison.detour_mm,
+        rapid_cuts=int(comparison.rapid_cut.sum()),
+        path_feed_mm=float(lengths[~moves.rapid].sum()),
+        path_rapid_mm=float(lengths[moves.rapid].sum()),
+        run=result,
+    )
+
+
+def _start(config: MachineConfig, moves: Moves) -> dict[str, float]:
+    """Return where the machine stands at first."""
+    start = dict(config.start)
+    if len(moves.known) and moves.known[0]:
+        for name, value in zip(_AXES, moves.start[0].tolist(), strict=True):
+            if name in config.axis_names:
+                low, high = config.axes[config.axis_index(name)].soft_limits
+                start[name] = min(max(value, low), high)
+    return start
+
+
+def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineConfig:
+    """Return a machine whose positions, cycle by cycle, miss no corner by more than `distance_mm`.
+
+    A speed v that turns by the angle w within one cycle costs an acceleration v w / dt, and the chord across it
+    lies v dt w / 4 off the corner: acceleration times dt squared by 4, in each axis.
+    """
+    highest = 4.0 * distance_mm / (config.cycle_s**2 * len(_AXES) ** 0.5)
+    axes = tuple(
+        axis.model_copy(update={"amax_mm_s2": min(axis.amax, highest), "jump_mm_s": None})
+        if axis.name in _AXES
+        else axis
+        for axis in config.axes
+    )
+    return config.model_copy(update={"axes": axes, "path": PathConfig(), "times": TimesConfig()})
+
+
+class _Comparison:
+    """Compare rows of a run with the moves of the tool path, as they come."""
+
+    def __init__(self, moves: Moves, block_map: BlockMap, config: MachineConfig) -> None:
+        self.off_path = Deviation()
+        self.detour_mm = 0.0
+        self._moves = moves
+        self._last_block = np.array(block_map.last_block, dtype=np.int64)
+        self._lines = np.array(block_map.line, dtype=np.int64)
+        records = len(self._lines)
+        self.rapid_cut = np.zeros(records, np.bool_)
+        self._columns = [config.axis_names.index(name) if name in config.axis_names else -1 for name in _AXES]
+        self._owner, self._witness = moves.witnesses()
+        owners = moves.record[self._owner] if len(self._owner) else np.zeros(0, np.int64)
+        self._first_witness = np.searchsorted(owners, np.arange(records + 1))
+        self._best = np.full(len(self._owner), np.inf)
+        self._at_block = np.zeros(len(self._owner), np.int64)
+        names = dict(zip(config.axis_names, config.start_positions, strict=True))
+        self._here = np.array([[names.get(name, 0.0) for name in _AXES]])
+        self._begin = self._here
+        self._record = 0
+        self._reached = np.full((records, 3), np.nan)
+
+    def add(self, rows: Floats) -> None:
+        """Take a piece of the record."""
+        points = np.zeros((len(rows), 3))
+        for place, column in enumerate(self._columns):
+            if column >= 0:
+                points[:, place] = rows[:, LEADING + column]
+        blocks = rows[:, BLOCK].astype(np.int64)
+        records = np.minimum(np.searchsorted(self._last_block, blocks), len(self._lines) - 1)
+        before = np.concatenate((self._here, points[:-1]))
+        before_records = np.concatenate(([self._record], records[:-1]))
+        self._here, self._record = points[-1:], int(records[-1])
+        self._reached[records] = points
+        moved = (points != before).any(axis=1) | (records != before_records)
+        points, before, blocks = points[moved], before[moved], blocks[moved]
+        rapid = rows[moved, IS_RAPID] != 0.0
+        records, before_records = records[moved], before_records[moved]
+        self._compare_points(points, blocks, records, rapid)
+        self._visit(before, points, blocks, records)
+        crossing = records != before_records
+        self._visit(before[crossing], points[crossing], blocks[crossing], before_records[crossing])
+
+    def missed(self) -> Deviation:
+        """Return the farthest point that the machine did not come to."""
+        if not len(self._best):
+            return Deviation()
+        self._visit_by_standing()
+        worst = int(np.argmax(self._best))
+        x, y, z = self._witness[worst].tolist()
+        line = int(self._moves.line[self._owner[worst]])
+        return Deviation(float(self._best[worst]), int(self._at_block[worst]), line, (x, y, z))
+
+    def _compare_points(
+        self, points: Floats, blocks: Indices, records: Indices, rapid: npt.NDArray[np.bool_]
+    ) -> None:
+        moves = self._moves
+        first, behind = moves.first[records], moves.first[records + 1]
+        of_path = behind > first
+        distance = np.full(len(points), np.inf)
+        for place in range(int((behind - first).max(initial=0))):
+            chosen = np.flatnonzero(first + place < behind)
+            found = moves.distances(points[chosen], first[chosen] + place)
+            distance[chosen] = np.minimum(distance[chosen], found)
+        free = rapid | moves.only_rapid[records]
+        self.rapid_cut[records[rapid & of_path & moves.only_feed[records]]] = True
+        known = np.zeros(len(points), np.bool_)
+        known[of_path] = moves.known[first[of_path]]
+        detours = distance[of_path & free & known]
+        self.detour_mm = max(self.detour_mm, float(detours.max(initial=0.0)))
+        judged = np.where(of_path & ~free & known, distance, 0.0)
+        worst = int(np.argmax(judged)) if len(judged) else -1
+        if worst >= 0 and judged[worst] > self.off_path.mm:
+            x, y, z = points[worst].tolist()
+            line = int(self._lines[records[worst]])
+            self.off_path = Deviation(float(judged[worst]), int(blocks[worst]), line, (x, y, z))
+
+    def _visit(self, start: Floats, end: Floats, blocks: Indices, records: Indices) -> None:
+        """Note how near the ways from `start` to `end` come to the points that their records must pass."""
+        first, behind = self._first_witness[records], self._first_witness[records + 1]
+        for place in range(int((behind - first).max(initial=0))):
+            chosen = np.flatnonzero(first + place < behind)
+            witness = first[chosen] + place
+            found = to_segments(self._witness[witness], start[chosen], end[chosen])
+            nearer = found < self._best[witness]
+            np.minimum.at(self._best, witness[nearer], found[nearer])
+            self._at_block[witness[nearer]] = blocks[chosen[nearer]]
+
+    def _visit_by_standing(self) -> None:
+        """Count points of records for which nothing moved: the machine stood where the record before ended."""
+        still = np.flatnonzero(~np.isfinite(self._best))
+        if not len(still):
+            return
+        known = ~np.isnan(self._reached[:, 0])
+        last = np.maximum.accumulate(np.where(known, np.arange(len(known)), -1))
+        records = last[self._moves.record[self._owner[still]]]
+        standing = np.where((records >= 0)[:, None], self._reached[records], self._begin)
+        ways = self._witness[still] - standing
+        self._best[still] = np.sqrt((ways * ways).sum(axis=1))

@@ -1,0 +1,34 @@
+"""The worked cases of the macro language: every one gives the blocks, or the error, that the table says."""
+
+from __future__ import annotations
+
+import pytest
+
+from polycnc.errors import ConfigurationError, ProgramError
+from support.post_cases import Case, blocks_of, cases
+
+CASES = list(cases())
+
+
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, id=case.name, marks=pytest.mark.covers(*case.part("covers"))) for case in CASES],
+)
+def test_worked_case(case: Case) -> None:
+    macros = ["\n".join(case.part("setup")), "\n".join(case.part("macro"))]
+    words = {"TOOLCHANGE": "T03"}
+    if "error" in case.parts:
+        with pytest.raises((ConfigurationError, ProgramError)) as error:
+            blocks_of(*macros, words=words, sequence_place=case.place)
+        assert isinstance(error.value, ConfigurationError | ProgramError)
+        assert error.value.position is not None
+        line = error.value.what.removeprefix("[nc_macros] RAPID, ")
+        assert [f"{error.value.position.column}: {line}"] == case.part("error")
+    else:
+        assert blocks_of(*macros, words=words, sequence_place=case.place) == case.parts["gives"]
+
+
+def test_all_cases_are_there() -> None:
+    names = [case.name for case in CASES]
+    assert names == [f"S{n:02d}" for n in range(1, 32)] + [f"D{n:02d}" for n in range(1, 63)]
+    assert all(case.part("macro") for case in CASES)

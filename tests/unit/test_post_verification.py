@@ -1,0 +1,193 @@
+"""Verification: distances from lines and arcs, and every kind of wrong program is found."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from polycnc.errors import ProgramError
+from polycnc.post import ControlFile, Sweep, parse_tool_path, sweep_tool_path
+from polycnc.runner import PostResult, post_file
+from polycnc.runner._post_geometry import Moves
+from support.post_controls import control
+
+TRIANGLE = "FROM/0,0,0\nRAPID\nGOTO/0,0,5\nFEDRAT/3000\nGOTO/10,0,0\nGOTO/10,10,0\nGOTO/0,0,0\nFINI\n"
+ROUND = "FROM/10,0,0\nFEDRAT/3000\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nGOTO/0,20,0\nFINI\n"
+
+
+def moves_of(*sweeps: Sweep) -> Moves:
+    """Return moves, one for each record."""
+    return Moves(sweeps, len(sweeps))
+
+
+def distance(moves: Moves, *point: float) -> float:
+    """Return how far a point lies from the first move."""
+    return float(moves.distances(np.array([point], np.float64), np.zeros(1, np.int64))[0])
+
+
+def test_distance_from_a_line() -> None:
+    line = moves_of(Sweep(0, 1, False, (0.0, 0.0, 0.0), (10.0, 0.0, 0.0)))
+    assert distance(line, 5.0, 3.0, 4.0) == pytest.approx(5.0)
+    assert distance(line, 13.0, 4.0, 0.0) == pytest.approx(5.0)
+    assert distance(line, -3.0, 0.0, 0.0) == pytest.approx(3.0)
+    point = moves_of(Sweep(0, 1, False, (1.0, 1.0, 1.0), (1.0, 1.0, 1.0)))
+    assert distance(point, 1.0, 1.0, 3.0) == pytest.approx(2.0)
+
+
+def test_distance_from_an_arc() -> None:
+    center, up = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    arc = moves_of(Sweep(0, 1, False, (10.0, 0.0, 0.0), (0.0, 10.0, 0.0), center, up, 0.5 * math.pi))
+    assert distance(arc, 8.0, 6.0, 0.0) == pytest.approx(0.0, abs=1e-12)
+    assert distance(arc, 16.0, 12.0, 0.0) == pytest.approx(10.0)
+    assert distance(arc, 6.0, 8.0, 3.0) == pytest.approx(3.0)
+    # Behind the end of the arc it is the end that counts, on the circle too.
+    assert distance(arc, -10.0, 0.0, 0.0) == pytest.approx(math.hypot(10.0, 10.0))
+    assert distance(arc, 10.0, -1.0, 0.0) == pytest.approx(1.0)
+
+
+def test_distance_from_a_helix() -> None:
+    center, up = (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)
+    helix = moves_of(Sweep(0, 1, False, (10.0, 0.0, 0.0), (10.0, 0.0, -6.0), center, up, 6.0 * math.pi))
+    assert distance(helix, 10.0, 0.0, -2.0) == pytest.approx(0.0, abs=1e-12)
+    assert distance(helix, 0.0, 10.0, -4.5) == pytest.approx(0.0, abs=1e-12)
+    lead = math.atan2(6.0, 60.0 * math.pi)
+    assert distance(helix, 0.0, 10.0, -4.6) == pytest.approx(0.1 * math.cos(lead), rel=1e-4)
+    # A steep one: off by a hundredth across, not by what that is in height.
+    steep = moves_of(Sweep(0, 1, False, (10.0, 0.0, 0.0), (0.0, 10.0, 300.0), center, up, 0.5 * math.pi))
+    assert distance(steep, 0.99 * math.sqrt(50.0), 0.99 * math.sqrt(50.0), 150.0) == pytest.approx(0.1)
+    across = 300.0 / math.hypot(300.0, 5.0 * math.pi)
+    assert distance(steep, 10.0, 0.01, 0.0) == pytest.approx(0.01 * across, rel=1e-5)
+    lengths = helix.lengths()
+    assert lengths == pytest.approx([math.hypot(60.0 * math.pi, 6.0)])
+
+
+def test_witnesses_lie_on_their_moves() -> None:
+    sweeps = list(sweep_tool_path(parse_tool_path(ROUND)))
+    moves = Moves(sweeps, 6)
+    owner, points = moves.witnesses()
+    assert np.bincount(owner).tolist() == [8, 1]
+    assert moves.distances(points, owner) == pytest.approx(np.zeros(9), abs=1e-12)
+
+
+def test_moves_of_a_hole_are_what_the_cycle_means() -> None:
+    text = "FROM/0,0,9\nCYCLE/DEEP,DEPTH,10,STEP,2,CLEAR,3,RETURN,5\nGOTO/4,0,0\nCYCLE/OFF\nGODLTA/0,0,1\nGOHOME\n"
+    found = [(move.record, move.rapid, move.end) for move in sweep_tool_path(parse_tool_path(text))]
+    assert found == [
+        (2, True, (4.0, 0.0, 9.0)),
+        (2, True, (4.0, 0.0, 5.0)),
+        (2, True, (4.0, 0.0, 3.0)),
+        (2, False, (4.0, 0.0, -10.0)),
+        (2, True, (4.0, 0.0, 5.0)),
+        (4, False, (4.0, 0.0, 6.0)),
+        (5, True, (0.0, 0.0, 9.0)),
+    ]
+
+
+def verified(text: str, used: ControlFile, tolerance_mm: float = 1e-3) -> PostResult:
+    """Return the result of posting and verifying a text."""
+    return post_file(parse_tool_path(text, "part.cl"), used, verify=True, tolerance_mm=tolerance_mm)
+
+
+@pytest.mark.parametrize("text", [TRIANGLE, ROUND])
+def test_a_right_program_is_proven(text: str) -> None:
+    result = verified(text, control())
+    proof = result.verification
+    assert proof is not None
+    assert result.ok
+    assert proof.deviation_mm < 1e-4
+    assert proof.run.cutting_path_mm == pytest.approx(proof.path_feed_mm, abs=1e-6)
+    assert result.text is not None
+    assert result.text.endswith("M30\n")
+
+
+WRONG: dict[str, tuple[str, dict[str, str], float]] = {
+    "a coordinate is scaled": (TRIANGLE, {"LINEAR": "<X=X*1.001>!-G01!$X$$Y$$Z$$F$"}, 0.01),
+    "an axis is left out": (TRIANGLE, {"LINEAR": "!-G01!$X$$Z$$F$"}, 10.0),
+    # Its middle, at 225 degree, is as far from one end of the right arc as from the other.
+    "the arc turns the wrong way": (
+        ROUND,
+        {"ARC_CCW": "!-G17!!-G02!$X$$Y$$I$$J$$F$"},
+        20.0 * math.sin(math.radians(67.5)),
+    ),
+    "the arc is a line": (ROUND, {"ARC_CCW": "!-G01!$X$$Y$$Z$$F$"}, 10.0 - 10.0 / math.sqrt(2.0)),
+    "the modal position is stale": (
+        TRIANGLE,
+        {"LINEAR": "IF(X==10 && Y==10)\n!*G01!<Y=0>\nELSE\n!-G01!$X$$Y$$Z$$F$\nENDIF"},
+        10.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_program_is_found(name: str) -> None:
+    text, macros, deviation = WRONG[name]
+    result = verified(text, control(macros=macros))
+    proof = result.verification
+    assert proof is not None
+    assert not result.ok
+    assert proof.run.ok
+    assert proof.deviation_mm == pytest.approx(deviation, rel=0.02)
+
+
+def test_the_place_of_a_deviation_is_named() -> None:
+    text = TRIANGLE.replace("GOTO/10,10,0", "GOTO/10,10,0\nPPRINT here")
+    used = control(macros={"LINEAR": "IF(Y==10)\n<X=X+0.5>\nENDIF\n!-G01!$X$$Y$$Z$$F$"})
+    proof = verified(text, used).verification
+    assert proof is not None
+    assert proof.off_path.mm == pytest.approx(0.5, rel=1e-3)
+    assert proof.missed.mm == pytest.approx(0.5, abs=0.01)
+    assert (proof.missed.line, proof.missed.point) == (6, (10.0, 10.0, 0.0))
+    # In the program: the block behind %, G90..., G21, G00 and G01, and the one behind it, which leaves from there.
+    assert proof.missed.block in (6, 7, 8)
+    assert proof.off_path.line in (6, 8)
+
+
+def test_a_rapid_where_feed_was_meant_is_found() -> None:
+    used = control(macros={"LINEAR": "!-G00!$X$$Y$$Z$"})
+    result = verified(TRIANGLE, used)
+    assert result.verification is not None
+    assert result.verification.deviation_mm < 1e-3
+    assert result.verification.rapid_cuts == 3
+    assert not result.ok
+
+
+def test_rapids_may_leave_the_straight_line() -> None:
+    used = control(macros={"RAPID": "!-G00!$Z$\n!-G00!$X$$Y$"})
+    result = verified("FROM/0,0,0\nRAPID\nGOTO/3,0,4\nRAPID\nGOTO/0,0,0\nFINI\n", used)
+    assert result.verification is not None
+    assert result.ok
+    assert result.verification.detour_mm == pytest.approx(2.4, abs=0.01)
+
+
+def test_a_program_that_the_control_refuses_is_not_proven() -> None:
+    used = control(macros={"LINEAR": "!-G01!$X$$Y$$Z$"})
+    proof = verified(TRIANGLE, used).verification
+    assert proof is not None
+    assert not proof.ok
+    assert "a feed move without a feed" in str(proof.run.alarms[0])
+    assert proof.as_dict()["alarms"]
+
+
+def test_decimals_too_few_are_found() -> None:
+    text = "FROM/0,0,0\nFEDRAT/3000\nGOTO/1.234,0,0\nGOTO/5,5.678,0\nFINI\n"
+    assert verified(text, control({}, decimals=3)).ok
+    proof = verified(text, control({}, decimals=1)).verification
+    assert proof is not None
+    assert proof.deviation_mm == pytest.approx(math.hypot(0.034, 0.0), abs=0.01)
+
+
+def test_positions_that_do_not_change_in_the_program_count() -> None:
+    # 0.0004 mm is below the decimals: nothing is written, and the machine stands 0.0004 mm off.
+    proof = verified("FROM/0,0,0\nFEDRAT/3000\nGOTO/1,0,0\nGOTO/1.0004,0,0\nFINI\n", control()).verification
+    assert proof is not None
+    assert proof.missed.mm == pytest.approx(0.0004, abs=1e-4)
+
+
+def test_a_character_that_the_encoding_lacks(tmp_path: Path) -> None:
+    used = control({"encoding": "ascii"})
+    with pytest.raises(ProgramError, match="cannot be written in ascii"):
+        post_file(parse_tool_path("PPRINT Grün\n"), used, tmp_path / "part.nc")
+    assert list(tmp_path.iterdir()) == []
