@@ -26,6 +26,7 @@ SCRIPTS = {
     "bench_profile.py": "Point-to-point planning",
     "bench_machine.py": "Whole virtual machine",
     "bench_apci.py": "APCI board",
+    "bench_imc.py": "iMC card",
     "bench_cycle_calls.py": "One cycle per call",
     "bench_post.py": "Post-processor macros",
 }

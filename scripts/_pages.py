@@ -2,6 +2,7 @@
 
 import runpy
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from polycnc import conformance
@@ -26,6 +27,12 @@ def apci_functions_page() -> str:
     return page()
 
 
+def imc_page(name: str) -> str:
+    """Return one of the pages of the iMC card."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_imc_pages.py"))[name]
+    return page()
+
+
 def post_events_page() -> str:
     """Return the page of the post-processor's events."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_post_events.py"))["page"]
@@ -36,6 +43,8 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
     "docs/reference/apci-functions.md": apci_functions_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
+    "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),
     "docs/reference/post-events.md": post_events_page,
 }
 """Every generated page: its path in the repository, and what returns its text."""

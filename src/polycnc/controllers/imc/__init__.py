@@ -1,0 +1,9 @@
+"""The iMC motion card: 16-bit parameter memory, instruction queues, events, coupling and homing in compiled code.
+
+`imclib` is the library that programs call, by the manual's names; `Card` is the virtual card behind it.
+"""
+
+from polycnc.controllers.imc._card import Card
+from polycnc.controllers.imc._config import CardConfig, load_card, parse_card
+
+__all__ = ["Card", "CardConfig", "load_card", "parse_card"]

@@ -1,0 +1,133 @@
+"""Contour motion point by point, and captured positions."""
+
+from __future__ import annotations
+
+import pytest
+
+from polycnc.controllers.imc._parameters import address
+from support.imc_card import FLAG, IFIFO, move_absolute, ready_card, send, set_now, trace
+
+
+def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untyped-def]
+    """Set up a contour group."""
+    for name, axis in zip("xyzabcdefghijklm", axes, strict=False):
+        card.write(f"group_{name}", axis)
+    set_now(card, ("groupnum", len(axes)), ("groupsmooth", cycles))
+
+
+@pytest.mark.covers(
+    "imc.concept.cfifo",
+    "imc.concept.contour",
+    "imc.param.groupsmooth",
+    "imc.param.startgroup",
+    "imc.param.groupnum",
+)
+def test_each_point_is_spread_evenly_over_its_cycles() -> None:
+    card = ready_card()
+    group(card, 2, 0, 1)
+    assert card.push_points([100, -40, 7] * 10)
+    card.advance(30)
+    assert (card.waiting_words(4), card.read("curpos", 2)) == (30, 0)
+    send(card, IFIFO, ("startgroup", FLAG))
+    assert trace(card, "curvel", 20, 2) == [5.0] * 20
+    assert [card.read("curpos", i) for i in range(3)] == [-40, 7, 100]
+    assert card.read("contouring", 2) == FLAG
+    card.wait()
+    assert card.clock.cycles == 30 + 200 + 1
+    assert [card.read("curpos", i) for i in range(3)] == [-400, 70, 1000]
+    assert [card.read("contouring", i) for i in range(3)] == [0, 0, 0]
+
+
+@pytest.mark.covers(*(f"imc.param.group_{name}" for name in "xyzabcdefghijklm"))
+def test_each_of_sixteen_coordinates_moves_its_axis() -> None:
+    card = ready_card(number_of_axes=16)
+    axes = [(5 * k + 3) % 16 for k in range(16)]
+    group(card, *axes, cycles=4)
+    card.push_points([10 * (k + 1) for k in range(16)])
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.wait()
+    assert [card.read("curpos", i) for i in axes] == [10 * (k + 1) for k in range(16)]
+
+
+@pytest.mark.covers("imc.param.contouring")
+def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
+    card = ready_card()
+    group(card, 0, cycles=3)
+    card.push_points([10])
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.advance(4)
+    assert (card.read("contouring"), card.read("curpos")) == (0, 10)
+    card.push_points([-4])
+    card.advance(4)
+    assert card.read("curpos") == 6
+    card.push_points([50, 50])
+    card.advance(2)
+    send(card, IFIFO, ("startgroup", 0))
+    card.advance(5)
+    assert card.read("curpos") == 6 + 50 * 2 // 3
+
+
+def test_too_large_a_displacement_is_a_speed_error() -> None:
+    card = ready_card()
+    set_now(card, ("vellim", 30))
+    group(card, 0)
+    card.push_points([400, 4000, 400])
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.advance(60)
+    assert (card.read("error"), card.read("run"), card.read("moving")) == (0x2000, 0, 0)
+
+
+def test_an_odd_displacement_arrives_whole() -> None:
+    card = ready_card()
+    group(card, 0, 1, cycles=7)
+    card.push_points([1, -1, 3, -3])
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.wait()
+    assert [card.read_raw(224, i, 3) for i in (0, 1)] == [4 * 65536, -4 * 65536]
+
+
+@pytest.mark.covers("imc.concept.capfifo", "imc.bit.encpctr.10")
+def test_probe_pulses_are_captured_while_capture_is_on() -> None:
+    card = ready_card("[[axis]]\nprobe = { first = 105.0, pitch = 100.0 }\n")
+    set_now(card, ("mcsmaxvel", 30))
+    move_absolute(card, 450)
+    card.wait()
+    assert card.read_capture(0, 120) == ((), 0)
+    set_now(card, ("encpctr", 0x400), ("counter", 0))
+    move_absolute(card, 90)
+    card.wait()
+    assert card.read("counter") == 4
+    assert (card.read("clrcapfifo"), card.read("capfifo")) == (4, 405)
+    assert card.read_capture(0, 3) == ((405, 305, 205), 1)
+    assert card.read_capture(0, 3) == ((105,), 0)
+    move_absolute(card, 250)
+    card.wait()
+    send(card, IFIFO, ("popcapfifo", FLAG))
+    card.advance(1)
+    assert card.read("capfifo") == 205
+    send(card, IFIFO, ("clrcapfifo", FLAG))
+    card.advance(1)
+    assert card.read_capture(0, 3) == ((), 0)
+
+
+@pytest.mark.covers("imc.param.capture", "imc.param.cappos")
+@pytest.mark.parametrize("name", ["capture", "capture2"])
+def test_a_write_captures_the_position_of_this_moment(name: str) -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 10))
+    card.advance(33)
+    here = card.read("encp")
+    send(card, IFIFO, (name, FLAG))
+    card.advance(10)
+    assert card.read("cappos") == here < card.read("encp")
+    assert card.read_capture(0, 5) == ((here,), 0)
+
+
+def test_a_touch_of_the_probe_captures_once() -> None:
+    card = ready_card()
+    set_now(card, ("encpctr", 0x400), ("mcstgvel", 5))
+    card.advance(20)
+    card.touch_probe(0)
+    card.advance(10)
+    assert card.read_capture(0, 5)[0] == (card.read("encp") - 5 * 9,)
+    assert card.read_raw(address("counter")) == 1

@@ -1,0 +1,336 @@
+"""Coupled motion: gears of every source, leaving them, handwheel, phasing, led-in engagement, synchronous motion."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+
+import pytest
+
+from polycnc.controllers.imc._parameters import address
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    event,
+    install,
+    move_absolute,
+    move_relative,
+    ready_card,
+    send,
+    set_now,
+    trace,
+)
+
+CURVEL, ENCPVEL, MCSVEL, PCSVEL, ENCSVEL = (
+    address(name) for name in ("curvel", "encpvel", "mcsvel", "pcsvel", "encsvel")
+)
+
+
+def gear(card, ratio: float, source: int = CURVEL, master: int = 0, axis: int = 1) -> None:  # type: ignore[no-untyped-def]
+    """Engage a gear as the library does."""
+    send(
+        card,
+        IFIFO,
+        ("gearratio", ratio, axis),
+        ("master", master, axis),
+        ("gearsrc", source, axis),
+        ("engear", FLAG, axis),
+    )
+
+
+@pytest.mark.covers("imc.param.engear", "imc.param.master", "imc.param.gearsrc", "imc.concept.gear_law")
+def test_a_free_gear_ramps_to_ratio_times_the_source_and_follows_a_new_ratio() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 10))
+    card.advance(20)
+    set_now(card, ("mcsaccel", 0.5, 1), ("mcsdecel", 2, 1))
+    gear(card, 0.5)
+    assert trace(card, "mcsvel", 12, 1)[:3] == [0.5, 1, 1.5]
+    assert card.read("mcsvel", 1) == 5
+    assert card.read("mcsslope", 1) == 0
+    set_now(card, ("gearratio", -1, 1))
+    assert trace(card, "mcsvel", 4, 1) == [3, 1, 0, -0.5]
+    card.advance(30)
+    assert card.read("mcsvel", 1) == -10
+    set_now(card, ("mcstgvel", 30))  # the locked slave keeps up whatever its own rates are
+    card.advance(15)
+    assert card.read("mcsvel", 1) == -card.read("mcsvel", 0)
+
+
+@pytest.mark.covers("imc.param.gearratio")
+def test_a_ratio_is_exact_over_any_time() -> None:
+    card = ready_card()
+    gear(card, 0)
+    card.advance(1)
+    raw = round(2**32 / 3)
+    card.write_raw(address("gearratio"), raw, 1, 3)
+    card.advance(1)
+    move_absolute(card, 300_001)
+    card.wait()
+    exact = Fraction(300_001 * raw, 2**32)
+    units = card.read_raw(address("mcspos") - 1, 1, 3)
+    assert units == (exact * 65536).__floor__()
+    move_absolute(card, 0)
+    card.wait()
+    assert abs(card.read_raw(address("mcspos") - 1, 1, 3)) <= 1
+
+
+@pytest.mark.covers(*(f"imc.sourcetype.{k}" for k in range(5)), "imc.const.sourcetype")
+@pytest.mark.parametrize(
+    ("source", "moved"), [(CURVEL, 1100), (ENCPVEL, 1100), (MCSVEL, 1000), (PCSVEL, 100), (ENCSVEL, 7)]
+)
+def test_a_gear_follows_the_parameter_that_it_points_to(source: int, moved: int) -> None:
+    card = ready_card()
+    set_now(card, ("shiftmaster", FLAG))
+    gear(card, 1.0, source)
+    card.advance(1)
+    move_absolute(card, 1000)
+    move_relative(card, 100, system="pcs")
+    card.turn_handwheel(0, 7)
+    card.wait()
+    card.advance(1)
+    assert card.read("curpos", 0) == 1100
+    assert card.read("curpos", 1) == moved
+
+
+def test_phasing_of_a_master_does_not_reach_a_slave_of_its_main_system() -> None:
+    for source, slave in ((MCSVEL, 0), (CURVEL, 50)):
+        card = ready_card()
+        gear(card, 0.5, source)
+        card.advance(1)
+        move_relative(card, 100, 0, system="pcs")
+        card.wait()
+        assert (card.read("curpos", 0), card.read("curpos", 1)) == (100, slave)
+
+
+@pytest.mark.covers("imc.param.gearoutmod", "imc.param.gearoutvel")
+@pytest.mark.parametrize(("mode", "speed", "after"), [(0, 3, 5), (FLAG, 3, 3), (FLAG, 0, 0)])
+def test_a_slave_that_leaves_keeps_its_speed_or_takes_another(mode: int, speed: float, after: float) -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 10), ("gearoutmod", mode, 1), ("gearoutvel", speed, 1))
+    gear(card, 0.5)
+    card.advance(30)
+    send(card, IFIFO, ("engear", 0, 1))
+    card.advance(10)
+    assert card.read("mcsvel", 1) == after
+    send(card, IFIFO, ("mcstgvel", 20))
+    card.advance(30)
+    assert card.read("mcsvel", 1) == after
+
+
+@pytest.mark.covers("imc.param.encs", "imc.param.encsvel", "imc.param.encsfactor", "imc.param.clrencs")
+def test_a_handwheel_moves_its_axis_by_counts_times_ratio() -> None:
+    card = ready_card()
+    gear(card, 10, ENCSVEL, master=3, axis=0)
+    card.advance(1)
+    card.turn_handwheel(3, 4)
+    card.advance(3)
+    assert (card.read("encs", 3), card.read("curpos", 0)) == (4, 40)
+    set_now(card, ("encsfactor", 0.5, 3))
+    card.turn_handwheel(3, -6)
+    card.advance(1)
+    assert (card.read("encs", 3), card.read("encsvel", 3)) == (1, -3)
+    card.advance(1)
+    assert (card.read("curpos", 0), card.read("encsvel", 3)) == (10, 0)
+    set_now(card, ("clrencs", FLAG, 3), ("engear", 0, 0))
+    card.turn_handwheel(3, 2)
+    card.advance(3)
+    assert (card.read("encs", 3), card.read("curpos", 0)) == (1, 10)
+
+
+def test_a_steady_handwheel_gives_a_steady_speed() -> None:
+    card = ready_card()
+    gear(card, 2, ENCSVEL)
+    card.spin_handwheel(0, 0.25)
+    card.advance(401)
+    assert (card.read("encs"), card.read("curpos", 1)) == (100, 200)
+
+
+def _in_distance(card, start: bool) -> None:  # type: ignore[no-untyped-def]
+    set_now(card, ("synsrc", address("curpos"), 1), ("synaxis", 0, 1), ("synsrcvar", 1000, 1))
+    set_now(card, ("syntype", 0, 1), ("enasyn", FLAG, 1))
+    gear(card, 1.0)
+    if start:
+        send(card, IFIFO, ("startsyn", FLAG, 1))
+
+
+@pytest.mark.covers(
+    "imc.concept.gear_dist_law", "imc.param.synsrc", "imc.param.synaxis", "imc.param.synsrcvar"
+)
+def test_a_gear_engages_over_a_distance_of_its_pacing_parameter() -> None:
+    card = ready_card()
+    _in_distance(card, start=True)
+    card.advance(1)
+    send(card, IFIFO, ("mcstgvel", 10))
+    while card.read("curpos", 0) < 500:
+        card.advance(1)
+    assert card.read("curvel", 1) == pytest.approx(5, abs=0.15)
+    while card.read("curpos", 0) < 1100:
+        card.advance(1)
+    # the linear law: half the way while it engages, all of it after that
+    behind = card.read_raw(224, 0, 3) - card.read_raw(224, 1, 3)
+    assert behind / 65536 == pytest.approx(500, abs=0.01)
+    assert card.read("curvel", 1) == 10
+    assert (card.read("startsyn", 1), card.read("enasyn", 1), card.read("engear", 1)) == (0, 0, FLAG)
+
+
+@pytest.mark.covers("imc.param.startsyn", "imc.concept.startsyn")
+def test_nothing_engages_before_startsyn() -> None:
+    card = ready_card()
+    _in_distance(card, start=False)
+    send(card, IFIFO, ("mcstgvel", 10))
+    card.advance(300)
+    assert (card.read("curpos", 1), card.read("moving", 1)) == (0, 0)
+
+
+def test_an_event_starts_the_engagement() -> None:
+    card = ready_card()
+    _in_distance(card, start=False)
+    install(
+        card,
+        event("CMP32i", first=225, constant=1000),
+        event("SET16", "Edge_GreatEqu", constant=-1, target=address("startsyn"), target_axis=1),
+    )
+    send(card, IFIFO, ("mcstgvel", 10))
+    card.advance(100)
+    assert card.read("curpos", 1) == 0
+    card.advance(200)
+    assert card.read("curvel", 1) == 10
+
+
+@pytest.mark.covers("imc.concept.gear_time_law")
+def test_a_gear_engages_over_a_time() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 10))
+    card.advance(20)
+    set_now(card, ("synsrc", address("ticks"), 1), ("synsrcvar", 200, 1), ("enasyn", FLAG, 1))
+    gear(card, -2.0)
+    card.advance(10)
+    assert card.read("curvel", 1) == 0
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(100)
+    assert card.read("curvel", 1) == pytest.approx(-10, abs=0.11)
+    card.advance(100)
+    assert card.read("startsyn", 1) == 0
+    card.advance(1)
+    assert card.read("curvel", 1) == -20
+    assert card.read("curpos", 1) == pytest.approx(-20 * 100 - 20, abs=1)
+
+
+def _timed(card, cycles: int, axis: int = 1) -> None:  # type: ignore[no-untyped-def]
+    set_now(card, ("synsrc", address("ticks"), axis), ("synsrcvar", cycles, axis), ("enasyn", FLAG, axis))
+
+
+@pytest.mark.covers("imc.param.syntype", "imc.param.slavedist", "imc.param.slaveabs", "imc.concept.sync_laws")
+@pytest.mark.parametrize(("absolute", "distance", "end"), [(0, 5000, 5100), (FLAG, 5000, 5000), (0, -70, 30)])
+def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance: int, end: int) -> None:
+    card = ready_card()
+    move_absolute(card, 100, 1)
+    card.wait()
+    set_now(card, ("syntype", FLAG, 1), ("slavedist", distance, 1), ("slaveabs", absolute, 1))
+    _timed(card, 1000)
+    card.advance(50)
+    assert card.read("curpos", 1) == 100
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(500)
+    assert card.read("curpos", 1) == pytest.approx((100 + end) / 2, abs=1)
+    card.advance(499)
+    assert (card.read_raw(224, 1, 3) == end * 65536, card.read("startsyn", 1)) == (False, FLAG)
+    card.advance(1)
+    assert (card.read("curpos", 1), card.read("startsyn", 1), card.read("enasyn", 1)) == (end, 0, 0)
+    card.advance(1)
+    assert (card.read("curvel", 1), card.read("moving", 1), card.read("curpos", 1)) == (0, 0, end)
+
+
+@pytest.mark.covers(
+    "imc.param.enasyn", *(f"imc.synsourcetype.{k}" for k in range(5)), "imc.const.synsourcetype"
+)
+@pytest.mark.parametrize("name", ["curpos", "encp", "mcspos", "pcspos", "encs"])
+def test_a_distance_is_moved_within_the_distance_of_another_parameter(name: str) -> None:
+    card = ready_card()
+    set_now(card, ("synsrc", address(name), 1), ("synaxis", 0, 1), ("synsrcvar", 2000, 1))
+    set_now(card, ("syntype", FLAG, 1), ("slavedist", 500, 1), ("startsyn", FLAG, 1))
+    start = {"pcspos": "pcstgvel", "encs": ""}.get(name, "mcstgvel")
+    if start:
+        send(card, IFIFO, (start, 10))
+    else:
+        card.spin_handwheel(0, 10)
+    card.advance(150)
+    assert card.read("curpos", 1) == 0  # enasyn is not set
+    send(card, IFIFO, ("startsyn", 0, 1), ("startsyn", FLAG, 1), ("enasyn", FLAG, 1))
+    began = card.read(name)
+    while card.read(name) < began + 1000:
+        card.advance(1)
+    assert card.read("curpos", 1) == pytest.approx(250, abs=8)
+    while card.read(name) < began + 2030:
+        card.advance(1)
+    assert (card.read("curpos", 1), card.read("moving", 1), card.read("startsyn", 1)) == (500, 0, 0)
+
+
+def test_a_velocity_is_reached_in_a_time_and_kept() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 20, 1))
+    card.advance(30)
+    set_now(card, ("syntype", 0, 1))
+    _timed(card, 500)
+    send(card, IFIFO, ("mcstgvel", 100, 1), ("startsyn", FLAG, 1))
+    card.advance(250)
+    assert card.read("mcsvel", 1) == 60
+    card.advance(250)
+    assert (card.read("mcsvel", 1), card.read("startsyn", 1)) == (100, 0)
+    card.advance(100)
+    assert card.read("mcsvel", 1) == 100
+    send(card, IFIFO, ("mcstgvel", 0, 1))
+    card.wait()
+    assert card.read("mcsvel", 1) == 0
+
+
+def test_a_velocity_is_reached_within_a_distance_of_another_axis() -> None:
+    card = ready_card()
+    set_now(card, ("synsrc", address("mcspos"), 1), ("synaxis", 0, 1), ("synsrcvar", 1000, 1))
+    send(card, IFIFO, ("mcstgvel", 40, 1), ("startsyn", FLAG, 1), ("mcstgvel", 10, 0))
+    card.advance(50)
+    assert card.read("mcsvel", 1) == 0
+    began = card.read("mcspos")
+    send(card, IFIFO, ("enasyn", FLAG, 1))
+    while card.read("mcspos") < began + 500:
+        card.advance(1)
+    assert card.read("mcsvel", 1) == pytest.approx(20, abs=0.5)
+    card.advance(60)
+    assert (card.read("mcsvel", 1), card.read("enasyn", 1), card.read("startsyn", 1)) == (40, 0, 0)
+
+
+def test_synchronous_motion_that_is_given_up_brakes() -> None:
+    card = ready_card()
+    set_now(card, ("syntype", FLAG, 1), ("slavedist", 5000, 1))
+    _timed(card, 1000)
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(300)
+    send(card, IFIFO, ("startsyn", 0, 1))
+    card.wait()
+    assert card.read("moving", 1) == 0
+    assert 500 < card.read("curpos", 1) < 2500
+
+
+def test_a_chain_of_gears_acts_within_the_cycle() -> None:
+    card = ready_card()
+    gear(card, 2, CURVEL, 0, 1)
+    gear(card, -0.5, CURVEL, 1, 2)
+    card.advance(1)
+    move_absolute(card, 1000)
+    for _ in range(40):
+        card.advance(1)
+        assert card.read("curvel", 1) == 2 * card.read("curvel", 0)
+        assert card.read("curvel", 2) == -card.read("curvel", 0)
+    card.wait()
+    assert [card.read("curpos", i) for i in range(3)] == [1000, 2000, -1000]
+
+
+def test_a_superimposed_move_shifts_a_slave() -> None:
+    card = ready_card()
+    gear(card, 1.0)
+    send(card, IFIFO, ("mcstgvel", 10))
+    card.advance(100)
+    ahead = card.read("curpos", 1) - card.read("curpos", 0)
+    move_relative(card, 250, 1, system="pcs")
+    card.advance(100)
+    assert card.read("curpos", 1) - card.read("curpos", 0) == ahead + 250

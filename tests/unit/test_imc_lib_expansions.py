@@ -1,0 +1,262 @@
+"""What the functions send: instructions, and the parameters that the functions of motion are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from polycnc.controllers.imc import imclib as lib
+from polycnc.controllers.imc._event_codes import EventCommand, EventType
+from polycnc.controllers.imc._instructions import (
+    ChangeBits,
+    Event,
+    InstallEvents,
+    Segment,
+    WaitParam,
+    WaitTime,
+    Write,
+    WriteMany,
+)
+from polycnc.controllers.imc._lib_expansions import EXPANSIONS
+from polycnc.controllers.imc._parameters import PARAMETERS
+from support.imc_network import ToldCard, opened
+
+
+@pytest.fixture
+def card() -> ToldCard:
+    return ToldCard(axes=4)
+
+
+@pytest.fixture
+def handle(card: ToldCard) -> Iterator[lib.IMC_HANDLE]:
+    yield opened(card, clock=None)
+    lib.detach()
+
+
+def named(writes: WriteMany) -> dict[str, int]:
+    """Return writes by parameter; all are for axis 2, in the width of the parameter."""
+    table = {each.address: each for each in reversed(PARAMETERS.values())}
+    for each in writes.writes:
+        assert (each.axis, each.words) == (2, table[each.address].words)
+    return {table[each.address].name: each.value for each in writes.writes}
+
+
+SYNC = {"synsrc": 502, "synaxis": 0}
+CASES: dict[str, tuple[tuple[Any, ...], dict[str, int]]] = {
+    "IMC_MoveAbsolute": ((6250,), {"mcsdist": 0, "mcstgpos": 6250, "mcsgo": -1}),
+    "IMC_MoveRelative": ((-50,), {"mcsdist": -50, "mcsgo": -1}),
+    "IMC_MoveSuperimposed": ((50,), {"pcsdist": 50, "pcsgo": -1}),
+    "IMC_Phasing": ((0,), {"pcsdist": 0, "pcsgo": 0}),
+    "IMC_MoveVelocity": ((100 * 65536,), {"mcstgvel": 6553600}),
+    "IMC_HomeSwitch1": ((0, 1, 0), {"homeseq": 0x14, "gohome": -1}),
+    "IMC_HomeSwitch2": ((1, 0, 1), {"homeseq": 0x27, "gohome": -1}),
+    "IMC_HomeSwitch3": ((0, 1, 0), {"homeseq": 0x54, "gohome": -1}),
+    "IMC_HomeSwitchIndex1": ((0, 1, 0), {"homeseq": 0x1C, "gohome": -1}),
+    "IMC_HomeSwitchIndex2": ((0, 1, 0), {"homeseq": 0x3C, "gohome": -1}),
+    "IMC_HomeSwitchIndex3": ((0, 1, 0), {"homeseq": 0x5C, "gohome": -1}),
+    "IMC_HomeIndex": ((1, 1), {"homeseq": 0x0B, "gohome": -1}),
+    "IMC_GearFree": (
+        (0.5, 1, 2),
+        {"master": 1, "gearsrc": 4, "gearratio": 1 << 31, "syntype": 0, "enasyn": 0, "engear": -1},
+    ),
+    "IMC_GearInDist": (
+        (-1.5, 1, 1, 3, 4, 1000),
+        {
+            "master": 1,
+            "gearsrc": 75,
+            "gearratio": -(3 << 31),
+            "syntype": 0,
+            "synsrc": 86,
+            "synaxis": 3,
+            "synsrcvar": 1000,
+            "enasyn": -1,
+            "engear": -1,
+        },
+    ),
+    "IMC_GearInTime": (
+        (1.0, 0, 3, 250),
+        {
+            "master": 0,
+            "gearsrc": 27,
+            "gearratio": 1 << 32,
+            "syntype": 0,
+            **SYNC,
+            "synsrcvar": 250,
+            "enasyn": -1,
+            "engear": -1,
+        },
+    ),
+    "IMC_HandWheel": (
+        (10.0, 3),
+        {"master": 3, "gearsrc": 83, "gearratio": 10 << 32, "syntype": 0, "enasyn": 0, "engear": -1},
+    ),
+    "IMC_MoveInTime": (
+        (1000, 5000),
+        {"syntype": -1, **SYNC, "synsrcvar": 1000, "slavedist": 5000, "slaveabs": 0, "enasyn": -1},
+    ),
+    "IMC_MoveInDist": (
+        (2000, 1, 500),
+        {"syntype": -1, "synsrc": 225, "synaxis": 1, "synsrcvar": 2000, "slavedist": 500, "slaveabs": 0},
+    ),
+    "IMC_TgvelInTime": (
+        (500, 6553600),
+        {"syntype": 0, **SYNC, "synsrcvar": 500, "mcstgvel": 6553600, "enasyn": -1},
+    ),
+    "IMC_TgvelInDist": (
+        (2000, 1, 65536),
+        {"syntype": 0, "synsrc": 225, "synaxis": 1, "synsrcvar": 2000, "mcstgvel": 65536},
+    ),
+}
+
+
+def test_every_function_of_motion_is_tried() -> None:
+    assert set(CASES) == set(EXPANSIONS)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_functions_of_motion_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE, name: str) -> None:
+    arguments, writes = CASES[name]
+    assert getattr(lib, name)(handle, *arguments, 2, lib.SEL_QFIFO) == lib.IMC_OK
+    ((fifo, instruction),) = card.told
+    assert fifo == lib.SEL_QFIFO
+    assert isinstance(instruction, WriteMany)
+    assert named(instruction) == writes
+    assert [put.name for put in EXPANSIONS[name]] == list(writes)
+
+
+@pytest.mark.covers(
+    *(f"imc.sourcetype.{k}" for k in range(5)), "imc.const.sourcetype", "imc.const.synsourcetype"
+)
+def test_source_types_are_addresses_of_velocities_and_positions(
+    card: ToldCard, handle: lib.IMC_HANDLE
+) -> None:
+    for k in range(5):
+        assert lib.IMC_GearInDist(handle, 1.0, 0, k, 1, k, 100, 2, lib.SEL_IFIFO) == lib.IMC_OK
+    found = [named(each) for _, each in card.told if isinstance(each, WriteMany)]
+    gears = ("curvel", "encpvel", "mcsvel", "pcsvel", "encsvel")
+    paces = ("curpos", "encp", "mcspos", "pcspos", "encs")
+    assert [each["gearsrc"] for each in found] == [PARAMETERS[name].address for name in gears]
+    assert [each["synsrc"] for each in found] == [PARAMETERS[name].address for name in paces]
+
+
+@pytest.mark.parametrize(
+    ("raw", "words"),
+    [(0.5, (0x0000, 0x8000, 0x0000)), (-1.5, (0x0000, 0x8000, 0xFFFE)), (2**-32, (1, 0, 0))],
+)
+@pytest.mark.covers("imc.type.IMCFLOAT")
+def test_ratios_become_48_bits(
+    card: ToldCard, handle: lib.IMC_HANDLE, raw: float, words: tuple[int, ...]
+) -> None:
+    lib.IMC_HandWheel(handle, raw, 0, 2, lib.SEL_IFIFO)
+    ((_, instruction),) = card.told
+    assert isinstance(instruction, WriteMany)
+    value = named(instruction)["gearratio"]
+    assert tuple(value >> 16 * k & 0xFFFF for k in range(3)) == words
+
+
+def test_basic_functions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    calls: list[tuple[str, tuple[Any, ...], Any]] = [
+        ("IMC_SetParam16", (152, -1, 1, 1), Write(152, -1, 1, 1)),
+        ("IMC_SetParam32", (12, 100, 0, 0), Write(12, 100, 0, 2)),
+        ("IMC_SetParam48", (175, 1 << 32, 0, 0), Write(175, 1 << 32, 0, 3)),
+        ("IMC_SetParamBit", (562, 3, 1, 2, 0), ChangeBits(562, 8, 0, 2)),
+        ("IMC_SetParamBit", (562, 3, 0, 2, 0), ChangeBits(562, 8, 8, 2)),
+        ("IMC_TurnParamBit", (562, 15, 2, 0), ChangeBits(562, 0, 0x8000, 2)),
+        ("IMC_ORXORParam", (562, -1, 0xF0, 2, 0), ChangeBits(562, 0xFFFF, 0xF0, 2)),
+        ("IMC_WaitTime", (50, 1), WaitTime(50)),
+        ("IMC_WaitTime", (0xFFFFFFFF, 1), WaitTime(-1)),
+        ("IMC_WaitParam", (218, -1, 50, 1, 2), WaitParam(218, 0xFFFF, 50, 1)),
+        ("IMC_WaitParamBit", (562, 2, 1, 0, 1, 2), WaitParam(562, 4, 0, 1, 4)),
+        ("IMC_WaitParamBit", (562, 2, 0, 0, 1, 2), WaitParam(562, 0, 0, 1, 4)),
+        ("IMC_WaitParamMask", (307, 0xFF, 0x1234, -1, 9, 2), WaitParam(307, 0x1234, -1, 0, 0xFF)),
+    ]
+    for name, arguments, instruction in calls:
+        card.told.clear()
+        assert getattr(lib, name)(handle, *arguments) == lib.IMC_OK
+        assert card.told == [(arguments[-1], instruction)], name
+
+
+def test_several_parameters_are_one_instruction(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    elements = [lib.WR_MUL_DES.of(12, 0, 2, -7), lib.WR_MUL_DES.of(23, 1, 1, -1)]
+    elements.append(lib.WR_MUL_DES.of(175, 2, 3, 1 << 32))
+    lib.IMC_SetMulParam(handle, elements, 2, lib.SEL_QFIFO)
+    assert card.told == [(1, WriteMany((Write(12, -7, 0, 2), Write(23, -1, 1, 1))))]
+
+
+@pytest.mark.covers("imc.const.arc_dir", "imc.const.dir_conflict")
+def test_segments(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    of = lib.PFIFOSegData.of
+    ends, center = (30, 40), (10, 20)
+    arc = of(*ends, 50, center=center, direction=0)
+    calls: list[tuple[str, tuple[Any, ...], Segment]] = [
+        ("IMC_AddLineN", (of(1, -2, 3),), Segment((1, -2, 3), clockwise=True)),
+        ("IMC_AddLineNWithVel", (lib.PFIFOSegInfo.of(9, 4, of(1)),), Segment((1,), None, True, 9, 4)),
+        ("IMC_AddArcLine", (arc,), Segment((*ends, 50), center, clockwise=True)),
+        ("IMC_AddArcLine", (of(*ends, center=center, direction=-1),), Segment(ends, center)),
+        ("IMC_AddArcLine", (of(*ends, center=center, direction=0xFFFF),), Segment(ends, center)),
+        (
+            "IMC_AddArcLineWithVel",
+            (lib.PFIFOSegInfo.of(9, 4, arc),),
+            Segment((*ends, 50), center, True, 9, 4),
+        ),
+        ("IMC_AddArc", (*ends, *center, 0), Segment(ends, center)),
+        ("IMC_AddArc", (*ends, *center, 1), Segment(ends, center, clockwise=True)),
+        ("IMC_AddArcWithVel", (9, 4, *ends, *center, 1), Segment(ends, center, True, 9, 4)),
+        ("IMC_AddSpiral", (*ends, 50, *center, 0), Segment((*ends, 50), center)),
+        ("IMC_AddSpiralWithVel", (9, 4, *ends, 50, *center, 1), Segment((*ends, 50), center, True, 9, 4)),
+    ]
+    for name, arguments, segment in calls:
+        card.told.clear()
+        assert getattr(lib, name)(handle, *arguments, lib.SEL_PFIFO2) == lib.IMC_OK
+        ((fifo, sent),) = card.told
+        assert fifo == lib.SEL_PFIFO2
+        assert isinstance(sent, Segment)
+        if segment.center is None:  # a line has no direction
+            sent = Segment(sent.ends, sent.center, segment.clockwise, sent.speed, sent.end_speed)
+        assert sent == segment, name
+
+
+def test_events_take_the_operands_of_their_command(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    of = lib.EventInfo.of
+    factor = of(lib.CMD_SCA32i, src1=(317, 0), dest=(319, 0))
+    factor.Src2.data32.data = 65536  # as the manual's example fills it: the same memory as data48
+    events = [
+        of(lib.CMD_ADD32, src1=(225, 0), src2=(225, 1), dest=(317, 0)),
+        of(lib.CMD_CMP32i, src1=(225, 3), src2=-10000),
+        of(lib.CMD_SET16, lib.IMC_Edge_GreatEqu, src2=-1, dest=(189, 2)),
+        of(lib.CMD_COP48, src2=(340, 0), dest=(337, 0)),
+        factor,
+    ]
+    assert lib.IMC_InstallEvent(handle, events, 5, lib.SEL_IFIFO) == lib.IMC_OK
+    always = EventType.IMC_Allways
+    told = (
+        Event(EventCommand.CMD_ADD32, always, 225, 0, 225, 1, target=317),
+        Event(EventCommand.CMD_CMP32i, always, 225, 3, constant=-10000),
+        Event(EventCommand.CMD_SET16, EventType.IMC_Edge_GreatEqu, constant=-1, target=189, target_axis=2),
+        Event(EventCommand.CMD_COP48, always, second=340, target=337),
+        Event(EventCommand.CMD_SCA32i, always, 317, constant=65536, target=319),
+    )
+    assert card.told == [(0, InstallEvents(told))]
+
+
+def test_reading(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    words = {152: 0x0000, 153: 0xFFFF, 175: 0x0001, 176: 0x0000, 177: 0xFFFE}
+    card.memory = {(at, 1): word for at, word in words.items()}
+    assert lib.IMC_GetParam16(handle, 153, 1) == (lib.IMC_OK, -1)
+    assert lib.IMC_GetParam32(handle, 152, 1) == (lib.IMC_OK, -0x10000)
+    assert lib.IMC_GetParam48(handle, 175, 1) == (lib.IMC_OK, 1 - (2 << 32))
+    assert lib.IMC_GetParamBit(handle, 177, 0, 1) == (lib.IMC_OK, 0)
+    assert lib.IMC_GetParamBit(handle, 177, 15, 1) == (lib.IMC_OK, 1)
+    array = (lib.WR_MUL_DES * 2)(lib.WR_MUL_DES.of(152, 1, 2), lib.WR_MUL_DES.of(175, 1, 3))
+    assert lib.IMC_GetMulParam(handle, array, 2) == lib.IMC_OK
+    assert [list(each.data) for each in array] == [[0, 0xFFFF, 0, 0], [1, 0, 0xFFFE, 0]]
+    assert array[1].value == 1 - (2 << 32)
+
+
+def test_captured_positions(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    card.captured[2] = list(range(130))
+    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, list(range(100)), 100, 30)
+    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, list(range(100, 130)), 30, 0)
+    assert lib.IMC_GetCapData(handle, 100, 2) == (lib.IMC_OK, [], 0, 0)

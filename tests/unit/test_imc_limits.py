@@ -1,0 +1,184 @@
+"""What stops an axis: limit switches, software limits, position error, speed limits, emergency stop and recovery."""
+
+from __future__ import annotations
+
+import pytest
+
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    QFIFO,
+    enable_path,
+    line,
+    move_absolute,
+    move_relative,
+    ready_card,
+    send,
+    set_now,
+)
+
+LIMITS = "[[axis]]\nlimit_positive = 1000.0\nlimit_negative = -1000.0\n[[axis]]\n"
+
+
+@pytest.mark.covers(
+    "imc.param.error", "imc.param.aioctr", "imc.param.stopfilt", "imc.param.aio", "imc.bit.aio.0"
+)
+@pytest.mark.parametrize(("way", "bit", "level"), [(1, 1, 1), (-1, 2, 2)])
+def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, level: int) -> None:
+    card = ready_card(LIMITS)
+    set_now(card, ("aioctr", 0x000F))
+    send(card, IFIFO, ("mcstgvel", 20 * way))
+    card.advance(200)
+    assert (card.read("error"), card.read("aio"), card.read("aiolat")) == (bit, level, level)
+    assert (card.read("run"), card.read("moving")) == (FLAG, 0)
+    assert 1000 <= card.read("curpos") * way < 1250
+    here = card.read("curpos")
+    move_relative(card, 100 * way)
+    card.advance(30)
+    assert card.read("curpos") == here
+    move_absolute(card, 0)
+    card.wait()
+    assert card.read("curpos") == 0
+    send(card, IFIFO, ("error", 0), ("aiolat", level))
+    card.advance(1)
+    assert (card.read("error"), card.read("aiolat")) == (0, 0)
+
+
+@pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
+def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
+    low = 'low_when_on = ["limit_positive"]\n'
+    for text, control, error in (("", 0x0, 0), ("", 0x2, 1), ("", 0x3, 1), (low, 0x2, 1), (low, 0x3, 1)):
+        card = ready_card("[[axis]]\nlimit_positive = 1000.0\n" + text)
+        set_now(card, ("aioctr", control))
+        send(card, IFIFO, ("mcstgvel", 20))
+        card.advance(10)
+        early = card.read("error")
+        card.advance(100)
+        wrong_way_round = bool(text) == bool(control & 1) and control != 0
+        assert early == (1 if wrong_way_round else 0)
+        assert card.read("error") == error
+        assert bool(int(card.read("aiolat")) & 1) == (bool(text) != bool(control & 1))
+
+
+@pytest.mark.covers("imc.param.psoftlim", "imc.param.nsoftlim")
+@pytest.mark.parametrize(("way", "bit"), [(1, 4), (-1, 8)])
+def test_software_limits_work_when_they_are_switched_on(way: int, bit: int) -> None:
+    for control, error in ((0, 0), (0xC000 - 0x10000, bit)):
+        card = ready_card()
+        set_now(card, ("psoftlim", 500), ("nsoftlim", -500), ("aioctr", control))
+        move_absolute(card, 2000 * way)
+        card.wait()
+        assert card.read("error") == error
+        assert (abs(card.read("curpos")) < 1200) == (error != 0)
+
+
+def test_an_error_that_no_mask_names_changes_nothing() -> None:
+    card = ready_card(LIMITS)
+    set_now(card, ("aioctr", 0x000F), ("stopfilt", 0))
+    move_absolute(card, 3000)
+    card.wait()
+    assert (card.read("curpos"), card.read("error")) == (3000, 1)
+
+
+@pytest.mark.covers("imc.param.stopmode")
+def test_stopmode_names_the_errors_that_stop_at_once() -> None:
+    card = ready_card(LIMITS)
+    set_now(card, ("aioctr", 0x000F), ("stopmode", 1))
+    send(card, IFIFO, ("mcstgvel", 20))
+    card.advance(100)
+    assert 1000 <= card.read("curpos") <= 1020
+
+
+@pytest.mark.covers("imc.param.exitfilt")
+def test_exitfilt_names_the_errors_that_end_run() -> None:
+    card = ready_card(LIMITS)
+    set_now(card, ("aioctr", 0x000F), ("exitfilt", 1))
+    send(card, IFIFO, ("mcstgvel", 20))
+    card.advance(100)
+    assert (card.read("run"), card.read("moving"), card.read("curvel")) == (0, 0, 0)
+
+
+@pytest.mark.covers("imc.param.poserrlim")
+def test_a_position_error_beyond_its_limit_is_an_error() -> None:
+    card = ready_card()
+    set_now(card, ("poserrlim", 100), ("ena", 0))
+    move_absolute(card, 3000)
+    card.advance(60)
+    assert card.read("error") == 0x80
+    card.wait()
+    assert 100 < card.read("poserr") < 300
+
+
+@pytest.mark.covers("imc.param.vellim", "imc.param.accellim")
+@pytest.mark.parametrize(("name", "value", "bit"), [("vellim", 30, 0x2000), ("accellim", 0.5, 0x4000)])
+def test_speed_and_acceleration_limits_end_run_whatever_the_masks_say(
+    name: str, value: float, bit: int
+) -> None:
+    card = ready_card()
+    set_now(card, (name, value), ("stopfilt", 0), ("exitfilt", 0), ("mcsaccel", 2), ("smooth", 8))
+    move_absolute(card, 5000)
+    card.advance(200)
+    assert (card.read("error"), card.read("run"), card.read("moving")) == (bit, 0, 0)
+    assert card.read("curpos") < 1000
+    here = card.read("curpos")
+    set_now(card, ("error", 0), (name, 1000), ("run", FLAG))
+    move_absolute(card, 200)
+    card.wait()
+    assert (card.read("curpos"), card.read("error")) == (200, 0)
+    assert here != 200
+
+
+@pytest.mark.covers("imc.param.emstop")
+def test_an_emergency_stop_takes_everything_out_of_work_until_it_is_set_up_again() -> None:
+    card = ready_card()
+    enable_path(card, 0, 1)
+    line(card, 5000, 5000, speed=20)
+    send(card, IFIFO, ("mcstgvel", 20, 2))
+    card.advance(50)
+    send(card, IFIFO, ("emstop", 0x10))
+    card.advance(1)
+    here = [card.read("curpos", i) for i in range(4)]
+    names = ("run", "ena", "moving", "error")
+    assert [[card.read(n, i) for n in names] for i in range(4)] == [[0, 0, 0, 0x10]] * 4
+    assert card.read("startpath1") == 0
+    card.advance(100)
+    assert [card.read("curpos", i) for i in range(4)] == here
+    send(card, QFIFO, ("emstop", 0))
+    card.advance(2)
+    for i in range(4):
+        send(card, IFIFO, ("error", 0, i), ("ena", FLAG, i), ("run", FLAG, i))
+    send(card, IFIFO, ("clrPFIFO1", FLAG), ("pwaittime1", 0), ("startpath1", FLAG))
+    card.advance(1)
+    line(card, 100, 200, speed=20)
+    card.wait()
+    assert [card.read("curpos", i) for i in range(2)] == [100, 200]
+    assert [card.read("error", i) for i in range(4)] == [0] * 4
+
+
+def test_other_bits_of_emstop_are_errors_of_every_axis() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 20, 2), ("emstop", 0x40))
+    card.advance(50)
+    assert [card.read("error", i) for i in range(4)] == [0x40] * 4
+    assert (card.read("moving", 2), card.read("run", 2)) == (0, FLAG)
+
+
+def test_a_limit_under_a_path_stops_the_path_along_itself() -> None:
+    card = ready_card(LIMITS)
+    set_now(card, ("aioctr", 0x000F))
+    enable_path(card, 0, 1)
+    line(card, 3000, 4000, speed=25)
+    card.advance(400)
+    x, y = card.read("curpos", 0), card.read("curpos", 1)
+    assert 1000 <= x < 1300
+    assert y == pytest.approx(x * 4 / 3, abs=1.5)
+    assert (card.read("startpath1"), card.read("moving"), card.read("error")) == (0, 0, 1)
+
+
+def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("gearratio", 1.0, 1), ("gearsrc", 227, 1), ("engear", FLAG, 1), ("mcstgvel", 10))
+    card.advance(50)
+    set_now(card, ("run", 0, 1))
+    card.advance(20)
+    assert (card.read("curvel", 1), card.read("engear", 1), card.read("curvel", 0)) == (0, 0, 10)

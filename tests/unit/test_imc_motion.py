@@ -1,0 +1,407 @@
+"""Moves of an axis in both coordinate systems: to a position, by a distance, at a velocity; smoothing, pause, stops."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from polycnc.controllers.imc._instructions import Write, WriteMany
+from polycnc.controllers.imc._parameters import address
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    QFIFO,
+    move_absolute,
+    move_relative,
+    ready_card,
+    send,
+    set_now,
+    setting,
+    trace,
+)
+
+
+@pytest.mark.covers(
+    "imc.param.mcsgo", "imc.param.mcstgpos", "imc.param.mcsmoving", "imc.param.mcspos", "imc.concept.units"
+)
+def test_an_absolute_move_ends_on_its_target_in_the_time_of_its_ramps() -> None:
+    card = ready_card()
+    move_absolute(card, 6250, 1)
+    card.advance(1)
+    assert [card.read(n, 1) for n in ("mcsgo", "mcsmoving", "moving", "profiling", "motion")] == [FLAG] * 5
+    card.wait()
+    # 1 pulse/ms2 up to sqrt(6250) = 79 pulses/ms and down again: 158.1 ms, then one cycle at rest
+    assert card.clock.cycles == math.ceil(2 * math.sqrt(6250)) + 1
+    assert [card.read(n, 1) for n in ("mcspos", "curpos", "encp")] == [6250] * 3
+    assert [card.read(n, 1) for n in ("mcsgo", "mcsmoving", "moving", "mcsvel", "curvel")] == [0] * 5
+
+
+def test_writing_the_target_alone_starts_nothing() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgpos", 100))
+    card.advance(20)
+    assert (card.read("mcstgpos"), card.read("mcspos"), card.read("moving")) == (100, 0, 0)
+
+
+@pytest.mark.covers("imc.param.mcsmaxvel", "imc.param.mcsaccel", "imc.param.mcsdecel", "imc.param.mcsslope")
+def test_a_long_move_has_its_speed_and_its_two_rates() -> None:
+    card = ready_card()
+    set_now(card, ("mcsmaxvel", 10), ("mcsaccel", 0.5), ("mcsdecel", 0.25))
+    move_absolute(card, 1000)
+    velocities = trace(card, "mcsvel", 140)
+    assert velocities[19] == 9.75  # mean of the twentieth cycle of a ramp of 0.5
+    assert set(velocities[20:80]) == {10.0}
+    assert velocities[90] - velocities[91] == 0.25
+    assert sum(velocities) == 1000
+
+
+def test_slope_is_set_while_the_velocity_changes() -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 3))
+    assert trace(card, "mcsslope", 5) == [FLAG, FLAG, FLAG, 0, 0]
+    assert card.read("mcsvel") == 3
+
+
+@pytest.mark.covers("imc.param.mcsdist")
+def test_a_relative_move_counts_from_where_the_axis_is_when_it_begins() -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 10))
+    card.advance(100)
+    move_relative(card, -200, fifo=QFIFO)
+    here = card.read("mcspos")
+    card.advance(1)
+    assert card.read("mcstgpos") == here - 200
+    assert card.read("mcsdist") == 0
+    card.wait()
+    assert card.read("mcspos") == here - 200
+
+
+def test_a_move_can_be_given_a_new_target_under_way() -> None:
+    card = ready_card()
+    move_absolute(card, 5000)
+    card.advance(60)
+    move_absolute(card, -300)
+    card.wait()
+    assert card.read("curpos") == -300
+
+
+def test_a_move_is_stopped_by_writing_0_to_go() -> None:
+    card = ready_card()
+    move_absolute(card, 5000)
+    card.advance(20)
+    position, velocity = card.read("mcspos"), card.read("mcsvel")
+    send(card, IFIFO, ("mcsgo", 0))
+    card.wait()
+    assert card.read("mcspos") == pytest.approx(position + velocity * velocity / 2, abs=velocity)
+    assert card.read("moving") == 0
+
+
+def test_an_abrupt_stop_zeroes_the_velocity() -> None:
+    card = ready_card()
+    move_absolute(card, 50000)
+    card.advance(50)
+    position = card.read("mcspos")
+    send(card, IFIFO, ("smooth", 0), ("mcsgo", 0), ("mcsvel", 0), ("mcstgvel", 0))
+    card.advance(2)
+    assert (card.read("mcspos"), card.read("curpos"), card.read("moving")) == (position, position, 0)
+
+
+@pytest.mark.covers("imc.param.mcstrack", "imc.concept.ptp_modes")
+def test_a_tracking_move_follows_its_target() -> None:
+    card = ready_card()
+    set_now(card, ("mcstrack", FLAG))
+    move_absolute(card, 500)
+    card.advance(100)
+    assert (card.read("curpos"), card.read("moving"), card.read("mcsgo")) == (500, 0, FLAG)
+    send(card, IFIFO, ("mcstgpos", -100))
+    card.advance(100)
+    assert card.read("curpos") == -100
+    set_now(card, ("mcsgo", 0), ("mcstrack", 0), ("mcstgpos", 900))
+    card.advance(100)
+    assert card.read("curpos") == -100
+
+
+@pytest.mark.covers("imc.concept.jog", "imc.param.mcstgvel", "imc.param.mcsvel")
+def test_continuous_motion_ramps_to_its_velocity_and_back_to_rest() -> None:
+    card = ready_card()
+    card.push(IFIFO, Write(address("mcstgvel"), 100 * 65536, 0, 2))
+    velocities = trace(card, "mcsvel", 150)
+    assert velocities[:3] == [1, 2, 3]
+    assert set(velocities[99:]) == {100.0}
+    card.push(IFIFO, Write(address("mcstgvel"), 0, 0, 2))
+    card.wait()
+    assert (card.read("mcsvel"), card.read("moving")) == (0, 0)
+    assert card.read("mcspos") == sum(range(100)) + 100 * 51 + sum(range(100))
+
+
+def test_continuous_motion_turns_through_standstill() -> None:
+    card = ready_card()
+    set_now(card, ("mcstgvel", 2.5), ("mcsdecel", 2))
+    card.advance(5)
+    set_now(card, ("mcstgvel", -2))
+    assert trace(card, "mcsvel", 5) == [0.5, 0, -1, -2, -2]
+
+
+@pytest.mark.covers("imc.concept.position_overflow")
+@pytest.mark.parametrize(("overflow", "after"), [("origin", 50.0), ("wrap", -(2.0**31) + 50)])
+def test_a_position_that_leaves_32_bits_does_not_disturb_the_motion(overflow: str, after: float) -> None:
+    card = ready_card(f'overflow = "{overflow}"')
+    set_now(card, ("mcstgvel", 100), ("mcsaccel", 100), ("homepos", 2**31 - 150), ("sethome", FLAG))
+    card.advance(2)
+    names = ("curpos", "mcspos", "curvel", "error")
+    assert [card.read(name) for name in names] == [after, after, 100, 0]
+
+
+def test_a_relative_move_beyond_32_bits_is_refused_with_an_error_bit() -> None:
+    card = ready_card()
+    set_now(card, ("homepos", 2**31 - 100), ("sethome", FLAG), ("stopfilt", 0))
+    card.advance(1)
+    move_relative(card, 200)
+    card.advance(5)
+    assert (card.read("curpos"), card.read("error"), card.read("mcsgo")) == (2**31 - 100, 0x200, 0)
+
+
+@pytest.mark.covers(
+    "imc.concept.superposition",
+    "imc.concept.mcs_pcs",
+    "imc.param.pcsgo",
+    "imc.param.pcsdist",
+    "imc.param.pcspos",
+)
+def test_a_superimposed_move_adds_to_whatever_the_axis_does() -> None:
+    card = ready_card()
+    set_now(card, ("shiftmaster", FLAG))
+    move_absolute(card, 4000)
+    card.advance(30)
+    move_relative(card, 500, system="pcs")
+    card.advance(2)
+    assert card.read("pcsmoving") == FLAG
+    assert card.read("curvel") == card.read("mcsvel") + card.read("pcsvel")
+    card.wait()
+    assert [card.read(n) for n in ("mcspos", "pcspos", "curpos", "mcstgpos")] == [4000, 500, 4500, 4000]
+    assert card.read("pcstgpos") == 500
+
+
+@pytest.mark.covers("imc.param.shiftmaster")
+def test_shiftmaster_decides_whether_the_target_takes_part_in_a_superimposed_move() -> None:
+    for shift, target in ((0, 600), (FLAG, 100)):
+        card = ready_card()
+        set_now(card, ("shiftmaster", shift), ("mcstgpos", 100))
+        move_relative(card, 500, system="pcs")
+        card.wait()
+        assert card.read("mcstgpos") == target
+
+
+@pytest.mark.covers(
+    "imc.param.pcstgvel",
+    "imc.param.pcsvel",
+    "imc.param.pcsmaxvel",
+    "imc.param.pcsaccel",
+    "imc.param.pcsdecel",
+    "imc.param.pcsslope",
+    "imc.param.pcstgpos",
+    "imc.param.pcstrack",
+    "imc.param.pcsmoving",
+)
+def test_the_auxiliary_system_has_the_motions_of_the_main_one() -> None:
+    card = ready_card()
+    set_now(card, ("pcstgvel", 4), ("pcsaccel", 2))
+    assert trace(card, "pcsslope", 3) == [FLAG, FLAG, 0]
+    assert (card.read("pcsvel"), card.read("mcsvel"), card.read("curvel")) == (4, 0, 4)
+    set_now(card, ("pcstgvel", 0), ("pcsdecel", 4))
+    card.advance(2)
+    assert (card.read("pcsmoving"), card.read("pcspos")) == (0, 2 + 4 + 4)
+    set_now(card, ("pcstrack", FLAG), ("pcsmaxvel", 2), ("pcstgpos", 50), ("pcsgo", FLAG))
+    assert max(trace(card, "pcsvel", 60)) == 2
+    set_now(card, ("pcstgpos", 10))
+    card.advance(60)
+    assert (card.read("pcspos"), card.read("curpos"), card.read("mcspos")) == (10, 10, 0)
+
+
+@pytest.mark.covers("imc.param.smooth", "imc.param.smoothing", "imc.param.curvel", "imc.param.curpos")
+@pytest.mark.parametrize("span", [2, 16, 64])
+def test_smoothing_is_the_mean_of_the_last_increments_and_loses_nothing(span: int) -> None:
+    plain, smooth = ready_card(), ready_card()
+    set_now(smooth, ("smooth", span))
+    steps = []
+    for card in (plain, smooth):
+        set_now(card, ("mcsaccel", 3.7), ("mcsdecel", 5.3))
+        move_absolute(card, 1234)
+        steps.append(trace(card, "curvel", 200))
+    padded = [0.0] * span + steps[0]
+    mean = [sum(padded[k + 1 : k + 1 + span]) / span for k in range(len(steps[0]))]
+    assert steps[1] == pytest.approx(mean, abs=2 / 65536)
+    assert (smooth.read("curpos"), smooth.read("moving"), smooth.read("smoothing")) == (1234, 0, 0)
+
+
+def test_moving_lasts_as_long_as_smoothing_does() -> None:
+    card = ready_card()
+    set_now(card, ("smooth", 32))
+    move_absolute(card, 400)
+    card.advance(42)
+    assert [card.read(n) for n in ("mcsmoving", "profiling", "smoothing", "moving")] == [0, 0, FLAG, FLAG]
+    card.advance(32)
+    assert (card.read("moving"), card.read("curpos")) == (0, 400)
+
+
+@pytest.mark.covers("imc.param.hpause")
+def test_pause_brakes_every_axis_and_lets_it_go_on() -> None:
+    card = ready_card()
+    move_absolute(card, 3000, 0)
+    set_now(card, ("mcstgvel", 20, 1))
+    card.advance(40)
+    send(card, IFIFO, ("hpause", FLAG))
+    card.advance(60)
+    held = card.read("curpos", 0)
+    assert (card.read("curvel", 0), card.read("curvel", 1), card.read("moving", 0)) == (0, 0, FLAG)
+    card.advance(50)
+    assert card.read("curpos", 0) == held < 3000
+    send(card, IFIFO, ("hpause", 0))
+    card.advance(300)
+    assert (card.read("curpos", 0), card.read("curvel", 1)) == (3000, 20)
+
+
+def test_haltstep_pauses_one_axis_at_once_or_with_its_deceleration() -> None:
+    for mode, after in ((0, 0.0), (FLAG, 19.0)):
+        card = ready_card()
+        set_now(card, ("mcstgvel", 20), ("haltmode", mode))
+        card.advance(30)
+        set_now(card, ("haltstep", FLAG))
+        card.advance(1)
+        assert card.read("curvel") == after
+        set_now(card, ("haltstep", 0))
+        card.advance(30)
+        assert card.read("curvel") == 20
+
+
+@pytest.mark.covers("imc.param.run", "imc.param.ena")
+def test_an_axis_out_of_run_plans_nothing_and_one_without_ena_moves_nothing() -> None:
+    card = ready_card()
+    set_now(card, ("run", 0, 1), ("ena", 0, 2))
+    for i in range(3):
+        move_absolute(card, 100, i)
+    card.advance(60)
+    assert [card.read("curpos", i) for i in range(3)] == [100, 0, 100]
+    assert card.read("mcsgo", 1) == 0
+    assert [card.kernel.servo.actual[i] for i in range(3)] == [100, 0, 0]
+    assert (card.read("encp", 2), card.read("poserr", 2)) == (0, 100)
+
+
+@pytest.mark.covers(
+    "imc.param.motion", "imc.param.settlewin", "imc.param.settlen", "imc.param.outsettle", "imc.param.poserr"
+)
+def test_motion_ends_when_the_axis_has_settled() -> None:
+    card = ready_card("[[axis]]\nlag_s = 0.02\ngain = 40.0\n")
+    set_now(card, ("settlewin", 2), ("settlen", 5), ("trackwin", 5), ("mcsmaxvel", 20))
+    move_absolute(card, 1000)
+    card.advance(60)
+    assert abs(card.read("poserr")) > 5
+    assert (card.read("outsettle"), card.read("outtrack")) == (FLAG, FLAG)
+    card.wait()
+    assert (card.read("moving"), card.read("motion"), card.read("outsettle")) == (0, FLAG, FLAG)
+    outside = trace(card, "outsettle", 300)
+    assert outside[-1] == 0
+    assert card.read("motion") == 0
+    assert abs(card.read("encp") - 1000) <= 2
+
+
+@pytest.mark.covers("imc.param.outtrack", "imc.param.trackwin", "imc.param.profiling", "imc.param.moving")
+def test_motion_of_an_ideal_axis_lasts_settlen_cycles_longer() -> None:
+    card = ready_card()
+    set_now(card, ("settlen", 7))
+    move_absolute(card, 400)
+    shown = dict.fromkeys(("mcsgo", "profiling", "moving", "motion", "outtrack"), 0)
+    for _ in range(100):
+        card.advance(1)
+        for name in shown:
+            shown[name] += card.read(name) != 0
+    assert shown == {"mcsgo": 39, "profiling": 40, "moving": 40, "motion": 46, "outtrack": 0}
+
+
+@pytest.mark.covers("imc.param.breakp", "imc.param.status")
+def test_status_tells_whether_the_breakpoint_is_passed() -> None:
+    card = ready_card()
+    set_now(card, ("breakp", 50))
+    move_absolute(card, 100)
+    seen = []
+    for _ in range(40):
+        card.advance(1)
+        seen.append((card.read("curpos") >= 50, card.read("status") == 1))
+    assert all(a == b for a, b in seen)
+    assert (seen[0][1], seen[-1][1]) == (False, True)
+
+
+@pytest.mark.covers("imc.param.sethome", "imc.param.homepos")
+def test_sethome_makes_the_present_position_the_origin() -> None:
+    card = ready_card()
+    move_absolute(card, 700)
+    move_relative(card, 50, system="pcs")
+    card.wait()
+    set_now(card, ("gohome", 0), ("homepos", 25), ("sethome", FLAG))
+    card.advance(1)
+    assert [card.read(n) for n in ("curpos", "encp", "mcspos", "pcspos", "poserr")] == [25, 25, 25, 0, 0]
+    assert (card.read("homed"), card.read("sethome")) == (FLAG, 0)
+    move_absolute(card, 0)
+    card.wait()
+    assert card.kernel.servo.actual[0] == 725
+
+
+def test_moves_of_several_axes_in_one_instruction_start_together() -> None:
+    card = ready_card()
+    writes = [setting("mcsdist", 300, i) for i in range(4)] + [setting("mcsgo", FLAG, i) for i in range(4)]
+    card.push(QFIFO, WriteMany(tuple(writes)))
+    card.advance(10)
+    assert len({card.read("mcspos", i) for i in range(4)}) == 1
+
+
+@pytest.mark.covers("imc.param.clear")
+def test_clear_puts_an_axis_at_zero_without_errors() -> None:
+    card = ready_card()
+    move_absolute(card, 500)
+    card.wait()
+    set_now(card, ("error", 3), ("clear", FLAG))
+    card.advance(1)
+    names = ("mcspos", "mcstgpos", "curpos", "encp", "pcspos", "pcstgpos", "error", "encs", "aiolat", "clear")
+    assert [card.read(n) for n in names] == [0] * len(names)
+
+
+@pytest.mark.covers("imc.param.ciraxis", "imc.param.cirpos")
+def test_a_ring_axis_counts_its_turns() -> None:
+    card = ready_card()
+    set_now(card, ("cirpos", 1000), ("ciraxis", FLAG))
+    move_relative(card, 3600)
+    card.wait()
+    assert [card.read(n) for n in ("curpos", "mcspos", "encp", "cirswap")] == [600, 600, 600, 3]
+    move_relative(card, -700)
+    card.wait()
+    assert (card.read("curpos"), card.read("cirswap")) == (900, 2)
+    assert card.kernel.servo.actual[0] == 2900
+
+
+def test_a_two_way_ring_goes_below_zero() -> None:
+    card = ready_card()
+    set_now(card, ("cirpos", 1000), ("ciraxis", FLAG), ("biciraxis", FLAG))
+    move_relative(card, -1300)
+    card.wait()
+    assert (card.read("curpos"), card.read("cirswap")) == (-300, -1)
+
+
+@pytest.mark.covers("imc.param.encp", "imc.param.encpvel", "imc.param.encpfactor")
+def test_the_main_encoder_is_scaled_and_shows_its_speed() -> None:
+    card = ready_card("[[axis]]\ncounts_per_pulse = 4.0\n")
+    set_now(card, ("encpfactor", 0.25), ("mcstgvel", 10), ("mcsaccel", 10))
+    card.advance(10)
+    assert (card.read("encp"), card.read("encpvel"), card.read("curpos")) == (100, 10, 100)
+    set_now(card, ("encpfactor", 1.0))
+    card.advance(1)
+    assert (card.read("encp"), card.read("encpvel")) == (140, 40)
+
+
+@pytest.mark.covers("imc.param.encpctr")
+def test_feedback_can_follow_the_command() -> None:
+    card = ready_card()
+    set_now(card, ("encpctr", -0x8000), ("ena", 0))
+    move_absolute(card, 100)
+    card.wait()
+    assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)

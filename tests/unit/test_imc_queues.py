@@ -1,0 +1,271 @@
+"""The queues: one instruction a cycle or all at once, waits, counts, clearing, what is refused."""
+
+from __future__ import annotations
+
+import pytest
+
+from polycnc.controllers.imc._card import Fifo
+from polycnc.controllers.imc._event_codes import EventCommand, EventType
+from polycnc.controllers.imc._instructions import (
+    Event,
+    InstallEvents,
+    Segment,
+    WaitParam,
+    WaitTime,
+    Write,
+    WriteMany,
+)
+from polycnc.controllers.imc._parameters import address
+from polycnc.errors import UsageError
+from support.imc_card import (
+    FLAG,
+    IFIFO,
+    PFIFO1,
+    PFIFO2,
+    QFIFO,
+    enable_path,
+    line,
+    move_absolute,
+    ready_card,
+    send,
+    set_now,
+    setting,
+    wait_for,
+)
+
+CELLS = ("user16b0", "user16b1", "user16b2")
+
+
+def _cells(card) -> list[float]:  # type: ignore[no-untyped-def]
+    return [card.read(name) for name in CELLS]
+
+
+@pytest.mark.covers("imc.concept.qfifo", "imc.concept.control_cycle")
+def test_qfifo_carries_out_one_instruction_a_cycle() -> None:
+    card = ready_card()
+    send(card, QFIFO, *((name, 1) for name in CELLS))
+    assert _cells(card) == [0, 0, 0]
+    for done in ([1, 0, 0], [1, 1, 0], [1, 1, 1]):
+        card.advance(1)
+        assert _cells(card) == done
+
+
+@pytest.mark.covers("imc.concept.ififo")
+def test_ififo_carries_out_all_it_holds_in_the_next_cycle() -> None:
+    card = ready_card()
+    send(card, IFIFO, *((name, 1) for name in CELLS))
+    card.advance(1)
+    assert _cells(card) == [1, 1, 1]
+
+
+@pytest.mark.covers("imc.concept.fifo_independence")
+def test_a_wait_for_ever_in_one_queue_leaves_the_others_alone() -> None:
+    card = ready_card()
+    card.push(QFIFO, WaitTime(0))
+    send(card, QFIFO, ("user16b0", 1))
+    send(card, IFIFO, ("user16b1", 1))
+    card.advance(5000)
+    assert _cells(card) == [0, 1, 0]
+    card.clear_fifo(QFIFO)
+    send(card, QFIFO, ("user16b2", 1))
+    card.advance(1)
+    assert _cells(card) == [0, 1, 1]
+
+
+@pytest.mark.parametrize("release", ["qwaittime", "clrqfifo", "clearimc"])
+def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) -> None:
+    card = ready_card()
+    card.push(QFIFO, WaitTime(-1))
+    send(card, QFIFO, ("user16b0", 1))
+    card.advance(100)
+    send(card, IFIFO, (release, 0 if release == "qwaittime" else FLAG))
+    card.advance(2)
+    assert _cells(card)[0] == (1 if release == "qwaittime" else 0)
+    assert card.waiting_words(QFIFO) == 0
+
+
+@pytest.mark.parametrize("queue", [QFIFO, PFIFO1, PFIFO2])
+def test_a_wait_of_time_lasts_its_milliseconds(queue: Fifo) -> None:
+    card = ready_card()
+    enable_path(card)
+    enable_path(card, space=2)
+    card.push(queue, WaitTime(50))
+    send(card, queue, ("user16b0", 1))
+    card.advance(50)
+    assert _cells(card)[0] == 0
+    card.advance(1)
+    assert _cells(card)[0] == 1
+
+
+def test_a_wait_that_is_never_met_goes_on_after_its_time() -> None:
+    card = ready_card()
+    wait_for(card, QFIFO, "user16b1", 5, timeout=50)
+    send(card, QFIFO, ("user16b0", 1))
+    card.advance(30)
+    assert card.read("qwaittime") == 50 - 29
+    card.advance(20)
+    assert _cells(card)[0] == 0
+    card.advance(1)
+    assert (_cells(card)[0], card.read("error"), card.read("qwaittime")) == (1, 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("mask", "data", "met"), [(0x00FF, 0x0034, True), (0x00FF, 0x1234, False), (0xFFFF, 0x1234, True)]
+)
+def test_a_masked_wait_compares_with_data_as_given(mask: int, data: int, met: bool) -> None:
+    card = ready_card()
+    set_now(card, ("user16b1", 0x1234))
+    card.push(QFIFO, WaitParam(address("user16b1"), data, 0, 0, mask))
+    send(card, QFIFO, ("user16b0", 1))
+    card.advance(100)
+    assert _cells(card)[0] == int(met)
+
+
+def test_a_wait_for_the_end_of_a_move_behind_that_move_is_not_met_too_early() -> None:
+    for queue in (QFIFO, PFIFO1):
+        card = ready_card()
+        enable_path(card)
+        move_absolute(card, 1000, 1, queue)
+        wait_for(card, queue, "moving", 0, 1)
+        send(card, queue, ("user16b0", 1))
+        card.advance(40)
+        assert _cells(card)[0] == 0
+        card.advance(40)
+        assert (_cells(card)[0], card.read("curpos", 1)) == (1, 1000)
+
+
+@pytest.mark.covers("imc.concept.pfifo1", "imc.concept.pfifo2", "imc.param.pfifoenable")
+@pytest.mark.parametrize("space", [1, 2])
+def test_a_path_queue_is_off_until_it_is_enabled(space: int) -> None:
+    card = ready_card()
+    queue = PFIFO1 + space - 1
+    send(card, queue, ("user16b0", 1))
+    card.advance(10)
+    assert (_cells(card)[0], card.waiting_words(queue)) == (0, 3)
+    send(card, IFIFO, (f"startpath{space}", FLAG))
+    card.advance(1)
+    assert (_cells(card)[0], card.waiting_words(queue)) == (1, 0)
+
+
+def test_a_full_queue_takes_nothing_and_drains_with_time() -> None:
+    card = ready_card("[depths]\nififo = 64\nqfifo = 64\n")
+    for queue in (IFIFO, QFIFO):
+        taken = 0
+        while card.push(queue, setting("user16b0", taken)):
+            taken += 1
+        assert taken == 64 // 3
+        assert card.waiting_words(queue) == taken * 3
+        card.advance(1)
+        assert card.push(queue, setting("user16b1", 99))
+    card.advance(64)
+    assert _cells(card)[:2] == [20, 99]
+    assert not card.push_points([0] * 4097)
+
+
+@pytest.mark.covers("imc.param.clrififo", "imc.param.cfifocnt", "imc.param.clrqfifo")
+def test_count_registers_show_the_words_that_wait_and_clear_when_written() -> None:
+    card = ready_card()
+    names = ("clrififo", "clrqfifo", "clrPFIFO1", "clrPFIFO2", "cfifocnt")
+    card.push(QFIFO, WaitTime(0))
+    card.advance(1)
+    for queue in (IFIFO, QFIFO, PFIFO1, PFIFO2):
+        card.push(queue, Write(address("user32b0"), 1, 0, 2))
+    card.push_points([1, 2, 3])
+    assert [card.read(name) for name in names] == [4, 4, 4, 4, 3]
+    for name in names[1:]:
+        card.write(name, FLAG)
+        assert card.read(name) == 0
+    card.push(PFIFO1, WaitTime(1))
+    send(card, IFIFO, ("clearimc", FLAG))
+    card.advance(1)
+    assert [card.waiting_words(queue) for queue in range(5)] == [0] * 5
+
+
+def test_a_queue_can_clear_itself() -> None:
+    card = ready_card()
+    send(card, QFIFO, ("clrqfifo", FLAG), ("user16b0", 1))
+    card.advance(5)
+    assert (_cells(card)[0], card.waiting_words(QFIFO)) == (0, 0)
+    send(card, QFIFO, ("user16b0", 2))
+    card.advance(1)
+    assert _cells(card)[0] == 2
+
+
+def test_queues_refuse_what_is_not_for_them() -> None:
+    card = ready_card()
+    event = Event(EventCommand.CMD_SET16, EventType.IMC_Allways, target=address("user16b0"))
+    refused = [
+        (IFIFO, WaitTime(5)),
+        (IFIFO, WaitParam(address("moving"), 0)),
+        (QFIFO, Segment((1, 2))),
+        (4, setting("user16b0", 1)),
+        (5, setting("user16b0", 1)),
+        (PFIFO1, Segment(())),
+        (PFIFO1, Segment((0,) * 17)),
+        (PFIFO1, Segment((1,), (0, 0))),
+        (QFIFO, InstallEvents(())),
+        (QFIFO, InstallEvents((event,) * 32)),
+    ]
+    for queue, instruction in refused:
+        with pytest.raises(UsageError):
+            card.push(queue, instruction)  # type: ignore[arg-type]
+    with pytest.raises(UsageError):
+        card.clear_fifo(5)
+    card.advance(5)
+    assert [card.waiting_words(queue) for queue in range(5)] == [0] * 5
+
+
+def test_long_traffic_goes_round_the_ring() -> None:
+    card = ready_card("[depths]\nqfifo = 64\n")
+    for value in range(400):
+        assert card.push(QFIFO, WriteMany((setting("user16b0", value), setting("user32b0", -value))))
+        card.advance(1)
+        assert (card.read("user16b0"), card.read("user32b0")) == (value, -value)
+
+
+@pytest.mark.covers("imc.param.timer", "imc.param.ticks", "imc.param.delayus", "imc.param.delayout")
+def test_timers_count_cycles() -> None:
+    for unit, left in (("us", 5000), ("ms", 14990)):
+        card = ready_card(f'delay_unit = "{unit}"')
+        set_now(card, ("timer", 7), ("delayus", 15000))
+        card.advance(5)
+        assert (card.read("timer"), card.read("ticks")) == (2, 5)
+        card.advance(5)
+        assert (card.read("timer"), card.read("delayout")) == (0, left)
+        card.advance(20)
+        assert (card.read("delayout") == 0) == (unit == "us")
+
+
+def test_general_inputs_read_0_when_closed_and_latch() -> None:
+    card = ready_card()
+    assert card.read_words(address("gin1"), 0, 2) == (0xFFFF, 0xFFFF)
+    card.set_input(3, True)
+    card.set_input(17, True)
+    assert card.read_words(address("gin1"), 0, 2) == (0xFFFB, 0xFFFE)
+    assert card.read_words(address("gin1lat"), 0, 2) == (4, 1)
+    card.set_input(3, False)
+    send(card, IFIFO, ("gin1lat", 4))
+    card.advance(1)
+    assert (card.read("gin1"), card.read("gin1lat"), card.read("gin2lat")) == (-1, 0, 1)
+
+
+@pytest.mark.covers("imc.param.gio")
+def test_general_outputs_follow_their_registers() -> None:
+    card = ready_card()
+    send(card, IFIFO, ("gio", 0b101), ("giod", 0b10), ("gout3", -0x8000))
+    card.advance(1)
+    assert [number for number in range(1, 49) if card.output(number)] == [1, 3, 18, 48]
+
+
+def test_a_segment_holds_its_own_queue_only() -> None:
+    card = ready_card()
+    enable_path(card, 0, 1)
+    enable_path(card, 2, space=2)
+    line(card, 500, 0, speed=10)
+    send(card, PFIFO1, ("user16b0", 1))
+    send(card, PFIFO2, ("user16b1", 1))
+    send(card, QFIFO, ("user16b2", 1))
+    card.advance(2)
+    assert _cells(card) == [0, 1, 1]
+    card.wait()
+    assert (_cells(card), card.read("curpos")) == ([1, 1, 1], 500)
