@@ -10,8 +10,8 @@ from pathlib import Path
 
 from polycnc.post import ControlFile, parse_control
 
-GOLDEN = Path(__file__).resolve().parents[1] / "golden"
-TABLES = (GOLDEN / "post_cases.toml").read_text(encoding="utf-8")
+GOLDEN = Path(__file__).resolve().parents[1] / "golden" / "post"
+TABLES = (GOLDEN / "cases.toml").read_text(encoding="utf-8")
 _HEAD = re.compile(
     r"([SD][0-9]{2})  (?:stated|derived), Manual 001 line [0-9,-]+; sequence place ([012]): .+"
 )
@@ -34,7 +34,7 @@ def cases() -> Iterator[Case]:
     """Yield the cases of the table; everything in it must be understood."""
     case: Case | None = None
     lines: list[str] = []
-    for line in (GOLDEN / "post_cases.txt").read_text(encoding="utf-8").splitlines():
+    for line in (GOLDEN / "cases.txt").read_text(encoding="utf-8").splitlines():
         if head := _HEAD.fullmatch(line):
             case = Case(head[1], int(head[2]))
             yield case
