@@ -49,96 +49,27 @@ def check_against_integration(
     assert np.abs(found[inside] - wanted).max() < tolerance
 
 
-JOGS = [
-    # distance, first, jvl, jtvl, jac, jdec, duration
-    pytest.param(
-        100, 0, 50, 0, 100, 100, 2.5, id="trapezoid", marks=pytest.mark.covers("apci.profile.trapezoid")
-    ),
-    pytest.param(
-        10,
-        0,
-        50,
-        0,
-        100,
-        100,
-        0.632456,
-        id="triangle",
-        marks=pytest.mark.covers("apci.profile.jog.case.triangular"),
-    ),
-    pytest.param(
-        100, 0, 50, 0, 100, 50, 2.75, id="two slopes", marks=pytest.mark.covers("apci.profile.jog.brake_ramp")
-    ),
-    pytest.param(
-        100,
-        80,
-        50,
-        0,
-        100,
-        100,
-        2.16,
-        id="too fast",
-        marks=pytest.mark.covers("apci.profile.jog.case.v0_gt_vmax"),
-    ),
-    pytest.param(
-        100,
-        -30,
-        50,
-        0,
-        100,
-        100,
-        2.89,
-        id="wrong way",
-        marks=pytest.mark.covers("apci.profile.jog.case.wrong_direction"),
-    ),
-    pytest.param(
-        100,
-        0,
-        50,
-        -20,
-        100,
-        100,
-        2.74,
-        id="comes back",
-        marks=pytest.mark.covers("apci.profile.jog.case.negative_target_velocity"),
-    ),
-    pytest.param(
-        100,
-        50,
-        50,
-        0,
-        100,
-        100,
-        2.25,
-        id="at top",
-        marks=pytest.mark.covers("apci.profile.jog.case.v0_eq_vmax"),
-    ),
-    pytest.param(
-        100,
-        0,
-        50,
-        50,
-        100,
-        100,
-        2.25,
-        id="goes on",
-        marks=pytest.mark.covers("apci.profile.jog.case.vt_eq_vmax"),
-    ),
-    pytest.param(
-        100,
-        0,
-        50,
-        20,
-        80,
-        40,
-        None,
-        id="all at once",
-        marks=pytest.mark.covers("apci.profile.jog.preconditions"),
-    ),
-]
+JOGS = {  # what it shows: the row, then distance, first, jvl, jtvl, jac, jdec, duration
+    "trapezoid": ("apci.profile.trapezoid", 100, 0, 50, 0, 100, 100, 2.5),
+    "triangle": ("apci.profile.jog.case.triangular", 10, 0, 50, 0, 100, 100, 0.632456),
+    "two slopes": ("apci.profile.jog.brake_ramp", 100, 0, 50, 0, 100, 50, 2.75),
+    "too fast": ("apci.profile.jog.case.v0_gt_vmax", 100, 80, 50, 0, 100, 100, 2.16),
+    "wrong way": ("apci.profile.jog.case.wrong_direction", 100, -30, 50, 0, 100, 100, 2.89),
+    "comes back": ("apci.profile.jog.case.negative_target_velocity", 100, 0, 50, -20, 100, 100, 2.74),
+    "at top": ("apci.profile.jog.case.v0_eq_vmax", 100, 50, 50, 0, 100, 100, 2.25),
+    "goes on": ("apci.profile.jog.case.vt_eq_vmax", 100, 0, 50, 50, 100, 100, 2.25),
+    "all at once": ("apci.profile.jog.preconditions", 100, 0, 50, 20, 80, 40, None),
+}
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-@pytest.mark.parametrize(("distance", "first", "jvl", "jtvl", "jac", "jdec", "duration"), JOGS)
+@pytest.mark.parametrize(
+    ("distance", "first", "jvl", "jtvl", "jac", "jdec", "duration"),
+    [
+        pytest.param(*numbers, id=shows, marks=pytest.mark.covers(row))
+        for shows, (row, *numbers) in JOGS.items()
+    ],
+)
 def test_jogs(
     distance: float,
     first: float,

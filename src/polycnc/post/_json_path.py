@@ -25,13 +25,7 @@ Triple: TypeAlias = tuple[Coordinate, Coordinate, Coordinate]
 Length = Annotated[float, Field(gt=0, lt=1e9)]
 
 
-class _Do(StrictModel):
-    def records(self, line: int, scale: float) -> Iterator[Record]:
-        """Yield the records; lengths become mm."""
-        raise NotImplementedError
-
-
-class DoPath(_Do):
+class DoPath(StrictModel):
     """Begin an operation."""
 
     do: Literal["operation"]
@@ -42,7 +36,7 @@ class DoPath(_Do):
         yield records.Path(line, self.name)
 
 
-class DoTool(_Do):
+class DoTool(StrictModel):
     """Change the tool."""
 
     do: Literal["tool"]
@@ -61,7 +55,7 @@ class DoTool(_Do):
         yield records.Tool(line, self.number, self.name, None, self.h, self.d)
 
 
-class DoSpindle(_Do):
+class DoSpindle(StrictModel):
     """Turn the spindle."""
 
     do: Literal["spindle"]
@@ -73,7 +67,7 @@ class DoSpindle(_Do):
         yield records.Spindle(line, self.sense, self.speed)
 
 
-class DoFeed(_Do):
+class DoFeed(StrictModel):
     """Set the feed."""
 
     do: Literal["feed"]
@@ -85,7 +79,7 @@ class DoFeed(_Do):
         yield records.Feed(line, self.feed * scale, self.per_revolution)
 
 
-class DoFrom(_Do):
+class DoFrom(StrictModel):
     """Say where the tool stands."""
 
     do: Literal["from"]
@@ -96,7 +90,7 @@ class DoFrom(_Do):
         yield records.From(line, *_scaled(self.at, scale))
 
 
-class DoMove(_Do):
+class DoMove(StrictModel):
     """Move straight, by rapid or with the feed."""
 
     do: Literal["rapid", "line"]
@@ -110,7 +104,7 @@ class DoMove(_Do):
         yield records.Goto(line, *_scaled(self.to, scale), None if self.axis is None else _unit(self.axis))
 
 
-class DoArc(_Do):
+class DoArc(StrictModel):
     """Move along an arc or a helix, turning about the normal by the right-hand rule."""
 
     do: Literal["arc"]
@@ -127,7 +121,7 @@ class DoArc(_Do):
         yield records.Circle(line, *_scaled(self.to, scale), center, _unit(self.normal), self.turns)
 
 
-class DoCycle(_Do):
+class DoCycle(StrictModel):
     """Drill holes; levels count from the points, upwards."""
 
     do: Literal["cycle"]
@@ -159,7 +153,7 @@ class DoCycle(_Do):
         yield records.CycleOff(line)
 
 
-class DoCoolant(_Do):
+class DoCoolant(StrictModel):
     """Switch the coolant."""
 
     do: Literal["coolant"]
@@ -170,7 +164,7 @@ class DoCoolant(_Do):
         yield records.Coolant(line, self.mode)
 
 
-class DoCompensation(_Do):
+class DoCompensation(StrictModel):
     """Switch the radius compensation of the control."""
 
     do: Literal["compensation"]
@@ -182,7 +176,7 @@ class DoCompensation(_Do):
         yield records.Compensation(line, self.side, self.d)
 
 
-class DoDwell(_Do):
+class DoDwell(StrictModel):
     """Wait."""
 
     do: Literal["dwell"]
@@ -194,7 +188,7 @@ class DoDwell(_Do):
         yield records.Dwell(line, self.seconds, self.revolutions)
 
 
-class DoStop(_Do):
+class DoStop(StrictModel):
     """Stop for the operator."""
 
     do: Literal["stop"]
@@ -205,7 +199,7 @@ class DoStop(_Do):
         yield records.Stop(line, self.optional)
 
 
-class DoText(_Do):
+class DoText(StrictModel):
     """Write a comment, or a block of the control as it stands."""
 
     do: Literal["comment", "insert"]
@@ -216,18 +210,17 @@ class DoText(_Do):
         yield records.Text(line, self.do, self.text)
 
 
-DOINGS: tuple[type[_Do], ...] = (
+DOINGS: tuple[type[StrictModel], ...] = (
     *(DoPath, DoTool, DoSpindle, DoFeed, DoFrom, DoMove, DoArc, DoCycle, DoCoolant, DoCompensation),
     *(DoDwell, DoStop, DoText),
 )
 """The models of what stands in `path`."""
 
-_Doing: TypeAlias = Annotated[
+_Doing: TypeAlias = (
     DoPath | DoTool | DoSpindle | DoFeed | DoFrom | DoMove | DoArc | DoCycle | DoCoolant | DoCompensation
-    | DoDwell | DoStop | DoText,
-    Field(discriminator="do"),
-]  # fmt: skip
-_DOING: TypeAdapter[_Do] = TypeAdapter(_Doing)
+    | DoDwell | DoStop | DoText
+)  # fmt: skip
+_DOING: TypeAdapter[_Doing] = TypeAdapter(Annotated[_Doing, Field(discriminator="do")])
 _PATH = re.compile(r'"path"\s*:\s*\[\s*')
 _NEXT = re.compile(r"\s*,?\s*")
 

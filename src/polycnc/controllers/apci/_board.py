@@ -19,7 +19,7 @@ from polycnc.controllers.apci._motion import profile_velocity
 from polycnc.controllers.apci._motion_entries import change_override
 from polycnc.controllers.apci._path_units import PathUnits
 from polycnc.controllers.apci._registers import OUTPUTS, ErrorReg, ModeReg
-from polycnc.controllers.apci._scan import INTERRUPT, PROFILE_END, RECORD_FULL, RESET, run_scans
+from polycnc.controllers.apci._scan import INTERRUPT, PROFILE_END, RESET, run_scans
 from polycnc.controllers.apci._setup import load_parameters, set_up_plant
 from polycnc.controllers.apci._state import BoardState, Floats, make_board_state
 from polycnc.controllers.apci._system_file import SystemFile
@@ -43,7 +43,7 @@ class _Command:
 class Board:
     """A board as its system file describes it, just booted: all loops open, nothing referenced.
 
-    `record_scans` is the size of the recorder's buffer, 0 for none.
+    `record_scans` is the size of the recorder's buffer (`kernel.recorder`), 0 for none; a full one keeps what it has.
     """
 
     def __init__(self, config: SystemFile | None = None, *, record_scans: int = 0) -> None:
@@ -217,12 +217,12 @@ class Board:
     def advance(self, scans: int, *, until: int = 0) -> int:
         """Run up to `scans` scans; return how many were run.
 
-        Fewer if the recorder is full, or after a scan in which one of the attentions `until` happened (`_scan`).
+        Fewer after a scan in which one of the attentions `until` happened (`_scan`).
         """
         done = 0
         while done < scans:
             self._carry_out()
-            mask = INTERRUPT | RESET | RECORD_FULL | until
+            mask = INTERRUPT | RESET | until
             piece = scans - done
             if self.tasks is not None:
                 waiting = self.tasks.scans_to_wait()
@@ -235,7 +235,7 @@ class Board:
             ran = int(run_scans(self.state, self.kernel, piece, mask))
             done += ran
             self.clock.tick(ran)
-            if self._attend() & (RECORD_FULL | until):
+            if self._attend() & until:
                 break
         self._carry_out()
         return done

@@ -6,7 +6,7 @@ import math
 
 from polycnc.controllers.apci._look_ahead import look_ahead
 from polycnc.controllers.apci._registers import ErrorReg, ModeReg
-from polycnc.controllers.apci._spool import bytes_of
+from polycnc.controllers.apci._spool import bytes_of, free_entry
 from polycnc.controllers.apci._state import (
     BY_SYSTEM,
     MOVE,
@@ -58,9 +58,7 @@ def new_entry(b: BoardState) -> int:
 @entry
 def give_back(b: BoardState, e: int) -> None:
     """Return an entry that was not used."""
-    board = b.board[0]
-    b.free[board["free"]] = e
-    board["free"] += 1
+    free_entry(b, e)
 
 
 @compiled
@@ -107,8 +105,7 @@ def put_into_queues(b: BoardState, e: int, velocity_unit: float) -> bool:
     if refusal != 0:
         if refusal > 0:
             board["error_register"] |= refusal
-        b.free[board["free"]] = e
-        board["free"] += 1
+        free_entry(b, e)
         return False
     for i in range(b.axis.shape[0]):
         if this["mask"] >> i & 1:

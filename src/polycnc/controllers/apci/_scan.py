@@ -1,6 +1,6 @@
 """One scan of the board, and many: commands of the queues, profiles, limits, position control, searches, latches.
 
-Python is entered again only when something happens that it waits for (`Attention`).
+Python is entered again only when something happens that it waits for (`attention`).
 """
 
 from __future__ import annotations
@@ -56,7 +56,6 @@ _FORBID_TARGET_VELOCITY = int(ModeReg.ForbidTargetVel)
 INTERRUPT = 1  # the board interrupts the PC
 PROFILE_END = 2  # an axis came to its profile end
 RESET = 4  # the board demands a reset of itself
-RECORD_FULL = 8
 
 
 @compiled
@@ -237,8 +236,6 @@ def run_scans(b: BoardState, state: KernelState, scans: int, mask: int) -> int:
     for done in range(scans):
         board["attention"] = 0
         scan(b, state)
-        if state.clock[0]["raised"] & state.clock[0]["mask"]:
-            board["attention"] |= RECORD_FULL
         if board["attention"] & mask:
             return done + 1
     return scans

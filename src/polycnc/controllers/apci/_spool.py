@@ -37,14 +37,20 @@ def bytes_of(b: BoardState, e: int) -> int:
 
 
 @compiled
+def free_entry(b: BoardState, e: int) -> None:
+    """Put entry `e` back on the free list."""
+    board = b.board[0]
+    b.free[board["free"]] = e
+    board["free"] += 1
+
+
+@compiled
 def release(b: BoardState, e: int) -> None:
     """Let one axis be done with entry `e`; the last one gives it back."""
     row = b.entry[e]
     row["refs"] -= 1
     if row["refs"] <= 0:
-        board = b.board[0]
-        b.free[board["free"]] = e
-        board["free"] += 1
+        free_entry(b, e)
 
 
 @compiled

@@ -31,7 +31,6 @@ from polycnc.controllers.imc._state import (
     CFIFO,
     COORDINATES,
     EVENTS_MOST,
-    RECORD_FULL,
     CardState,
 )
 from polycnc.errors import UsageError
@@ -56,7 +55,8 @@ class Fifo(IntEnum):
 class Card:
     """A card as its card file describes it, just switched on.
 
-    `record_cycles` is the size of the recorder's buffer (`kernel.recorder`), 0 for none.
+    `record_cycles` is the size of the recorder's buffer (`kernel.recorder`), 0 for none; a full one keeps what
+    it has.
     """
 
     def __init__(self, config: CardConfig | None = None, *, record_cycles: int = 0) -> None:
@@ -276,12 +276,11 @@ class Card:
     def advance(self, cycles: int, *, until: int = 0) -> int:
         """Run up to `cycles` control cycles; return how many were run.
 
-        Fewer if the recorder is full, or after a cycle in which one of the attentions `until` happened
-        (`_state`: AXIS_RESTED, AXIS_ERROR).
+        Fewer after a cycle in which one of the attentions `until` happened (`_state`: AXIS_RESTED, AXIS_ERROR).
         """
         if cycles <= 0:
             return 0
-        ran = int(run_cycles(self.state, self.kernel, cycles, RECORD_FULL | until))
+        ran = int(run_cycles(self.state, self.kernel, cycles, until))
         self.clock.tick(ran)
         return ran
 

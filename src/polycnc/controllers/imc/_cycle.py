@@ -15,7 +15,7 @@ from polycnc.controllers.imc._homing import homing_cycle
 from polycnc.controllers.imc._path import begin_space_cycle, end_space_cycle, go_along
 from polycnc.controllers.imc._queue import AT_SEGMENT, DONE, take_instruction
 from polycnc.controllers.imc._segment import begin_segment
-from polycnc.controllers.imc._state import CFIFO, IFIFO, PFIFO1, QFIFO, RECORD_FULL, CardState
+from polycnc.controllers.imc._state import CFIFO, IFIFO, PFIFO1, QFIFO, CardState
 from polycnc.controllers.imc._words import get_u16, get_u32, put16, put32
 from polycnc.kernel import KernelState, compiled, entry, follow_cycle, sources_cycle
 
@@ -121,8 +121,6 @@ def run_cycles(s: CardState, state: KernelState, cycles: int, mask: int) -> int:
     for done in range(cycles):
         card["attention"] = 0
         control_cycle(s, state)
-        if state.clock[0]["raised"] & state.clock[0]["mask"]:
-            card["attention"] |= RECORD_FULL
         if card["attention"] & mask:
             return done + 1
     return cycles

@@ -44,9 +44,8 @@ POSERR_LIMIT, TGPOS_RANGE, POS_RANGE, INSERR = 0x80, 0x200, 0x400, 0x1000
 VEL_LIMIT, ACC_LIMIT = 0x2000, 0x4000
 
 # What stops `run_cycles`, bits of `attention` and of its mask.
-RECORD_FULL = 1
-AXIS_RESTED = 2  # moving of an axis became 0
-AXIS_ERROR = 4  # an axis has a new error bit
+AXIS_RESTED = 1  # moving of an axis became 0
+AXIS_ERROR = 2  # an axis has a new error bit
 
 CARD_ROW = np.dtype(
     [
