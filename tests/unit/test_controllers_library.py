@@ -394,6 +394,7 @@ def test_members_of_a_union_are_the_same_memory() -> None:
     assert Entry.unpack(entry.pack()) == entry != Entry()
     assert hash(Entry.unpack(entry.pack())) == hash(entry)
     assert entry != 3
+    assert repr(entry) == "Entry(place=0, value=Value(byte=-128, word=896, many=[16909184, 0, 0]), name=b'')"
     with pytest.raises(UsageError, match="Entry has 20 bytes, not 3"):
         Entry.unpack(b"abc")
     with pytest.raises(AttributeError):

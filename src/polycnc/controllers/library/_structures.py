@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Any, Self, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
@@ -45,6 +45,9 @@ class _Memory:
                 f"{cls.__name__} has {size} bytes, not {len(memory)}", hint="pass exactly one structure"
             )
         return cls.from_buffer_copy(memory)  # type: ignore[attr-defined,no-any-return]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(_shown(self))})"
 
     def __eq__(self, other: object) -> bool:
         return bytes(self) == bytes(other) if isinstance(other, type(self)) else NotImplemented  # type: ignore[call-overload]
@@ -173,6 +176,12 @@ def _element(hint: Any) -> _Element | None:
     if isinstance(python, type) and issubclass(python, (ctypes.Structure, ctypes.Union)):
         return _Element(python.__name__, python, counts)
     return None
+
+
+def _shown(memory: Any) -> Iterator[str]:
+    for name, element in _elements[type(memory)].items():
+        value = getattr(memory, name)
+        yield f"{name}={list(value) if len(element.counts) == 1 and not isinstance(value, bytes) else value!r}"
 
 
 def layout(cls: type) -> Layout:
