@@ -40,9 +40,11 @@ from polycnc.controllers.library._functions import (
     Out,
 )
 from polycnc.controllers.library._structures import (
+    Address,
     Chars,
     Doubles,
     Field,
+    Latin,
     Layout,
     Longs,
     Shorts,
@@ -71,6 +73,7 @@ __all__ = [
     "UCHAR",
     "ULONG",
     "USHORT",
+    "Address",
     "Argument",
     "Bytes",
     "CType",
@@ -84,6 +87,7 @@ __all__ = [
     "Field",
     "Function",
     "Handles",
+    "Latin",
     "Layout",
     "LengthOf",
     "Longs",
