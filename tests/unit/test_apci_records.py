@@ -100,7 +100,7 @@ def test_the_tsrp_of_all_axes_lie_directly_behind_each_other() -> None:
             -axis,
             axis << 16,
         )
-        record.scratch = [axis, 2, 3, -4]
+        record.scratch[:] = [axis, 2, 3, -4]
     memory = (c_struct("TSRP") * 18).from_buffer_copy(pack_all(array))
     for axis, seen in enumerate(memory):
         assert (seen.an, seen.kp, seen.gf, seen.mcp, seen.ifs) == (
@@ -118,7 +118,7 @@ def test_the_tsrp_of_all_axes_lie_directly_behind_each_other() -> None:
 def test_what_stands_in_no_table_is_not_in_the_memory() -> None:
     assert TSRP(aux=1.0, lp=2.0, dv=3.0, sdec=4.0).pack() == bytes(208)
     with pytest.raises(AttributeError):
-        TSRP().jvll = 1.0  # type: ignore[attr-defined]
+        TSRP().jvll = 1.0
 
 
 @pytest.mark.covers("apci.LONGINT")
@@ -208,10 +208,10 @@ def test_an_array_of_the_wrong_length_or_a_long_text_does_not_fit() -> None:
     ):
         with pytest.raises(UsageError, match=what):
             record(value)
-    record = TSRP(kp=5.5)
+    axis = TSRP(kp=5.5)
     with pytest.raises(UsageError, match=r"TSRP\.kp"):
-        record.kp = "high"  # type: ignore[assignment]
-    assert record == TSRP(kp=5.5)
+        axis.kp = "high"  # type: ignore[assignment]
+    assert axis == TSRP(kp=5.5)
     with pytest.raises(UsageError, match="TRU has 8 bytes, not 7"):
         records.TRU.unpack(bytes(7))
 
@@ -226,7 +226,7 @@ def test_a_record_is_its_memory() -> None:
     assert (array[17].an, TSRP().aux) == (5, 0.0)
     transfer = records.CBCNCT(1, 3, bytearray(b"abc"))
     transfer.buffer[1:2] = b"x"
-    assert (transfer.buffer, transfer.pack()) == (b"axc", b"\1\0\0\0\3\0\0\0\0\0\0\0")
+    assert (bytes(transfer.buffer), transfer.pack()) == (b"axc", b"\1\0\0\0\3\0\0\0\0\0\0\0")
     assert transfer != records.CBCNCT(1, 3)
 
 

@@ -20,6 +20,7 @@ import inspect
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
+from operator import index
 from typing import Annotated, Any, Self, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
 
 from polycnc.controllers.library._c_types import Number, Real
@@ -128,6 +129,26 @@ class Address:
     ctype: Any = ctypes.c_uint32
 
 
+class _Listed:
+    """Elements that compare and show like a list."""
+
+    def __eq__(self, other: object) -> bool:
+        return list(self) == list(other) if isinstance(other, (ctypes.Array, list)) else NotImplemented  # type: ignore[call-overload]
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return repr(list(self))  # type: ignore[call-overload]
+
+
+@lru_cache
+def _array(ctype: Any, count: int) -> Any:
+    """Return the type of an array; texts stay those of ctypes."""
+    if ctype is ctypes.c_char:
+        return ctype * count
+    return type(f"{ctype.__name__}_{count}", (_Listed, ctypes.Array), {"_type_": ctype, "_length_": count})
+
+
 @dataclass(frozen=True, slots=True)
 class _Element:
     c: str
@@ -141,7 +162,7 @@ class _Element:
         """Return the type of ctypes with its dimensions."""
         made = self.ctype
         for count in reversed(self.counts):
-            made = made * count
+            made = _array(made, count)
         return made
 
     @property
@@ -240,7 +261,10 @@ class _Array:
 
     def __set__(self, memory: Any, value: Any) -> None:
         try:
-            self._field.__set__(memory, self._made(value))
+            made = self._made(value)
+            if self._element.python is str:  # else what the last one left behind its zero would stay
+                ctypes.memset(ctypes.addressof(memory) + self._field.offset, 0, self._field.size)
+            self._field.__set__(memory, made)
         except (TypeError, ValueError, IndexError, OverflowError) as error:
             raise _unfit(self._place, value, error, self._element) from None
 
@@ -251,15 +275,12 @@ class _Array:
             if len(text) >= counts[0]:
                 raise ValueError(f"at most {counts[0] - 1} characters and a zero")
             return text
-        if isinstance(value, (bytes, ctypes.Array)):
+        whole = self._element.whole
+        if isinstance(value, (bytes, whole)):
             return value
-        made = self._filled(value, self._element.whole, counts)
-        if (
-            self._checked
-            and len(counts) == 1
-            and self._element.python is not float
-            and list(made) != list(value)
-        ):
+        made = self._filled(value, whole, counts)
+        whole_numbers = self._element.ctype not in (ctypes.c_double, ctypes.c_float)
+        if self._checked and whole_numbers and len(counts) == 1 and made != list(value):
             raise ValueError("a number is too large")
         return made
 
@@ -292,6 +313,7 @@ def _checked(memory: Any, name: str, value: Any) -> None:
     element = _tables[type(memory)].elements.get(name)
     if element is not None and not element.counts and not element.held:
         try:
+            value = index(value) if element.python is int else float(value)
             if element.ctype(value).value != value and value == value:
                 raise ValueError("it is too large")
         except (TypeError, ValueError) as error:
@@ -304,9 +326,7 @@ def _unfit(place: str, value: Any, error: Exception, element: _Element) -> Usage
 
 
 def _shown(memory: Any) -> Iterator[str]:
-    for name, element in _tables[type(memory)].elements.items():
-        value = getattr(memory, name)
-        yield f"{name}={list(value) if len(element.counts) == 1 and not isinstance(value, bytes) else value!r}"
+    return (f"{name}={getattr(memory, name)!r}" for name in _tables[type(memory)].elements)
 
 
 def layout(cls: type) -> Layout:

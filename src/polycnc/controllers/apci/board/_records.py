@@ -295,6 +295,28 @@ class CppString(Structure):
 
 
 STRUCTURES = layouts(
-    AS, TSRP, TRU, LMP, CMP, HMP, HMP3D, ROSI, CBCNCT, CNCTS, LATCH_INFOS, CDBUF, CIBUF, SPDBUF, CTRLPARAMS, CppString
+    AS,
+    TSRP,
+    TRU,
+    LMP,
+    CMP,
+    HMP,
+    HMP3D,
+    ROSI,
+    CBCNCT,
+    CNCTS,
+    LATCH_INFOS,
+    CDBUF,
+    CIBUF,
+    SPDBUF,
+    CTRLPARAMS,
+    CppString,
 )
 """What lies where, by the record's name."""
+
+# fmt: off
+__all__ = [
+    "AS", "CBCNCT", "CDBUF", "CIBUF", "CMP", "CNCTS", "CTRLPARAMS", "HMP", "HMP3D", "LATCH_INFOS", "LMP",
+    "MAXAXIS", "ROSI", "SPDBUF", "STRUCTURES", "TRU", "TSRP", "tsrp_array",
+]
+# fmt: on
