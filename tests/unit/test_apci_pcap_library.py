@@ -395,14 +395,10 @@ def test_two_programs_have_their_own_boards_and_time() -> None:
 
 def test_what_no_c_compiler_takes_is_told_with_the_prototype() -> None:
     Pc()
-    for call, given in (
-        (pcap.cl, None),
-        (pcap.cl, pcap.LMP()),
-        (pcap.mla, (pcap.AS.of(0), pcap.CMP())),
-        (pcap.rdrv, "x"),
-    ):
+    calls: list[tuple[Any, ...]] = [(pcap.cl, None), (pcap.cl, pcap.LMP()), (pcap.rdrv, "x")]
+    for call, *given in [*calls, (pcap.mla, pcap.AS.of(0), pcap.CMP())]:
         with pytest.raises(UsageError, match="cannot be") as told:
-            call(*given) if isinstance(given, tuple) else call(given)  # type: ignore[operator]
+            call(*given)
         assert call.__name__ in str(told.value.hint)
 
 
