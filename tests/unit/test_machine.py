@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 
 from polycnc.errors import UsageError
-from polycnc.machine import Free, Machine, Poll, Reason, Step, load_machine
+from polycnc.machine import Free, Machine, Reason, Step, load_machine
 
 
 def test_a_move_takes_its_closed_form_time_and_ends_on_the_target() -> None:
     machine = Machine(load_machine("mill3"))
     axis = machine.config.axes[0]
-    machine.stop_on(Reason.PROFILE_ENDED)
     machine.move("X", 100.0, speed=50.0)
-    cycles = machine.run(Poll(limit_cycles=100_000))
+    cycles = machine.advance(100_000, until=Reason.PROFILE_ENDED)
     ramp_s = 50.0 / axis.amax
     assert cycles == int(np.ceil((100.0 / 50.0 + ramp_s) / machine.config.cycle_s - 1e-6))
     assert machine.raised is Reason.PROFILE_ENDED
@@ -87,9 +86,8 @@ def test_a_move_that_cannot_be_meant_is_refused_and_changes_nothing(
 
 def test_a_limit_switch_edge_stops_the_run_in_its_cycle() -> None:
     machine = Machine(load_machine("card6"))
-    machine.stop_on(Reason.SWITCH_EDGE)
     machine.move("X", 600.0)
-    machine.run(Poll(limit_cycles=100_000))
+    machine.advance(100_000, until=Reason.SWITCH_EDGE)
     assert machine.raised & Reason.SWITCH_EDGE
     assert 500.0 <= machine.actual["X"] < 500.0 + machine.config.axes[0].vmax * machine.config.cycle_s
     assert machine.state.switches.switch[0, 1]["rising_position"] == 500.0

@@ -17,9 +17,11 @@ from polycnc.machine._describe import (
     machine_file_reference,
     machine_row,
 )
+from polycnc.machine._device import Device, Timed
 from polycnc.machine._io import IoBits, IoImage, scan_edges
-from polycnc.machine._machine import Machine, Reason, Snapshot
+from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
+from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
 from polycnc.machine._toml import StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.machine._toml_locator import KeyPath, Locator
@@ -30,8 +32,11 @@ __all__ = [
     "PRESETS",
     "Advance",
     "Area",
+    "Array",
     "AxisConfig",
+    "AxisState",
     "Clock",
+    "Device",
     "Entry",
     "Free",
     "History",
@@ -44,21 +49,26 @@ __all__ = [
     "Locator",
     "Machine",
     "MachineConfig",
+    "MachineStatus",
     "Pacer",
     "PathConfig",
+    "Plain",
     "Poll",
     "RealTime",
     "Reason",
     "RotaryAxis",
     "RotaryServo",
     "Snapshot",
+    "SnapshotError",
     "SpindleConfig",
     "Step",
     "Store",
     "StrictModel",
+    "Timed",
     "TimesConfig",
     "ToolConfig",
     "Way",
+    "arrays_of",
     "axis_rows",
     "describe_machine",
     "load_machine",

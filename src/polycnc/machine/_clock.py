@@ -64,6 +64,15 @@ class Clock:
             )
         self._epoch += now - self.now
 
+    @property
+    def epoch(self) -> datetime:
+        """Return the machine's date and time at cycle 0."""
+        return self._epoch
+
+    def go_back(self, cycles: int, epoch: datetime) -> None:
+        """Stand where a snapshot was taken."""
+        self.cycles, self._epoch = cycles, epoch
+
     def cycles_for(self, duration_s: float) -> int:
         """Return the least number of cycles that last `duration_s`; rounding of 1e-9 cycles is forgiven."""
         return max(0, math.ceil(duration_s / self.cycle_s - 1e-9))
