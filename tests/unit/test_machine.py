@@ -29,9 +29,9 @@ def test_a_new_target_on_the_way_is_taken_without_a_step_of_the_velocity() -> No
     machine = Machine(load_machine("mill3"), record_cycles=4000)
     amax = machine.config.axes[1].amax
     machine.move("Y", 200.0)
-    machine.run(Step(150))
+    Step(150).run(machine)
     machine.move("Y", -20.0)
-    machine.run(Step(2000))
+    Step(2000).run(machine)
     recorder = machine.state.recorder
     positions = recorder.rows[: int(recorder.filled[0]), 4 + 1]
     acceleration = np.diff(positions, 2) / machine.config.cycle_s**2
@@ -43,13 +43,13 @@ def test_the_same_steps_from_a_snapshot_are_the_same_to_the_last_bit() -> None:
     machine = Machine(load_machine("card6"), servo=True)
     for name, target in zip("XYZ", (12.3, -45.6, 7.8), strict=True):
         machine.move(name, target)
-    machine.run(Step(137))
+    Step(137).run(machine)
     saved = machine.snapshot()
-    machine.run(Step(300))
+    Step(300).run(machine)
     first = (machine.state.setpoint.copy(), machine.state.servo.actual.copy(), machine.clock.cycles)
     machine.restore(saved)
     assert machine.clock.cycles == 137
-    machine.run(Step(300))
+    Step(300).run(machine)
     assert np.array_equal(machine.state.setpoint, first[0])
     assert np.array_equal(machine.state.servo.actual, first[1])
     assert machine.clock.cycles == first[2]
@@ -58,8 +58,8 @@ def test_the_same_steps_from_a_snapshot_are_the_same_to_the_last_bit() -> None:
 def test_free_running_ends_with_its_condition() -> None:
     machine = Machine(load_machine("mill3"))
     machine.move("Z", -30.0)
-    way = Free(until=lambda: machine.setpoints["Z"] <= -15.0, limit_cycles=100_000, look_every_cycles=1)
-    machine.run(way)
+    way = Free(lambda: machine.setpoints["Z"] <= -15.0, limit_cycles=100_000, look_every_cycles=1)
+    way.run(machine)
     before = machine.setpoints["Z"]
     assert before <= -15.0
     assert before > -15.5
@@ -80,7 +80,7 @@ def test_a_move_that_cannot_be_meant_is_refused_and_changes_nothing(
     machine = Machine(load_machine("mill3"))
     with pytest.raises(UsageError, match=message):
         machine.move(axis, target, speed=speed)
-    machine.run(Step(100))
+    Step(100).run(machine)
     assert machine.setpoints == {"X": 0.0, "Y": 0.0, "Z": 0.0}
 
 

@@ -1,6 +1,6 @@
 """The simulated machine: configuration and presets, kernel state, I/O image, clock, durable memory."""
 
-from polycnc.machine._clock import Advance, Clock, Free, Pacer, Poll, RealTime, Step, Way
+from polycnc.machine._clock import Clock
 from polycnc.machine._config import (
     IoConfig,
     MachineConfig,
@@ -20,23 +20,27 @@ from polycnc.machine._describe import (
 from polycnc.machine._device import Device, Timed
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
+from polycnc.machine._pace import Pace, Pacer, Wall
+from polycnc.machine._polling import Polling
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
 from polycnc.machine._toml import StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.machine._toml_locator import KeyPath, Locator
+from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
 
 __all__ = [
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
     "PRESETS",
-    "Advance",
     "Area",
     "Array",
     "AxisConfig",
     "AxisState",
     "Clock",
+    "Condition",
     "Device",
+    "Elapsed",
     "Entry",
     "Free",
     "History",
@@ -50,10 +54,12 @@ __all__ = [
     "Machine",
     "MachineConfig",
     "MachineStatus",
+    "Pace",
     "Pacer",
     "PathConfig",
     "Plain",
     "Poll",
+    "Polling",
     "RealTime",
     "Reason",
     "RotaryAxis",
@@ -67,6 +73,7 @@ __all__ = [
     "Timed",
     "TimesConfig",
     "ToolConfig",
+    "Wall",
     "Way",
     "arrays_of",
     "axis_rows",
@@ -80,4 +87,5 @@ __all__ = [
     "problem",
     "scan_edges",
     "validate",
+    "wait",
 ]

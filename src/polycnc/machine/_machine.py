@@ -16,7 +16,7 @@ import numpy.typing as npt
 from polycnc import kernel
 from polycnc.errors import UsageError
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, PIDF, REFERENCE, KernelState, make_state, place_machine
-from polycnc.machine._clock import Clock, Way
+from polycnc.machine._clock import Clock
 from polycnc.machine._config import MachineConfig
 from polycnc.machine._io import IoImage
 from polycnc.machine._snapshot import Array, Snapshot, arrays_of
@@ -129,10 +129,6 @@ class Machine:
         done = kernel.skip(self.state, path, until)
         self.clock.tick(done)
         return done
-
-    def run(self, way: Way) -> int:
-        """Let the machine run in one of the ways of its clock (`Step`, `Free`, ...); return the cycles done."""
-        return way.run(self.advance)
 
     @property
     def raised(self) -> Reason:
