@@ -18,6 +18,7 @@ from polycnc.machine._describe import (
     machine_row,
 )
 from polycnc.machine._device import Device, Timed
+from polycnc.machine._host import Host, HostError
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._pace import Pace, Pacer, Wall
@@ -44,6 +45,8 @@ __all__ = [
     "Entry",
     "Free",
     "History",
+    "Host",
+    "HostError",
     "IoBits",
     "IoConfig",
     "IoImage",

@@ -11,6 +11,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
+from functools import partial
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
@@ -41,13 +42,15 @@ class Host(Generic[D]):
     ) -> None:
         if not 0.0 < slice_s < math.inf:
             raise UsageError(f"a slice of {slice_s} s", hint="give a time above 0")
-        self.pace = _AwakePace(wall, rate, self._wake)
+        self.pace = Pace(wall, rate, changed=self._wake)
+        self._wall = wall
         self._device = device
         self._events = events
         self._slice_s = slice_s
         self._changed = threading.Condition()  # guards what follows
         self._posted: deque[tuple[Callable[[D], Any], Future[Any]]] = deque()
         self._status: Any = device.status()
+        self._published = 0
         self._awake = False
         self._closing = False
         self._failure: BaseException | None = None
@@ -103,27 +106,33 @@ class Host(Generic[D]):
                 itself.
             Exception: Whatever the command raises.
         """
-        if threading.current_thread() is self._thread:
-            raise HostError("a command waits for another command", hint="call the device itself")
+        self._refuse_owner()
         try:
             return self.post(command).result()
         except CancelledError:
             raise HostError("the host was closed before the command", hint="make a new one") from None
 
     def wait(self, condition: Callable[[Any], bool], timeout_s: float | None = None) -> Any:
-        """Wait until `condition` holds for a published status and return that one.
+        """Wait until `condition` holds for a published status and return that one; not every status is seen.
 
         Raises:
-            HostError: The host is closed or the device has failed before, or `timeout_s` is over.
+            HostError: The host is closed or the device has failed before, or `timeout_s` of the wall
+                clock is over.
         """
-        with self._changed:
-            while True:
-                status = self._status
-                if condition(status):
-                    return status
-                self._refuse()
-                if not self._changed.wait(timeout_s):
-                    raise HostError(f"nothing happened for {timeout_s} s", hint="wait for something else")
+        self._refuse_owner()
+        end_s = math.inf if timeout_s is None else self._wall.now_s() + timeout_s
+        while True:
+            with self._changed:
+                status, published = self._status, self._published
+            if condition(status):
+                return status
+            left_s = end_s - self._wall.now_s()
+            if left_s <= 0.0:
+                raise HostError(f"nothing of the kind for {timeout_s} s", hint="wait for something else")
+            with self._changed:
+                if self._published == published:
+                    self._refuse()
+                    self._changed.wait(min(left_s, _LONGEST_WAIT_S))
 
     def close(self) -> None:
         """End the thread after the cycle that it is in; what was posted before is carried out.
@@ -149,6 +158,10 @@ class Host(Generic[D]):
         with self._changed:
             self._awake = True
             self._changed.notify_all()
+
+    def _refuse_owner(self) -> None:
+        if threading.current_thread() is self._thread:
+            raise HostError("a command waits for another command", hint="call the device itself")
 
     def _refuse(self) -> None:
         if self._failure is not None:
@@ -193,10 +206,12 @@ class Host(Generic[D]):
         for command, future in commands:
             if future.set_running_or_notify_cancel():
                 answers.append(_answer(command, self._device, future))
-        if commands:
-            self._publish()
-        for answer in answers:
-            answer()
+        try:
+            if commands:
+                self._publish()
+        finally:
+            for answer in answers:
+                answer()
         return not closing
 
     def _let_time_pass(self) -> None:
@@ -222,22 +237,14 @@ class Host(Generic[D]):
         status = self._device.status()
         with self._changed:
             self._status = status
+            self._published += 1
             self._changed.notify_all()
 
 
-class _AwakePace(Pace):
-    """A pace that wakes the owner when it changes."""
-
-    def __init__(self, wall: Wall, rate: float, wake: Callable[[], None]) -> None:
-        super().__init__(wall, rate)
-        self._wake = wake
-
-    @property
-    def rate(self) -> float:
-        """Seconds of the device for each second of the wall clock."""
-        return super().rate
-
-    @rate.setter
-    def rate(self, rate: float) -> None:
-        Pace.rate.__set__(self, rate)  # type: ignore[attr-defined]
-        self._wake()
+def _answer(command: Callable[[D], R], device: D, future: Future[R]) -> Callable[[], None]:
+    """Carry out a command and return what tells its result."""
+    try:
+        result = command(device)
+    except BaseException as error:
+        return partial(future.set_exception, error)
+    return partial(future.set_result, result)

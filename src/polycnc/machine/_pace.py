@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import threading
+from collections.abc import Callable
 from typing import Protocol
 
 from polycnc.errors import UsageError
@@ -31,12 +32,14 @@ class Pace:
     """How many cycles are due by a wall clock: `rate` seconds of the device for each second of it.
 
     Rate 0 freezes the device where it is, `math.inf` lets it run as fast as it can. `step` and `jump_to_event` add
-    time of their own, at any rate. All of it may be called from any thread. Cycles are counted from the last change
-    of the rate on, so errors of waiting do not add up; a device that is too slow lags behind.
+    time of their own, at any rate. All of it may be called from any thread; `changed` is called after each change.
+    Cycles are counted from the last change of the rate on, so errors of waiting do not add up; a device that is too
+    slow lags behind.
     """
 
-    def __init__(self, wall: Wall, rate: float = 1.0) -> None:
+    def __init__(self, wall: Wall, rate: float = 1.0, *, changed: Callable[[], None] | None = None) -> None:
         self._wall = wall
+        self._changed = changed or (lambda: None)
         self._lock = threading.Lock()
         self._rate = _checked(rate)
         self._since_s = wall.now_s()
@@ -44,7 +47,7 @@ class Pace:
         self._done = 0  # of those that have become due since
         self._steps = 0
         self._jump = 0
-        self._cycle_s = 0.0  # of the device, once it has asked
+        self._cycle_s = 1e-9  # that is counted in; of the device, once it has asked
 
     @property
     def rate(self) -> float:
@@ -59,9 +62,10 @@ class Pace:
     def rate(self, rate: float) -> None:
         with self._lock:
             _checked(rate)
-            late = self._late(self._cycle_s) if self._cycle_s and math.isfinite(self._rate) else 0.0
+            late = self._late(self._cycle_s)
             self._before = late if rate > 0.0 else min(late, late % 1.0)  # what is frozen does not catch up
             self._since_s, self._done, self._rate = self._wall.now_s(), 0, rate
+        self._changed()
 
     def step(self, cycles: int) -> None:
         """Make `cycles` more cycles due at once, frozen or not.
@@ -73,6 +77,7 @@ class Pace:
             raise UsageError(f"time does not run back: {cycles} cycles", hint="give 0 or more cycles")
         with self._lock:
             self._steps += cycles
+        self._changed()
 
     def jump_to_event(self, limit_cycles: int = 100_000) -> None:
         """Let the next run go on at once to the next event of the device, at most so many cycles.
@@ -84,6 +89,7 @@ class Pace:
             raise UsageError(f"a jump of {limit_cycles} cycles", hint="give 1 or more cycles")
         with self._lock:
             self._jump = limit_cycles
+        self._changed()
 
     def due(self, cycle_s: float, most: int) -> int:
         """Return how many cycles of `cycle_s` are due, at most `most`."""
