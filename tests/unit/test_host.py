@@ -6,6 +6,7 @@ import math
 import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import pytest
 
@@ -95,7 +96,7 @@ def test_commands_of_many_threads_are_all_done_in_order_and_no_reader_sees_half_
         def command(thread: int) -> None:
             begin.wait()
             for number in range(each):
-                move = lambda device, n=number: device.move(thread, n, 3 * thread + n)  # noqa: E731
+                move = partial(Account.move, thread=thread, number=number, amount=3 * thread + number)
                 if number % 3:
                     results[thread].append(host.call(move))
                 else:
@@ -125,9 +126,8 @@ def test_commands_of_many_threads_are_all_done_in_order_and_no_reader_sees_half_
             thread.join()
         assert host.status.log == THREADS * each
     assert (torn, backwards) == ([], [])
-    assert sorted(answer for answers in results for answer in answers) == list(
-        range(1, THREADS * each + 1)
-    )  # each has its own answer
+    # Each has its own answer.
+    assert sorted(answer for answers in results for answer in answers) == list(range(1, THREADS * each + 1))
     for thread_number, answers in enumerate(results):
         assert [n for k, n in account.log if k == thread_number] == list(range(each))
         assert answers == sorted(answers)
@@ -233,7 +233,7 @@ def test_closing_does_what_was_posted_and_refuses_what_comes_later(account: Acco
     host.start()
     release = threading.Event()
     host.post(lambda device: release.wait())
-    posted = [host.post(lambda device, n=n: device.move(0, n, n)) for n in range(50)]
+    posted = [host.post(partial(Account.move, thread=0, number=n, amount=n)) for n in range(50)]
     closer = threading.Thread(target=host.close)
     closer.start()
     release.set()

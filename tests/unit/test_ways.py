@@ -84,7 +84,7 @@ def test_real_time_does_not_sleep_while_it_is_behind() -> None:
     class Slow(Counter):
         def advance(self, cycles: int, *, until: int | None = None) -> int:
             wall.time_s += 2 * cycles * 0.001  # half as fast as asked for
-            return super().advance(cycles, until=until)
+            return Counter.advance(self, cycles, until=until)
 
     device = Slow()
     done = RealTime(wall, Pace(wall), lambda: wall.time_s >= 101.0).run(device)

@@ -71,10 +71,10 @@ class Snapshot:
             found = json.loads(self.beside, object_hook=_decoded)
         except (ValueError, TypeError, KeyError, RecursionError) as error:
             raise SnapshotError(
-                f"the snapshot of {self.device} is damaged: {error}", hint="use another one"
+                f"the snapshot of a {self.device} is damaged: {error}", hint="use another one"
             ) from error
         if not isinstance(found, dict):
-            raise SnapshotError(f"the snapshot of {self.device} is damaged", hint="use another one")
+            raise SnapshotError(f"the snapshot of a {self.device} is damaged", hint="use another one")
         return found
 
     def moment(self, name: str) -> datetime:
@@ -87,7 +87,7 @@ class Snapshot:
             return datetime.fromisoformat(self.data()[name])
         except (KeyError, TypeError, ValueError) as error:
             raise SnapshotError(
-                f"the snapshot of {self.device} is damaged: {error}", hint="use another one"
+                f"the snapshot of a {self.device} is damaged: {error}", hint="use another one"
             ) from error
 
     def check(self, device: str, made_from: str, arrays: Iterable[Array]) -> None:
@@ -98,7 +98,7 @@ class Snapshot:
         """
         if self.device != device:
             raise SnapshotError(
-                f"this is a snapshot of {self.device}, not of {device}", hint="restore it where it was taken"
+                f"this is a snapshot of a {self.device}, not of a {device}", hint="restore it where it was taken"
             )
         mine = tuple((_layout(each), each.shape, each.nbytes) for each in arrays)
         if self.made_from != fingerprint(made_from) or mine != tuple(

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from polycnc.controllers.apci.board._beginnings import as_data, from_data
 from polycnc.controllers.apci.board._command import Command
-from polycnc.controllers.apci.board._system_file import SystemFile
+from polycnc.controllers.apci.board._system_file import parse_system_file
+from polycnc.controllers.apci.board._system_text import system_file_text
 from polycnc.errors import UsageError
 from polycnc.machine import Array, Snapshot, SnapshotError, arrays_of
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from polycnc.controllers.apci.board._axis import Axis
     from polycnc.controllers.apci.board._board import Board
 
-_KIND = "a board"
+_KIND = "board"
 _AXIS_VALUES = ("ControllerFlags", "GCR", "alarms")
 _BOARD_VALUES = ("pu", "tu", "trac", "trvl", "trtvl", "ledgn", "ledrd", "ledyl", "irqpc")
 
@@ -40,7 +41,7 @@ def put_back(board: Board, snapshot: Snapshot) -> None:
     try:
         changes = _changes(board, data)
     except (KeyError, IndexError, TypeError, ValueError, UsageError) as error:
-        raise SnapshotError(f"the snapshot of {_KIND} is damaged: {error}", hint="use another one") from error
+        raise SnapshotError(f"the snapshot of a {_KIND} is damaged: {error}", hint="use another one") from error
     snapshot.put_back(arrays)
     board.clock.go_back(snapshot.cycle, epoch)
     for change in changes:
@@ -60,7 +61,7 @@ def _beside(board: Board) -> dict[str, Any]:
     variables = board.variables
     return {
         "epoch": board.clock.epoch.isoformat(),
-        "planned": board.planned.model_dump_json(),
+        "planned": system_file_text(board.planned),
         "variables": {name: getattr(variables, name) for name in _BOARD_VALUES},
         "buffers": [bytes(each) for each in variables.buffers],
         "interface": list(variables.interface.bits),
@@ -76,7 +77,7 @@ def _beside(board: Board) -> dict[str, Any]:
 
 def _changes(board: Board, data: Mapping[str, Any]) -> list[Callable[[], None]]:
     """Return what puts the state beside the arrays back; nothing of it can fail any more."""
-    planned = SystemFile.model_validate_json(data["planned"])
+    planned = parse_system_file(data["planned"])
     variables = {name: data["variables"][name] for name in _BOARD_VALUES}
     buffers = [bytes(each) for each in data["buffers"]]
     sizes = [len(each) for each in board.variables.buffers]

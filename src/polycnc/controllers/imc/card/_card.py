@@ -41,7 +41,7 @@ from polycnc.machine import Array, Clock, Snapshot, arrays_of, wait
 INPUTS = 32
 OUTPUTS = 48
 _OUTPUTS = ("gout1", "gout2", "gout3")
-_KIND = "a card"
+_KIND = "card"
 
 
 class Fifo(IntEnum):
