@@ -26,6 +26,7 @@ from polycnc.machine._polling import Polling
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
+from polycnc.machine._store_file import StoreError
 from polycnc.machine._toml import StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.machine._toml_locator import KeyPath, Locator
 from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
@@ -72,6 +73,7 @@ __all__ = [
     "SpindleConfig",
     "Step",
     "Store",
+    "StoreError",
     "StrictModel",
     "Timed",
     "TimesConfig",

@@ -98,7 +98,8 @@ class Snapshot:
         """
         if self.device != device:
             raise SnapshotError(
-                f"this is a snapshot of a {self.device}, not of a {device}", hint="restore it where it was taken"
+                f"this is a snapshot of a {self.device}, not of a {device}",
+                hint="restore it where it was taken",
             )
         mine = tuple((_layout(each), each.shape, each.nbytes) for each in arrays)
         if self.made_from != fingerprint(made_from) or mine != tuple(
