@@ -189,6 +189,47 @@ def test_a_forked_child_that_ends_takes_nothing_of_its_parent_away(tmp_path: Pat
     assert not (tmp_path / "x").exists()
 
 
+# Forks in the middle of a transaction; the child leaves it in the way of the second argument.
+INSIDE = """
+import os, signal, sys
+from polycnc.machine import Store, StoreError
+
+store = Store(sys.argv[1])
+macros = store.area("macros", int)
+macros[1] = 3
+with store.transaction():
+    macros[2] = 6
+    child = os.fork()
+    if child == 0:
+        try:
+            macros[9] = 9
+        except StoreError:
+            sys.exit(0 if sys.argv[2] == "exit" else "error")
+    os.waitpid(child, 0)
+    macros[3] = 9
+macros[4] = 12
+print("4", flush=True)
+os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
+@pytest.mark.parametrize("way", ["exit", "error"])
+def test_a_child_that_comes_out_of_a_transaction_leaves_it_to_its_parent(tmp_path: Path, way: str) -> None:
+    path = tmp_path / "machine.db"
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
+    process = subprocess.run(
+        [sys.executable, "-c", INSIDE, str(path), way],
+        capture_output=True,
+        text=True,
+        env=environment,
+        check=False,
+    )
+    assert process.stdout == "4\n", process.stderr
+    with Store(path) as store:
+        assert store.area("macros", int).load() == {1: 3, 2: 6, 3: 9, 4: 12}
+
+
 # Hands the store to children that are killed in the middle of using what they have inherited.
 KILLED_CHILDREN = """
 import os, signal, sys

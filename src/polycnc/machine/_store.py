@@ -90,10 +90,11 @@ class Store:
             self._depth += 1
             try:
                 yield
+                self._refuse_other_process()  # a child may come out of a block that its parent has begun
                 if self._depth == 1:
                     self._execute("COMMIT")
             except BaseException:
-                if self._depth == 1 and connection.in_transaction:
+                if self._depth == 1 and connection.in_transaction and not self._is_foreign:
                     connection.execute("ROLLBACK")
                 raise
             finally:
@@ -174,8 +175,12 @@ class Store:
     def _name(self) -> str:
         return "the store in memory" if self._path is None else f"the store '{self._path}'"
 
+    @property
+    def _is_foreign(self) -> bool:
+        return self._path is not None and os.getpid() != self._owner
+
     def _refuse_other_process(self) -> None:
-        if self._path is not None and os.getpid() != self._owner:
+        if self._is_foreign:
             raise StoreError(
                 f"{self._name} belongs to the process that opened it",
                 hint="open it after forking, in one process",
