@@ -205,7 +205,7 @@ def test_what_fails_in_the_owner_reaches_everybody_who_waits(account: Account, w
     waiting.wait()
     host.pace.step(1_701)
     watcher.join()
-    assert raised == ["the device has failed: the drive burns\nmake a new one"]
+    assert raised == ["the device has failed: ZeroDivisionError: the drive burns\nmake a new one"]
     assert isinstance(host.failure, ZeroDivisionError)
     with pytest.raises(HostError, match="the drive burns") as caught:
         host.call(lambda device: device.status())
@@ -245,10 +245,33 @@ def test_closing_does_what_was_posted_and_refuses_what_comes_later(account: Acco
         host.call(lambda device: None)
     with pytest.raises(HostError, match="not running"):
         host.wait(lambda status: False)
-    with pytest.raises(HostError, match="started before"):
+    with pytest.raises(HostError, match="cannot be started"):
         host.start()
     host.close()
     assert account.move(9, 9, 9) == 51  # the device is the caller's again
+
+
+def test_a_stopped_host_goes_on_and_does_not_catch_up(account: Account, wall: FakeWall) -> None:
+    host = Host(account, wall, rate=1.0)
+    wall.time_s += 9.0
+    with host:
+        with pytest.raises(HostError, match="cannot be started"):
+            host.start()
+        wall.time_s += 0.25
+        host.pace.step(0)
+        assert host.wait(lambda status: status.cycle >= 250).cycle == 250
+        host.stop()
+        host.stop()
+        wall.time_s += 5.0
+        account.move(3, 4, 5)
+        with pytest.raises(HostError, match="not running"):
+            host.post(lambda device: None)
+        host.start()
+        assert host.status == Seen(250, 500, 0, 1)
+        assert host.call(lambda device: device.clock.cycles) == 250
+        wall.time_s += 0.07
+        host.pace.step(3)
+        assert host.wait(lambda status: status.cycle >= 323).cycle == 323
 
 
 def test_a_command_that_was_cancelled_is_not_done(frozen: Host[Account], account: Account) -> None:

@@ -10,7 +10,7 @@ import math
 import threading
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import Future
 from functools import partial
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
@@ -34,7 +34,7 @@ class Host(Generic[D]):
 
     `rate` is seconds of the device for each second outside, 0 to begin with it frozen; `pace` changes it while it runs.
     `events` are the reasons of the device that end a jump of the pace. At least every `slice_s` commands are looked at.
-    The device is the host's until `close`, which whoever made the host has to call (or use it in a `with` statement).
+    From `start` to `stop` or `close` the device is the host's; a `with` statement does both.
     """
 
     def __init__(
@@ -52,10 +52,9 @@ class Host(Generic[D]):
         self._status: Any = device.status()
         self._published = 0
         self._awake = False
-        self._closing = False
+        self._stopping = self._closed = False
         self._failure: BaseException | None = None
-        self._thread = threading.Thread(target=self._own, name="polycnc host", daemon=True)
-        self._running = False
+        self._thread: threading.Thread | None = None  # None: it does not run
 
     # ------------------------------------------------------------------ from any thread
 
@@ -70,15 +69,19 @@ class Host(Generic[D]):
         return self._failure
 
     def start(self) -> None:
-        """Let the owner begin.
+        """Let the owner begin, or go on after `stop`; time that has passed outside until now is not caught up with.
 
         Raises:
-            HostError: The host is closed, or was started before.
+            HostError: The host is closed or runs, or the device has failed.
         """
         with self._changed:
-            if self._closing or self._running:
-                raise HostError("the host was started before", hint="make a new one")
-            self._running = True
+            if self._closed or self._failure is not None or self._thread is not None:
+                raise HostError("the host cannot be started", hint="start it once, or again after `stop`")
+            self._status = self._device.status()
+            self._published += 1
+            self._stopping = False
+            self._thread = threading.Thread(target=self._own, name="polycnc host", daemon=True)
+            self.pace.forget()
             self._thread.start()
 
     def post(self, command: Callable[[D], R]) -> Future[R]:
@@ -107,10 +110,7 @@ class Host(Generic[D]):
             Exception: Whatever the command raises.
         """
         self._refuse_owner()
-        try:
-            return self.post(command).result()
-        except CancelledError:
-            raise HostError("the host was closed before the command", hint="make a new one") from None
+        return self.post(command).result()
 
     def wait(self, condition: Callable[[Any], bool], timeout_s: float | None = None) -> Any:
         """Wait until `condition` holds for a published status and return that one; not every status is seen.
@@ -134,16 +134,22 @@ class Host(Generic[D]):
                     self._refuse()
                     self._changed.wait(min(left_s, _LONGEST_WAIT_S))
 
-    def close(self) -> None:
+    def stop(self) -> None:
         """End the thread after the cycle that it is in; what was posted before is carried out.
 
-        The device is the caller's again. Closing twice does nothing.
+        Until `start` the device is the caller's. Stopping twice does nothing.
         """
         with self._changed:
-            self._closing = self._awake = True
+            thread = self._thread
+            self._stopping = self._awake = True
             self._changed.notify_all()
-        if self._running and threading.current_thread() is not self._thread:
-            self._thread.join()
+        if thread is not None and threading.current_thread() is not thread:
+            thread.join()
+
+    def close(self) -> None:
+        """Stop for good. Closing twice does nothing."""
+        self._closed = True
+        self.stop()
 
     def __enter__(self) -> Self:
         self.start()
@@ -165,11 +171,9 @@ class Host(Generic[D]):
 
     def _refuse(self) -> None:
         if self._failure is not None:
-            raise HostError(
-                f"the device has failed: {self._failure}", hint="make a new one"
-            ) from self._failure
-        if self._closing or not self._running:
-            raise HostError("the host is not running", hint="start it, and do not close it before")
+            raise _failed(self._failure)
+        if self._stopping or self._thread is None:
+            raise HostError("the host is not running", hint="start it, and do not stop it before")
 
     # ------------------------------------------------------------------ the owner
 
@@ -185,15 +189,13 @@ class Host(Generic[D]):
     def _end(self, failure: BaseException | None) -> None:
         """Answer whoever waits; nobody is left without."""
         with self._changed:
-            self._failure, self._closing = failure, True
+            self._failure, self._thread = failure, None
             left = list(self._posted)
             self._posted.clear()
             self._changed.notify_all()
-        for _, future in left:
+        for _, future in left if failure is not None else ():
             if future.set_running_or_notify_cancel():
-                error = HostError(f"the device has failed: {failure}", hint="make a new one")
-                error.__cause__ = failure
-                future.set_exception(error)
+                future.set_exception(_failed(failure))
 
     def _carry_out(self) -> bool:
         """Do what was posted and publish; return whether there is anything to be done later."""
@@ -201,7 +203,7 @@ class Host(Generic[D]):
             commands = list(self._posted)
             self._posted.clear()
             self._awake = False
-            closing = self._closing
+            stopping = self._stopping
         answers: list[Callable[[], None]] = []
         for command, future in commands:
             if future.set_running_or_notify_cancel():
@@ -212,7 +214,7 @@ class Host(Generic[D]):
         finally:
             for answer in answers:
                 answer()
-        return not closing
+        return not stopping
 
     def _let_time_pass(self) -> None:
         cycle_s = self._device.clock.cycle_s
@@ -239,6 +241,12 @@ class Host(Generic[D]):
             self._status = status
             self._published += 1
             self._changed.notify_all()
+
+
+def _failed(failure: BaseException | None) -> HostError:
+    error = HostError(f"the device has failed: {type(failure).__name__}: {failure}", hint="make a new one")
+    error.__cause__ = failure
+    return error
 
 
 def _answer(command: Callable[[D], R], device: D, future: Future[R]) -> Callable[[], None]:

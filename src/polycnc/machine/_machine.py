@@ -97,6 +97,7 @@ class Machine:
             record_cycles=record_cycles,
             record_actual=servo,
         )
+        self._mask = self.state.clock["mask"]
         for index, axis in enumerate(config.axes):
             self._set_axis(index, axis.vmax, axis.amax, axis.jump, axis.kind == "linear")
             self._set_switches(index)
@@ -119,7 +120,7 @@ class Machine:
 
         Fewer after a cycle that has `raised` one of the reasons `until` (`Reason`).
         """
-        self.state.clock[0]["mask"] = until or 0
+        self._mask[0] = until or 0
         done = kernel.advance(self.state, cycles)
         self.clock.tick(done)
         return done

@@ -67,6 +67,11 @@ class Pace:
             self._since_s, self._done, self._rate = self._wall.now_s(), 0, rate
         self._changed()
 
+    def forget(self) -> None:
+        """Let what is late not be caught up with."""
+        with self._lock:
+            self._since_s, self._before, self._done = self._wall.now_s(), 0.0, 0
+
     def step(self, cycles: int) -> None:
         """Make `cycles` more cycles due at once, frozen or not.
 
