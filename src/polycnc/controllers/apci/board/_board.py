@@ -21,7 +21,7 @@ from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import OUTPUTS, ErrorReg, ModeReg
-from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, run_scans
+from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, WATCHED, run_scans
 from polycnc.controllers.apci.core._state import BoardState, Floats, make_board_state
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
 from polycnc.machine import Clock, Way
@@ -229,7 +229,7 @@ class Board:
                 if waiting == 0:
                     self.tasks.run_scan()
                 piece = int(min(piece, max(waiting, 1)))
-                mask |= PROFILE_END  # a task may wait for it
+                mask |= PROFILE_END | WATCHED  # a task may wait for it
             if self._pending:
                 piece = min(piece, max(self._pending[0].due - self.clock.cycles, 1))
             ran = int(run_scans(self.state, self.kernel, piece, mask))

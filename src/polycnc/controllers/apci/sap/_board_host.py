@@ -12,6 +12,8 @@ from polycnc.controllers.apci.board import _move_commands as moves
 from polycnc.controllers.apci.board import _spool_commands as spooler
 from polycnc.controllers.apci.board._move_commands import Speeds
 from polycnc.controllers.apci.sap import Call, Program, Tasks
+from polycnc.controllers.apci.sap._polling import Read
+from polycnc.controllers.apci.sap._watching import arm, is_watchable, watched_by
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -261,6 +263,8 @@ class BoardTasks:
     def __init__(self, board: Board) -> None:
         self.tasks = Tasks(BoardHost(board))
         self._board = board
+        self._reads: frozenset[Read] = frozenset()
+        self._watched: list[tuple[int, int]] | None = []
         board.tasks = self
 
     def load(self, program: Program) -> None:
@@ -269,10 +273,18 @@ class BoardTasks:
 
     def scans_to_wait(self) -> float:
         """Return for how many scans no task has anything to do; infinity if they wait for profiles."""
-        sleep = self.tasks.sleep()
-        if any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
+        sleep = self.tasks.sleep(is_watchable)
+        rows = self._rows(sleep.reads)
+        if rows is None or any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
+            arm(self._board, ())
             return 0
+        arm(self._board, rows)
         return math.inf if sleep.scans is None else sleep.scans
+
+    def _rows(self, reads: frozenset[Read]) -> list[tuple[int, int]] | None:
+        if reads != self._reads:
+            self._reads, self._watched = reads, watched_by(reads)
+        return self._watched
 
     def run_scan(self) -> None:
         """Let every task do what it can within one scan."""
