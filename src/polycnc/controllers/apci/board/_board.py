@@ -47,11 +47,21 @@ class Board:
     """
 
     def __init__(self, config: SystemFile | None = None, *, record_scans: int = 0) -> None:
-        self.config = config or SystemFile()
+        self.is_described = config is not None
+        self._record_scans = record_scans
+        self._build(config or SystemFile())
+
+    def rebuild(self, config: SystemFile) -> None:
+        """Be the board of another system file, just booted; what had been got from this one before is void."""
+        self.is_described = True
+        self._build(config)
+
+    def _build(self, config: SystemFile) -> None:
+        self.config = config
         n = len(self.config.axes)
         dt = self.config.sample_time_s
         self.kernel: KernelState = make_state(
-            n, cycle_s=dt, segments=1, record_cycles=record_scans, record_actual=True
+            n, cycle_s=dt, segments=1, record_cycles=self._record_scans, record_actual=True
         )
         self.state: BoardState = make_board_state(n, dt)
         self.clock = Clock(dt)

@@ -169,9 +169,11 @@ class BoardHost:
         return self.board.clock.cycle_s
 
     def axis_index(self, name: str) -> int | None:
-        """Return the index of the axis called `name`, None if there is none."""
-        names = [each.upper() for each in self.board.config.axis_names]
-        return names.index(name.upper()) if name.upper() in names else None
+        """Return the index of the axis called `name`, or A1, A2, ... by its number; None if there is none."""
+        given = [each.upper() for each in self.board.config.axis_names]
+        numbered = [f"A{number}" for number in range(1, len(given) + 1)]
+        known = given if name.upper() in given else numbered
+        return known.index(name.upper()) if name.upper() in known else None
 
     def call(self, call: Call) -> None:
         """Give a command."""
