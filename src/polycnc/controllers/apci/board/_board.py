@@ -24,7 +24,7 @@ from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import OUTPUTS, ErrorReg, ModeReg
-from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, run_scans
+from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, WATCHED, run_scans
 from polycnc.controllers.apci.core._state import BoardState, Floats, make_board_state
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
 from polycnc.machine import Clock, Snapshot, wait
@@ -40,11 +40,21 @@ class Board:
     """
 
     def __init__(self, config: SystemFile | None = None, *, record_scans: int = 0) -> None:
-        self.config = config or SystemFile()
+        self.is_described = config is not None
+        self._record_scans = record_scans
+        self._build(config or SystemFile())
+
+    def rebuild(self, config: SystemFile) -> None:
+        """Be the board of another system file, just booted; what had been got from this one before is void."""
+        self.is_described = True
+        self._build(config)
+
+    def _build(self, config: SystemFile) -> None:
+        self.config = config
         n = len(self.config.axes)
         dt = self.config.sample_time_s
         self.kernel: KernelState = make_state(
-            n, cycle_s=dt, segments=1, record_cycles=record_scans, record_actual=True
+            n, cycle_s=dt, segments=1, record_cycles=self._record_scans, record_actual=True
         )
         self.state: BoardState = make_board_state(n, dt)
         self.clock = Clock(dt)
@@ -222,7 +232,7 @@ class Board:
                 if waiting == 0:
                     self.tasks.run_scan()
                 piece = int(min(piece, max(waiting, 1)))
-                mask |= PROFILE_END  # a task may wait for it
+                mask |= PROFILE_END | WATCHED  # a task may wait for it
             if self.pending:
                 piece = min(piece, max(self.pending[0].due - self.clock.cycles, 1))
             ran = int(run_scans(self.state, self.kernel, piece, mask))

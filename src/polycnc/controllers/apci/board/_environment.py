@@ -21,11 +21,15 @@ LED_PLACES = {  # on the board: green, yellow, red
 _POWER_UP = int(Ifs.pfe | Ifs.scpfe)
 
 
+SERIAL_NUMBER = "80010001"
+"""Ruling: the serial number of a board that has been given none."""
+
+
 class EnvironmentStrings:
     """Named texts that are stored on the board, for getEnvStr."""
 
     def __init__(self, strings: Mapping[str, str] | None = None) -> None:
-        self._strings: dict[str, str] = {}
+        self._strings = {"SerialNumber": SERIAL_NUMBER}
         for name, value in (strings or {}).items():
             self.write(name, value)
 

@@ -18,6 +18,7 @@ from polycnc.controllers.imc.core._event_codes import LOAD_MOST
 from polycnc.controllers.imc.core._instructions import (
     InstallEvents,
     Instruction,
+    Points,
     Segment,
     WaitParam,
     WaitTime,
@@ -144,8 +145,10 @@ class Card:
 
         Raises:
             UsageError: The queue does not take such an instruction: waits are not for IFIFO, segments only for
-                PFIFO1 and PFIFO2, nothing but points (`push_points`) for CFIFO. Or a load is not of 1 to 31
-                events, or a segment not of 1 to 16 coordinates.
+                PFIFO1 and PFIFO2, points of a
+                contour too, nothing but displacements (`push_points`) for CFIFO. Or a load is not of 1 to 31
+                events, a segment not of 1 to 16 coordinates, or there are no points. Or the instruction takes more
+                words than the queue ever holds.
         """
         if fifo not in (Fifo.SEL_IFIFO, Fifo.SEL_QFIFO, Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
             raise UsageError(f"queue {fifo} takes no instructions", hint="give SEL_IFIFO to SEL_PFIFO2")
@@ -159,17 +162,31 @@ class Card:
                 raise UsageError(
                     f"a segment of {len(instruction.ends)} axes", hint=f"{least} to {COORDINATES}"
                 )
+        if isinstance(instruction, Points):
+            if fifo not in (Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
+                raise UsageError("these points are for a path space", hint="use SEL_PFIFO1 or SEL_PFIFO2")
+            if not instruction.displacements:
+                raise UsageError("there are no points", hint="give one displacement at least")
         if isinstance(instruction, InstallEvents) and not 1 <= len(instruction.events) <= LOAD_MOST:
             raise UsageError(f"a load of {len(instruction.events)} events", hint=f"1 to {LOAD_MOST}")
         cells = encode(instruction)
         return self._put(fifo, cells, cells[2])
 
     def push_points(self, words: Sequence[int]) -> bool:
-        """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full."""
+        """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full.
+
+        Raises:
+            UsageError: They are more than the queue ever holds.
+        """
         return self._put(Fifo.SEL_CFIFO, [signed(word, 1) for word in words], len(words))
 
     def _put(self, fifo: int, cells: list[int], words: int) -> bool:
         q, ring = self.state.fifo[fifo], self.state.ring[fifo]
+        if words > q["depth"]:
+            raise UsageError(
+                f"{words} words never fit into {Fifo(fifo).name}",
+                hint=f"it holds {q['depth']}; send less at once",
+            )
         waiting = int(q["words"]) + words
         if waiting > q["depth"]:
             return False
