@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import pickle
 import sys
-from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any
 
@@ -13,18 +12,17 @@ import llvmlite
 import numba
 import numpy as np
 from numba.core import compiler, serialize
-from numba.core import types as numba_types
 from numba.core.caching import _Cache
 
 from polycnc.jit._files import CACHE_FOLDER, Files, Lock
 from polycnc.jit._reach import Fingerprints
+from polycnc.jit._reference import described
 
 FILES = Files(CACHE_FOLDER)
 FINGERPRINTS = Fingerprints()
 
 # numba's own annotations leave these out.
 _config: Any = numba.config
-_NAMED: Any = numba_types.BaseNamedTuple
 _rebuild: Any = compiler.CompileResult._rebuild
 _dumps: Any = serialize.dumps
 _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "LLVM_PASS_OPT")
@@ -41,15 +39,6 @@ def _compiler() -> str:
         np.__version__,
     )
     return repr((versions, [getattr(_config, name, None) for name in _SETTINGS]))
-
-
-def _types(argument: Any) -> Iterator[str]:
-    """Describe the type of an argument; numba's text for a named tuple leaves out which class it is."""
-    yield str(argument)
-    if isinstance(argument, _NAMED):
-        yield f"{argument.instance_class.__module__}.{argument.instance_class.__qualname__}{argument.fields}"
-        for each in argument:
-            yield from _types(each)
 
 
 def _hexadecimal(*parts: str) -> str:
@@ -120,8 +109,8 @@ class ContentCache(_Cache):
 
     def _stem(self, sig: Any, codegen: Any) -> str:
         arguments = sig if isinstance(sig, tuple) else (*sig.args, sig.return_type)
-        described = (text for argument in arguments for text in _types(argument))
-        return f"{self.version()}-{_hexadecimal(repr(codegen.magic_tuple()), *described)}"
+        texts = (text for argument in arguments for text in described(argument))
+        return f"{self.version()}-{_hexadecimal(repr(codegen.magic_tuple()), *texts)}"
 
     def _read(self, stem: str, target_context: Any) -> Any:
         data = FILES.read(stem)
