@@ -6,6 +6,7 @@ import hashlib
 import pickle
 import sys
 from functools import lru_cache
+from importlib import resources
 from typing import Any
 
 import llvmlite
@@ -15,6 +16,7 @@ from numba.core import compiler, serialize
 from numba.core.caching import _Cache
 
 from polycnc.jit._files import CACHE_FOLDER, Files, Lock
+from polycnc.jit._notice import announce
 from polycnc.jit._reach import Fingerprints
 from polycnc.jit._reference import described
 
@@ -30,7 +32,10 @@ _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_V
 
 @lru_cache
 def _compiler() -> str:
-    """Return what compiles: interpreter, numba, what it stands on, and its settings."""
+    """Return what compiles: this package, interpreter, numba, what it stands on, and its settings."""
+    here = resources.files(__package__)
+    sources = [here.joinpath(name).read_bytes() for name in ("_compile.py", "_pipeline.py", "_reference.py")]
+    own = hashlib.blake2b(b"".join(each.replace(b"\r\n", b"\n") for each in sources)).hexdigest()
     versions = (
         sys.implementation.cache_tag,
         getattr(sys, "abiflags", ""),
@@ -38,7 +43,7 @@ def _compiler() -> str:
         llvmlite.__version__,
         np.__version__,
     )
-    return repr((versions, [getattr(_config, name, None) for name in _SETTINGS]))
+    return repr((own, versions, [getattr(_config, name, None) for name in _SETTINGS]))
 
 
 def _hexadecimal(*parts: str) -> str:
@@ -72,6 +77,7 @@ class ContentCache(_Cache):
         """Return the function for these types of arguments; when it is not there, hold others from making it."""
         target_context.refresh()
         if not self._enabled:
+            announce()
             return None
         stem = self._stem(sig, target_context.codegen())
         found = self._read(stem, target_context)
@@ -79,7 +85,9 @@ class ContentCache(_Cache):
             self.release()
             self._lock = FILES.lock(stem)
             found = self._read(stem, target_context)  # another process may have made it meanwhile
-            if found is not None:
+            if found is None:
+                announce()
+            else:
                 self.release()
         return found
 

@@ -12,7 +12,7 @@ import numba
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
-from polycnc.jit._cache import FILES, ContentCache
+from polycnc.jit._cache import ContentCache
 from polycnc.jit._pipeline import pipelines
 from polycnc.jit._reference import by_reference
 
@@ -32,7 +32,7 @@ class _Entry(CPUDispatcher):
     """A compiled function that Python may call, and that is kept on disk."""
 
     _cache: ContentCache
-    _inner: _Internal
+    _inner: Any
 
     def compile(self, sig: Any) -> Any:
         """Load or compile the function for these types of arguments."""
@@ -54,6 +54,7 @@ class _Entry(CPUDispatcher):
 class _Internal(CPUDispatcher):
     """A compiled function without a wrapper: numba would crash if Python called it."""
 
+    _compiler: Any
     _twin: Callable[..., object] | None = None
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
@@ -73,12 +74,6 @@ class _Internal(CPUDispatcher):
 
 
 _entries: dict[str, _Entry] = {}  # by "module.name"
-
-
-def is_cold(name: str) -> bool:
-    """Tell whether the entry "module.name" is still to be compiled here; its module must have been imported."""
-    found = _entries.get(name)
-    return found is not None and not FILES.exists(found._cache.version())
 
 
 def versions() -> list[str]:
@@ -130,7 +125,9 @@ def _as_entry(internal: _Internal) -> _Entry:
     detour = namespace["entry"]
     detour.__defaults__ = function.__defaults__
     functools.update_wrapper(detour, function)
-    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=internal.targetoptions["_nrt"], **_ENTRY)(detour)
+    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=internal.targetoptions["_nrt"], **_ENTRY)(
+        detour
+    )
     dispatcher.__class__ = _Entry
     dispatcher._cache = ContentCache(dispatcher)
     dispatcher._inner = internal

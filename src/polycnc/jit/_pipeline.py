@@ -1,18 +1,18 @@
-"""How numba turns a function into machine code here: internal functions stay LLVM code until an entry takes them in.
+"""How numba makes machine code here: internal functions stay LLVM code until an entry takes them in.
 
-numba gives every function machine code of its own, and links into it all that it calls. Internal functions become part of
-the entry that calls them anyway, so that work is thrown away: it is done once, in the entry.
+numba gives every function machine code of its own, and links into it all that it calls. Internal functions become
+part of the entry that calls them anyway, so that work is thrown away: it is done once, in the entry.
 
-This reaches into numba. `KNOWN` are the versions for which it was tried; with others numba's own way is used, which takes
-longer and gives the same results.
+This reaches into numba. `KNOWN` are the versions for which it was tried; with others numba's own way is used, which
+takes longer and gives the same results.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
 from typing import Any
 
 import numba
-from numba import _dynfunc
 from numba.core import codegen, compiler, typed_passes
 from numba.core.compiler_machinery import register_pass
 
@@ -24,7 +24,8 @@ _Lowering: Any = typed_passes.NativeLowering
 _Compiler: Any = compiler.CompilerBase
 _Builder: Any = compiler.DefaultPassBuilder
 _LowerResult: Any = compiler._LowerResult
-_make_function: Any = _dynfunc.make_function
+_make_function: Any = import_module("numba._dynfunc").make_function
+_register: Any = register_pass
 
 
 class _InternalLibrary(_Library):  # type: ignore[misc]
@@ -54,7 +55,9 @@ class _EntryLibrary(_Library):  # type: ignore[misc]
 
     def _verify_declare_only_symbols(self) -> None:
         missing = [each.name for each in self._final_module.functions if each.is_declaration]
-        missing = [name for name in missing if name.startswith("_ZN")]  # compiled by numba, not of the C library
+        missing = [
+            name for name in missing if name.startswith("_ZN")
+        ]  # compiled by numba, not of the C library
         if missing:
             raise AssertionError(f"not linked: {missing}")
 
@@ -74,7 +77,7 @@ def _new_library(state: Any, kind: Any) -> None:
     state.library.enable_object_caching()
 
 
-@register_pass(mutates_CFG=True, analysis_only=False)
+@_register(mutates_CFG=True, analysis_only=False)
 class _InternalLowering(_Lowering):  # type: ignore[misc]
     """Lower a function that is called by compiled code alone."""
 
@@ -97,7 +100,7 @@ class _InternalLowering(_Lowering):  # type: ignore[misc]
         return True
 
 
-@register_pass(mutates_CFG=True, analysis_only=False)
+@_register(mutates_CFG=True, analysis_only=False)
 class _EntryLowering(_Lowering):  # type: ignore[misc]
     """Lower a function that Python calls."""
 

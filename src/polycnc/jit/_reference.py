@@ -15,7 +15,12 @@ from numba.core.imputils import impl_ret_borrowed, lower_cast, lower_getattr_gen
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.extending import models, register_model
 
+# numba's own annotations leave these out.
 _Type: Any = types.Type
+_cgutils: Any = cgutils
+_lower_cast: Any = lower_cast
+_lower_getattr: Any = lower_getattr_generic
+_borrowed: Any = impl_ret_borrowed
 _NAMED: Any = types.BaseNamedTuple
 _AttributeTemplate: Any = AttributeTemplate
 _PrimitiveModel: Any = models.PrimitiveModel
@@ -77,15 +82,17 @@ class _StateRefAttributes(_AttributeTemplate):  # type: ignore[misc]
         return by_reference(reference.member(name)[1])
 
 
-@lower_getattr_generic(StateRef)
 def _load_member(context: Any, builder: Any, reference: StateRef, pointer: Any, name: str) -> Any:
     index, member = reference.member(name)
-    place = cgutils.gep_inbounds(builder, pointer, 0, index)
+    place = _cgutils.gep_inbounds(builder, pointer, 0, index)
     if isinstance(member, _NAMED):
         return place
-    return impl_ret_borrowed(context, builder, member, builder.load(place))
+    return _borrowed(context, builder, member, builder.load(place))
 
 
-@lower_cast(types.BaseNamedTuple, StateRef)
 def _refer(context: Any, builder: Any, given: Any, wanted: StateRef, value: Any) -> Any:
-    return cgutils.alloca_once_value(builder, value)
+    return _cgutils.alloca_once_value(builder, value)
+
+
+_lower_getattr(StateRef)(_load_member)
+_lower_cast(types.BaseNamedTuple, StateRef)(_refer)
