@@ -32,16 +32,19 @@ from polycnc.kernel._path import (
 from polycnc.kernel._ramps import (
     FROM_S,
     LENGTH,
+    MOST_SHARE,
     SPEED_OUT,
     SPEED_PEAK,
     TIME_CRUISE,
     TIME_IN,
     Floats,
-    plan_halt,
+    beside_corner,
+    halting_distance,
     plan_pause,
     plan_ramps,
     ramps_at,
     ramps_duration,
+    set_pieces,
 )
 from polycnc.kernel._segments import RAPID, TURN, WAIT, WAIT_EVENT, Segments
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
@@ -71,15 +74,16 @@ def _account_time(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
 
 
 @compiled
-def _leave(seg: Segments, paths: Paths, g: int, seconds: float, share: float) -> None:
-    """Go on to the next segment after `seconds` in this one, through a corner that takes `share`."""
+def _leave(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
+    """Go on to the next segment after `seconds` in this one."""
     path, totals = paths.row[g], paths.totals[g]
     row = seg.row[slot(paths, g, path["head"])]
     _account_time(seg, paths, g, seconds)
     totals[SEGMENTS] += 1.0
     if not row["flags"] & TURN:  # degrees are no path length
         totals[RAPID_LENGTH if row["flags"] & RAPID else FEED_LENGTH] += row["length"]
-    path["entry_share"] = share
+    path["entry_share"] = 0.0
+    path["entry_zone"] = 0.0
     path["head"] += 1
 
 
@@ -93,7 +97,7 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
         if seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
             break
         event = int(seg.geo[k, WAIT_EVENT])
-        _leave(seg, paths, g, 0.0, 0.0)
+        _leave(seg, paths, g, 0.0)
         if event >= 0:
             path["event"] = event
             return EVENT
@@ -101,7 +105,17 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
 
 
 @compiled
-def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead: float) -> None:
+def _enter(seg: Segments, paths: Paths, g: int, speed: float, share: float, dt: float) -> None:
+    """Note what the segment at `head` gives up near its start, which is passed with `speed`."""
+    path = paths.row[g]
+    row = seg.row[slot(paths, g, path["head"])]
+    path["entry_share"] = share
+    if share > 0.0:
+        path["entry_zone"] = beside_corner(speed, row["accel"], dt, row["length"])
+
+
+@compiled
+def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead: float, dt: float) -> None:
     """Plan the segment at `head` from path length `s` on, entered with `speed` `lead` seconds ago."""
     path, ramps = paths.row[g], paths.ramps[g]
     count = int(path["head"])
@@ -112,11 +126,29 @@ def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead
     path["pending"] = 0
     if row["kind"] == WAIT:
         plan_pause(ramps, seg.geo[k, GEO_WAIT_S])
-    elif is_held(path) or row["cap"] <= 0.0:
-        plan_halt(ramps, speed, row["length"] - s, row["accel"], s)
     else:
         out = row["out"] if path["depth"] == 0 else window_speed(seg, paths, g, count)
-        plan_ramps(ramps, speed, row["length"] - s, row["cap"], row["accel"], out, s)
+        length, accel = row["length"] - s, row["accel"]
+        held = is_held(path) or row["cap"] <= 0.0
+        if held:
+            needed = halting_distance(speed, accel, path["entry_zone"] - s, path["entry_share"])
+            out = min(out, speed) if needed > length else 0.0
+            length = min(needed, length)
+        set_pieces(
+            ramps,
+            speed,
+            length,
+            accel,
+            out,
+            path["entry_zone"] - s,
+            path["entry_share"],
+            row["yield_before"],
+            dt,
+        )
+        if held:
+            plan_ramps(ramps, speed, length, speed, accel, 0.0, s)
+        else:
+            plan_ramps(ramps, speed, length, row["cap"], accel, out, s)
 
 
 @compiled
@@ -149,7 +181,7 @@ def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     elif ramps_duration(ramps) - t > dt or ends_within(row, ramps):
         _account_time(seg, paths, g, t)
         s, speed = ramps_at(ramps, t, path["jerkrel"])
-        _plan_from(seg, paths, g, speed, min(s, row["length"]), 0.0)
+        _plan_from(seg, paths, g, speed, min(s, row["length"]), 0.0, dt)
 
 
 @compiled
@@ -162,10 +194,10 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         if path["head"] >= path["prepared"] or is_held(path):
             return STILL
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, 0.0, 0.0)
+        _plan_from(seg, paths, g, 0.0, 0.0, 0.0, dt)
     elif path["state"] == HELD and not is_held(path):
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0)
+        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, dt)
     elif path["state"] != RUNNING:
         return STILL
     path["cycles"] += 1
@@ -187,15 +219,16 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
                 _account_time(seg, paths, g, t)
             else:
                 path["state"] = READY
-                _leave(seg, paths, g, t, 0.0)
+                _leave(seg, paths, g, t)
             return RESTED
-        _leave(seg, paths, g, duration, row["share"])
+        share = min(MOST_SHARE, row["yield_after"] * speed)
+        _leave(seg, paths, g, duration)
         if path["head"] >= path["prepared"]:  # a prescribed end speed, and nothing to go on with
             path["state"] = READY
-            path["entry_share"] = 0.0
             return RESTED
         t -= duration
-        _plan_from(seg, paths, g, speed, 0.0, t)
+        _enter(seg, paths, g, speed, share, dt)
+        _plan_from(seg, paths, g, speed, 0.0, t, dt)
 
 
 @compiled

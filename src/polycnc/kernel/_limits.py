@@ -2,10 +2,11 @@
 
 What an axis does in two neighbouring cycles weighs the motion with a triangle two cycles wide. A corner's change of
 velocity must fit under it together with the ramps beside it and with the other corners nearby. It does if every
-change is at most `share / CORNER_MARGIN` of what the axis' acceleration gives in a cycle, or in the time to the
-next corner where that is shorter, and if the ramps on both sides leave that share alone. On a curve the
-centripetal and the tangential part share what is left after the corners' fixed part: as a circle where they are a
-quarter turn apart (arcs), as a sum elsewhere (splines). See docs/explanation/motion.md.
+change is at most a part (over CORNER_MARGIN) of what the axis' acceleration gives in a cycle, or in the time to the
+next corner where that is shorter, and if the ramps leave that part alone within a cycle of the corner. An axis that the
+ramps do not use up has that much for the corner anyway. On a curve the centripetal and the tangential part share what
+is left after the corners' fixed part: as a circle where they are a quarter turn apart (arcs), as a sum elsewhere
+(splines). See docs/explanation/motion.md.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy.typing as npt
 from polycnc.kernel._circle3d import circle3d_tangent_bound
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
+from polycnc.kernel._ramps import MOST_SHARE, beside_corner
 from polycnc.kernel._segments import (
     ARC,
     CIRCLE3D,
@@ -38,14 +40,14 @@ from polycnc.kernel._segments import (
 )
 from polycnc.kernel._spline import Splines, spline_bounds_between
 
-CORNER_SHARE = 0.5  # highest part of an axis' acceleration that a corner between lines may use
 CURVE_CORNER_SHARE = 0.1  # the same beside a curve, which needs the rest for itself
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
 CENTRIPETAL_SHARE = 0.75  # highest part that the curvature of an arc may use
 SPLINE_CENTRIPETAL_SHARE = 0.45
 CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
-LEAST_PART = 0.5  # of `full_accel` is left whatever the corners and the override turn out to be
+LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
+WORTH = 0.5  # of a corner's speed is what the ramp beside it may lose; more and stopping would be as good
 
 
 class AxisLimits(NamedTuple):
@@ -166,56 +168,174 @@ def _fitting_square(allowed: float, change: float, row: np.void) -> float:
 
 
 @compiled
+def _part_used(row: np.void, slope: float, acceleration: float) -> float:
+    """Return which part of its acceleration an axis uses when the path ramps as fast as it may."""
+    if slope == 0.0 or acceleration == math.inf:
+        return 0.0
+    return float(min(1.0, abs(slope) * row["full_accel"] / acceleration))
+
+
+@compiled
+def _yielded(corner: float, used: float) -> float:
+    """Return the part of its ramps a line gives away to an axis that needs `corner` and has `used` of its own."""
+    return max(0.0, 1.0 - (1.0 - corner) / used) if used > 0.0 else 0.0
+
+
+@compiled
+def _yielded_alone(step: float, less: float) -> float:
+    """Return what both lines give away at a corner that is two cycles from any other.
+
+    `step` is the axis' change of velocity over what its acceleration gives in a cycle. One line uses the axis up, the
+    other uses `less` of it, so a part of the triangle is free: with q of it between the sample and the corner, the
+    need is q step - q^2 (1 - less) / 2, and what is given away counts at least (1 + less q) / 2.
+    """
+    most = 2.0 * step / (1.0 + less)
+    return min(most, step * step / (1.0 - less)) if less < 1.0 else most
+
+
+@compiled
 def limit_junction(
     seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats
 ) -> None:
-    """Set `junction` and `share` at the end of segment `k`, which segment `following` continues."""
+    """Set `junction`, `yield_before` and `yield_after` of the end of segment `k`, which `following` continues."""
     row, after = seg.row[k], seg.row[following]
     row["junction"] = 0.0
-    row["share"] = 0.0
+    row["yield_before"] = 0.0
+    row["yield_after"] = 0.0
     if row["flags"] & STOP or row["kind"] == WAIT or after["kind"] == WAIT:
         return
     segment_tangent(seg, k, 1.0, work[0])
     segment_tangent(seg, following, 0.0, work[1])
     curved = is_curved(seg, k) or is_curved(seg, following)
-    most = CURVE_CORNER_SHARE if curved else CORNER_SHARE
     speed = min(row["cap"], after["cap"])
     square = speed * speed
+    needs = False
     corner = False
     for i in range(work.shape[1]):
         change = abs(work[1, i] - work[0, i])
         if change <= STRAIGHT:
-            work[0, i] = 0.0
             continue
         corner = True
-        jump = limits.jump[i]
-        allowed = (jump / dt if jump >= 0.0 else most * limits.acceleration[i]) / CORNER_MARGIN
-        top = jump if jump >= 0.0 else allowed * dt
-        # What share of its acceleration the axis needs per speed and time, for the second pass.
-        work[0, i] = change / limits.acceleration[i] if jump < 0.0 else 0.0
+        jump, acceleration = limits.jump[i], limits.acceleration[i]
+        if jump >= 0.0:
+            top = jump
+            allowed = jump / dt / CORNER_MARGIN
+        else:
+            used = max(
+                _part_used(row, work[0, i], acceleration), _part_used(after, work[1, i], acceleration)
+            )
+            most = CURVE_CORNER_SHARE if curved else 1.0 - used * (1.0 - MOST_SHARE)
+            allowed = most * acceleration / CORNER_MARGIN
+            top = allowed * dt
+            needs = needs or acceleration < math.inf
         if allowed < math.inf:
             square = min(square, top * top / (change * change))
             square = min(square, _fitting_square(allowed, change, row))
             square = min(square, _fitting_square(allowed, change, after))
     if corner:
         speed = math.sqrt(square)
+    if needs and speed > 0.0:
+        speed = _give_way(seg, k, following, limits, dt, work, speed)
     row["junction"] = speed
-    need = 0.0
-    for i in range(work.shape[1]):
-        need = max(need, work[0, i])
-    if corner and need > 0.0 and speed > 0.0:
-        row["share"] = CORNER_MARGIN * need * speed / min(dt, min(_gap_s(row, speed), _gap_s(after, speed)))
 
 
 @compiled
-def share_acceleration(seg: Segments, k: int, share_before: float, jerkrel: float) -> None:
-    """Set `accel` of segment `k` to what the corners at its two ends leave; a curve has put their part aside.
+def _give_way(
+    seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats, speed: float
+) -> float:
+    """Set what the lines beside a corner give away to it; return its speed, `speed` or where that gains nothing less.
 
-    An S-shaped ramp has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
+    `work` holds the tangents.
+    """
+    row, after = seg.row[k], seg.row[following]
+    curved_before, curved_after = is_curved(seg, k), is_curved(seg, following)
+    crude = speed  # with each of the lines giving all that the axis needs
+    alone = speed  # where nothing else is near
+    long_before, long_after = _gap_s(row, speed) >= dt, _gap_s(after, speed) >= dt
+    for i in range(work.shape[1]):
+        change = abs(work[1, i] - work[0, i])
+        acceleration = limits.acceleration[i]
+        if change <= STRAIGHT or limits.jump[i] >= 0.0 or acceleration == math.inf:
+            continue
+        used_before = _part_used(row, work[0, i], acceleration)
+        used_after = _part_used(after, work[1, i], acceleration)
+        crude_i, alone_i = speed, speed
+        if long_before and not curved_before:
+            crude_i = min(crude_i, _worth_speed(row, after, change / acceleration, used_before, dt, speed))
+        if long_after and not curved_after:
+            crude_i = min(crude_i, _worth_speed(after, row, change / acceleration, used_after, dt, speed))
+        if crude_i < speed:
+            less = min(used_before, used_after)
+            accel = max(row["full_accel"], after["full_accel"])
+            step = change / (acceleration * dt)
+            alone_i = max(crude_i, min(speed, WORTH * (1.0 - less) / (step * step * accel * dt)))
+        crude, alone = min(crude, crude_i), min(alone, alone_i)
+    far = not (curved_before or curved_after)
+    far = far and _gap_s(row, alone) >= 2.0 * dt and _gap_s(after, alone) >= 2.0 * dt
+    speed = alone if far else crude
+    if speed <= 0.0:
+        return 0.0
+    gap = min(dt, min(_gap_s(row, speed), _gap_s(after, speed)))
+    before, behind = 0.0, 0.0
+    for i in range(work.shape[1]):
+        change = abs(work[1, i] - work[0, i])
+        acceleration = limits.acceleration[i]
+        if change <= STRAIGHT or limits.jump[i] >= 0.0 or acceleration == math.inf:
+            continue
+        used_before = _part_used(row, work[0, i], acceleration)
+        used_after = _part_used(after, work[1, i], acceleration)
+        step = change * speed / acceleration
+        given = _yielded(CORNER_MARGIN * step / gap, used_before)
+        taken = _yielded(CORNER_MARGIN * step / gap, used_after)
+        if far:
+            both = _yielded_alone(step / dt, min(used_before, used_after))
+            if both < max(given, taken):
+                given, taken = both, both
+        before, behind = max(before, given), max(behind, taken)
+    if not curved_before:
+        row["yield_before"] = before / speed
+    if not curved_after:
+        row["yield_after"] = behind / speed
+    return speed
+
+
+@compiled
+def _worth_speed(row: np.void, other: np.void, need: float, used: float, dt: float, speed: float) -> float:
+    """Return the highest speed up to `speed` at which line `row`, longer than a cycle, loses no more than WORTH of it.
+
+    It loses what it gives away of its acceleration for a cycle; `need` is the time that the axis needs per speed.
+    """
+    gap = min(dt, _gap_s(other, speed))
+    accel = row["full_accel"]
+    if _yielded(CORNER_MARGIN * need * speed / gap, used) * accel * dt <= WORTH * speed:
+        return speed
+    if gap < dt:  # so slow that the way to the next corner takes as long as is needed for the change
+        longer = CORNER_MARGIN * need * accel * dt / WORTH
+        return float(max(0.0, other["length"] / longer - 0.5 * other["full_accel"] * longer))
+    return float((1.0 - used) / (CORNER_MARGIN * need / dt - used * WORTH / (accel * dt)))
+
+
+@compiled
+def share_acceleration(
+    seg: Segments, k: int, before: float, yield_before: float, jerkrel: float, dt: float
+) -> None:
+    """Set `accel` of segment `k`, and `gain`: what its ramps add to the squared speed beside both its corners.
+
+    `before` is the junction at its start, of which the segment gives `yield_before` per speed to that corner. An S-shaped
+    ramp has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
     """
     row = seg.row[k]
-    left = 1.0 if is_curved(seg, k) else 1.0 - max(share_before, row["share"])
-    row["accel"] = row["full_accel"] * left / (1.0 + jerkrel)
+    accel = row["full_accel"] / (1.0 + jerkrel)
+    length = row["length"]
+    row["accel"] = accel
+    row["gain"] = 2.0 * accel * length
+    first, last = yield_before * before, row["yield_before"] * row["junction"]
+    if first > 0.0 or last > 0.0:
+        from_start = beside_corner(before, accel, dt, length) if first > 0.0 else 0.0
+        to_end = beside_corner(row["junction"], accel, dt, length) if last > 0.0 else 0.0
+        both = max(0.0, from_start + to_end - length)
+        lost = first * (from_start - both) + last * (to_end - both) + max(first, last) * both
+        row["gain"] -= 2.0 * accel * lost
 
 
 @compiled

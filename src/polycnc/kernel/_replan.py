@@ -115,6 +115,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
+        seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["full_accel"] = accel
     for count in range(head, min(first, last - 1)):
         row, after = seg.row[slot(paths, g, count)], seg.row[slot(paths, g, count + 1)]
