@@ -195,7 +195,7 @@ def _yielded_alone(step: float, less: float) -> float:
 
 @compiled
 def limit_junction(
-    seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats
+    seg: Segments, k: int, following: int, limits: AxisLimits, jerkrel: float, dt: float, work: Floats
 ) -> None:
     """Set `junction`, `yield_before` and `yield_after` of the end of segment `k`, which `following` continues."""
     row, after = seg.row[k], seg.row[following]
@@ -235,13 +235,20 @@ def limit_junction(
     if corner:
         speed = math.sqrt(square)
     if needs and speed > 0.0:
-        speed = _give_way(seg, k, following, limits, dt, work, speed)
+        speed = _give_way(seg, k, following, limits, jerkrel, dt, work, speed)
     row["junction"] = speed
 
 
 @compiled
 def _give_way(
-    seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats, speed: float
+    seg: Segments,
+    k: int,
+    following: int,
+    limits: AxisLimits,
+    jerkrel: float,
+    dt: float,
+    work: Floats,
+    speed: float,
 ) -> float:
     """Set what the lines beside a corner give away to it; return its speed, `speed` or where that gains nothing less.
 
@@ -292,11 +299,30 @@ def _give_way(
             if both < max(given, taken):
                 given, taken = both, both
         before, behind = max(before, given), max(behind, taken)
-    if not curved_before:
-        row["yield_before"] = before / speed
-    if not curved_after:
-        row["yield_after"] = behind / speed
+    if curved_before:
+        before = 0.0
+    elif _gap_s(row, speed) < dt and not _saves_time(row, speed, before, jerkrel, dt):
+        return 0.0
+    if curved_after:
+        behind = 0.0
+    elif _gap_s(after, speed) < dt and not _saves_time(after, speed, behind, jerkrel, dt):
+        return 0.0
+    row["yield_before"] = before / speed
+    row["yield_after"] = behind / speed
     return speed
+
+
+@compiled
+def _saves_time(row: np.void, speed: float, share: float, jerkrel: float, dt: float) -> bool:
+    """Tell whether a short line from rest to a corner at `speed` takes no longer than from rest to rest.
+
+    At rest at both ends it takes a cycle at least.
+    """
+    length, accel = row["length"], row["full_accel"] / (1.0 + jerkrel)
+    less = accel * (1.0 - share)
+    square = min(speed * speed, 2.0 * less * length)
+    time = math.sqrt(square) / less + (length - square / (2.0 * less)) / speed
+    return bool(time <= max(dt, 2.0 * math.sqrt(length / accel)))
 
 
 @compiled

@@ -39,7 +39,7 @@ def limit_queue(
     for count in range(first_end, tail):
         k = slot(paths, g, count)
         if count + 1 < tail:
-            limit_junction(seg, k, slot(paths, g, count + 1), limits, dt, work)
+            limit_junction(seg, k, slot(paths, g, count + 1), limits, jerkrel, dt, work)
         else:
             seg.row[k]["junction"] = 0.0
             seg.row[k]["yield_before"] = 0.0
