@@ -73,7 +73,7 @@ def make_limits(axes: int) -> AxisLimits:
 def limit_segment(seg: Segments, k: int, limits: AxisLimits, override: float, work: Floats) -> None:
     """Set `cap` and `full_accel` of segment `k`: programmed feed times override, within what every axis allows.
 
-    `work` is scratch, [2, n].
+    `work` is scratch, [3, n].
     """
     row = seg.row[k]
     kind = row["kind"]
@@ -168,17 +168,15 @@ def _fitting_square(allowed: float, change: float, row: np.void) -> float:
 
 
 @compiled
-def _part_used(row: np.void, slope: float, acceleration: float) -> float:
-    """Return which part of its acceleration an axis uses when the path ramps as fast as it may."""
-    if slope == 0.0 or acceleration == math.inf:
-        return 0.0
-    return float(min(1.0, abs(slope) * row["full_accel"] / acceleration))
+def _lasts(row: np.void, speed: float, time: float) -> bool:
+    """Tell whether a segment takes at least `time`, one of its ends being passed with `speed`."""
+    return bool(row["length"] >= (speed + 0.5 * row["full_accel"] * time) * time)
 
 
 @compiled
 def _yielded(corner: float, used: float) -> float:
     """Return the part of its ramps a line gives away to an axis that needs `corner` and has `used` of its own."""
-    return max(0.0, 1.0 - (1.0 - corner) / used) if used > 0.0 else 0.0
+    return max(0.0, 1.0 - (1.0 - corner) / used) if used > 1.0 - corner else 0.0
 
 
 @compiled
@@ -197,7 +195,10 @@ def _yielded_alone(step: float, less: float) -> float:
 def limit_junction(
     seg: Segments, k: int, following: int, limits: AxisLimits, jerkrel: float, dt: float, work: Floats
 ) -> None:
-    """Set `junction`, `yield_before` and `yield_after` of the end of segment `k`, which `following` continues."""
+    """Set `junction`, `yield_before` and `yield_after` of the end of segment `k`, which `following` continues.
+
+    `work` is scratch, [3, n]: first the tangents, then what `_give_way` takes.
+    """
     row, after = seg.row[k], seg.row[following]
     row["junction"] = 0.0
     row["yield_before"] = 0.0
@@ -208,108 +209,180 @@ def limit_junction(
     segment_tangent(seg, following, 0.0, work[1])
     curved = is_curved(seg, k) or is_curved(seg, following)
     speed = min(row["cap"], after["cap"])
-    square = speed * speed
-    needs = False
     corner = False
+    needs = False
+    accel_before, accel_after = row["full_accel"], after["full_accel"]
     for i in range(work.shape[1]):
         change = abs(work[1, i] - work[0, i])
+        acceleration = limits.acceleration[i]
+        work[2, i] = 0.0
         if change <= STRAIGHT:
             continue
-        corner = True
-        jump, acceleration = limits.jump[i], limits.acceleration[i]
+        jump = limits.jump[i]
         if jump >= 0.0:
-            top = jump
-            allowed = jump / dt / CORNER_MARGIN
-        else:
-            used = max(
-                _part_used(row, work[0, i], acceleration), _part_used(after, work[1, i], acceleration)
-            )
-            most = CURVE_CORNER_SHARE if curved else 1.0 - used * (1.0 - MOST_SHARE)
-            allowed = most * acceleration / CORNER_MARGIN
-            top = allowed * dt
-            needs = needs or acceleration < math.inf
-        if allowed < math.inf:
-            square = min(square, top * top / (change * change))
-            square = min(square, _fitting_square(allowed, change, row))
-            square = min(square, _fitting_square(allowed, change, after))
+            corner = True
+            work[2, i] = -change
+            if jump < speed * change:
+                speed = jump / change
+        elif acceleration < math.inf:
+            corner = True
+            needs = True
+            inverse = 1.0 / acceleration
+            before = min(1.0, abs(work[0, i]) * accel_before * inverse) if work[0, i] != 0.0 else 0.0
+            behind = min(1.0, abs(work[1, i]) * accel_after * inverse) if work[1, i] != 0.0 else 0.0
+            most = CURVE_CORNER_SHARE if curved else 1.0 - max(before, behind) * (1.0 - MOST_SHARE)
+            need = change * inverse
+            if most * dt < speed * need:
+                speed = most * dt / need
+            work[0, i], work[1, i], work[2, i] = before, behind, need
+            continue
+        work[0, i], work[1, i] = 0.0, 0.0
     if corner:
-        speed = math.sqrt(square)
-    if needs and speed > 0.0:
-        speed = _give_way(seg, k, following, limits, jerkrel, dt, work, speed)
+        near = not (_lasts(row, speed, CORNER_MARGIN * dt) and _lasts(after, speed, CORNER_MARGIN * dt))
+        if near:
+            speed = _speed_between(seg, k, following, limits, dt, work, speed)
+        if needs and speed > 0.0:
+            speed = _give_way(seg, k, following, jerkrel, dt, work, speed, near)
     row["junction"] = speed
 
 
 @compiled
-def _give_way(
-    seg: Segments,
-    k: int,
-    following: int,
-    limits: AxisLimits,
-    jerkrel: float,
-    dt: float,
-    work: Floats,
-    speed: float,
+def _speed_between(
+    seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats, speed: float
 ) -> float:
-    """Set what the lines beside a corner give away to it; return its speed, `speed` or where that gains nothing less.
+    """Return the highest speed up to `speed` where the next corner is less than a cycle away.
 
-    `work` holds the tangents.
+    `work` holds what each axis uses on both sides and the time it needs per speed, or minus its change where it may jump.
     """
     row, after = seg.row[k], seg.row[following]
-    curved_before, curved_after = is_curved(seg, k), is_curved(seg, following)
-    crude = speed  # with each of the lines giving all that the axis needs
-    alone = speed  # where nothing else is near
-    long_before, long_after = _gap_s(row, speed) >= dt, _gap_s(after, speed) >= dt
+    curved = is_curved(seg, k) or is_curved(seg, following)
+    square = speed * speed
     for i in range(work.shape[1]):
-        change = abs(work[1, i] - work[0, i])
-        acceleration = limits.acceleration[i]
-        if change <= STRAIGHT or limits.jump[i] >= 0.0 or acceleration == math.inf:
+        if work[2, i] > 0.0:
+            most = CURVE_CORNER_SHARE if curved else 1.0 - max(work[0, i], work[1, i]) * (1.0 - MOST_SHARE)
+            need = work[2, i]
+        elif work[2, i] < 0.0:
+            most = limits.jump[i] / dt
+            need = -work[2, i]
+        else:
             continue
-        used_before = _part_used(row, work[0, i], acceleration)
-        used_after = _part_used(after, work[1, i], acceleration)
-        crude_i, alone_i = speed, speed
-        if long_before and not curved_before:
-            crude_i = min(crude_i, _worth_speed(row, after, change / acceleration, used_before, dt, speed))
-        if long_after and not curved_after:
-            crude_i = min(crude_i, _worth_speed(after, row, change / acceleration, used_after, dt, speed))
-        if crude_i < speed:
-            less = min(used_before, used_after)
-            accel = max(row["full_accel"], after["full_accel"])
-            step = change / (acceleration * dt)
-            alone_i = max(crude_i, min(speed, WORTH * (1.0 - less) / (step * step * accel * dt)))
-        crude, alone = min(crude, crude_i), min(alone, alone_i)
-    far = not (curved_before or curved_after)
-    far = far and _gap_s(row, alone) >= 2.0 * dt and _gap_s(after, alone) >= 2.0 * dt
-    speed = alone if far else crude
-    if speed <= 0.0:
-        return 0.0
-    gap = min(dt, min(_gap_s(row, speed), _gap_s(after, speed)))
-    before, behind = 0.0, 0.0
-    for i in range(work.shape[1]):
-        change = abs(work[1, i] - work[0, i])
-        acceleration = limits.acceleration[i]
-        if change <= STRAIGHT or limits.jump[i] >= 0.0 or acceleration == math.inf:
-            continue
-        used_before = _part_used(row, work[0, i], acceleration)
-        used_after = _part_used(after, work[1, i], acceleration)
-        step = change * speed / acceleration
-        given = _yielded(CORNER_MARGIN * step / gap, used_before)
-        taken = _yielded(CORNER_MARGIN * step / gap, used_after)
+        square = min(square, _fitting_square(most / CORNER_MARGIN, need, row))
+        square = min(square, _fitting_square(most / CORNER_MARGIN, need, after))
+    return math.sqrt(square)
+
+
+@compiled
+def _give_way(
+    seg: Segments, k: int, following: int, jerkrel: float, dt: float, work: Floats, speed: float, near: bool
+) -> float:
+    """Set what the lines beside a corner give away to it; return its speed, `speed` or what is worth it.
+
+    `work` holds what each axis uses on both sides and the time it needs per speed; `near`: the next corner is.
+    """
+    row, after = seg.row[k], seg.row[following]
+    free_before, free_after = is_curved(seg, k), is_curved(seg, following)  # a curve has put its part aside
+    long_before, long_after = True, True
+    time = dt
+    if near:
+        long_before, long_after = _lasts(row, speed, dt), _lasts(after, speed, dt)
+        time = min(dt, min(_gap_s(row, speed), _gap_s(after, speed)) / CORNER_MARGIN)
+    before = 0.0 if free_before else _given(work, 0, speed, time)
+    behind = 0.0 if free_after else _given(work, 1, speed, time)
+    loses = long_before and before * row["full_accel"] * dt > WORTH * speed
+    loses = loses or (long_after and behind * after["full_accel"] * dt > WORTH * speed)
+    if loses:
+        alone = speed if free_before or free_after else _speed_alone(row, after, dt, work, speed)
+        far = not (free_before or free_after)
+        far = far and _lasts(row, alone, 2.0 * dt) and _lasts(after, alone, 2.0 * dt)
         if far:
-            both = _yielded_alone(step / dt, min(used_before, used_after))
-            if both < max(given, taken):
-                given, taken = both, both
-        before, behind = max(before, given), max(behind, taken)
-    if curved_before:
-        before = 0.0
-    elif _gap_s(row, speed) < dt and not _saves_time(row, speed, before, jerkrel, dt):
-        return 0.0
-    if curved_after:
-        behind = 0.0
-    elif _gap_s(after, speed) < dt and not _saves_time(after, speed, behind, jerkrel, dt):
-        return 0.0
+            speed = alone
+        else:
+            if long_before and not free_before:
+                speed = _worth_speed(row, after, work, 0, dt, speed)
+            if long_after and not free_after:
+                speed = _worth_speed(after, row, work, 1, dt, speed)
+        if speed <= 0.0:
+            return 0.0
+        time = min(dt, min(_gap_s(row, speed), _gap_s(after, speed)) / CORNER_MARGIN)
+        before, behind = 0.0, 0.0
+        for i in range(work.shape[1]):
+            if work[2, i] > 0.0:
+                step = work[2, i] * speed
+                given, taken = _yielded(step / time, work[0, i]), _yielded(step / time, work[1, i])
+                if far:
+                    both = _yielded_alone(step / dt, min(work[0, i], work[1, i]))
+                    if both < max(given, taken):
+                        given, taken = both, both
+                before, behind = max(before, given), max(behind, taken)
+        before = 0.0 if free_before else before
+        behind = 0.0 if free_after else behind
+    if near:
+        if not (free_before or _lasts(row, speed, dt) or _saves_time(row, speed, before, jerkrel, dt)):
+            return 0.0
+        if not (free_after or _lasts(after, speed, dt) or _saves_time(after, speed, behind, jerkrel, dt)):
+            return 0.0
     row["yield_before"] = before / speed
     row["yield_after"] = behind / speed
     return speed
+
+
+@compiled
+def _given(work: Floats, side: int, speed: float, time: float) -> float:
+    """Return the part of its ramps that the line on one side gives to a corner within `time` of the next."""
+    share = 0.0
+    for i in range(work.shape[1]):
+        if work[2, i] > 0.0:
+            share = max(share, _yielded(work[2, i] * speed / time, work[side, i]))
+    return share
+
+
+@compiled
+def _speed_alone(row: np.void, after: np.void, dt: float, work: Floats, speed: float) -> float:
+    """Return the highest speed up to `speed` at a corner far from others that costs no more than WORTH of it."""
+    accel = max(row["full_accel"], after["full_accel"])
+    for i in range(work.shape[1]):
+        if work[2, i] > 0.0:
+            crude = min(
+                _worth_of_axis(row, work[2, i], work[0, i], dt, speed),
+                _worth_of_axis(after, work[2, i], work[1, i], dt, speed),
+            )
+            if crude < speed:
+                step = work[2, i] / dt
+                less = min(work[0, i], work[1, i])
+                speed = min(speed, max(crude, WORTH * (1.0 - less) / (step * step * accel * dt)))
+    return speed
+
+
+@compiled
+def _worth_of_axis(row: np.void, need: float, used: float, dt: float, speed: float) -> float:
+    """Return the highest speed at which a line gives one axis no more than WORTH of it, by a full cycle each way."""
+    accel = row["full_accel"]
+    if _yielded(need * speed / dt, used) * accel * dt <= WORTH * speed:
+        return speed
+    return float((1.0 - used) / (need / dt - used * WORTH / (accel * dt)))
+
+
+@compiled
+def _worth_speed(row: np.void, other: np.void, work: Floats, side: int, dt: float, speed: float) -> float:
+    """Return the highest speed up to `speed` at which line `row`, longer than a cycle, loses no more than WORTH of it.
+
+    It loses what it gives away of its acceleration for a cycle.
+    """
+    time = min(dt, _gap_s(other, speed) / CORNER_MARGIN)
+    accel = row["full_accel"]
+    lowest = speed
+    for i in range(work.shape[1]):
+        need, used = work[2, i], work[side, i]
+        if need <= 0.0:
+            continue
+        if time == dt:
+            lowest = min(lowest, _worth_of_axis(row, need, used, dt, speed))
+        elif _yielded(need * speed / time, used) * accel * dt > WORTH * speed:
+            # So slow that the way to the next corner takes as long as the change of velocity needs.
+            longer = CORNER_MARGIN * need * accel * dt / WORTH
+            slow = other["length"] / longer - 0.5 * other["full_accel"] * longer
+            lowest = float(min(lowest, max(0.0, slow)))
+    return lowest
 
 
 @compiled
@@ -319,26 +392,11 @@ def _saves_time(row: np.void, speed: float, share: float, jerkrel: float, dt: fl
     At rest at both ends it takes a cycle at least.
     """
     length, accel = row["length"], row["full_accel"] / (1.0 + jerkrel)
-    less = accel * (1.0 - share)
-    square = min(speed * speed, 2.0 * less * length)
-    time = math.sqrt(square) / less + (length - square / (2.0 * less)) / speed
+    give = share * accel * length / speed  # what is given away grows with the speed that is reached
+    reached = min(speed, math.sqrt(give * give + 2.0 * accel * length) - give)
+    less = accel * (1.0 - share * reached / speed)
+    time = reached / less + (length - 0.5 * reached * reached / less) / reached
     return bool(time <= max(dt, 2.0 * math.sqrt(length / accel)))
-
-
-@compiled
-def _worth_speed(row: np.void, other: np.void, need: float, used: float, dt: float, speed: float) -> float:
-    """Return the highest speed up to `speed` at which line `row`, longer than a cycle, loses no more than WORTH of it.
-
-    It loses what it gives away of its acceleration for a cycle; `need` is the time that the axis needs per speed.
-    """
-    gap = min(dt, _gap_s(other, speed))
-    accel = row["full_accel"]
-    if _yielded(CORNER_MARGIN * need * speed / gap, used) * accel * dt <= WORTH * speed:
-        return speed
-    if gap < dt:  # so slow that the way to the next corner takes as long as is needed for the change
-        longer = CORNER_MARGIN * need * accel * dt / WORTH
-        return float(max(0.0, other["length"] / longer - 0.5 * other["full_accel"] * longer))
-    return float((1.0 - used) / (CORNER_MARGIN * need / dt - used * WORTH / (accel * dt)))
 
 
 @compiled

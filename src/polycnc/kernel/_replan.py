@@ -80,7 +80,7 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
 
 @entry
 def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
-    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [2, n].
+    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
 
     If the last segment before is running, the path goes on through its end, unless that is too close. With a
     path tolerance a line waits for the one after it, or for `closed`.
