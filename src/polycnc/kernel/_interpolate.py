@@ -115,8 +115,13 @@ def _enter(seg: Segments, paths: Paths, g: int, speed: float, share: float, dt: 
 
 
 @compiled
-def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead: float, dt: float) -> None:
-    """Plan the segment at `head` from path length `s` on, entered with `speed` `lead` seconds ago."""
+def _plan_from(
+    seg: Segments, paths: Paths, g: int, speed: float, s: float, lead: float, most: float, dt: float
+) -> None:
+    """Plan the segment at `head` from path length `s` on, entered with `speed` `lead` seconds ago.
+
+    `most` is the highest speed at its end.
+    """
     path, ramps = paths.row[g], paths.ramps[g]
     count = int(path["head"])
     k = slot(paths, g, count)
@@ -128,27 +133,35 @@ def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead
         plan_pause(ramps, seg.geo[k, GEO_WAIT_S])
     else:
         out = row["out"] if path["depth"] == 0 else window_speed(seg, paths, g, count)
-        length, accel = row["length"] - s, row["accel"]
-        held = is_held(path) or row["cap"] <= 0.0
-        if held:
-            needed = halting_distance(speed, accel, path["entry_zone"] - s, path["entry_share"])
-            out = min(out, speed) if needed > length else 0.0
-            length = min(needed, length)
-        set_pieces(
-            ramps,
-            speed,
-            length,
-            accel,
-            out,
-            path["entry_zone"] - s,
-            path["entry_share"],
-            row["yield_before"],
-            dt,
-        )
-        if held:
-            plan_ramps(ramps, speed, length, speed, accel, 0.0, s)
+        out = min(out, most)
+        length = row["length"] - s
+        if is_held(path) or row["cap"] <= 0.0:
+            needed = halting_distance(speed, row["accel"], path["entry_zone"] - s, path["entry_share"])
+            through = min(speed, max(out, row["bound"])) if needed > length else 0.0
+            _plan_pieces(path, row, ramps, speed, s, min(needed, length), speed, through, 0.0, dt)
         else:
-            plan_ramps(ramps, speed, length, row["cap"], accel, out, s)
+            _plan_pieces(path, row, ramps, speed, s, length, row["cap"], out, out, dt)
+            if ramps[SPEED_OUT] > out and row["bound"] > out:  # too late to brake down to a lower override
+                _plan_pieces(path, row, ramps, speed, s, length, row["cap"], row["bound"], out, dt)
+
+
+@compiled
+def _plan_pieces(
+    path: np.void,
+    row: np.void,
+    ramps: Floats,
+    speed: float,
+    s: float,
+    length: float,
+    cap: float,
+    through: float,
+    out: float,
+    dt: float,
+) -> None:
+    """Plan `length` from `s` on to speed `out`, ready to pass the corner there with up to `through`."""
+    zone, share, accel = path["entry_zone"] - s, path["entry_share"], row["accel"]
+    set_pieces(ramps, speed, length, accel, through, zone, share, row["yield_before"], dt)
+    plan_ramps(ramps, speed, length, cap, accel, out, s)
 
 
 @compiled
@@ -169,7 +182,8 @@ def in_ramp(paths: Paths, g: int, t: float) -> bool:
 def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     """Plan the running segment anew from where the path stands, unless the next sample is beyond it anyway.
 
-    An S-shaped ramp that is under way is finished first, so that the acceleration does not step.
+    An S-shaped ramp that is under way is finished first, so that the acceleration does not step. A corner less than a
+    cycle away is not passed faster than was planned before.
     """
     path, ramps = paths.row[g], paths.ramps[g]
     row = seg.row[slot(paths, g, path["head"])]
@@ -181,7 +195,12 @@ def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     elif ramps_duration(ramps) - t > dt or ends_within(row, ramps):
         _account_time(seg, paths, g, t)
         s, speed = ramps_at(ramps, t, path["jerkrel"])
-        _plan_from(seg, paths, g, speed, min(s, row["length"]), 0.0, dt)
+        s = min(s, row["length"])
+        planned = 0.0 if ends_within(row, ramps) else ramps[SPEED_OUT]
+        _plan_from(seg, paths, g, speed, s, 0.0, math.inf, dt)
+        if ramps[SPEED_OUT] > planned and ramps_duration(ramps) < dt:
+            # The last cycle before the corner has begun, and gave up no more than the speed planned then needs.
+            _plan_from(seg, paths, g, speed, s, 0.0, planned, dt)
 
 
 @compiled
@@ -194,10 +213,10 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         if path["head"] >= path["prepared"] or is_held(path):
             return STILL
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, 0.0, 0.0, dt)
+        _plan_from(seg, paths, g, 0.0, 0.0, 0.0, math.inf, dt)
     elif path["state"] == HELD and not is_held(path):
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, dt)
+        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, math.inf, dt)
     elif path["state"] != RUNNING:
         return STILL
     path["cycles"] += 1
@@ -228,7 +247,7 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
             return RESTED
         t -= duration
         _enter(seg, paths, g, speed, share, dt)
-        _plan_from(seg, paths, g, speed, 0.0, t, dt)
+        _plan_from(seg, paths, g, speed, 0.0, t, math.inf, dt)
 
 
 @compiled

@@ -38,6 +38,7 @@ def limit_queue(
         limit_segment(seg, slot(paths, g, count), limits, override, work)
     for count in range(first_end, tail):
         k = slot(paths, g, count)
+        seg.row[k]["bound"] = 0.0
         if count + 1 < tail:
             limit_junction(seg, k, slot(paths, g, count + 1), limits, jerkrel, dt, work)
         else:

@@ -108,9 +108,10 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
     accel = seg.row[k]["full_accel"]
-    if path["override"] > 0.0:
-        for count in range(head, first):
-            row = seg.row[slot(paths, g, count)]
+    for count in range(head, min(first, last)):
+        row = seg.row[slot(paths, g, count)]
+        row["bound"] = max(row["bound"], row["out"])
+        if path["override"] > 0.0:
             row["cap"] = min(row["cap"], row["feed"] * path["override"])
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
