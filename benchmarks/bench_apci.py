@@ -7,12 +7,12 @@ import time
 
 from _measure import Figure, at_least
 from _report import run_script
-from polycnc.controllers.apci._axis_commands import cl
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._move_commands import Speeds, mlr
-from polycnc.controllers.apci._registers import ModeReg
-from polycnc.controllers.apci._spool_commands import ssms
-from polycnc.controllers.apci._system_file import parse_system_file
+from polycnc.controllers.apci.board._axis_commands import cl
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._move_commands import Speeds, mlr
+from polycnc.controllers.apci.board._spool_commands import ssms
+from polycnc.controllers.apci.board._system_file import parse_system_file
+from polycnc.controllers.apci.core._registers import ModeReg
 
 RUNS = 3
 AXES = 18

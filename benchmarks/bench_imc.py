@@ -7,11 +7,11 @@ import time
 
 from _measure import Figure, at_least
 from _report import run_script
-from polycnc.controllers.imc._card import Card, Fifo
-from polycnc.controllers.imc._config import CardConfig
-from polycnc.controllers.imc._event_codes import LOAD_MOST, EventCommand, EventType
-from polycnc.controllers.imc._instructions import Event, InstallEvents, Segment, Write
-from polycnc.controllers.imc._parameters import address
+from polycnc.controllers.imc.card._card import Card, Fifo
+from polycnc.controllers.imc.card._config import CardConfig
+from polycnc.controllers.imc.core._event_codes import LOAD_MOST, EventCommand, EventType
+from polycnc.controllers.imc.core._instructions import Event, InstallEvents, Segment, Write
+from polycnc.controllers.imc.core._parameters import address
 
 RUNS = 3
 AXES = 16

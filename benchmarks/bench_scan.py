@@ -9,9 +9,9 @@ import numpy as np
 
 from _measure import Figure, median_s
 from _report import run_script
-from polycnc.nc._program import ProgramText, TextRules
-from polycnc.nc._scan import scan, scan_rules, word_columns
-from polycnc.nc._scan_plain import scan_blocks
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import scan, scan_rules, word_columns
+from polycnc.nc.text._scan_plain import scan_blocks
 
 BLOCKS = 1_000_000
 SLOW_BLOCKS = 20_000

@@ -8,16 +8,16 @@ from types import ModuleType
 from polycnc.controllers.apci import pcap
 
 _GROUPS = {  # where pcap gets its functions from, and what they are
-    "_pcap_library": "Virtual boards",
-    "_pcap_system": "Booting and initialising",
-    "_pcap_control": "Loops, resets, zeros, overrides",
-    "_pcap_motion": "Motion at once",
-    "_pcap_spool": "The spooler",
-    "_pcap_parameters": "Parameters, positions, system variables",
-    "_pcap_io": "Inputs, outputs, lights, interrupts",
-    "_pcap_latch": "Latches and recording",
-    "_pcap_tasks": "CNC tasks and common variables",
-    "_pcap_special": "Variables of special firmware",
+    "_library": "Virtual boards",
+    "_system": "Booting and initialising",
+    "_control": "Loops, resets, zeros, overrides",
+    "_motion": "Motion at once",
+    "_spool": "The spooler",
+    "_parameters": "Parameters, positions, system variables",
+    "_io": "Inputs, outputs, lights, interrupts",
+    "_latch": "Latches and recording",
+    "_tasks": "CNC tasks and common variables",
+    "_special_variables": "Variables of special firmware",
 }
 _HEAD = """# APCI function library
 

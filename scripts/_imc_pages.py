@@ -5,23 +5,16 @@ from collections.abc import Callable, Iterator
 from types import ModuleType
 from typing import Any
 
-from polycnc.controllers.imc import (
-    _lib_device,
-    _lib_expansions,
-    _lib_memory,
-    _lib_motion,
-    _lib_network,
-    _lib_path,
-    _parameters,
-    imclib,
-)
+from polycnc.controllers.imc import imclib
+from polycnc.controllers.imc.core import _parameters
+from polycnc.controllers.imc.library import _device, _expansions, _memory, _motion, _network, _path
 
 _GROUPS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
-    "Virtual cards": (_lib_network, ("attach", "detach", "NetCard", "Port")),
-    "Find, open, close": (_lib_device, ()),
-    "Parameters, bits, waits": (_lib_memory, ()),
-    "Paths, contours, events, captures": (_lib_path, ()),
-    "Motion": (_lib_motion, ()),
+    "Virtual cards": (_network, ("attach", "detach", "NetCard", "Port")),
+    "Find, open, close": (_device, ()),
+    "Parameters, bits, waits": (_memory, ()),
+    "Paths, contours, events, captures": (_path, ()),
+    "Motion": (_motion, ()),
 }
 
 _HEAD = "# {title}\n\n<!-- Written by scripts/reference. -->\n\n{text}\n"
@@ -78,7 +71,7 @@ def _functions() -> Iterator[str]:
             yield f"| `{name}` | `{value.__name__}` |\n"
     yield "\n## What functions of motion write\n\nEach writes all its parameters to its axis in one control cycle, "
     yield "with one instruction, as `IMC_SetMulParam` would.\n\n| function | writes |\n| --- | --- |\n"
-    for name, puts in _lib_expansions.EXPANSIONS.items():
+    for name, puts in _expansions.EXPANSIONS.items():
         yield f"| `{name}` | {', '.join(f'`{put.text}`' for put in puts)} |\n"
     yield "\n## Statuses\n\n| value | name | what it says |\n| ---: | --- | --- |\n"
     yield from (f"| {status.value} | `{status.name}` | {status.text} |\n" for status in imclib.IMC_STATUS)

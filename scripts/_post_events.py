@@ -1,6 +1,6 @@
 """The reference page of the post-processor's events, made from their table."""
 
-from polycnc.post._events import EVENTS, WORDS
+from polycnc.post.macros._events import EVENTS, WORDS
 
 _HEAD = """# Events of a tool path
 

@@ -13,8 +13,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from polycnc.nc._compensation import CompensationError, RadiusCompensation, Side
-from polycnc.nc._moves import Arc, Feed, Line, Move, QueueItem
+from polycnc.nc.blocks._compensation import CompensationError, RadiusCompensation, Side
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, QueueItem
 
 Outer = Literal["arc", "intersection"]
 Floats = npt.NDArray[np.float64]

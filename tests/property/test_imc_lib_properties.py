@@ -9,9 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.controllers.imc import imclib as lib
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._lib_call import c_type
-from polycnc.controllers.imc._lib_types import Pointer
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.library._call import c_type
+from polycnc.controllers.imc.library._types import Pointer
 from support.imc_network import opened
 
 FUNCTIONS = [

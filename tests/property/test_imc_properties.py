@@ -12,10 +12,10 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._homing import home_sequence
-from polycnc.controllers.imc._instructions import Segment, WaitParam, WaitTime, Write, WriteMany
-from polycnc.controllers.imc._parameters import PARAMETERS, address
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.core._homing import home_sequence
+from polycnc.controllers.imc.core._instructions import Segment, WaitParam, WaitTime, Write, WriteMany
+from polycnc.controllers.imc.core._parameters import PARAMETERS, address
 from support.imc_card import (
     FLAG,
     IFIFO,

@@ -10,9 +10,9 @@ import pytest
 from hypothesis import example, given, settings
 
 from polycnc.errors import ProgramError
-from polycnc.nc._program import ProgramText, TextRules
-from polycnc.nc._scan import BAD, OVERSIZE, STATEMENT, WordColumns, scan, scan_rules, word_columns
-from polycnc.nc._scan_plain import Block, scan_block
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import BAD, OVERSIZE, STATEMENT, WordColumns, scan, scan_rules, word_columns
+from polycnc.nc.text._scan_plain import Block, scan_block
 
 PLAIN_RULES = TextRules()
 CPL_RULES = TextRules(

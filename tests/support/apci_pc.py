@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._system_file import parse_system_file
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._system_file import parse_system_file
 
 SCAN_S = 0.00128
 LATENCY = 2  # scans until a direct command takes effect

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.controllers.apci._axis_commands import cl
-from polycnc.controllers.apci._board import LATENCY_SCANS, Board
-from polycnc.controllers.apci._registers import Axst
-from polycnc.controllers.apci._system_file import parse_system_file
+from polycnc.controllers.apci.board._axis_commands import cl
+from polycnc.controllers.apci.board._board import LATENCY_SCANS, Board
+from polycnc.controllers.apci.board._system_file import parse_system_file
+from polycnc.controllers.apci.core._registers import Axst
 from polycnc.kernel import LEADING
 
 SCAN_S = 0.00128

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from polycnc.controllers.imc._card import Card, Fifo
-from polycnc.controllers.imc._config import CardConfig, parse_card
-from polycnc.controllers.imc._event_codes import EventCommand, EventType
-from polycnc.controllers.imc._instructions import (
+from polycnc.controllers.imc.card._card import Card, Fifo
+from polycnc.controllers.imc.card._config import CardConfig, parse_card
+from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
+from polycnc.controllers.imc.core._instructions import (
     Event,
     InstallEvents,
     Segment,
@@ -15,7 +15,7 @@ from polycnc.controllers.imc._instructions import (
     Write,
     WriteMany,
 )
-from polycnc.controllers.imc._parameters import address, parameter
+from polycnc.controllers.imc.core._parameters import address, parameter
 
 IFIFO, QFIFO, PFIFO1, PFIFO2 = Fifo.SEL_IFIFO, Fifo.SEL_QFIFO, Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2
 FLAG = -1

@@ -6,10 +6,10 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._config import CardConfig, parse_card
-from polycnc.controllers.imc._instructions import Instruction
-from polycnc.controllers.imc._parameters import PARAMETERS
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.card._config import CardConfig, parse_card
+from polycnc.controllers.imc.core._instructions import Instruction
+from polycnc.controllers.imc.core._parameters import PARAMETERS
 
 
 class ToldCard:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from polycnc.post import ControlFile, parse_control
-from polycnc.post._program import BlockMap, PostSummary, post_program
-from polycnc.post._tool_path import ToolPath, parse_tool_path
+from polycnc.post.output._program import BlockMap, PostSummary, post_program
+from polycnc.post.tool_path._tool_path import ToolPath, parse_tool_path
 
 # Every event writes one block, so that a test can read what was called with which words.
 MACROS = {

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, cast
 
 from polycnc.post import ControlFile, PostSummary, ToolPath, parse_tool_path, post_program
-from polycnc.post._control_parameters import Parameters
-from polycnc.post._events import MACROS
+from polycnc.post.macros._control_parameters import Parameters
+from polycnc.post.macros._events import MACROS
 
 Call = tuple[str, dict[str, float | str]]
 

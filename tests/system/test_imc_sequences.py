@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 import pytest
 
 from polycnc.controllers.imc import imclib as lib
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._config import parse_card
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.card._config import parse_card
 from polycnc.machine import Poll
 
 ONE = 65536  # 1 in S16.16

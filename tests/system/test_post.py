@@ -15,8 +15,8 @@ from typer.testing import CliRunner
 
 from polycnc.cli._app import app
 from polycnc.post import CONTROLS, load_control
-from polycnc.post._cl_words import HANDLERS
-from polycnc.post._json_path import DOINGS
+from polycnc.post.tool_path._cl_words import HANDLERS
+from polycnc.post.tool_path._json_path import DOINGS
 from polycnc.runner import post_file
 from support.command import COMMAND, environment, polycnc
 from support.pages import REPOSITORY

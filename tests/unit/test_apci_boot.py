@@ -5,9 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.controllers.apci._boot import Application
-from polycnc.controllers.apci._codes import BootCode, Code, InitCode, Status, TransferCode, status_text
-from polycnc.controllers.apci._environment import (
+from polycnc.controllers.apci.board._codes import BootCode, Code, InitCode, Status, TransferCode, status_text
+from polycnc.controllers.apci.board._environment import (
     LED_PLACES,
     EnvironmentStrings,
     InterfaceStatus,
@@ -16,10 +15,11 @@ from polycnc.controllers.apci._environment import (
     Leds,
     Messages,
 )
-from polycnc.controllers.apci._records import ROSI, TSRP, CppString, tsrp_array
-from polycnc.controllers.apci._registers import Ifs, assigned_inputs, board_name
-from polycnc.controllers.apci._slots import FAULTS, Pc, Slot, revision_numbers
-from polycnc.controllers.apci._system_file import SystemFile, parse_system_file
+from polycnc.controllers.apci.board._records import ROSI, TSRP, CppString, tsrp_array
+from polycnc.controllers.apci.board._system_file import SystemFile, parse_system_file
+from polycnc.controllers.apci.core._registers import Ifs, assigned_inputs, board_name
+from polycnc.controllers.apci.pc._boot import Application
+from polycnc.controllers.apci.pc._slots import FAULTS, Pc, Slot, revision_numbers
 from polycnc.errors import UsageError
 
 

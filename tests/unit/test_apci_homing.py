@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.controllers.apci._axis_commands import cl, ol, ra, shp, write_rp
-from polycnc.controllers.apci._jog_commands import ja, jhi, jhl, jhr, jr, js
-from polycnc.controllers.apci._latches import BY_STROBE
-from polycnc.controllers.apci._move_commands import Speeds, mlr
-from polycnc.controllers.apci._registers import Axst, Digi
+from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp, write_rp
+from polycnc.controllers.apci.board._jog_commands import ja, jhi, jhl, jhr, jr, js
+from polycnc.controllers.apci.board._move_commands import Speeds, mlr
+from polycnc.controllers.apci.core._latches import BY_STROBE
+from polycnc.controllers.apci.core._registers import Axst, Digi
 from support.apci_rig import LATENCY, SCAN_S, Rig
 
 SYSTEM = """

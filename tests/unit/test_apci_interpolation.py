@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from polycnc.controllers.apci._axis_commands import szpa
-from polycnc.controllers.apci._jog_commands import ja, jr, js, ms, ms_of_pc
-from polycnc.controllers.apci._move_commands import (
+from polycnc.controllers.apci.board._axis_commands import szpa
+from polycnc.controllers.apci.board._jog_commands import ja, jr, js, ms, ms_of_pc
+from polycnc.controllers.apci.board._move_commands import (
     Speeds,
     mca,
     mca3d,
@@ -20,9 +20,9 @@ from polycnc.controllers.apci._move_commands import (
     mla,
     mlr,
 )
-from polycnc.controllers.apci._registers import Axst, ErrorReg, ModeReg
-from polycnc.controllers.apci._spool_commands import ssms
-from polycnc.controllers.apci._units import PositionUnit, TimeUnit
+from polycnc.controllers.apci.board._spool_commands import ssms
+from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit
+from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Floats, Rig, scans_for
 
 FAST = Speeds(500.0, 40.0)

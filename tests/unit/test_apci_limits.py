@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polycnc.controllers.apci._axis_commands import cl, ol, ra, shp, write_mcp
-from polycnc.controllers.apci._jog_commands import ja, jr
-from polycnc.controllers.apci._move_commands import Speeds, mlr
-from polycnc.controllers.apci._registers import Axst, ErrorReg
-from polycnc.controllers.apci._spool_commands import moves_queued, ssms
+from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp, write_mcp
+from polycnc.controllers.apci.board._jog_commands import ja, jr
+from polycnc.controllers.apci.board._move_commands import Speeds, mlr
+from polycnc.controllers.apci.board._spool_commands import moves_queued, ssms
+from polycnc.controllers.apci.core._registers import Axst, ErrorReg
 from support.apci_rig import SCAN_S, Rig, scans_for
 
 

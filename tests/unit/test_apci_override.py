@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from polycnc.controllers.apci._axis_commands import ra, utrovr
-from polycnc.controllers.apci._jog_commands import jr
-from polycnc.controllers.apci._move_commands import Speeds, mcr, mlr
-from polycnc.controllers.apci._registers import Axst, ModeReg
-from polycnc.controllers.apci._spool_commands import ssms
+from polycnc.controllers.apci.board._axis_commands import ra, utrovr
+from polycnc.controllers.apci.board._jog_commands import jr
+from polycnc.controllers.apci.board._move_commands import Speeds, mcr, mlr
+from polycnc.controllers.apci.board._spool_commands import ssms
+from polycnc.controllers.apci.core._registers import Axst, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig, scans_for
 
 PATH = Speeds(100.0, 50.0)

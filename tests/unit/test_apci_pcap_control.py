@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci._registers import Axst, Digi, Ifs
+from polycnc.controllers.apci.core._registers import Axst, Digi, Ifs
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
 SYSTEM = """

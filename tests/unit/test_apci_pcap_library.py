@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._codes import InitCode
-from polycnc.controllers.apci._installed import InstalledBoard
-from polycnc.controllers.apci._system_file import parse_system_file
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._codes import InitCode
+from polycnc.controllers.apci.board._system_file import parse_system_file
+from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.machine import Poll
 from support.apci_pc import LATENCY, Pc
 

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._registers import Axst, ErrorReg, ModeReg
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
 SYSTEM = """

@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polycnc.controllers.apci import _records as records
-from polycnc.controllers.apci._layout import Record, pack_all
-from polycnc.controllers.apci._records import (
+from polycnc.controllers.apci.board import _records as records
+from polycnc.controllers.apci.board._layout import Record, pack_all
+from polycnc.controllers.apci.board._records import (
     AS,
     CDBUF,
     CIBUF,

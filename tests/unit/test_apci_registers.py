@@ -2,8 +2,9 @@
 
 import pytest
 
-from polycnc.controllers.apci import _codes as codes
-from polycnc.controllers.apci._registers import (
+from polycnc.controllers.apci.board import _codes as codes
+from polycnc.controllers.apci.board._system_file import parse_system_file
+from polycnc.controllers.apci.core._registers import (
     INPUT_PINS,
     MODE_BITS_RULED,
     OUTPUT_PINS,
@@ -23,7 +24,6 @@ from polycnc.controllers.apci._registers import (
     board_name,
     with_output,
 )
-from polycnc.controllers.apci._system_file import parse_system_file
 
 AXST = (
     "1 eo 2 dnr 3 lslh 4 lsrh 5 lsls 6 lsrs 7 mpe 8 dhef 9 cef 12 pe 13 cl 14 ip 15 ui 16 lpsf "

@@ -7,12 +7,12 @@ from itertools import pairwise
 import pytest
 
 from polycnc.controllers.apci import sap
-from polycnc.controllers.apci._axis_commands import cl
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._move_commands import Speeds, mlr
-from polycnc.controllers.apci._sap_host import BoardTasks
-from polycnc.controllers.apci._system_axis import AxisSetup
-from polycnc.controllers.apci._system_file import SystemFile
+from polycnc.controllers.apci.board._axis_commands import cl
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._move_commands import Speeds, mlr
+from polycnc.controllers.apci.board._system_axis import AxisSetup
+from polycnc.controllers.apci.board._system_file import SystemFile
+from polycnc.controllers.apci.sap._board_host import BoardTasks
 
 REFERENCED, LATCHED, RIGHT_SOFT_LIMIT = 1 << 17, 1 << 16, 1 << 6
 JOG = "A1.jac := 100; A1.jvl := 50; A1.jtvl := 0; "

@@ -8,12 +8,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from polycnc.controllers.apci._axis_commands import cl, ol, ra, utrovr
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._jog_commands import ja, jr, js, ms
-from polycnc.controllers.apci._move_commands import Speeds, mla, mlr
-from polycnc.controllers.apci._registers import Axst, ErrorReg, ModeReg
-from polycnc.controllers.apci._spool_commands import (
+from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, utrovr
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._jog_commands import ja, jr, js, ms
+from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
+from polycnc.controllers.apci.board._spool_commands import (
     free_bytes,
     moves_queued,
     sdels,
@@ -23,6 +22,7 @@ from polycnc.controllers.apci._spool_commands import (
     sstps,
     sstvl,
 )
+from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig, scans_for
 
 SLOW = Speeds(100.0, 50.0)

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polycnc.controllers.apci._registers import ModeReg
-from polycnc.controllers.apci._system_axis import AxisSetup, PlantConfig
-from polycnc.controllers.apci._system_file import (
+from polycnc.controllers.apci.board._system_axis import AxisSetup, PlantConfig
+from polycnc.controllers.apci.board._system_file import (
     BoardVariables,
     InputPlan,
     OutputPlan,
@@ -18,8 +17,9 @@ from polycnc.controllers.apci._system_file import (
     load_system_file,
     parse_system_file,
 )
-from polycnc.controllers.apci._system_text import system_file_text
-from polycnc.controllers.apci._units import PositionUnit, TimeUnit, ratio, seconds
+from polycnc.controllers.apci.board._system_text import system_file_text
+from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit, ratio, seconds
+from polycnc.controllers.apci.core._registers import ModeReg
 from polycnc.errors import ConfigurationError, UsageError
 
 

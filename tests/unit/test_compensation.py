@@ -13,8 +13,8 @@ from typing import Literal
 import pytest
 
 from polycnc.errors import ConfigurationError, ProgramError
-from polycnc.nc._compensation import CompensationError, RadiusCompensation, Side
-from polycnc.nc._moves import Arc, Feed, Line, Move, QueueItem, Wait
+from polycnc.nc.blocks._compensation import CompensationError, RadiusCompensation, Side
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, QueueItem, Wait
 
 XY_PLANE = (0, 1, 2)
 FEED = Feed(speed_mm_s=10.0)

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.nc._cycles import (
+from polycnc.nc.blocks._cycles import (
     CYCLES,
     CycleError,
     CyclePlace,

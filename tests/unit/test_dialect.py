@@ -11,9 +11,9 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from polycnc.errors import ConfigurationError, UsageError
-from polycnc.nc._actions import GROUP_OF, Action, Group, MAction
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
-from polycnc.nc._modal import (
+from polycnc.nc.blocks._actions import GROUP_OF, Action, Group, MAction
+from polycnc.nc.blocks._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
     ARC_TOLERANCE,
@@ -28,9 +28,9 @@ from polycnc.nc._modal import (
     RAPID_STOP,
     make_modal,
 )
-from polycnc.nc._program import ProgramText, TextRules
-from polycnc.nc._scan import STATEMENT
-from polycnc.nc._scan_plain import scan_blocks
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import STATEMENT
+from polycnc.nc.text._scan_plain import scan_blocks
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "dialects.md"
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.controllers.imc._parameters import address
+from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import FLAG, IFIFO, move_absolute, ready_card, send, set_now, trace
 
 

@@ -8,11 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._event_codes import EventCommand, EventType, constant_words
-from polycnc.controllers.imc._events import scale
-from polycnc.controllers.imc._instructions import Event, InstallEvents
-from polycnc.controllers.imc._parameters import address
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.core._event_codes import EventCommand, EventType, constant_words
+from polycnc.controllers.imc.core._events import scale
+from polycnc.controllers.imc.core._instructions import Event, InstallEvents
+from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import FLAG, IFIFO, QFIFO, event, install, move_absolute, ready_card, send, set_now
 
 A16, B16, R16 = (address(f"user16b{k}") for k in (1, 2, 0))

@@ -6,7 +6,7 @@ from fractions import Fraction
 
 import pytest
 
-from polycnc.controllers.imc._parameters import address
+from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import pytest
 
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._homing import home_sequence
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.core._homing import home_sequence
 from support.imc_card import FLAG, IFIFO, ready_card, send, set_now
 
 AXIS = """

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.imc import imclib as lib
-from polycnc.controllers.imc._parameters import PARAMETERS
+from polycnc.controllers.imc.core._parameters import PARAMETERS
 from support.imc_network import ToldCard, opened
 
 I, Q, P1, P2, C = range(5)  # noqa: E741

@@ -13,7 +13,7 @@ import pytest
 
 from polycnc.conformance import load_conformance
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc._lib_call import c_type
+from polycnc.controllers.imc.library._call import c_type
 
 STATUSES = [
     "IMC_OK",

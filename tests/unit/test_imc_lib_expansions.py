@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.imc import imclib as lib
-from polycnc.controllers.imc._event_codes import EventCommand, EventType
-from polycnc.controllers.imc._instructions import (
+from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
+from polycnc.controllers.imc.core._instructions import (
     ChangeBits,
     Event,
     InstallEvents,
@@ -19,8 +19,8 @@ from polycnc.controllers.imc._instructions import (
     Write,
     WriteMany,
 )
-from polycnc.controllers.imc._lib_expansions import EXPANSIONS
-from polycnc.controllers.imc._parameters import PARAMETERS
+from polycnc.controllers.imc.core._parameters import PARAMETERS
+from polycnc.controllers.imc.library._expansions import EXPANSIONS
 from support.imc_network import ToldCard, opened
 
 

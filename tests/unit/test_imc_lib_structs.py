@@ -8,7 +8,7 @@ import struct
 import pytest
 
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc._lib_structs import Operand2, Record
+from polycnc.controllers.imc.library._structs import Operand2, Record
 from polycnc.errors import UsageError
 
 

@@ -8,10 +8,10 @@ import re
 import pytest
 
 from polycnc import conformance
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._config import CardConfig, parse_card
-from polycnc.controllers.imc._instructions import ChangeBits, Write, WriteMany
-from polycnc.controllers.imc._parameters import (
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.card._config import CardConfig, parse_card
+from polycnc.controllers.imc.core._instructions import ChangeBits, Write, WriteMany
+from polycnc.controllers.imc.core._parameters import (
     PARAMETERS,
     Parameter,
     address,

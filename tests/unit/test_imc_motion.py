@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from polycnc.controllers.imc._instructions import Write, WriteMany
-from polycnc.controllers.imc._parameters import address
+from polycnc.controllers.imc.core._instructions import Write, WriteMany
+from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,

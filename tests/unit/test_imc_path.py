@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from polycnc.controllers.imc._instructions import Segment
+from polycnc.controllers.imc.core._instructions import Segment
 from support.imc_card import (
     FLAG,
     IFIFO,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from polycnc.controllers.imc._card import Fifo
-from polycnc.controllers.imc._event_codes import EventCommand, EventType
-from polycnc.controllers.imc._instructions import (
+from polycnc.controllers.imc.card._card import Fifo
+from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
+from polycnc.controllers.imc.core._instructions import (
     Event,
     InstallEvents,
     Segment,
@@ -15,7 +15,7 @@ from polycnc.controllers.imc._instructions import (
     Write,
     WriteMany,
 )
-from polycnc.controllers.imc._parameters import address
+from polycnc.controllers.imc.core._parameters import address
 from polycnc.errors import UsageError
 from support.imc_card import (
     FLAG,

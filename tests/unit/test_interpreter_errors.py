@@ -9,7 +9,7 @@ import pytest
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine
 from polycnc.nc import Channel, ProgramText, load_dialect
-from polycnc.nc._queue import QueueWriter
+from polycnc.nc.blocks._queue import QueueWriter
 from support.programs import FIVE, MILL, channel_state, listing, prepare, queue_bytes, refusal
 
 

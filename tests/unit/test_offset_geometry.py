@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from polycnc.nc._offset_geometry import (
+from polycnc.nc.blocks._offset_geometry import (
     Leg,
     arc_leg,
     chamfer,

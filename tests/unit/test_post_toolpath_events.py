@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.post._events import EVENTS, MACROS, WORDS, words_of
+from polycnc.post.macros._events import EVENTS, MACROS, WORDS, words_of
 from support.post_controls import control, posted
 from support.post_recorder import calls_of, points_of
 

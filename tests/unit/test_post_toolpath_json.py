@@ -7,9 +7,9 @@ import json
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.post import _records as records
 from polycnc.post import parse_tool_path
-from polycnc.post._json_path import DOINGS
+from polycnc.post.tool_path import _records as records
+from polycnc.post.tool_path._json_path import DOINGS
 
 
 def read(*doings: object, **more: object) -> list[records.Record]:

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.post._arcs import Arc, cuts
-from polycnc.post._rotary import axis_of, table_angles
+from polycnc.post.output._rotary import axis_of, table_angles
+from polycnc.post.tool_path._arcs import Arc, cuts
 from support.post_controls import control, posted
 from support.post_recorder import moves_of, points_of
 

@@ -8,7 +8,7 @@ import pytest
 
 from polycnc.errors import ProgramError, UsageError
 from polycnc.post import open_tool_path, parse_tool_path
-from polycnc.post._records import (
+from polycnc.post.tool_path._records import (
     Circle,
     Compensation,
     Coolant,

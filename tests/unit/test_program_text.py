@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.errors import UsageError
-from polycnc.nc._program import ProgramText
+from polycnc.nc.text._program import ProgramText
 
 
 def test_text_and_bytes_become_the_same_read_only_array() -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.nc._program import ProgramText, TextRules
-from polycnc.nc._scan import (
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import (
     BAD,
     COMMENT,
     LABEL,
@@ -24,7 +24,7 @@ from polycnc.nc._scan import (
     scan_rules,
     word_columns,
 )
-from polycnc.nc._scan_plain import Block, scan_block, scan_blocks
+from polycnc.nc.text._scan_plain import Block, scan_block, scan_blocks
 
 RULES = TextRules()
 CPL = TextRules(line_numbers=True, semicolon_comments=False, statement_characters="[]#\"'$,*<>&?!@_%:;()")

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.errors import UsageError
-from polycnc.kernel._jit import entry
+from polycnc.kernel import entry
 from polycnc.machine._config import IO_ADDRESS, IoConfig
 
 Row: TypeAlias = npt.NDArray[np.uint8] | npt.NDArray[np.int32]

@@ -1,10 +1,10 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
-from polycnc.nc._actions import Action, Group, MAction
 from polycnc.nc._channel import Channel
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
-from polycnc.nc._messages import Message
-from polycnc.nc._program import ProgramText
+from polycnc.nc.blocks._actions import Action, Group, MAction
+from polycnc.nc.blocks._messages import Message
+from polycnc.nc.text._program import ProgramText
 
 __all__ = [
     "DEFAULT_DIALECT",

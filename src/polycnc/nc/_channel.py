@@ -1,6 +1,6 @@
 """A channel: prepares a program ahead of its execution and fills the channel queue with it.
 
-Runs of plain blocks go through the compiled kernel (`_fast`), every other block, and the first blocks of a
+Runs of plain blocks go through the compiled kernel (`fast`), every other block, and the first blocks of a
 program, through the ordinary interpreter.
 """
 
@@ -11,17 +11,17 @@ from collections.abc import Callable
 from polycnc.errors import ProgramError
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine
-from polycnc.nc._calls import Calls, Place
-from polycnc.nc._channel_state import ChannelState
 from polycnc.nc._dialect import Dialect
-from polycnc.nc._fast import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, run_plain
-from polycnc.nc._interpreter import Control, Interpreter, Outcome
-from polycnc.nc._messages import Messages
-from polycnc.nc._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
-from polycnc.nc._program import ProgramText
-from polycnc.nc._queue import ExecutionStoppedError, QueueWriter
-from polycnc.nc._scan import COMMENT, LABEL, PERCENT, WordColumns, scan, scan_rules, word_columns
-from polycnc.nc._scan_plain import Block, Word, scan_block
+from polycnc.nc.blocks._calls import Calls, Place
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._interpreter import Control, Interpreter, Outcome
+from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
+from polycnc.nc.blocks._queue import ExecutionStoppedError, QueueWriter
+from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, run_plain
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import COMMENT, LABEL, PERCENT, WordColumns, scan, scan_rules, word_columns
+from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 ORDINARY_BLOCKS = 2000
 _CHUNK_BLOCKS = 1 << 14

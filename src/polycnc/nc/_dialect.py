@@ -17,9 +17,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
 from polycnc.machine import StrictModel, load_toml, parse_toml, problem, validate
-from polycnc.nc._actions import M_ACTIONS, Action, MAction
-from polycnc.nc._cycles import CycleSettings
-from polycnc.nc._modal import (
+from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
+from polycnc.nc.blocks._cycles import CycleSettings
+from polycnc.nc.blocks._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
     ARC_TOLERANCE,
@@ -41,7 +41,7 @@ from polycnc.nc._modal import (
     set_inch,
     set_plane,
 )
-from polycnc.nc._program import TextRules
+from polycnc.nc.text._program import TextRules
 
 G_CODES = 10000  # G0 to G999.9
 

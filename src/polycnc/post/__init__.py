@@ -1,14 +1,14 @@
 """The post-processor: a control file turns a tool path into a program for a control."""
 
-from polycnc.post._control_file import CONTROLS, ControlFile, load_control, parse_control, shipped_text
-from polycnc.post._control_parameters import Parameters
-from polycnc.post._program import BlockMap, PostSummary, post_program
-from polycnc.post._reference import control_file_reference
-from polycnc.post._run import MacroRun
-from polycnc.post._source import Remark
-from polycnc.post._sweep import Sweep, sweep_tool_path
-from polycnc.post._tool_path import ToolPath, open_tool_path, parse_tool_path
-from polycnc.post._writing import program_file
+from polycnc.post.macros._control_file import CONTROLS, ControlFile, load_control, parse_control, shipped_text
+from polycnc.post.macros._control_parameters import Parameters
+from polycnc.post.macros._reference import control_file_reference
+from polycnc.post.macros._run import MacroRun
+from polycnc.post.output._program import BlockMap, PostSummary, post_program
+from polycnc.post.output._writing import program_file
+from polycnc.post.tool_path._source import Remark
+from polycnc.post.tool_path._sweep import Sweep, sweep_tool_path
+from polycnc.post.tool_path._tool_path import ToolPath, open_tool_path, parse_tool_path
 
 __all__ = [
     "CONTROLS",

@@ -3,12 +3,12 @@
 `pcap` is the library that programs call, by the manual's names; `Board` is the virtual board behind it.
 """
 
-from polycnc.controllers.apci._board import Board
-from polycnc.controllers.apci._installed import InstalledBoard
-from polycnc.controllers.apci._registers import Axst, Digi, Digo, ErrorReg, Ifs, ModeReg
-from polycnc.controllers.apci._sap_host import BoardTasks
-from polycnc.controllers.apci._system_file import SystemFile, load_system_file, parse_system_file
-from polycnc.controllers.apci._system_text import system_file_text
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._system_file import SystemFile, load_system_file, parse_system_file
+from polycnc.controllers.apci.board._system_text import system_file_text
+from polycnc.controllers.apci.core._registers import Axst, Digi, Digo, ErrorReg, Ifs, ModeReg
+from polycnc.controllers.apci.pc._installed import InstalledBoard
+from polycnc.controllers.apci.sap._board_host import BoardTasks
 
 __all__ = [
     "Axst",

@@ -28,7 +28,26 @@ each lets one scan pass before it reads, so polling loops end. `attach(clock=...
 
 from __future__ import annotations
 
-from polycnc.controllers.apci._pcap_control import (
+from polycnc.controllers.apci.board._records import (
+    AS,
+    CBCNCT,
+    CDBUF,
+    CIBUF,
+    CMP,
+    CNCTS,
+    CTRLPARAMS,
+    HMP,
+    HMP3D,
+    LATCH_INFOS,
+    LMP,
+    MAXAXIS,
+    ROSI,
+    SPDBUF,
+    TRU,
+    TSRP,
+    tsrp_array,
+)
+from polycnc.controllers.apci.library._control import (
     RPtoDP,
     azo,
     cl,
@@ -41,7 +60,7 @@ from polycnc.controllers.apci._pcap_control import (
     szpr,
     utrovr,
 )
-from polycnc.controllers.apci._pcap_io import (
+from polycnc.controllers.apci.library._io import (
     MCUG3_ResetBoardIntRoutine,
     MCUG3_SetBoardIntRoutine,
     rdaxstb,
@@ -63,18 +82,18 @@ from polycnc.controllers.apci._pcap_io import (
     wrledrd,
     wrledyl,
 )
-from polycnc.controllers.apci._pcap_latch import (
+from polycnc.controllers.apci.library._latch import (
     lpr,
     lprs,
     lps,
     recording,
 )
-from polycnc.controllers.apci._pcap_library import (
+from polycnc.controllers.apci.library._library import (
     attach,
     board,
     detach,
 )
-from polycnc.controllers.apci._pcap_motion import (
+from polycnc.controllers.apci.library._motion import (
     ja,
     jhi,
     jhl,
@@ -91,7 +110,7 @@ from polycnc.controllers.apci._pcap_motion import (
     mlr,
     ms,
 )
-from polycnc.controllers.apci._pcap_parameters import (
+from polycnc.controllers.apci.library._parameters import (
     ctru,
     rdap,
     rdaux,
@@ -186,7 +205,7 @@ from polycnc.controllers.apci._pcap_parameters import (
     wrtrtvl,
     wrtrvl,
 )
-from polycnc.controllers.apci._pcap_special import (
+from polycnc.controllers.apci.library._special_variables import (
     rdAxVarDbl,
     rdAxVarInt,
     rdSysVarDbl,
@@ -196,7 +215,7 @@ from polycnc.controllers.apci._pcap_special import (
     wrSysVarDbl,
     wrSysVarInt,
 )
-from polycnc.controllers.apci._pcap_spool import (
+from polycnc.controllers.apci.library._spool import (
     ClearCI99,
     sdels,
     smca,
@@ -219,7 +238,7 @@ from polycnc.controllers.apci._pcap_spool import (
     sstps,
     sstvl,
 )
-from polycnc.controllers.apci._pcap_system import (
+from polycnc.controllers.apci.library._system import (
     BootErrorReport,
     BootFile,
     CardSelect,
@@ -234,7 +253,7 @@ from polycnc.controllers.apci._pcap_system import (
     txbf2,
     txbfErrorReport,
 )
-from polycnc.controllers.apci._pcap_tasks import (
+from polycnc.controllers.apci.library._tasks import (
     contcnct,
     gettskinfo,
     gettskstr,
@@ -248,25 +267,6 @@ from polycnc.controllers.apci._pcap_tasks import (
     wrcbcnct,
     wrcd,
     wrci,
-)
-from polycnc.controllers.apci._records import (
-    AS,
-    CBCNCT,
-    CDBUF,
-    CIBUF,
-    CMP,
-    CNCTS,
-    CTRLPARAMS,
-    HMP,
-    HMP3D,
-    LATCH_INFOS,
-    LMP,
-    MAXAXIS,
-    ROSI,
-    SPDBUF,
-    TRU,
-    TSRP,
-    tsrp_array,
 )
 
 __all__ = [

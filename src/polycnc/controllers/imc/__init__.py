@@ -3,7 +3,7 @@
 `imclib` is the library that programs call, by the manual's names; `Card` is the virtual card behind it.
 """
 
-from polycnc.controllers.imc._card import Card
-from polycnc.controllers.imc._config import CardConfig, load_card, parse_card
+from polycnc.controllers.imc.card._card import Card
+from polycnc.controllers.imc.card._config import CardConfig, load_card, parse_card
 
 __all__ = ["Card", "CardConfig", "load_card", "parse_card"]

@@ -23,8 +23,9 @@ An instruction for IFIFO takes one control cycle; all other time passes when a p
 
 from __future__ import annotations
 
-from polycnc.controllers.imc._event_codes import EventCommand, EventType
-from polycnc.controllers.imc._lib_codes import (
+from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
+from polycnc.controllers.imc.core._parameters import PARAMETERS
+from polycnc.controllers.imc.library._codes import (
     FIFO_SEL,
     IMC_CHECK_ERROR,
     IMC_DEVICE_NOT_FOUND,
@@ -52,14 +53,14 @@ from polycnc.controllers.imc._lib_codes import (
     SEL_PFIFO2,
     SEL_QFIFO,
 )
-from polycnc.controllers.imc._lib_device import (
+from polycnc.controllers.imc.library._device import (
     IMC_Close,
     IMC_FindNetCard,
     IMC_Open,
     IMC_OpenUsePassword,
     IMC_OpenX,
 )
-from polycnc.controllers.imc._lib_memory import (
+from polycnc.controllers.imc.library._memory import (
     IMC_GetMulParam,
     IMC_GetParam16,
     IMC_GetParam32,
@@ -77,7 +78,7 @@ from polycnc.controllers.imc._lib_memory import (
     IMC_WaitParamMask,
     IMC_WaitTime,
 )
-from polycnc.controllers.imc._lib_motion import (
+from polycnc.controllers.imc.library._motion import (
     IMC_GearFree,
     IMC_GearInDist,
     IMC_GearInTime,
@@ -99,14 +100,14 @@ from polycnc.controllers.imc._lib_motion import (
     IMC_TgvelInDist,
     IMC_TgvelInTime,
 )
-from polycnc.controllers.imc._lib_network import (
+from polycnc.controllers.imc.library._network import (
     IMC_HANDLE,
     NetCard,
     Port,
     attach,
     detach,
 )
-from polycnc.controllers.imc._lib_path import (
+from polycnc.controllers.imc.library._path import (
     IMC_AddArc,
     IMC_AddArcLine,
     IMC_AddArcLineWithVel,
@@ -120,14 +121,13 @@ from polycnc.controllers.imc._lib_path import (
     IMC_InstallEvent,
     IMC_PutContourData,
 )
-from polycnc.controllers.imc._lib_structs import (
+from polycnc.controllers.imc.library._structs import (
     NIC_INFO,
     WR_MUL_DES,
     EventInfo,
     PFIFOSegData,
     PFIFOSegInfo,
 )
-from polycnc.controllers.imc._parameters import PARAMETERS
 
 IMC_EVENT_CMD = EventCommand
 IMC_EventType = EventType

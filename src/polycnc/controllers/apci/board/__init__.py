@@ -1,0 +1,1 @@
+"""The virtual board: its axes, variables, system file and commands, by the manual's names."""

@@ -1,0 +1,287 @@
+"""One axis as programs see it: its parameters and registers by the manual's names, in the axis' own units."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polycnc.controllers.apci.board._motor_command import counts_for
+from polycnc.controllers.apci.board._parameter import Parameter
+from polycnc.controllers.apci.board._system_axis import AxisSetup
+from polycnc.controllers.apci.board._units import seconds
+from polycnc.controllers.apci.core._registers import Axst, Digi
+from polycnc.controllers.apci.core._state import LEFT, RIGHT
+
+if TYPE_CHECKING:
+    from polycnc.controllers.apci.board._board import Board
+    from polycnc.controllers.apci.board._system_file import SystemFile
+
+
+# In the order of `Axis.status_word`.
+_STATUS_BITS = tuple(
+    map(
+        int,
+        (
+            Axst.eo,
+            Axst.dnr,
+            Axst.lslh,
+            Axst.lsrh,
+            Axst.lsls,
+            Axst.lsrs,
+            Axst.mpe,
+            Axst.dhef,
+            Axst.cef,
+            Axst.pe,
+            Axst.cl,
+            Axst.ip,
+            Axst.ui,
+            Axst.lpsf,
+            Axst.referenced,
+            Axst.refh,
+            Axst.saf,
+        ),
+    )
+)
+
+
+class Axis:
+    """Axis `index` of a board."""
+
+    jvl = Parameter("jvl", 1)
+    jtvl = Parameter("jtvl", 1)
+    hac = Parameter("hac", 2)
+    hvl = Parameter("hvl", 1)
+    sdec = Parameter("sdec", 2)
+    sll = Parameter("sll")
+    slr = Parameter("slr")
+    ipw = Parameter("ipw")
+    mpe = Parameter("mpe")
+    gf = Parameter("gf", units=True, above_zero=True)
+    gfaux = Parameter("gfaux")
+    slsp = Parameter("slsp", units=True, above_zero=True)
+    effradius = Parameter("effradius", units=True)
+    MaxVel = Parameter("MaxVel")  # these three in the units of interpolation, as they were written
+    MaxAcc = Parameter("MaxAcc")
+    MDVEL = Parameter("MDVEL")
+    dvoffset = Parameter("dvoffset", 1)
+    aux = Parameter("aux")
+    tp = Parameter("tp")
+    kp = Parameter("kp")
+    ki = Parameter("ki")
+    kd = Parameter("kd")
+    kpl = Parameter("kpl")
+    kfca = Parameter("kfca")
+    kfcv = Parameter("kfcv")
+
+    def __init__(self, board: Board, index: int, setup: AxisSetup) -> None:
+        self.board = board
+        self.index = index
+        self.setup = setup
+        self.row: Any = board.state.axis[index]
+        self.servo: Any = board.kernel.servo.row[index]
+        self.time_unit_s = seconds(setup.velocity_time_unit, board.config.sample_time_s)
+        self.varint = np.zeros(100, np.int32)  # application-specific axis variables
+        self.vardbl = np.zeros(100)
+        self.ctrlparams = np.zeros((15, 15))
+        self.zero_offsets = [0.0] * 5
+        self.ControllerFlags = 0
+        self.GCR = 0
+        self.alarms = 0  # of an encoder that evaluates its signals: digi bits AEA to AES
+
+    # ------------------------------------------------------------------ parameters with a meaning of their own
+
+    @property
+    def jac(self) -> float:
+        """Jog acceleration; a negative one sets the slope of the braking ramp (Manual 002, 2.2.3)."""
+        return float(self.row["jac"] * self.time_unit_s**2)
+
+    @jac.setter
+    def jac(self, value: float) -> None:
+        if not math.isfinite(value):
+            return
+        rate = abs(value) / self.time_unit_s**2
+        self.row["jdec"] = rate
+        if value >= 0.0:
+            self.row["jac"] = rate
+
+    @property
+    def jdec(self) -> float:
+        """Slope of the jog braking ramp."""
+        return float(self.row["jdec"] * self.time_unit_s**2)
+
+    @property
+    def jovr(self) -> float:
+        """Jog override."""
+        return float(self.row["jovr"])
+
+    @jovr.setter
+    def jovr(self, value: float) -> None:
+        if value > 0.0 and math.isfinite(value):
+            self.board.change_jog_override(self.index, value)
+
+    @property
+    def jerkrel(self) -> float:
+        """Part of a ramp that is bent, 0 to 1 (Manual 002, 4.4.76.1)."""
+        return float(self.row["jerkrel"])
+
+    @jerkrel.setter
+    def jerkrel(self, value: float) -> None:
+        if not math.isnan(value):
+            self.row["jerkrel"] = min(max(value, 0.0), 1.0)
+
+    @property
+    def dpoffset(self) -> float:
+        """Offset added to the setpoint."""
+        return float(self.row["dpoffset"])
+
+    @dpoffset.setter
+    def dpoffset(self, value: float) -> None:
+        if math.isfinite(value):
+            self.row["dpoffset"] = value
+            self.board.move_offset(self.index)
+
+    # ------------------------------------------------------------------ positions
+
+    @property
+    def origin(self) -> float:
+        """Machine position of what is 0 for programs: machine zero and zero offset."""
+        return float(self.row["zero"] + self.row["offset"])
+
+    @property
+    def rp(self) -> float:
+        """Actual position."""
+        return float(self.board.kernel.servo.actual[self.index] - self.row["shift"]) - self.origin
+
+    @property
+    def dp(self) -> float:
+        """Setpoint position."""
+        return float(self.board.kernel.setpoint[self.index] - self.row["shift"]) - self.origin
+
+    @property
+    def rv(self) -> float:
+        """Actual velocity."""
+        return float(self.row["rv"] * self.time_unit_s)
+
+    @property
+    def dv(self) -> float:
+        """Setpoint velocity of the profile generator."""
+        return self.board.profile_velocity(self.index) * self.time_unit_s
+
+    @property
+    def position_error(self) -> float:
+        """Setpoint less actual position."""
+        return float(self.servo["following_error"])
+
+    @property
+    def counts_per_unit(self) -> float:
+        """Encoder counts or steps in one unit of position."""
+        return self.slsp * self.gf
+
+    def displayed(self, position: float) -> float:
+        """Return a position in the display unit."""
+        return position * (self.setup.display_ratio(self.counts_per_unit) or 1.0)
+
+    # ------------------------------------------------------------------ latches
+
+    @property
+    def lp(self) -> float:
+        """Latched position; reading it clears lpsf."""
+        self.row["lpsf"] = 0
+        self.row["lp_source"] = 0
+        return float(self.row["lp"] - self.row["offset"])
+
+    @lp.setter
+    def lp(self, value: float) -> None:
+        if math.isfinite(value):
+            self.row["lp"] = value + self.row["offset"]
+
+    @property
+    def lpndx(self) -> float:
+        """Position latched at the encoder's index."""
+        return float(self.row["lpndx"] - self.row["offset"])
+
+    @lpndx.setter
+    def lpndx(self, value: float) -> None:
+        if math.isfinite(value):
+            self.row["lpndx"] = value + self.row["offset"]
+
+    # ------------------------------------------------------------------ motor command
+
+    @property
+    def mcp(self) -> int:
+        """Motor command port (Manual 002, 4.4.88 and 4.4.162)."""
+        if not self.row["closed"]:
+            return int(self.row["mcp"])
+        return counts_for(self, float(self.servo["output"]))
+
+    def step_frequency_hz(self, mcp: int) -> float:
+        """Return the signed step frequency of a stepper's motor command."""
+        if mcp == 0:
+            return 0.0
+        return math.copysign(self.board.config.stepper_clock_hz / 2.0 / (abs(mcp) + 1), mcp)
+
+    def check_configuration(self, planned: SystemFile) -> None:
+        """Compare the board with the system file that was loaded."""
+        self.row["cef"] = bool(planned.differences(self.board.config))
+
+    # ------------------------------------------------------------------ status
+
+    @property
+    def axst(self) -> Axst:
+        """Axis status word."""
+        return Axst(self.status_word)
+
+    @property
+    def status_word(self) -> int:
+        """Axis status word as a number, quickly: programs poll it."""
+        row, plan, inputs = self.row, self.board.state.plan[self.index], self.board.inputs
+        drive_ready = int(plan["DR"])
+        status = (
+            inputs & int(plan["EO"]),
+            drive_ready and inputs & drive_ready != drive_ready,
+            row["hard_limit"] & LEFT,
+            row["hard_limit"] & RIGHT,
+            row["soft_limit"] & LEFT,
+            row["soft_limit"] & RIGHT,
+            row["position_error"],
+            row["dhef"],
+            row["cef"],
+            row["pe"],
+            row["closed"],
+            row["in_position"],
+            inputs & int(plan["UI"]),
+            row["lpsf"],
+            row["referenced"],
+            inputs & int(plan["REF"]),
+            row["saf"],
+        )
+        return sum(bit for bit, value in zip(_STATUS_BITS, status, strict=True) if value)
+
+    @property
+    def digi(self) -> Digi:
+        """Digital inputs, and the encoder signals of this axis; reading leaves the latched bits (see rdigi)."""
+        row = self.row
+        signals = {
+            Digi.index: row["index_now"],
+            Digi.encoder_error: row["encoder_error"],
+            Digi.index_latched: row["index_seen"],
+            Digi.strobe_latched: row["strobe_seen"],
+        }
+        return Digi(self.board.inputs | self.alarms | sum(bit for bit, value in signals.items() if value))
+
+    @property
+    def relay(self) -> bool:
+        """Enable relay: on while the position loop is closed."""
+        return bool(self.row["closed"])
+
+    @property
+    def is_busy(self) -> bool:
+        """Tell whether a profile is being run, or the queue works."""
+        return not self.row["pe"]
+
+    @property
+    def queued(self) -> int:
+        """Entries in the spooler."""
+        return int(self.row["tail"] - self.row["head"])

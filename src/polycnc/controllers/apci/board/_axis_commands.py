@@ -1,0 +1,188 @@
+"""Commands that open and close loops, reset, and set positions; by the manual's names, axes by their numbers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from polycnc.controllers.apci.core._command_port import set_command
+from polycnc.controllers.apci.core._compiled_entries import go_on_with, stand
+from polycnc.controllers.apci.core._registers import ModeReg
+from polycnc.kernel import ADDED
+
+if TYPE_CHECKING:
+    from polycnc.controllers.apci.board._board import Board
+
+
+def cl(board: Board, axes: Sequence[int]) -> None:
+    """Close the position loops of `axes`; each stays where it is (Manual 002, 4.4.8)."""
+    for i in axes:
+        _close(board, i)
+
+
+def clv(board: Board, axes: Sequence[int]) -> None:
+    """Close the position loops of `axes`; each goes on with its actual velocity (Manual 002, 4.4.9)."""
+    for i in axes:
+        velocity = float(board.state.axis[i]["rv"])
+        _close(board, i)
+        if velocity != 0.0:
+            board.kernel.velocity[i] = velocity
+            go_on_with(board.state, i, float(board.kernel.base[i]), velocity)
+
+
+def _close(board: Board, i: int) -> None:
+    row, kernel = board.state.axis[i], board.kernel
+    board.cancel_commands(i)
+    stand(board.state, i)
+    kernel.base[i] = _base_at_actual(board, i)
+    kernel.setpoint[i] = kernel.servo.actual[i]
+    kernel.velocity[i] = 0.0
+    kernel.servo.row[i]["running"] = 0
+    kernel.servo.row[i]["loop_closed"] = 1
+    row["closed"] = 1
+    row["saf"] = row["held"] = row["hard_limit"] = row["soft_limit"] = row["position_error"] = 0
+    if row["stepper"]:
+        row["referenced"] = 0
+    board.outputs |= int(board.state.plan[i]["PAE"])
+
+
+def _base_at_actual(board: Board, i: int) -> float:
+    """Return what the profile must give for the setpoint to be where the axis is."""
+    added = board.kernel.ptp.row[ADDED, i]["position"] + board.state.axis[i]["shift"]
+    return float(board.kernel.servo.actual[i] - added)
+
+
+def ol(board: Board, axes: Sequence[int]) -> None:
+    """Open the position loops of `axes`: 0 V or 0 Hz, PAE off (Manual 002, 4.4.41)."""
+    for i in axes:
+        _open(board, i)
+        board.outputs &= ~int(board.state.plan[i]["PAE"])
+
+
+def _open(board: Board, i: int) -> None:
+    row = board.state.axis[i]
+    board.cancel_commands(i)
+    stand(board.state, i)
+    row["closed"] = row["held"] = 0
+    if row["stepper"]:
+        row["referenced"] = 0
+    write_mcp(board, i, 0)
+    servo = board.kernel.servo.row[i]
+    servo["loop_closed"] = 0
+    servo["output"] = 0.0
+
+
+def write_mcp(board: Board, i: int, value: int) -> None:
+    """Write the motor command port; it lasts while the loop is open (Manual 002, 4.4.162)."""
+    set_command(board.state, board.kernel, i, value)
+
+
+def ra(board: Board, axes: Sequence[int]) -> None:
+    """Reset `axes` (Manual 002, 4.4.42)."""
+    for i in axes:
+        row = board.state.axis[i]
+        _open(board, i)
+        board.outputs = _at_reset(board, int(board.state.plan[i]["PAE"]))
+        row["zero"] = board.kernel.servo.actual[i] - row["shift"]
+        row["offset"] = 0.0
+        _clear(board, i)
+        row["saf"] = 0
+
+
+def rs(board: Board) -> None:
+    """Reset the whole system (Manual 002, 4.4.113)."""
+    board.reset()
+
+
+def reset_system(board: Board) -> None:
+    """Open all loops, empty all queues, halt the tasks; positions and common variables stay."""
+    for axis in board.axes:
+        _open(board, axis.index)
+        _clear(board, axis.index)
+        axis.check_configuration(board.planned)
+    board.outputs = board.config.outputs_at_reset
+    board.trovr = 1.0
+    if board.tasks is not None:
+        board.tasks.halt()
+
+
+def _clear(board: Board, i: int) -> None:
+    row = board.state.axis[i]
+    row["referenced"] = row["dhef"] = row["soft_limit"] = row["held"] = 0
+    row["jovr"] = row["tovr"] = row["override_goal"] = 1.0
+
+
+def _at_reset(board: Board, group: int) -> int:
+    """Return the outputs after the reset of an axis: planned defaults, and the PAE outputs of its group off."""
+    return board.config.outputs_at_reset & ~group
+
+
+def RPtoDP(board: Board, axes: Sequence[int]) -> None:  # noqa: N802  the manual's name
+    """Make the setpoint of `axes` their actual position, where no profile runs (Manual 002, 4.4.112)."""
+    for i in axes:
+        row, actual = board.state.axis[i], _base_at_actual(board, i)
+        if row["past"]:
+            go_on_with(board.state, i, actual, float(row["speed"]))
+        elif row["pe"] and row["closed"]:
+            board.kernel.base[i] = actual
+
+
+def shp(board: Board, i: int, position: float) -> None:
+    """Set the actual position, and with it the machine zero (Manual 002, 4.4.116).
+
+    Without effect on an axis that moves or has moves queued: its targets would be elsewhere.
+    """
+    axis = board.axes[i]
+    if axis.is_busy or axis.queued or not math.isfinite(position):
+        return
+    row = axis.row
+    row["zero"] = axis.rp + float(row["zero"]) - position
+    row["referenced"] = 1
+
+
+def write_rp(board: Board, i: int, position: float) -> None:
+    """Write the actual position register, with the loop open (Manual 002, 4.4.167)."""
+    axis = board.axes[i]
+    row = axis.row
+    if not row["closed"] and math.isfinite(position):
+        row["zero"] = axis.rp + float(row["zero"]) - position
+        row["referenced"] = 0
+
+
+def write_dp(board: Board, i: int, position: float) -> None:
+    """Write the setpoint, with the loop closed; the axis goes there at once (Manual 002, 4.4.140)."""
+    axis = board.axes[i]
+    if axis.row["closed"] and axis.row["pe"] and not axis.row["past"] and math.isfinite(position):
+        board.kernel.base[i] = position + axis.origin
+
+
+def azo(board: Board, number: int) -> None:
+    """Put zero offsets 0 to 4 in force for all axes, none for a higher number (Manual 002, 4.4.3)."""
+    for axis in board.axes:
+        if number < 0:
+            continue
+        axis.row["offset"] = axis.zero_offsets[number] if number < len(axis.zero_offsets) else 0.0
+
+
+def szpa(board: Board, i: int, position: float) -> None:
+    """Set the virtual zero of an axis to `position` from the machine zero (Manual 002, 4.4.127)."""
+    axis = board.axes[i]
+    if not axis.is_busy and not axis.queued and math.isfinite(position):
+        axis.row["offset"] = position
+
+
+def szpr(board: Board, i: int, position: float) -> None:
+    """Move the virtual zero of an axis by `position` (Manual 002, 4.4.128)."""
+    szpa(board, i, float(board.state.axis[i]["offset"]) + position)
+
+
+def utrovr(board: Board, axes: Sequence[int]) -> None:
+    """Take over the trajectory override for `axes`, in the same scan (Manual 002, 4.4.132)."""
+    copies = not board.modereg & ModeReg.OvrMode
+    at_once = board.trovrst <= board.config.sample_time_s
+    for i in axes:
+        row = board.state.axis[i]
+        row["override_goal"] = board.trovr
+        if at_once and row["tovr"] == board.trovr and copies:
+            row["jovr"] = board.trovr

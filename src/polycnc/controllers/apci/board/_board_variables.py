@@ -1,0 +1,47 @@
+"""Variables of the whole board, and what it asks of the SAP tasks that run in its time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+from polycnc.controllers.apci.board._environment import InterfaceStatus
+
+COMMON_VARIABLES = 1000
+COMMON_BUFFER_BYTES = 1000
+CNC_TASKS = 4
+
+
+class Tasks(Protocol):
+    """What runs SAP programs within the board's time."""
+
+    def scans_to_wait(self) -> float:
+        """Return for how many scans no task has anything to do; 0 if one can go on, inf if all wait for profiles."""
+        ...
+
+    def run_scan(self) -> None:
+        """Let every task do what it can within one scan."""
+        ...
+
+    def halt(self) -> None:
+        """Halt all tasks."""
+        ...
+
+
+@dataclass
+class Variables:
+    """Variables of the whole board, by the manual's names in lower case."""
+
+    pu: int = 0
+    tu: int = 0
+    trac: float = 1000.0
+    trvl: float = 100.0
+    trtvl: float = 0.0
+    ledgn: int = 0
+    ledrd: int = 0
+    ledyl: int = 0
+    irqpc: int = 0
+    interface: InterfaceStatus = field(default_factory=InterfaceStatus)  # ifs
+    buffers: list[bytearray] = field(
+        default_factory=lambda: [bytearray(COMMON_BUFFER_BYTES) for _ in range(CNC_TASKS)]
+    )

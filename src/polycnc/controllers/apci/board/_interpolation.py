@@ -1,0 +1,155 @@
+"""The way of every interpolation: check it, give it a path, begin it or put it into the spoolers."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from polycnc.controllers.apci.board._path_units import PathUnits, path_units
+from polycnc.controllers.apci.core._compiled_entries import begin_move
+from polycnc.controllers.apci.core._registers import ErrorReg, ModeReg
+from polycnc.controllers.apci.core._spool_entries import (
+    give_back,
+    new_entry,
+    queued_position,
+    spool_line,
+    spool_move,
+)
+from polycnc.controllers.apci.core._state import Floats
+
+if TYPE_CHECKING:
+    from polycnc.controllers.apci.board._board import Board
+
+
+@dataclass(frozen=True, slots=True)
+class Speeds:
+    """Trajectory acceleration, velocity and target velocity, as they were programmed."""
+
+    ac: float
+    vl: float
+    tvl: float = 0.0
+
+
+# Make entry `e` the path from `start`, [n] path units; False, with the reason in ErrorReg, if there is none.
+Shape: TypeAlias = Callable[["Board", int, PathUnits, Floats], bool]
+
+
+def queue_line(
+    board: Board, axes: Sequence[int], values: Sequence[float], speeds: Speeds, relative: bool, index: int
+) -> None:
+    """Put a straight line into the spoolers."""
+    units = _checked(board, axes, speeds, values)
+    if units is None:
+        return
+    ends = units.distance * values
+    spool_line(
+        board.state,
+        board.kernel.base,
+        units.axes,
+        units.weight,
+        ends,
+        relative,
+        units.acceleration(speeds.ac),
+        units.velocity(speeds.vl),
+        units.velocity(speeds.tvl),
+        units.velocity_unit,
+        units.acceleration_unit,
+        index,
+    )
+
+
+def interpolate(
+    board: Board, axes: Sequence[int], speeds: Speeds, shape: Shape, numbers: Sequence[float], spool: bool
+) -> None:
+    """Check an interpolation, and begin it or put it into the spoolers."""
+    units = _checked(board, axes, speeds, numbers)
+    if units is None:
+        return
+    if spool:
+        start = [queued_position(board.state, board.kernel.base, i) for i in axes]
+        e = _path(board, units, shape, start)
+        if e >= 0:
+            spool_move(
+                board.state,
+                e,
+                units.axes,
+                units.weight,
+                units.acceleration(speeds.ac),
+                units.velocity(speeds.vl),
+                units.velocity(speeds.tvl),
+                units.velocity_unit,
+                units.acceleration_unit,
+            )
+    else:
+        board.command(tuple(axes), partial(_begin, board, units, speeds, shape))
+
+
+def _checked(board: Board, axes: Sequence[int], speeds: Speeds, numbers: Sequence[float]) -> PathUnits | None:
+    """Return the units of an interpolation; None, with the reason in ErrorReg and dhef, if it is refused."""
+    if len(set(axes)) < len(axes):
+        board.raise_error(ErrorReg.errAxDef)
+        return None
+    rows = [board.state.axis[i] for i in axes]
+    for row in rows:
+        if not row["closed"]:
+            return None
+    units = path_units(board, axes)
+    if units is None:
+        board.raise_error(ErrorReg.errUnit)
+    elif _is_consistent(board, units, speeds) and all(map(math.isfinite, numbers)):
+        return units if rows else None
+    for row in rows:
+        row["dhef"] = 1
+    return None
+
+
+def _is_consistent(board: Board, units: PathUnits, speeds: Speeds) -> bool:
+    """Tell whether speeds can be meant; without velocity or acceleration it depends on InhibitProfileRefuse."""
+    if speeds.vl == 0.0:
+        board.raise_error(ErrorReg.VelocityZero)
+    if speeds.ac == 0.0:
+        board.raise_error(ErrorReg.AccelZero)
+    if (speeds.vl == 0.0 or speeds.ac == 0.0) and not board.modereg & ModeReg.InhibitProfileRefuse:
+        return False
+    taken = (units.acceleration(speeds.ac), units.velocity(speeds.vl), units.velocity(speeds.tvl))
+    return speeds.ac >= 0.0 and speeds.vl >= 0.0 and all(map(math.isfinite, taken))
+
+
+def _path(board: Board, units: PathUnits, shape: Shape, start: Sequence[float]) -> int:
+    """Make an entry with a path that begins at machine positions `start`; -1 if there is none."""
+    e = int(new_entry(board.state))
+    if e < 0:
+        return -1
+    begin = np.zeros(len(board.axes))
+    begin[units.axes] = units.weight * start
+    if not shape(board, e, units, begin):
+        give_back(board.state, e)
+        return -1
+    return e
+
+
+def _begin(board: Board, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
+    """Begin a direct interpolation from where the axes are now, with the speed they have."""
+    state = board.state
+    e = _path(board, units, shape, [float(board.kernel.base[i]) for i in units.axes])
+    if e < 0:
+        return
+    velocities = [
+        board.profile_velocity(i) * weight for i, weight in zip(units.axes, units.weight, strict=True)
+    ]
+    counted = [v for i, v in zip(units.axes, velocities, strict=True) if state.feed_axis[i]]
+    begin_move(
+        state,
+        e,
+        units.axes,
+        units.weight,
+        units.acceleration(speeds.ac),
+        units.velocity(speeds.vl),
+        units.velocity(speeds.tvl),
+        math.hypot(*(counted or velocities)),
+    )

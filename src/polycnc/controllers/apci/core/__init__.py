@@ -1,0 +1,1 @@
+"""The board's scan: profiles, spoolers, look-ahead, limits, latches, on arrays, compiled."""

@@ -1,0 +1,1 @@
+"""The PC around the board: slots, booting, what is installed."""

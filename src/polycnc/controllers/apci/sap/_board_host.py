@@ -1,0 +1,283 @@
+"""The board as its SAP tasks see it: commands, system variables and axis qualifiers by the manual's names."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from polycnc.controllers.apci.board import _axis_commands as axis_commands
+from polycnc.controllers.apci.board import _jog_commands as jogs
+from polycnc.controllers.apci.board import _move_commands as moves
+from polycnc.controllers.apci.board import _spool_commands as spooler
+from polycnc.controllers.apci.board._move_commands import Speeds
+from polycnc.controllers.apci.sap import Call, Program, Tasks
+from polycnc.errors import UsageError
+
+if TYPE_CHECKING:
+    from polycnc.controllers.apci.board._board import Board
+
+Command: TypeAlias = Callable[["Board", Call], None]
+
+
+def _numbers(call: Call) -> tuple[float, ...]:
+    """Return the arguments of a call that are plain numbers."""
+    return tuple(number for number in call.numbers if not isinstance(number, tuple))
+
+
+def _speeds(call: Call) -> Speeds:
+    return Speeds(*(call.path or (0.0, 0.0, 0.0)))
+
+
+def _with_values(command: Callable[[Board, Sequence[int], Sequence[float]], None]) -> Command:
+    return lambda board, call: command(board, call.axes, call.values)
+
+
+def _with_axes(command: Callable[[Board, Sequence[int]], None]) -> Command:
+    return lambda board, call: command(board, call.axes)
+
+
+def _line(command: Callable[..., None], spool: bool) -> Command:
+    return lambda board, call: command(board, call.axes, call.values, _speeds(call), spool=spool)
+
+
+def _circle(command: Callable[..., None], spool: bool) -> Command:
+    def run(board: Board, call: Call) -> None:
+        command(board, call.axes, call.values, _numbers(call)[0], _speeds(call), spool=spool)
+
+    return run
+
+
+def _helix(command: Callable[..., None], spool: bool) -> Command:
+    def run(board: Board, call: Call) -> None:
+        phi, *end = _numbers(call)
+        targets = (*(end or (0.0, 0.0)), *call.values[2:])
+        command(board, call.axes, call.values[:2], phi, targets, _speeds(call), spool=spool)
+
+    return run
+
+
+def _space(command: Callable[..., None], spool: bool) -> Command:
+    def run(board: Board, call: Call) -> None:
+        *normal, phi = _numbers(call)
+        command(board, call.axes, call.values, normal, phi, _speeds(call), spool=spool)
+
+    return run
+
+
+def _points(relative: bool) -> Command:
+    def run(board: Board, call: Call) -> None:
+        size, points, *index = call.numbers
+        if isinstance(size, tuple) or not isinstance(points, tuple):
+            raise UsageError(f"{call.name} takes a count and an array", hint="give both")
+        chosen = points[: int(size)]
+        number = -1 if not index or isinstance(index[0], tuple) else int(index[0])
+        spooler.spd(board, call.axes[0], chosen, relative=relative, index=number)
+
+    return run
+
+
+def _ssf(board: Board, call: Call) -> None:
+    command, value = _numbers(call)
+    spooler.ssf(board, call.axes[0], int(command), value)
+
+
+def _shp(board: Board, call: Call) -> None:
+    for axis, position in zip(call.axes, call.values, strict=True):
+        axis_commands.shp(board, axis, position)
+
+
+def _uf(board: Board, call: Call) -> None:
+    for axis in call.axes:
+        board.update_filter(axis)
+
+
+def _lps(board: Board, call: Call) -> None:
+    board.state.axis[call.axes[0]]["latch_scans"] = int(_numbers(call)[0])
+
+
+def _clear_ci99(board: Board, _: Call) -> None:
+    board.state.ci[99] = 0
+
+
+def _rdigi(board: Board, call: Call) -> None:
+    for i in call.axes:
+        row = board.state.axis[i]
+        row["index_seen"] = row["strobe_seen"] = row["encoder_error"] = row["index_now"] = 0
+
+
+def _rifs(board: Board, _: Call) -> None:
+    board.variables.interface.reset_errors()
+
+
+COMMANDS: Mapping[str, Command] = {
+    **{
+        prefix + name: build(getattr(moves, name), prefix == "s")
+        for prefix in ("", "s")
+        for names, build in (
+            (("mla", "mlr"), _line),
+            (("mca", "mcr"), _circle),
+            (("mha", "mhr"), _helix),
+            (("mca3d", "mcr3d"), _space),
+        )
+        for name in names
+    },
+    **{name: _with_values(getattr(jogs, name)) for name in ("ja", "jr", "jhi")},
+    **{name: _with_axes(getattr(jogs, name)) for name in ("jhl", "jhr", "js", "ms")},
+    **{
+        name: _with_axes(getattr(axis_commands, name))
+        for name in ("cl", "clv", "ol", "ra", "utrovr", "RPtoDP")
+    },
+    **{name: _with_axes(getattr(spooler, name)) for name in ("ssms", "sstps", "sdels")},
+    "shp": _shp,
+    "uf": _uf,
+    "lps": _lps,
+    "ssf": _ssf,
+    "spd": _points(False),
+    "spda": _points(False),
+    "spdr": _points(True),
+    "sstvl": lambda board, call: spooler.sstvl(board, call.axes, _numbers(call)[0]),
+    "szpa": lambda board, call: axis_commands.szpa(board, call.axes[0], _numbers(call)[0]),
+    "szpr": lambda board, call: axis_commands.szpr(board, call.axes[0], _numbers(call)[0]),
+    "azo": lambda board, call: axis_commands.azo(board, int(_numbers(call)[0])),
+    "rs": lambda board, call: board.reset(),
+    "ClearCI99": _clear_ci99,
+    "rdigi": _rdigi,
+    "rifs": _rifs,
+}
+
+_ON_BOARD = ("modereg", "nfrax", "trovr", "trovrst")
+_VARIABLES = ("pu", "tu", "trac", "trvl", "trtvl", "irqpc", "ledgn", "ledrd", "ledyl")
+
+
+class BoardHost:
+    """Lend a board to its tasks; see `sap.Host`."""
+
+    def __init__(self, board: Board) -> None:
+        self.board = board
+
+    @property
+    def scan(self) -> int:
+        """Number of the present scan."""
+        return self.board.clock.cycles
+
+    @property
+    def scan_s(self) -> float:
+        """Scan time (s)."""
+        return self.board.clock.cycle_s
+
+    def axis_index(self, name: str) -> int | None:
+        """Return the index of the axis called `name`, None if there is none."""
+        names = [each.upper() for each in self.board.config.axis_names]
+        return names.index(name.upper()) if name.upper() in names else None
+
+    def call(self, call: Call) -> None:
+        """Give a command."""
+        COMMANDS[call.name](self.board, call)
+
+    def profile_ended(self, axes: tuple[int, ...]) -> bool:
+        """Tell whether all of `axes` have reached the end of their profiles."""
+        return not any(self.board.axes[i].is_busy for i in axes)
+
+    def read_system(self, name: str, index: int | None) -> float:
+        """Return a system variable."""
+        board = self.board
+        if name in _VARIABLES:
+            return float(getattr(board.variables, name))
+        if name in _ON_BOARD or name == "errorreg":
+            return float(getattr(board, name))
+        return float(self._field(name)[_checked(index)])
+
+    def write_system(self, name: str, index: int | None, value: float) -> None:
+        """Set a system variable."""
+        board = self.board
+        if name == "irqpc":
+            board.raise_interrupt(bool(value))
+        elif name in _VARIABLES:
+            kind = float if name in ("trac", "trvl", "trtvl") else int
+            setattr(board.variables, name, kind(value))
+        elif name in _ON_BOARD:
+            setattr(board, name, value if name in ("trovr", "trovrst") else int(value))
+        else:
+            self._field(name)[_checked(index)] = value
+
+    def _field(self, name: str) -> Any:
+        board = self.board
+        fields = {
+            "ci": board.state.ci,
+            "cd": board.state.cd,
+            "sysvarint": board.sysvarint,
+            "sysvardbl": board.sysvardbl,
+        }
+        return fields[name]
+
+    def read_axis(self, axis: int, name: str, index: int | None) -> float:
+        """Return an axis qualifier."""
+        one = self.board.axes[axis]
+        if index is not None:
+            return float(getattr(one, name)[_checked(index, 100)])
+        special: Mapping[str, Callable[[], float]] = {
+            "digo": lambda: self.board.outputs,
+            "ifs": lambda: self.board.variables.interface.word,
+            "lsm": lambda: spooler.free_bytes(self.board, axis),
+            "MCiS": lambda: spooler.moves_queued(self.board, axis),
+            "PcapIndex": lambda: float(one.row["pcap_index"]),
+            "PosErr": lambda: one.position_error,
+            "ZeroOffset": lambda: float(one.row["offset"]),
+        }
+        return float(special[name]() if name in special else getattr(one, name))
+
+    def write_axis(self, axis: int, name: str, index: int | None, value: float) -> None:
+        """Set an axis qualifier."""
+        board, one = self.board, self.board.axes[axis]
+        writers: Mapping[str, Callable[[], None]] = {
+            "rp": lambda: axis_commands.write_rp(board, axis, value),
+            "dp": lambda: axis_commands.write_dp(board, axis, value),
+            "mcp": lambda: axis_commands.write_mcp(board, axis, int(value)),
+        }
+        if index is not None:
+            getattr(one, name)[_checked(index, 100)] = value
+        elif name == "digo":
+            board.outputs = int(value)
+        elif name in writers:
+            writers[name]()
+        else:
+            setattr(one, name, int(value) if name in ("GCR", "ControllerFlags") else value)
+
+    def common_buffer(self, task: int) -> bytearray:
+        """Return the common buffer of a task."""
+        return self.board.variables.buffers[task]
+
+
+def _checked(index: int | None, count: int = 1000) -> int:
+    if index is None or not 0 <= index < count:
+        raise UsageError(f"there is no variable {index}", hint=f"they have the numbers 0 to {count - 1}")
+    return index
+
+
+class BoardTasks:
+    """The four tasks of a board, in its time."""
+
+    def __init__(self, board: Board) -> None:
+        self.tasks = Tasks(BoardHost(board))
+        self._board = board
+        board.tasks = self
+
+    def load(self, program: Program) -> None:
+        """Load a compiled program into the task that it names."""
+        self.tasks.load(program)
+
+    def scans_to_wait(self) -> float:
+        """Return for how many scans no task has anything to do; infinity if they wait for profiles."""
+        sleep = self.tasks.sleep()
+        if any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
+            return 0
+        return math.inf if sleep.scans is None else sleep.scans
+
+    def run_scan(self) -> None:
+        """Let every task do what it can within one scan."""
+        self.tasks.run_scan()
+
+    def halt(self) -> None:
+        """Halt all tasks."""
+        self.tasks.halt_all()

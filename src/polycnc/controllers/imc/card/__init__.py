@@ -1,0 +1,1 @@
+"""The virtual card and its card file."""

@@ -1,0 +1,302 @@
+"""The virtual card: its parameter memory, queues, terminals and time. The function library talks to this.
+
+Everything happens in control cycles of 1 ms. Reading is immediate; an instruction that has been pushed takes effect in
+the next cycle that is run, or later, as its queue says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from enum import IntEnum
+
+from polycnc.controllers.imc.card._config import CardConfig
+from polycnc.controllers.imc.card._power_on import CYCLE_S, make_card, make_machine
+from polycnc.controllers.imc.core._addresses import COUNTS, EVENTS, GIN, GINLAT, MOVING
+from polycnc.controllers.imc.core._cycle import run_cycles
+from polycnc.controllers.imc.core._event_codes import LOAD_MOST
+from polycnc.controllers.imc.core._instructions import (
+    InstallEvents,
+    Instruction,
+    Segment,
+    WaitParam,
+    WaitTime,
+    encode,
+    signed,
+)
+from polycnc.controllers.imc.core._parameters import WORDS, address, parameter
+from polycnc.controllers.imc.core._state import (
+    AXIS_RESTED,
+    CAPTURES,
+    CFIFO,
+    COORDINATES,
+    EVENTS_MOST,
+    CardState,
+)
+from polycnc.controllers.imc.core._write_effects import empty_now, write_now
+from polycnc.errors import UsageError
+from polycnc.kernel import KernelState
+from polycnc.machine import Clock, Way
+
+INPUTS = 32
+OUTPUTS = 48
+_OUTPUTS = ("gout1", "gout2", "gout3")
+
+
+class Fifo(IntEnum):
+    """The queues, numbered as the card's functions number them."""
+
+    SEL_IFIFO = 0
+    SEL_QFIFO = 1
+    SEL_PFIFO1 = 2
+    SEL_PFIFO2 = 3
+    SEL_CFIFO = 4
+
+
+class Card:
+    """A card as its card file describes it, just switched on.
+
+    `record_cycles` is the size of the recorder's buffer (`kernel.recorder`), 0 for none; a full one keeps what
+    it has.
+    """
+
+    def __init__(self, config: CardConfig | None = None, *, record_cycles: int = 0) -> None:
+        self.config = config or CardConfig()
+        self.kernel: KernelState = make_machine(self.config, record_cycles)
+        self.state: CardState = make_card(self.config)
+        self.clock = Clock(CYCLE_S)
+
+    # ------------------------------------------------------------------ memory
+
+    @property
+    def axes(self) -> int:
+        """Number of axes."""
+        return self.config.number_of_axes
+
+    def is_axis(self, axis: int) -> bool:
+        """Tell whether there is an axis of this number."""
+        return 0 <= axis < self.axes
+
+    def _row(self, at: int, axis: int) -> int:
+        if not 0 <= at < WORDS:
+            raise UsageError(f"there is no address {at}", hint=f"addresses are 0 to {WORDS - 1}")
+        if self.state.word[at, 0]:
+            return self.axes
+        if not self.is_axis(axis):
+            raise UsageError(f"there is no axis {axis}", hint=f"the card has axes 0 to {self.axes - 1}")
+        return axis
+
+    def read_words(self, at: int, axis: int, count: int) -> tuple[int, ...]:
+        """Return `count` words from address `at` on, as unsigned numbers, low word first.
+
+        Each word is that of `axis`, or of the card where the address is the card's.
+
+        Raises:
+            UsageError: There is no such address or axis.
+        """
+        return tuple(int(self.state.memory[self._row(k, axis), k]) & 0xFFFF for k in range(at, at + count))
+
+    def read_raw(self, at: int, axis: int = 0, words: int = 1) -> int:
+        """Return `words` words from address `at` on as one signed number.
+
+        Raises:
+            UsageError: There is no such address or axis.
+        """
+        value = sum(word << 16 * k for k, word in enumerate(self.read_words(at, axis, words)))
+        return signed(value, words)
+
+    def read(self, name: str, axis: int = 0) -> float:
+        """Return the value of the parameter called `name`: pulses, pulses/ms, or a plain number; a set flag is -1.
+
+        Raises:
+            UsageError: There is no such parameter or axis.
+        """
+        each = parameter(name)
+        raw = self.read_raw(each.address, axis, each.words)
+        if each.type.startswith("U") and raw < 0:
+            raw += 1 << 16 * each.words
+        return each.from_raw(raw)
+
+    def write_raw(self, at: int, value: int, axis: int = 0, words: int = 1) -> None:
+        """Write `words` words of `value` from address `at` on, between two cycles, with all that it sets off.
+
+        Raises:
+            UsageError: There is no such address or axis.
+        """
+        for k in range(at, at + words):
+            self._row(k, axis)
+        write_now(self.state, at, axis, words, signed(value, words))
+
+    def write(self, name: str, value: float, axis: int = 0) -> None:
+        """Write the parameter called `name`, in the units that `read` gives.
+
+        Raises:
+            UsageError: There is no such parameter or axis.
+        """
+        each = parameter(name)
+        self.write_raw(each.address, each.to_raw(value), axis, each.words)
+
+    # ------------------------------------------------------------------ queues
+
+    def push(self, fifo: int, instruction: Instruction) -> bool:
+        """Put an instruction into a queue; False if there is no room for it, and it is not taken then.
+
+        Raises:
+            UsageError: The queue does not take such an instruction: waits are not for IFIFO, segments only for
+                PFIFO1 and PFIFO2, nothing but points (`push_points`) for CFIFO. Or a load is not of 1 to 31
+                events, or a segment not of 1 to 16 coordinates.
+        """
+        if fifo not in (Fifo.SEL_IFIFO, Fifo.SEL_QFIFO, Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
+            raise UsageError(f"queue {fifo} takes no instructions", hint="give SEL_IFIFO to SEL_PFIFO2")
+        if isinstance(instruction, WaitTime | WaitParam) and fifo == Fifo.SEL_IFIFO:
+            raise UsageError("IFIFO cannot wait", hint="use SEL_QFIFO, SEL_PFIFO1 or SEL_PFIFO2")
+        if isinstance(instruction, Segment):
+            if fifo not in (Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
+                raise UsageError("a segment is for a path space", hint="use SEL_PFIFO1 or SEL_PFIFO2")
+            least = 1 if instruction.center is None else 2
+            if not least <= len(instruction.ends) <= COORDINATES:
+                raise UsageError(
+                    f"a segment of {len(instruction.ends)} axes", hint=f"{least} to {COORDINATES}"
+                )
+        if isinstance(instruction, InstallEvents) and not 1 <= len(instruction.events) <= LOAD_MOST:
+            raise UsageError(f"a load of {len(instruction.events)} events", hint=f"1 to {LOAD_MOST}")
+        cells = encode(instruction)
+        return self._put(fifo, cells, cells[2])
+
+    def push_points(self, words: Sequence[int]) -> bool:
+        """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full."""
+        return self._put(Fifo.SEL_CFIFO, [signed(word, 1) for word in words], len(words))
+
+    def _put(self, fifo: int, cells: list[int], words: int) -> bool:
+        q, ring = self.state.fifo[fifo], self.state.ring[fifo]
+        waiting = int(q["words"]) + words
+        if waiting > q["depth"]:
+            return False
+        tail, size = int(q["tail"]), ring.shape[0]
+        for k, cell in enumerate(cells):
+            ring[(tail + k) & (size - 1)] = cell
+        q["tail"] = tail + len(cells)
+        q["words"] = waiting
+        self.state.memory[self.axes, COUNTS[fifo]] = signed(waiting, 1)
+        return True
+
+    def waiting_words(self, fifo: int) -> int:
+        """Return how many 16-bit words wait in a queue."""
+        return int(self.state.fifo[fifo]["words"])
+
+    def clear_fifo(self, fifo: int) -> None:
+        """Drop everything in a queue, at once, and the wait it is in.
+
+        Raises:
+            UsageError: There is no such queue.
+        """
+        if not 0 <= fifo <= CFIFO:
+            raise UsageError(f"there is no queue {fifo}", hint="give SEL_IFIFO to SEL_CFIFO")
+        empty_now(self.state, int(fifo))
+
+    @property
+    def room_for_events(self) -> int:
+        """How many events can still be installed."""
+        return EVENTS_MOST - int(self.state.memory[self.axes, EVENTS])
+
+    # ------------------------------------------------------------------ captures
+
+    def read_capture(self, axis: int, most: int) -> tuple[tuple[int, ...], int]:
+        """Fetch up to `most` captured positions of an axis, oldest first; return them and how many are left.
+
+        Raises:
+            UsageError: There is no such axis.
+        """
+        self._row(address("cappos"), axis)
+        row = self.state.axis[axis]
+        count = max(0, min(most, int(row["captured"] - row["fetched"])))
+        values = tuple(int(self.state.capture[axis, (row["fetched"] + k) % CAPTURES]) for k in range(count))
+        for _ in range(count):
+            write_now(self.state, address("popcapfifo"), axis, 1, -1)
+        return values, int(row["captured"] - row["fetched"])
+
+    # ------------------------------------------------------------------ the outside
+
+    def set_input(self, number: int, closed: bool) -> None:
+        """Close or open the contact at general input `number`, from 1; a closed one reads 0.
+
+        Raises:
+            UsageError: There is no such input.
+        """
+        if not 1 <= number <= INPUTS:
+            raise UsageError(f"there is no input {number}", hint=f"inputs are 1 to {INPUTS}")
+        at, bit = divmod(number - 1, 16)
+        memory, n = self.state.memory, self.axes
+        old = int(memory[n, GIN + at])
+        new = old & ~(1 << bit) if closed else old | 1 << bit
+        memory[n, GIN + at] = signed(new, 1)
+        memory[n, GINLAT + at] = signed(int(memory[n, GINLAT + at]) | (old & ~new & 0xFFFF), 1)
+
+    def output(self, number: int) -> bool:
+        """Return general output `number`, from 1.
+
+        Raises:
+            UsageError: There is no such output.
+        """
+        if not 1 <= number <= OUTPUTS:
+            raise UsageError(f"there is no output {number}", hint=f"outputs are 1 to {OUTPUTS}")
+        at, bit = divmod(number - 1, 16)
+        return bool(int(self.state.memory[self.axes, address(_OUTPUTS[at])]) >> bit & 1)
+
+    def turn_handwheel(self, axis: int, counts: int) -> None:
+        """Turn what is wired to the auxiliary encoder of an axis by some counts, within the next cycle.
+
+        Raises:
+            UsageError: There is no such axis.
+        """
+        self.state.axis[self._row(address("encs"), axis)]["aux"] += counts
+
+    def spin_handwheel(self, axis: int, counts_per_cycle: float) -> None:
+        """Let what is wired to the auxiliary encoder of an axis turn steadily.
+
+        Raises:
+            UsageError: There is no such axis.
+        """
+        self.state.axis[self._row(address("encs"), axis)]["aux_rate"] = counts_per_cycle
+
+    def touch_probe(self, axis: int) -> None:
+        """Give a pulse of the probe in the next cycle; with bit 10 of encpctr set it captures the position.
+
+        Raises:
+            UsageError: There is no such axis.
+        """
+        self.state.axis[self._row(address("encp"), axis)]["probe_now"] = 1
+
+    # ------------------------------------------------------------------ time
+
+    @property
+    def time_s(self) -> float:
+        """Time since the card was switched on."""
+        return self.clock.now_s
+
+    def advance(self, cycles: int, *, until: int = 0) -> int:
+        """Run up to `cycles` control cycles; return how many were run.
+
+        Fewer after a cycle in which one of the attentions `until` happened (`_state`: AXIS_RESTED, AXIS_ERROR).
+        """
+        if cycles <= 0:
+            return 0
+        ran = int(run_cycles(self.state, self.kernel, cycles, until))
+        self.clock.tick(ran)
+        return ran
+
+    def run(self, way: Way) -> int:
+        """Let the card run in one of the ways of its clock (`Step`, `Free`, ...); return the cycles done."""
+        return way.run(self.advance)
+
+    def is_moving(self, axis: int) -> bool:
+        """Tell whether an axis is planning or smoothing a motion."""
+        return bool(self.state.memory[axis, MOVING])
+
+    def wait(self, axes: Sequence[int] | None = None, limit_s: float = 3600.0) -> None:
+        """Run until no axis of `axes` (all if None) moves, at least one cycle, at most `limit_s`."""
+        chosen = range(self.axes) if axes is None else axes
+        end = self.clock.cycles + self.clock.cycles_for(limit_s)
+        self.advance(1)
+        while any(self.is_moving(i) for i in chosen) and self.clock.cycles < end:
+            if self.advance(end - self.clock.cycles, until=AXIS_RESTED) == 0:
+                break

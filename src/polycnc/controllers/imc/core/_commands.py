@@ -1,0 +1,196 @@
+"""What an axis does about the words that have been written to it since its last turn."""
+
+from __future__ import annotations
+
+from polycnc.controllers.imc.core._addresses import (
+    CLEAR,
+    DIST,
+    DO_CLEAR,
+    DO_ENGEAR,
+    DO_GO_MCS,
+    DO_GO_PCS,
+    DO_GOHOME,
+    DO_RUN,
+    DO_SETHOME,
+    DO_STARTSYN,
+    DO_TGVEL_MCS,
+    DO_TGVEL_PCS,
+    ENASYN,
+    ENGEAR,
+    ERROR,
+    GO,
+    GOHOME,
+    HIGHVEL,
+    HOMESEQ,
+    PCS,
+    RUN,
+    SETHOME,
+    SHIFTMASTER,
+    STARTSYN,
+    SYNSRCVAR,
+    SYNTYPE,
+    TGPOS,
+    TGVEL,
+)
+from polycnc.controllers.imc.core._errors import drop_couplings, halt_axis, is_blocked
+from polycnc.controllers.imc.core._follow import begin_gear, begin_sync, end_sync, leave_gear
+from polycnc.controllers.imc.core._homing import HOME_NEGATIVE, begin_homing
+from polycnc.controllers.imc.core._origin import clear_axis, set_origin_here
+from polycnc.controllers.imc.core._planner import begin_move, start_velocity
+from polycnc.controllers.imc.core._state import (
+    GEAR,
+    GIVEN,
+    IDLE,
+    MOVE,
+    SPACES,
+    SYNC,
+    TGPOS_RANGE,
+    CardState,
+)
+from polycnc.controllers.imc.core._words import get32, get_u16, put16, put32, wrap32
+from polycnc.kernel import compiled
+
+
+@compiled
+def _is_given(s: CardState, i: int, layer: int, bit: int) -> bool:
+    """Tell whether a path or contour has the axis; a command that came right behind a path is kept for later."""
+    axis = s.axis[i]
+    if layer != 0 or s.system[0, i]["mode"] != GIVEN:
+        return False
+    if axis["by"] < SPACES and s.space[axis["by"]]["active"] == 0:
+        axis["commands"] |= 1 << bit
+    return True
+
+
+@compiled
+def _take_over(s: CardState, i: int, layer: int) -> None:
+    """Let what else moves the main system go, because a new motion takes it over."""
+    axis = s.axis[i]
+    if layer == 0 and (axis["engaged"] != 0 or axis["home"] != 0 or axis["sync_share"] >= 0.0):
+        drop_couplings(s, i)
+
+
+@compiled
+def _refuse(s: CardState, i: int, layer: int) -> None:
+    """Forget a move that cannot be."""
+    put16(s.memory, i, layer * PCS + GO, 0)
+    put32(s.memory, i, layer * PCS + DIST, 0)
+
+
+@compiled
+def _go(s: CardState, i: int, layer: int, bit: int) -> None:
+    m, o, row = s.memory, layer * PCS, s.system[layer, i]
+    if m[i, o + GO] == 0:
+        if row["mode"] == MOVE:
+            start_velocity(s, layer, i, 0)
+        return
+    if _is_given(s, i, layer, bit):
+        if not s.axis[i]["commands"] >> bit & 1:
+            _refuse(s, i, layer)
+        return
+    distance = get32(m, i, o + DIST)
+    before = row["mode"]
+    if m[i, RUN] == 0 or is_blocked(s, i, 1 if distance > 0 else (-1 if distance < 0 else _way(s, i, layer))):
+        _refuse(s, i, layer)
+        return
+    _take_over(s, i, layer)
+    if not begin_move(s, layer, i):
+        put16(m, i, ERROR, get_u16(m, i, ERROR) | TGPOS_RANGE)
+        if before in (GEAR, SYNC):
+            start_velocity(s, layer, i, 0)
+        return
+    if layer == 1 and distance != 0 and m[i, SHIFTMASTER] == 0:
+        put32(m, i, TGPOS, wrap32(get32(m, i, TGPOS) + distance))
+
+
+@compiled
+def _way(s: CardState, i: int, layer: int) -> int:
+    """Return the direction of an absolute move."""
+    o = layer * PCS
+    left = get32(s.memory, i, o + TGPOS) - get32(s.memory, i, o + TGPOS - 2)
+    return 1 if left > 0 else (-1 if left < 0 else 0)
+
+
+@compiled
+def _is_held_for_sync(s: CardState, i: int) -> bool:
+    """Tell whether mcstgvel is the goal of a synchronous motion that is set up but not complete."""
+    m = s.memory
+    return bool(m[i, SYNTYPE] == 0 and s.axis[i]["engaged"] == 0 and get32(m, i, SYNSRCVAR) != 0)
+
+
+@compiled
+def _target_velocity(s: CardState, i: int, layer: int, bit: int) -> None:
+    target = get32(s.memory, i, layer * PCS + TGVEL)
+    if layer == 0 and _is_held_for_sync(s, i):
+        return
+    if s.memory[i, RUN] == 0 or _is_given(s, i, layer, bit):
+        return
+    if is_blocked(s, i, 1 if target > 0 else -1) and target != 0:
+        return
+    if target == 0 and s.system[layer, i]["mode"] == IDLE:
+        return
+    _take_over(s, i, layer)
+    start_velocity(s, layer, i, target)
+
+
+@compiled
+def _home(s: CardState, i: int) -> None:
+    m = s.memory
+    if m[i, GOHOME] == 0:
+        if s.axis[i]["home"] != 0:
+            s.axis[i]["home"] = 0
+            start_velocity(s, 0, i, 0)
+        return
+    way = -1 if get_u16(m, i, HOMESEQ) & HOME_NEGATIVE else 1
+    given = s.system[0, i]["mode"] == GIVEN
+    if m[i, RUN] == 0 or is_blocked(s, i, way) or given or get32(m, i, HIGHVEL) == 0:
+        put16(m, i, GOHOME, 0)
+        return
+    _take_over(s, i, 0)
+    put16(m, i, GOHOME, -1)
+    begin_homing(s, i)
+
+
+@compiled
+def _sync(s: CardState, i: int) -> None:
+    m = s.memory
+    running = s.axis[i]["sync_share"] >= 0.0
+    wanted = m[i, STARTSYN] != 0 and m[i, ENASYN] != 0
+    if wanted and not running:
+        if m[i, RUN] != 0 and not is_blocked(s, i, 0) and s.system[0, i]["mode"] != GIVEN:
+            begin_sync(s, i)
+    elif running and not wanted:
+        end_sync(s, i)
+        if s.system[0, i]["mode"] == SYNC:
+            start_velocity(s, 0, i, 0)
+
+
+@compiled
+def take_commands(s: CardState, i: int) -> None:
+    """Act on the words that have been written to axis `i`."""
+    axis, m = s.axis[i], s.memory
+    commands = axis["commands"]
+    axis["commands"] = 0
+    if commands >> DO_CLEAR & 1 and m[i, CLEAR] != 0:
+        clear_axis(s, i)
+        put16(m, i, CLEAR, 0)
+    if commands >> DO_SETHOME & 1 and m[i, SETHOME] != 0:
+        set_origin_here(s, i)
+    if commands >> DO_RUN & 1 and m[i, RUN] == 0:
+        halt_axis(s, i)
+    if commands >> DO_ENGEAR & 1:
+        if m[i, ENGEAR] == 0:
+            leave_gear(s, i)
+        elif m[i, RUN] != 0 and not is_blocked(s, i, 0) and s.system[0, i]["mode"] != GIVEN:
+            begin_gear(s, i)
+    if commands >> DO_STARTSYN & 1:
+        _sync(s, i)
+    if commands >> DO_GOHOME & 1:
+        _home(s, i)
+    for layer in range(2):
+        velocity = DO_TGVEL_MCS if layer == 0 else DO_TGVEL_PCS
+        go = DO_GO_MCS if layer == 0 else DO_GO_PCS
+        if commands >> velocity & 1:
+            _target_velocity(s, i, layer, velocity)
+        if commands >> go & 1:
+            _go(s, i, layer, go)

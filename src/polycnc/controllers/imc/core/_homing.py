@@ -1,0 +1,174 @@
+"""Search the origin: run to an edge of the origin switch, come back to that place once or twice, count index pulses.
+
+What to do is in homeseq. The bits are this project's own: the one value that is known from programs, 0014h (origin
+switch only, positive direction), means the same here.
+"""
+
+from __future__ import annotations
+
+import math
+
+from polycnc.controllers.imc.core._addresses import (
+    CURVEL,
+    GOHOME,
+    HIGHVEL,
+    HOMED,
+    HOMESEQ,
+    HOMESTPOS,
+    INDEX_NUM,
+    LOWVEL,
+    TGPOS,
+)
+from polycnc.controllers.imc.core._origin import set_origin_at
+from polycnc.controllers.imc.core._planner import begin_move, start_velocity
+from polycnc.controllers.imc.core._state import IDLE, CardState
+from polycnc.controllers.imc.core._words import get32, get_u16, put16, put32
+from polycnc.kernel import REFERENCE, KernelState, compiled
+
+# homeseq
+HOME_NEGATIVE = 0x01
+HOME_GO_TO = 0x02  # in the end, go to homestpos instead of stopping
+HOME_SWITCH = 0x04
+HOME_INDEX = 0x08
+HOME_RISING = 0x10
+HOME_RETURNS = 0x60  # how often the axis comes back to the edge, 0 to 2
+_RETURNS_SHIFT = 5
+
+# Phases.
+NOT_HOMING = 0
+SEEK = 1
+FIRST_STOP = 2
+RETURN = 3
+SECOND_STOP = 4
+AGAIN = 5
+COUNT = 6
+ENDING = 7
+
+_PASSES = (0, 0, 0, 1, 0, 2)  # by phase: comings back to the edge before it
+
+_ORIGIN_BIT = 4  # of `inverted`, and of aio: terminal 2
+
+
+def home_sequence(
+    *, switch: bool, index: bool, negative: bool, rising: bool, go_to: bool, returns: int = 0
+) -> int:
+    """Return the value of homeseq for a way to search the origin."""
+    bits = ((HOME_SWITCH, switch), (HOME_INDEX, index), (HOME_NEGATIVE, negative), (HOME_RISING, rising))
+    value = sum(bit for bit, wanted in (*bits, (HOME_GO_TO, go_to)) if wanted)
+    return value | returns << _RETURNS_SHIFT
+
+
+@compiled
+def _run(s: CardState, i: int, speed: int, forward: bool) -> None:
+    """Run at a speed in the direction of the search, or back."""
+    negative = (get_u16(s.memory, i, HOMESEQ) & HOME_NEGATIVE) != 0
+    speed = abs(speed)
+    start_velocity(s, 0, i, speed if forward != negative else -speed)
+
+
+@compiled
+def begin_homing(s: CardState, i: int) -> None:
+    """Start to search the origin as homeseq says."""
+    axis, m = s.axis[i], s.memory
+    sequence = get_u16(m, i, HOMESEQ)
+    if not sequence & (HOME_SWITCH | HOME_INDEX):
+        put16(m, i, GOHOME, 0)
+        return
+    put16(m, i, HOMED, 0)
+    axis["home_count"] = 0
+    axis["home"] = SEEK if sequence & HOME_SWITCH else COUNT
+    _run(s, i, get32(m, i, HIGHVEL), True)
+
+
+@compiled
+def _edge(s: CardState, state: KernelState, i: int, rising: bool) -> bool:
+    """Tell whether the origin terminal has risen, or fallen, in this cycle; its place is in `home_edge`."""
+    axis, switch = s.axis[i], state.switches.switch[i, REFERENCE]
+    comes_on = rising == ((axis["inverted"] & _ORIGIN_BIT) == 0)
+    if comes_on:
+        axis["home_edge"] = switch["rising_position"]
+        return bool(state.switches.rising[i, REFERENCE] != 0)
+    axis["home_edge"] = switch["falling_position"]
+    return bool(state.switches.falling[i, REFERENCE] != 0)
+
+
+@compiled
+def _count(s: CardState, state: KernelState, i: int, beyond: float) -> bool:
+    """Count the index pulses of this cycle that lie beyond a place; True if one of them is the last."""
+    axis, marks = s.axis[i], state.switches.marks[i]
+    crossed = marks["index_crossed"]
+    way = 1.0 if crossed > 0 else -1.0
+    for k in range(abs(crossed)):
+        at = marks["index_position"] + way * k * marks["index_pitch"]
+        if math.isfinite(beyond) and (at - beyond) * way <= 0.0:
+            continue
+        axis["home_count"] += 1
+        if axis["home_count"] >= get_u16(s.memory, i, INDEX_NUM):
+            axis["home_edge"] = at
+            return True
+    return False
+
+
+@compiled
+def _found(s: CardState, state: KernelState, i: int) -> None:
+    """Set the origin at `home_edge`, and stop or go where it is asked for."""
+    axis, m = s.axis[i], s.memory
+    set_origin_at(s, i, state.servo.actual[i] - axis["home_edge"])
+    axis["home"] = ENDING
+    if get_u16(m, i, HOMESEQ) & HOME_GO_TO:
+        put32(m, i, TGPOS, get32(m, i, HOMESTPOS))
+        begin_move(s, 0, i)
+    else:
+        start_velocity(s, 0, i, 0)
+
+
+@compiled
+def _turn_back(s: CardState, state: KernelState, i: int, phase: int, returns: int) -> bool:
+    """Carry out a phase that is ended by an edge; True if it was the last edge."""
+    axis = s.axis[i]
+    rising = (get_u16(s.memory, i, HOMESEQ) & HOME_RISING) != 0
+    if not _edge(s, state, i, rising != (phase == RETURN)):
+        return False
+    if returns <= _PASSES[phase]:
+        return True
+    axis["home"] = phase + 1  # stop, then come back
+    start_velocity(s, 0, i, 0)
+    return False
+
+
+@compiled
+def homing_cycle(s: CardState, state: KernelState, i: int) -> None:
+    """Take the search of axis `i` one control cycle on, by what it has run over in this one."""
+    axis, m = s.axis[i], s.memory
+    phase = axis["home"]
+    if phase == NOT_HOMING:
+        return
+    sequence = get_u16(m, i, HOMESEQ)
+    beyond = math.inf
+    found = False
+    if phase in (SEEK, RETURN, AGAIN):
+        if not _turn_back(s, state, i, phase, min((sequence & HOME_RETURNS) >> _RETURNS_SHIFT, 2)):
+            return
+        if sequence & HOME_INDEX:
+            axis["home"] = COUNT
+            beyond = axis["home_edge"]
+        else:
+            found = True
+    if axis["home"] == COUNT:
+        found = _count(s, state, i, beyond)
+    if found:
+        _found(s, state, i)
+    elif axis["home"] != COUNT and s.system[0, i]["mode"] == IDLE and get32(m, i, CURVEL) == 0:
+        _after_rest(s, i, phase)
+
+
+@compiled
+def _after_rest(s: CardState, i: int, phase: int) -> None:
+    """Go on where the axis has come to rest: back, or that was it."""
+    axis, m = s.axis[i], s.memory
+    if phase == ENDING:
+        axis["home"] = NOT_HOMING
+        put16(m, i, GOHOME, 0)
+        return
+    axis["home"] = phase + 1
+    _run(s, i, get32(m, i, LOWVEL), phase == SECOND_STOP)

@@ -1,0 +1,195 @@
+"""Write a parameter as a client does: with all that the write sets off, and nothing for a read-only word."""
+
+from __future__ import annotations
+
+from polycnc.controllers.imc.core._addresses import (
+    CAPFIFO,
+    CAPFIFOCNT,
+    CAPPOS,
+    COUNTS,
+    DO_CAPTURE,
+    DO_CLEAR,
+    DO_CLEAR_BITS,
+    DO_CLEAR_FIFO,
+    DO_CLEARIMC,
+    DO_CLRCAP,
+    DO_CLRENCS,
+    DO_EVENTS,
+    DO_GO_MCS,
+    DO_GO_PCS,
+    DO_GOHOME,
+    DO_POPCAP,
+    DO_SETHOME,
+    DO_STARTSYN,
+    DO_TGVEL_MCS,
+    DO_TGVEL_PCS,
+    DO_ZERO,
+    ENCP_FRACTION,
+    ENCS_FRACTION,
+    EVENTS,
+    MOTION,
+    MOVING,
+    PCS,
+    PROFILING,
+    REFUSE,
+    RUN,
+    STORE,
+    SYNAXIS,
+    SYNSRC,
+    SYSTEM_MOVING,
+    WAIT_TIMES,
+)
+from polycnc.controllers.imc.core._parameters import WORDS
+from polycnc.controllers.imc.core._state import CAPTURES, QUEUES, CardState
+from polycnc.controllers.imc.core._words import FLAG, get32, get48, get_u16, put16, put32, put48
+from polycnc.kernel import compiled, entry
+
+_PCS_MOVING = PCS + SYSTEM_MOVING
+
+
+@compiled
+def row_of(s: CardState, at: int, axis: int) -> int:
+    """Return the row of memory that holds address `at` for `axis`, or -1 if there is none."""
+    n = s.axis.shape[0]
+    if at < 0 or at >= WORDS:
+        return -1
+    if s.word[at, 0] != 0:
+        return int(n)
+    return axis if 0 <= axis < n else -1
+
+
+@compiled
+def sync_source(s: CardState, i: int) -> int:
+    """Return the parameter that paces the synchronous motion of axis `i`."""
+    at = get_u16(s.memory, i, SYNSRC)
+    row = row_of(s, at, get_u16(s.memory, i, SYNAXIS))
+    return get32(s.memory, row, at) if row >= 0 and at + 1 < WORDS else 0
+
+
+@compiled
+def empty_fifo(s: CardState, f: int) -> None:
+    """Drop all that queue `f` holds, and the wait it is in."""
+    q = s.fifo[f]
+    q["head"] = q["tail"]
+    q["words"] = 0
+    q["waiting"] = 0
+    n = s.axis.shape[0]
+    for k in range(QUEUES):
+        if k == f:
+            put16(s.memory, n, COUNTS[k], 0)
+            if 0 < k < QUEUES - 1:
+                put32(s.memory, n, WAIT_TIMES[k], 0)
+
+
+@compiled
+def keep_capture(s: CardState, i: int, position: int) -> None:
+    """Append a captured position; a full buffer keeps what it has."""
+    row = s.axis[i]
+    if row["captured"] - row["fetched"] >= CAPTURES:
+        return
+    s.capture[i, row["captured"] % CAPTURES] = position
+    row["captured"] += 1
+    show_captures(s, i)
+
+
+@compiled
+def show_captures(s: CardState, i: int) -> None:
+    """Bring the registers of the capture buffer up to date."""
+    row = s.axis[i]
+    waiting = row["captured"] - row["fetched"]
+    put16(s.memory, i, CAPFIFOCNT, waiting)
+    put32(s.memory, i, CAPFIFO, s.capture[i, row["fetched"] % CAPTURES] if waiting > 0 else 0)
+
+
+@compiled
+def _command(s: CardState, i: int, action: int, value: int) -> None:
+    """Note what an axis has to do in its next turn; what begins a motion shows in the flags at once."""
+    row = s.axis[i]
+    if value != 0 or action in (DO_TGVEL_MCS, DO_TGVEL_PCS):  # the last one counts
+        if action in (DO_GO_MCS, DO_TGVEL_MCS):
+            row["commands"] &= ~(1 << DO_GO_MCS | 1 << DO_TGVEL_MCS)
+        elif action in (DO_GO_PCS, DO_TGVEL_PCS):
+            row["commands"] &= ~(1 << DO_GO_PCS | 1 << DO_TGVEL_PCS)
+    row["commands"] |= 1 << action
+    if action in (DO_CLEAR, DO_SETHOME):
+        s.card[0]["hold"] = 1
+    if action == DO_STARTSYN:
+        row["sync_from"] = sync_source(s, i)
+    if DO_GO_MCS <= action <= DO_GOHOME and value != 0 and s.memory[i, RUN] != 0:
+        second = action in (DO_GO_PCS, DO_TGVEL_PCS)
+        put16(s.memory, i, _PCS_MOVING if second else SYSTEM_MOVING, FLAG)
+        put16(s.memory, i, PROFILING, FLAG)
+        put16(s.memory, i, MOVING, FLAG)
+        put16(s.memory, i, MOTION, FLAG)
+
+
+@compiled
+def _write_axis_word(s: CardState, i: int, at: int, action: int, value: int) -> None:
+    row, m = s.axis[i], s.memory
+    if action == DO_CAPTURE:
+        position = get48(m, i, ENCP_FRACTION) >> 16
+        put32(m, i, CAPPOS, position)
+        keep_capture(s, i, position)
+    elif action == DO_POPCAP:
+        if row["fetched"] < row["captured"]:
+            row["fetched"] += 1
+        show_captures(s, i)
+    elif action == DO_CLRCAP:
+        row["fetched"] = row["captured"]
+        show_captures(s, i)
+    elif action == DO_ZERO:
+        put16(m, i, at, 0)
+    elif action == DO_CLRENCS:
+        put48(m, i, ENCS_FRACTION, 0)
+
+
+@compiled
+def _write_card_word(s: CardState, at: int, action: int, value: int) -> None:
+    n = s.axis.shape[0]
+    if action == DO_EVENTS:
+        if value == 0:
+            s.card[0]["events"] = 0
+        put16(s.memory, n, EVENTS, s.card[0]["events"])
+        return
+    for f in range(QUEUES):
+        if action == DO_CLEARIMC or COUNTS[f] == at:
+            empty_fifo(s, f)
+
+
+@compiled
+def write_word(s: CardState, at: int, axis: int, value: int) -> None:
+    """Write one word of a parameter."""
+    row = row_of(s, at, axis)
+    if row < 0:
+        return
+    action = int(s.word[at, 1])
+    if action == STORE:
+        put16(s.memory, row, at, value)
+    elif action < REFUSE:
+        put16(s.memory, row, at, value)
+        _command(s, row, action, value)
+    elif action == DO_CLEAR_BITS:
+        put16(s.memory, row, at, get_u16(s.memory, row, at) & ~value)
+    elif action in (DO_CLEAR_FIFO, DO_CLEARIMC, DO_EVENTS):
+        _write_card_word(s, at, action, value)
+    elif action != REFUSE:
+        _write_axis_word(s, row, at, action, value)
+
+
+@compiled
+def write_words(s: CardState, at: int, axis: int, words: int, value: int) -> None:
+    """Write `words` words of a parameter, low word first."""
+    for k in range(words):
+        write_word(s, at + k, axis, (value >> (16 * k)) & 0xFFFF)
+
+
+@entry
+def write_now(s: CardState, at: int, axis: int, words: int, value: int) -> None:
+    """Write a parameter between two control cycles."""
+    write_words(s, at, axis, words, value)
+
+
+@entry
+def empty_now(s: CardState, f: int) -> None:
+    """Empty queue `f` between two control cycles."""
+    empty_fifo(s, f)

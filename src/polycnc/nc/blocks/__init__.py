@@ -1,0 +1,1 @@
+"""The ordinary interpreter: modal state, coordinates, compensation, cycles, and what it queues."""

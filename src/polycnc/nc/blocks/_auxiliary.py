@@ -1,0 +1,134 @@
+"""Spindle, tool, coolant and other auxiliary functions: what they change, and the waits they queue.
+
+They take effect at rest, in the order: spindle speed, tool, tool change, spindle, coolant, others; then the
+motion of the block; then program stops and the program end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from polycnc.machine import ToolConfig
+from polycnc.nc.blocks._actions import Action, Group, MAction
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._modal import INCH
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._moves import Wait
+from polycnc.nc.blocks._words import BlockWords, Fail, GWord, MWord, code_text
+from polycnc.nc.text._scan_plain import Word
+from polycnc.units import MM_PER_INCH
+
+_BEFORE_MOTION = (
+    MAction.TOOL_CHANGE,
+    MAction.SPINDLE_CW,
+    MAction.SPINDLE_CCW,
+    MAction.SPINDLE_STOP,
+    MAction.COOLANT_MIST,
+    MAction.COOLANT_FLOOD,
+    MAction.COOLANT_OFF,
+    MAction.AUXILIARY,
+)
+_AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
+_DIRECTION = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
+_M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
+LARGEST_NUMBER = 99_999_999
+
+
+def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBER) -> int:
+    """Return the number of a word that counts or names something.
+
+    Raises:
+        ProgramError: it is negative, too large or not whole.
+    """
+    if word.value != int(word.value) or not 0 <= word.value <= largest:
+        text = f"{word.letter}{code_text(word.value)}"
+        raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
+    return int(word.value)
+
+
+@dataclass
+class Auxiliary:
+    """Carry out S, T and M words of a block."""
+
+    state: ChannelState
+    messages: Messages
+    motion: MotionBuilder
+    fail: Fail
+
+    def before_motion(self, words: BlockWords, line: int) -> list[Wait]:
+        """Return the waits of all functions that come before the block's motion."""
+        waits = []
+        speed = words.take("S")
+        if g := words.g.get(Group.SPINDLE_MODE):
+            self._set_mode(g, speed)
+        if speed is not None:
+            self._set_speed(speed)
+            if not any(m.action in _DIRECTION for m in words.m):
+                waits.append(Wait(0.0, line, (f"S{code_text(speed.value)}",)))
+        tool = words.take("T")
+        if tool is not None:
+            self.state.selected_tool = whole_number(tool, "a tool number", self.fail)
+        if words.m:
+            for action in _BEFORE_MOTION:
+                waits += [self._function(m, speed, line) for m in words.m if m.action is action]
+        return waits
+
+    def after_motion(self, words: BlockWords, line: int) -> list[Wait]:
+        """Return the waits of program stops and the program end."""
+        return [Wait(0.0, line, (f"M{m.code}",)) for m in words.m if m.action in _AFTER_MOTION]
+
+    def tool_data(self, tool: int) -> ToolConfig:
+        """Return the data of a tool, zeros with a message if there are none; tool 0 is no tool."""
+        tools = self.state.machine.tools
+        if tool in tools:
+            return tools[tool]
+        if tool and not tools:
+            self.messages.add("the machine has no tool table: lengths and radii of all tools are 0 mm")
+        elif tool:
+            self.messages.add(
+                f"tool {tool} is not in the machine's tool table: its length and radius are 0 mm"
+            )
+        return ToolConfig()
+
+    def _set_mode(self, g: GWord, speed: Word | None) -> None:
+        spindle = self.state.spindle
+        surface_speed = g.action is Action.CONSTANT_SURFACE_SPEED
+        if surface_speed == spindle.surface_speed:
+            return
+        if surface_speed and speed is None:
+            raise self.fail(
+                f"G{g.code} without a cutting speed", "Add S, in m/min (feet/min with inch words).", g.word
+            )
+        # Without S the spindle keeps the speed it has here.
+        rpm = spindle.speed if surface_speed else self.motion.rpm(self.motion.start, self.motion.start)
+        self.state.spindle = replace(spindle, speed=rpm, surface_speed=surface_speed)
+
+    def _set_speed(self, word: Word) -> None:
+        spindle = self.state.spindle
+        speed = word.value
+        if speed < 0.0:
+            text = code_text(speed)
+            raise self.fail(f"the spindle speed {text} is negative", "Turn the other way with M4.", word)
+        top = self.state.machine.spindle.max_rpm
+        if spindle.surface_speed:
+            speed *= _M_PER_FOOT if self.state.modal.whole[INCH] else 1.0
+        elif speed > top:
+            self.messages.add(f"S is above the spindle's {code_text(top)} rpm: it turns at that speed")
+            speed = top
+        self.state.spindle = replace(spindle, speed=speed)
+
+    def _function(self, m: MWord, speed: Word | None, line: int) -> Wait:
+        times = self.state.machine.times
+        name = f"M{m.code}"
+        if m.action is MAction.TOOL_CHANGE:
+            self.state.tool = self.state.selected_tool
+            self.tool_data(self.state.tool)
+            return Wait(times.tool_change_s, line, (f"{name} T{self.state.tool}",))
+        if m.action in _DIRECTION:
+            spindle = self.state.spindle
+            changed = spindle.direction != _DIRECTION[m.action] or speed is not None
+            self.state.spindle = replace(spindle, direction=_DIRECTION[m.action])
+            word = name if speed is None else f"{name} S{code_text(speed.value)}"
+            return Wait(times.spindle_start_s if changed else 0.0, line, (word,))
+        return Wait(times.auxiliary_s, line, (name,))

@@ -1,0 +1,136 @@
+"""Sub-programs: where they are found, and where the reading goes on after them."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from polycnc.errors import UsageError
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.text._program import ProgramText
+
+_LABEL = re.compile(rb"(?:\A|(?<=[\r\n]))[ \t]*[Oo:][ \t]*0*([0-9]+)")
+_DIGITS = 4  # how many digits a program number is usually written with
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Say where the reading of a program stands: at the line that begins at byte `offset`."""
+
+    text: ProgramText
+    offset: int = 0
+    line: int = 1
+
+
+@dataclass
+class Running:
+    """Hold a program that is being executed, and where to go back to.
+
+    `begun` is set with its first word: from there on, % or another program number ends it.
+    """
+
+    begin: Place
+    repeats: int = 0
+    back: Place | None = None
+    begun: bool = False
+
+
+class Calls:
+    """Keep the stack of running programs, the main program at the bottom."""
+
+    def __init__(self, main: ProgramText, dialect: Dialect) -> None:
+        self._dialect = dialect
+        self._main = main
+        self._stack = [Running(Place(main))]
+        self._labels: dict[str, dict[int, Place]] = {}
+        self._files: dict[tuple[Path, int], Place | None] = {}
+
+    @property
+    def running(self) -> Running:
+        """The program that is being executed."""
+        return self._stack[-1]
+
+    @property
+    def depth(self) -> int:
+        """How deep the present program is nested; 0 is the main program."""
+        return len(self._stack) - 1
+
+    def trouble(self, program: int) -> tuple[str, str] | None:
+        """Return what is against calling a sub-program and what to do about it, None if nothing is.
+
+        Raises:
+            UsageError: its file cannot be read.
+        """
+        deepest = self._dialect.sub_program.depth
+        if self.depth >= deepest:
+            return (
+                f"sub-programs are nested more than {deepest} deep",
+                f"Dialect '{self._dialect.name}' allows {deepest} levels: does a sub-program call itself?",
+            )
+        try:
+            found = self._find(program)
+        except UsageError as error:
+            return error.what, error.hint
+        if found is None:
+            return (
+                f"there is no sub-program {program}",
+                f"Write it behind the program, beginning with O{program}, or in a file O{program} beside it.",
+            )
+        return None
+
+    def enter(self, program: int, repeats: int, back: Place) -> Place | None:
+        """Begin a sub-program that `trouble` had nothing against; return where, None for no repeats."""
+        begin = self._find(program)
+        assert begin is not None
+        if repeats < 1:
+            return None
+        self._stack.append(Running(begin, repeats - 1, back))
+        return begin
+
+    def leave(self) -> Place | None:
+        """End the present program; return where the reading goes on, None if it was the main program."""
+        running = self.running
+        if running.back is None:
+            return None
+        if running.repeats > 0:
+            running.repeats -= 1
+            running.begun = False
+            return running.begin
+        self._stack.pop()
+        return running.back
+
+    def _find(self, program: int) -> Place | None:
+        """Return where a sub-program begins: in the present file, the main file, or a file of its own."""
+        for text in (self.running.begin.text, self._main):
+            if text.name not in self._labels:
+                self._labels[text.name] = _labels(text)
+            if program in self._labels[text.name]:
+                return self._labels[text.name][program]
+        main = Path(self._main.name)
+        if not main.is_file():
+            return None  # a text from elsewhere has no folder
+        key = (main.parent, program)
+        if key not in self._files:
+            self._files[key] = self._own_file(main, program)
+        return self._files[key]
+
+    def _own_file(self, main: Path, program: int) -> Place | None:
+        digits = f"{program:0{_DIGITS}d}"
+        for name in (f"O{digits}", f"O{program}", f"o{digits}", f"o{program}", digits, f"{program}"):
+            for extension in dict.fromkeys((main.suffix, "", *self._dialect.extensions)):
+                path = main.parent / f"{name}{extension}"
+                if path.is_file():
+                    return Place(ProgramText.from_path(path))
+        return None
+
+
+def _labels(text: ProgramText) -> dict[int, Place]:
+    """Return where the programs of a file begin, by number; the first of a number counts."""
+    found: dict[int, Place] = {}
+    for match in _LABEL.finditer(text.content):
+        number = int(match[1])
+        if number not in found:
+            position = text.position(match.start())
+            found[number] = Place(text, match.start(), position.line)
+    return found

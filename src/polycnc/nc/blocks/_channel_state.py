@@ -1,0 +1,120 @@
+"""Everything that a block may change besides the queue, and going back when a block is refused."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy.typing as npt
+
+from polycnc.machine import MachineConfig
+from polycnc.nc.blocks._compensation import RadiusCompensation
+from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
+from polycnc.nc.blocks._cycles import CycleWords
+from polycnc.nc.blocks._modal import Modal, restore_modal, save_modal
+
+
+@dataclass(frozen=True, slots=True)
+class Spindle:
+    """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped.
+
+    `speed` is in revolutions per minute, or in m/min with constant surface speed.
+    """
+
+    speed: float = 0.0
+    direction: int = 0
+    surface_speed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Cycle:
+    """Hold the active drilling cycle (its action, empty: none) and its words, levels of the program.
+
+    `initial` is where the drilling axis was when the first cycle began, in machine coordinates.
+    """
+
+    action: str = ""
+    retract_to_initial: bool = True
+    initial: float = 0.0
+    words: CycleWords = field(default_factory=CycleWords)
+
+
+class Plain(NamedTuple):
+    """Hold the part of the state that is plain values."""
+
+    spindle: Spindle
+    cycle: Cycle
+    tool: int
+    selected_tool: int
+    feed_word: float
+    path_tolerance_mm: float
+    side: int
+    compensation_tool: int | None
+
+
+class SavedState(NamedTuple):
+    """Hold a state to go back to."""
+
+    modal: tuple[npt.NDArray[Any], ...]
+    coordinates: SavedCoordinates
+    compensation: RadiusCompensation | None
+    plain: Plain
+
+
+class ChannelState:
+    """Hold everything that a block may change, besides the queue.
+
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
+    the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
+    -1 right, 0 off; `compensation_tool` the last D word, None before the first. `path_tolerance_mm` is how
+    far corners may be rounded.
+    """
+
+    def __init__(self, machine: MachineConfig, modal: Modal) -> None:
+        self.machine = machine
+        self.modal = modal
+        self.coordinates = Coordinates(machine, modal)
+        self.compensation = RadiusCompensation()
+        self.spindle = Spindle()
+        self.cycle = Cycle()
+        self.tool = 0
+        self.selected_tool = 0
+        self.feed_word = 0.0
+        self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.side = 0
+        self.compensation_tool: int | None = None
+        self.axis_names: Sequence[str] = machine.axis_names
+
+    def save(self) -> SavedState:
+        """Return the state to go back to when the block that comes is refused."""
+        return SavedState(
+            save_modal(self.modal),
+            self.coordinates.save(),
+            self.compensation.copy() if self.compensation.active else None,
+            self.plain(),
+        )
+
+    def restore(self, saved: SavedState) -> None:
+        """Go back to a saved state."""
+        restore_modal(self.modal, saved.modal)
+        self.coordinates.restore(saved.coordinates)
+        if saved.compensation is None:
+            self.compensation.reset()
+        else:
+            self.compensation = saved.compensation
+        for name, value in zip(Plain._fields, saved.plain, strict=True):
+            setattr(self, name, value)
+
+    def plain(self) -> Plain:
+        """Return the plain values."""
+        return Plain(
+            self.spindle,
+            self.cycle,
+            self.tool,
+            self.selected_tool,
+            self.feed_word,
+            self.path_tolerance_mm,
+            self.side,
+            self.compensation_tool,
+        )

@@ -1,0 +1,397 @@
+"""Cutter radius compensation (G40, G41, G42): a stage between interpreter and queue that shifts the path.
+
+The interpreter stays with programmed positions. A plane move can only be given out when the next one is
+known, since the corner between them decides where it ends; so the stage holds back one plane move, and in
+order behind it whatever does not move in the plane.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from enum import Enum, IntEnum
+from typing import Literal
+
+from polycnc.errors import ConfigurationError, ProgramError
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Wait
+from polycnc.nc.blocks._offset_geometry import (
+    COLLAPSED_MM,
+    XY,
+    Joint,
+    Leg,
+    arc_leg,
+    chamfer,
+    collapses,
+    end_offset,
+    join,
+    leg_length,
+    line_leg,
+    offset_sweep,
+    round_joint,
+    smallest_offset_radius,
+    start_offset,
+    turn_cosine,
+    turns_inside,
+)
+
+# A compensated move may come out this much shorter than nothing by rounding before it counts as reversed.
+_ROUNDING_MM = 1e-10
+_CANCEL_FIRST = "Cancel with G40 and a straight move first."
+# Why a path is refused: what is wrong, and what to do.
+_REFUSALS = {
+    "radius": ("the tool radius is not a finite number", "Check the tool table."),
+    "plane_change": ("the plane changes while radius compensation is active", _CANCEL_FIRST),
+    "side_change": ("radius compensation changes sides while active", _CANCEL_FIRST),
+    "radius_change": ("the tool radius changes while radius compensation is active", _CANCEL_FIRST),
+    "no_lead_out": ("radius compensation starts again before its lead-out", _CANCEL_FIRST),
+    "lead_in_arc": (
+        "radius compensation starts with an arc",
+        "Make the first plane move after G41 or G42 a straight one.",
+    ),
+    "lead_out_arc": (
+        "radius compensation ends with an arc",
+        "Make the first plane move after G40 a straight one.",
+    ),
+    "arc_too_small": (
+        "the arc radius {arc:.6g} mm is smaller than the tool radius {tool:.6g} mm",
+        "Use a smaller tool, or a larger arc.",
+    ),
+    "no_intersection": (
+        "a tool of radius {tool:.6g} mm does not fit into this inside corner",
+        "The offset paths do not meet: use a smaller tool, or round the corner.",
+    ),
+    "interference": (
+        "the compensated move would run backwards: the tool is too large for this part of the contour",
+        "Use a smaller tool, or leave out moves that are shorter than the tool needs at inside corners.",
+    ),
+    "stopped_inside": (
+        "preparation stopped at an inside corner, so the tool has already cut into the next move",
+        "Move the word that stops preparation away from this corner.",
+    ),
+}
+
+
+class Side(IntEnum):
+    """Where the tool goes, seen along the direction of travel."""
+
+    LEFT = 1
+    RIGHT = -1
+
+
+class CompensationError(ProgramError):
+    """A path that a tool of this radius cannot follow, or a compensation word out of place.
+
+    `reason` is a stable key a dialect can map to its own alarm number; `line` is the number of the program
+    line. The interpreter turns the line into `position`.
+    """
+
+    def __init__(self, what: str, *, reason: str, line: int, hint: str = "") -> None:
+        super().__init__(what, hint=hint)
+        self.reason = reason
+        self.line = line
+
+
+class _Mode(Enum):
+    OFF = "off"
+    ENTERING = "entering"
+    ON = "on"
+    LEAVING = "leaving"
+
+
+class RadiusCompensation:
+    """Shift plane moves by the tool radius, one stream of queue items in, one out.
+
+    `outer` chooses outside corners: an arc about the corner, or the intersection of the offset curves (an arc
+    still where the turn exceeds 90 degrees). Turns below `shallow_deg` always meet by intersection. `lead`
+    names the shape of lead-in and lead-out; there is one: a straight move to the point beside the start of
+    the contour, and one back from the point beside its end.
+    """
+
+    def __init__(
+        self,
+        *,
+        outer: Literal["arc", "intersection"] = "arc",
+        lead: Literal["tangent_perpendicular"] = "tangent_perpendicular",
+        shallow_deg: float = 1.0,
+    ) -> None:
+        if outer not in ("arc", "intersection"):
+            raise ConfigurationError(
+                f"outer corners cannot be {outer!r}", hint="Use 'arc' or 'intersection'."
+            )
+        if lead != "tangent_perpendicular":
+            raise ConfigurationError(f"unknown lead {lead!r}", hint="Use 'tangent_perpendicular'.")
+        if not 0.0 <= shallow_deg <= 90.0:
+            raise ConfigurationError(
+                f"shallow_deg is {shallow_deg}", hint="Use an angle from 0 to 90 degrees."
+            )
+        self._shallow_cosine = math.cos(math.radians(shallow_deg))
+        self._meet_cosine = self._shallow_cosine if outer == "arc" else 0.0
+        self._plane = (0, 1, 2)
+        self._offset = 0.0
+        self._hold: list[QueueItem] = []
+        self.reset()
+
+    @property
+    def active(self) -> bool:
+        """Tell whether items must go through this stage: from `start` to the end of the lead-out."""
+        return self._mode is not _Mode.OFF
+
+    def reset(self) -> None:
+        """Drop everything held back and switch off, as a reset or the end of a program does."""
+        self._mode = _Mode.OFF
+        self._hold.clear()
+        self._move: Move | None = None  # the last plane move, programmed
+        self._leg: Leg | None = None
+        self._pending = False  # that move has not been given out yet
+        self._lead_in = False  # that move is the lead-in
+        self._at: XY | None = None  # compensated place where the pending move starts or all motion has ended
+
+    def copy(self) -> RadiusCompensation:
+        """Return a stage in the same state, to go back to when a block is refused."""
+        other = copy.copy(self)
+        other._hold = self._hold.copy()
+        return other
+
+    def start(self, side: Side, radius_mm: float, plane: tuple[int, int, int], line: int = 0) -> None:
+        """Start compensation (G41, G42); the next plane move is the lead-in.
+
+        A negative radius is the other side. Repeating the words in force changes nothing; anything else while
+        active is refused.
+
+        Raises:
+            CompensationError: another side, radius or plane while active, or a start before the lead-out.
+        """
+        if not math.isfinite(radius_mm):
+            raise _refusal("radius", line)
+        offset = float(side * radius_mm)
+        if self._mode in (_Mode.OFF, _Mode.ENTERING):
+            self._plane = plane
+            self._offset = offset
+            self._mode = _Mode.ENTERING
+            return
+        if plane != self._plane:
+            raise _refusal("plane_change", line)
+        if self._mode is _Mode.LEAVING:
+            raise _refusal("no_lead_out", line)
+        if offset * self._offset < 0.0:
+            raise _refusal("side_change", line)
+        if offset != self._offset:
+            raise _refusal("radius_change", line)
+
+    def cancel(self) -> None:
+        """Cancel compensation (G40); the next plane move is the lead-out.
+
+        Before the lead-in there is nothing to lead out of: it just switches off.
+        """
+        if self._mode is _Mode.ENTERING:
+            self.reset()
+        elif self._mode is _Mode.ON:
+            self._mode = _Mode.LEAVING
+
+    def flush(self) -> list[QueueItem]:
+        """Give out everything held back; the last plane move ends beside its own end point. Stays active.
+
+        Raises:
+            CompensationError: the last move is too short for the tool (reason "interference").
+        """
+        if not self._pending or self._leg is None:
+            return []
+        out: list[QueueItem] = []
+        self._give_out(end_offset(self._leg, self._offset), out)
+        return out
+
+    def push(self, item: QueueItem) -> list[QueueItem]:
+        """Take one programmed item and return those whose compensated path is now known.
+
+        Raises:
+            CompensationError: the path cannot be followed (see docs/explanation/radius-compensation.md).
+        """
+        if self._mode is _Mode.OFF:
+            return [item]
+        leg = self._leg_of(item)
+        if leg is None or isinstance(item, Wait):
+            if self._pending:
+                self._hold.append(item)
+                return []
+            return [item if self._at is None else self._placed(item, self._at)]
+        if self._mode is _Mode.ENTERING:
+            return self._enter(item, leg)
+        if self._mode is _Mode.LEAVING:
+            return self._leave(item, leg)
+        if self._offset == 0.0:
+            return [item]
+        return self._follow(item, leg)
+
+    def _leg_of(self, item: QueueItem) -> Leg | None:
+        if isinstance(item, Wait):
+            return None
+        i, j, _ = self._plane
+        start, end = item.start, item.end
+        if isinstance(item, Line):
+            return line_leg(start[i], start[j], end[i], end[j])
+        if item.plane != self._plane:
+            raise _refusal("plane_change", item.line)
+        return arc_leg(start[i], start[j], end[i], end[j], *item.center, item.sweep_rad)
+
+    def _enter(self, item: Move, leg: Leg) -> list[QueueItem]:
+        if isinstance(item, Arc):
+            raise _refusal("lead_in_arc", item.line)
+        self._mode = _Mode.ON
+        if self._offset == 0.0:
+            return [item]
+        self._move, self._leg, self._pending, self._lead_in = item, leg, True, True
+        self._at = leg.x0, leg.y0
+        return []
+
+    def _leave(self, item: Move, leg: Leg) -> list[QueueItem]:
+        if isinstance(item, Arc):
+            raise _refusal("lead_out_arc", item.line)
+        if self._offset == 0.0 or self._at is None:
+            self.reset()
+            return [item]
+        out = self.flush()
+        out.append(self._line(item, self._at, (leg.x1, leg.y1)))
+        self.reset()
+        return out
+
+    def _follow(self, item: Move, leg: Leg) -> list[QueueItem]:
+        if leg.sense and smallest_offset_radius(leg, self._offset) < -COLLAPSED_MM:
+            radius = min(leg.radius0, leg.radius1)
+            raise _refusal("arc_too_small", item.line, arc=radius, tool=abs(self._offset))
+        out: list[QueueItem] = []
+        if self._pending and self._lead_in:
+            self._give_out(start_offset(leg, self._offset), out)
+        elif self._leg is not None and self._move is not None:
+            if self._pending:
+                self._corner(self._move, self._leg, item, leg, out)
+            else:
+                self._resume(self._move, self._leg, item, leg, out)
+        self._move, self._leg, self._pending, self._lead_in = item, leg, True, False
+        return out
+
+    def _corner(self, before: Move, leg: Leg, after: Move, next_leg: Leg, out: list[QueueItem]) -> None:
+        """Give out the pending move up to the corner, then what the corner itself needs."""
+        rapid = _is_rapid(before) and _is_rapid(after)
+        joint = join(leg, next_leg, self._offset, min(self._meet_cosine, 0.0) if rapid else self._meet_cosine)
+        if joint is None:
+            raise _refusal("no_intersection", after.line, tool=abs(self._offset))
+        if joint.sweep_rad == 0.0:
+            self._give_out(joint.end, out)
+        elif rapid:
+            joint = chamfer(leg, next_leg, joint)
+            self._give_out(joint.end, out)
+            self._straight(after, joint.start, out)
+        else:
+            self._give_out(joint.end, out)
+            self._round(before, leg, after, next_leg, joint, out)
+
+    def _resume(self, before: Move, leg: Leg, after: Move, next_leg: Leg, out: list[QueueItem]) -> None:
+        """Go on from the point beside the last move's end, where a flush has left the tool."""
+        if turn_cosine(leg, next_leg) >= self._shallow_cosine:
+            self._straight(after, start_offset(next_leg, self._offset), out)
+            return
+        if turns_inside(leg, next_leg, self._offset):
+            raise _refusal("stopped_inside", after.line)
+        joint = round_joint(leg, next_leg, self._offset)
+        if _is_rapid(before) and _is_rapid(after):
+            joint = chamfer(leg, next_leg, joint)
+            self._straight(after, joint.end, out)
+            self._straight(after, joint.start, out)
+        else:
+            self._round(before, leg, after, next_leg, joint, out)
+
+    def _give_out(self, end: XY, out: list[QueueItem]) -> None:
+        """Give out the pending move, ending at `end`, and what is held behind it."""
+        item, leg, start = self._move, self._leg, self._at
+        assert item is not None
+        assert leg is not None
+        assert start is not None
+        if isinstance(item, Arc) and not collapses(leg, self._offset):
+            sweep = offset_sweep(leg, start, end)
+            radius = leg.radius0 - leg.sense * self._offset
+            if _vanishes(sweep * leg.sense * radius, item.line):
+                end = start
+                out.append(self._line(item, start, end))
+            else:
+                out.append(self._arc(item, start, end, sweep))
+        else:
+            if isinstance(item, Line) and not self._lead_in:
+                travel = (end[0] - start[0]) * leg.tx0 + (end[1] - start[1]) * leg.ty0
+                end = start if _vanishes(travel, item.line) else end
+            out.append(self._line(item, start, end))
+        self._at = end
+        self._pending = False
+        if self._hold:
+            out.extend(self._placed(held, end) for held in self._hold)
+            self._hold.clear()
+
+    def _round(
+        self, before: Move, leg: Leg, after: Move, next_leg: Leg, joint: Joint, out: list[QueueItem]
+    ) -> None:
+        """Go round an outside corner on an arc, at the next move's feed (the last one's if that is rapid)."""
+        assert self._at is not None
+        feed = _path_feed(before, leg) if _is_rapid(after) else _path_feed(after, next_leg)
+        out.append(
+            Arc(
+                start=self._point(after.start, self._at),
+                end=self._point(after.start, joint.start),
+                center=(next_leg.x0, next_leg.y0),
+                sweep_rad=joint.sweep_rad,
+                plane=self._plane,
+                feed=feed,
+                exact_stop=before.exact_stop and after.exact_stop,
+                line=after.line,
+            )
+        )
+        self._at = joint.start
+
+    def _straight(self, after: Move, end: XY, out: list[QueueItem]) -> None:
+        """Go straight to a point that the next move starts from, in that move's manner."""
+        start = self._at
+        assert start is not None
+        if math.hypot(end[0] - start[0], end[1] - start[1]) <= _ROUNDING_MM:
+            return
+        first, last = self._point(after.start, start), self._point(after.start, end)
+        out.append(Line(first, last, after.feed, _is_rapid(after), False, after.line))
+        self._at = end
+
+    def _line(self, item: Move, start: XY, end: XY) -> Line:
+        first, last = self._point(item.start, start), self._point(item.end, end)
+        return Line(first, last, item.feed, _is_rapid(item), item.exact_stop, item.line)
+
+    def _arc(self, item: Arc, start: XY, end: XY, sweep: float) -> Arc:
+        first, last = self._point(item.start, start), self._point(item.end, end)
+        return Arc(first, last, item.center, sweep, item.plane, item.feed, item.exact_stop, item.line)
+
+    def _placed(self, item: QueueItem, at: XY) -> QueueItem:
+        """Return an item without plane motion at a compensated place."""
+        return item if isinstance(item, Wait) else self._line(item, at, at)
+
+    def _point(self, point: Point, at: XY) -> Point:
+        values = list(point)
+        values[self._plane[0]], values[self._plane[1]] = at
+        return tuple(values)
+
+
+def _vanishes(travel_mm: float, line: int) -> bool:
+    """Tell whether nothing but rounding is left of a compensated move. Refuse a reversed one."""
+    if travel_mm < -_ROUNDING_MM:
+        raise _refusal("interference", line)
+    return travel_mm <= _ROUNDING_MM
+
+
+def _path_feed(move: Move, leg: Leg) -> Feed:
+    """Return the feed of a move as a path speed, also where the program gives the time of the move."""
+    feed = move.feed
+    if feed.duration_s <= 0.0:
+        return feed
+    return Feed(speed_mm_s=leg_length(leg) / feed.duration_s)
+
+
+def _is_rapid(move: Move) -> bool:
+    return isinstance(move, Line) and move.rapid
+
+
+def _refusal(reason: str, line: int, **values: float) -> CompensationError:
+    what, hint = _REFUSALS[reason]
+    return CompensationError(what.format(**values), reason=reason, line=line, hint=hint)

@@ -1,0 +1,376 @@
+"""The ordinary interpreter: one block at a time, everything a block can say, and every error.
+
+A block's words take effect in one fixed order, whatever order they stand in: units and plane, feed mode and
+feed, spindle, tool and auxiliary functions, dwell, tool length, radius compensation, work offset, stopping,
+absolute or incremental, retract level, then the non-modal functions or the motion, at last program stop, call
+or end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+from polycnc.errors import ProgramError
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks._actions import Action, Group, MAction
+from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._cycle_blocks import CycleBlocks
+from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._modal import (
+    FEED_MODE,
+    FEED_PER_MINUTE,
+    MOTION,
+    MOTION_ARC_CCW,
+    MOTION_ARC_CW,
+    MOTION_LINEAR,
+    MOTION_NONE,
+    MOTION_RAPID,
+    ORDINARY,
+)
+from polycnc.nc.blocks._modes import Modes
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._moves import Arc, Line, QueueItem
+from polycnc.nc.blocks._non_modal import NonModal
+from polycnc.nc.blocks._queue import QueueWriter
+from polycnc.nc.blocks._words import BlockWords, code_text, sort_words
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import MESSAGE, STATEMENT
+from polycnc.nc.text._scan_plain import Block, Word
+
+_MOTIONS = {
+    Action.RAPID: MOTION_RAPID,
+    Action.LINEAR: MOTION_LINEAR,
+    Action.ARC_CW: MOTION_ARC_CW,
+    Action.ARC_CCW: MOTION_ARC_CCW,
+}
+_NUMBERS = "NO:"  # block and program numbers
+_AXIS_LETTERS = "XYZABCUVW"
+# What the words belong to that need a function beside them.
+_BELONGS_TO = {
+    "I": "an arc (G2, G3) or a drilling cycle",
+    "J": "an arc (G2, G3) or a drilling cycle",
+    "K": "an arc (G2, G3) or a drilling cycle",
+    "R": "an arc (G2, G3) or a drilling cycle",
+    "Q": "a drilling cycle",
+    "P": "a dwell, a sub-program call, an arc or a drilling cycle",
+    "L": "a sub-program call or a drilling cycle",
+    "D": "radius compensation",
+    "H": "tool length compensation (G43, G44)",
+    "F": "a dwell that has its time already, or a feed",
+}
+
+Trouble = tuple[str, str]
+"""What is wrong and what to do, of something that is not a matter of the block's words alone."""
+
+
+class Control(Enum):
+    """What comes after a block."""
+
+    NEXT = "next"
+    CALL = "call"
+    RETURN = "return"
+    STOP = "stop"
+    END = "end"
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Say how the program goes on; a call names the sub-program and how often it runs."""
+
+    control: Control = Control.NEXT
+    program: int = 0
+    repeats: int = 1
+
+
+_NEXT = Outcome()
+_OUTCOMES = {
+    MAction.PROGRAM_END: Outcome(Control.END),
+    MAction.PROGRAM_STOP: Outcome(Control.STOP),
+    MAction.OPTIONAL_STOP: Outcome(Control.STOP),
+    MAction.SUB_RETURN: Outcome(Control.RETURN),
+}
+
+
+class Interpreter:
+    """Execute blocks of one channel: change the state and give items to the queue.
+
+    `call_trouble` says what is against calling a sub-program, None if nothing is.
+    """
+
+    def __init__(
+        self,
+        dialect: Dialect,
+        state: ChannelState,
+        messages: Messages,
+        queue: QueueWriter,
+        call_trouble: Callable[[int], Trouble | None],
+    ) -> None:
+        self.dialect = dialect
+        self.state = state
+        self.messages = messages
+        self._queue = queue
+        queue.set_tolerance(state.path_tolerance_mm)
+        self._call_trouble = call_trouble
+        self._text = ProgramText.from_text("")
+        self._held_text = self._text  # of the move that radius compensation holds back
+        self._block: Block | None = None
+        self._motion = MotionBuilder(state, dialect, messages, self.fail)
+        self._auxiliary = Auxiliary(state, messages, self._motion, self.fail)
+        self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
+        self._non_modal = NonModal(state, self._motion, self.fail)
+        self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
+
+    def execute(self, text: ProgramText, block: Block) -> Outcome:
+        """Execute one block of `text`.
+
+        Raises:
+            ProgramError: the block cannot be executed; nothing has been changed or queued for it.
+        """
+        self._text, self._block = text, block
+        self.messages.begin(block.line)
+        saved = self.state.save()
+        try:
+            outcome, items = self._execute(block)
+        except BaseException as error:
+            self.state.restore(saved)
+            self.messages.take_back()
+            if isinstance(error, CompensationError):
+                raise self._placed(error) from None
+            raise
+        if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
+            self._queue.set_tolerance(self.state.path_tolerance_mm)
+        for item in items:
+            self._queue.put(item)
+        return outcome
+
+    def finish(self) -> None:
+        """Give out what radius compensation still holds back, at the end of the program.
+
+        Raises:
+            ProgramError: the last move cannot be compensated.
+        """
+        try:
+            items = self.state.compensation.flush()
+            self._check_path(items)
+        except CompensationError as error:
+            raise self._placed(error) from None
+        finally:
+            self.state.compensation.reset()
+        for item in items:
+            self._queue.put(item)
+
+    def fail(self, what: str, hint: str, word: Word | None) -> ProgramError:
+        """Return an error about the present block, at `word` if there is one."""
+        return ProgramError(what, position=self._text.position(self._place(word)), hint=hint)
+
+    def _place(self, word: Word | None) -> int:
+        if word is not None:
+            return word.place
+        assert self._block is not None
+        words = self._block.words
+        for each in words:
+            if each.letter not in _NUMBERS:
+                return each.place
+        return words[0].place if words else self._block.offset
+
+    def _placed(self, error: CompensationError) -> ProgramError:
+        """Add the place to an error of radius compensation, which knows its line only."""
+        here = self._block is not None and error.line == self._block.line
+        position = (self._text if here else self._held_text).line_position(error.line)
+        return ProgramError(error.what, position=position, hint=error.hint, code=error.code)
+
+    # ------------------------------------------------------------------ one block
+
+    def _execute(self, block: Block) -> tuple[Outcome, list[QueueItem]]:
+        if block.flags & STATEMENT:
+            raise ProgramError(
+                f"this statement needs a language, and dialect '{self.dialect.name}' has none",
+                position=self._text.line_position(block.line),
+                hint="Expressions, variables and program flow are no part of DIN 66025: write plain words.",
+            )
+        if block.flags & MESSAGE and block.message:
+            self.messages.add(f"MSG: {block.message}")
+        line = block.line
+        words = sort_words(block, self.dialect, self.fail)
+        self._refuse_contradictions(words)
+        self._motion.begin(words)
+        for letter in _NUMBERS:
+            words.take(letter)
+        outcome = self._outcome(words) if words.m else _NEXT
+        modes = self._modes
+        modes.set_units_and_plane(words)
+        modes.set_feed(words)
+        items: list[QueueItem] = [*self._auxiliary.before_motion(words, line), *modes.dwell(words, line)]
+        modes.set_length(words)
+        change_compensation = modes.radius_compensation(words, line)
+        modes.set_work_offset(words)
+        modes.set_others(words)
+        items += self._move(words, line)
+        self._refuse_unused(words)
+        if words.m:
+            items += self._auxiliary.after_motion(words, line)
+        self._note_position(items)
+        return outcome, self._compensated(items, change_compensation)
+
+    def _compensated(self, items: list[QueueItem], change: Callable[[], None] | None) -> list[QueueItem]:
+        """Return what of the items the queue gets now; radius compensation may hold moves back."""
+        stage = self.state.compensation
+        if change is not None:
+            change()
+        if stage.active:
+            push = stage.push
+            moves = any(isinstance(item, (Line, Arc)) for item in items)
+            items = [out for item in items for out in push(item)]
+            self._check_path(items)
+            if moves:
+                self._held_text = self._text
+        whole = self.state.modal.whole
+        whole[ORDINARY] = stage.active or self._cycles.active or whole[FEED_MODE] != FEED_PER_MINUTE
+        return items
+
+    def _check_path(self, items: list[QueueItem]) -> None:
+        for item in items:
+            if isinstance(item, (Line, Arc)):
+                self._motion.check_path(item)
+
+    def leave_compensation(self) -> None:
+        """Go on without radius compensation, to look for errors behind a path that cannot be followed."""
+        self.state.compensation.reset()
+        self.state.side = 0
+
+    def _refuse_contradictions(self, words: BlockWords) -> None:
+        """Refuse functions of different groups that cannot share a block."""
+        g = words.g
+        if len(g) < 2:
+            return
+        non_modal, dwell, motion = g.get(Group.NON_MODAL), g.get(Group.DWELL), g.get(Group.MOTION)
+        if dwell and non_modal:
+            self._exclude(f"G{dwell.code}", f"G{non_modal.code}", "both need their own block", non_modal.word)
+        if motion is None:
+            return
+        is_straight = motion.action in (Action.RAPID, Action.LINEAR)
+        if non_modal and (
+            non_modal.action is Action.SET_POSITION
+            or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
+        ):
+            self._exclude(f"G{non_modal.code}", f"G{motion.code}", "both use the axis words", motion.word)
+        cancel = g.get(Group.CYCLE_CANCEL)
+        if cancel and motion.action not in _MOTIONS:
+            self._exclude(f"G{cancel.code}", f"G{motion.code}", "one ends what the other begins", motion.word)
+
+    def _exclude(self, first: str, second: str, why: str, word: Word) -> None:
+        raise self.fail(f"{first} and {second} exclude each other: {why}", "Write them in two blocks.", word)
+
+    # ------------------------------------------------------------------ motion
+
+    def _motion_in_force(self, words: BlockWords) -> int:
+        """Take over a motion word of the block and return the motion in force."""
+        whole = self.state.modal.whole
+        if Group.CYCLE_CANCEL in words.g:
+            self._cycles.cancel()
+        g = words.g.get(Group.MOTION)
+        if g is not None:
+            if g.action in _MOTIONS:
+                self._cycles.cancel()
+                whole[MOTION] = _MOTIONS[g.action]
+            else:
+                self._cycles.begin(g)
+        return int(whole[MOTION])
+
+    def _move(self, words: BlockWords, line: int) -> list[QueueItem]:
+        motion = self._motion_in_force(words)
+        if Group.DWELL in words.g:
+            if self._motion.axis_word_left():
+                code = words.g[Group.DWELL].code
+                raise self.fail(
+                    f"a dwell (G{code}) and a move in one block",
+                    "Write them in two blocks.",
+                    self._left_axis(words),
+                )
+            return []
+        if g := words.g.get(Group.NON_MODAL):
+            return list(self._non_modal.carry_out(g, motion, line))
+        if self._cycles.active:
+            return self._cycles.expand(words, line)
+        values = self._motion.axis_words()
+        if not values and not (motion >= MOTION_ARC_CW and words.first(*"IJKR")):
+            return []
+        if motion == MOTION_NONE:
+            raise self.fail(
+                "axis words without a motion",
+                "Write G0, G1, G2, G3 or a cycle in this or an earlier block.",
+                self._motion.place(),
+            )
+        return [self._motion.move(self._motion.target(values), motion, line)]
+
+    def _left_axis(self, words: BlockWords) -> Word | None:
+        return next((word for letter, word in words.unused() if letter in self.state.axis_names), None)
+
+    def _note_position(self, items: list[QueueItem]) -> None:
+        """Remember the programmed position, which is not compensated."""
+        for item in reversed(items):
+            if isinstance(item, (Line, Arc)):
+                self.state.modal.position[:] = item.end
+                return
+
+    # ------------------------------------------------------------------ the rest of the block
+
+    def _outcome(self, words: BlockWords) -> Outcome:
+        for m in words.m:
+            if m.action is MAction.SUB_CALL:
+                return self._call(words, f"M{m.code}", m.word)
+            if m.action is MAction.SUB_RETURN and "P" in words.by_letter:
+                raise self.fail(
+                    f"M{m.code} P: a return to a block number cannot be carried out",
+                    "Take P out, or call another sub-program.",
+                    words.by_letter["P"],
+                )
+            if m.action in _OUTCOMES:
+                return _OUTCOMES[m.action]
+        return _NEXT
+
+    def _call(self, words: BlockWords, code: str, at: Word) -> Outcome:
+        p_word, l_word = words.take("P"), words.take("L")
+        if p_word is None:
+            raise self.fail(f"{code} without a sub-program", "Add P and the number of the sub-program.", at)
+        program = whole_number(p_word, "the number of a program", self.fail)
+        repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", self.fail)
+        if l_word is None and program > 9999 and self.dialect.sub_program.repeats_in_p:
+            repeats, program = divmod(program, 10_000)
+        if trouble := self._call_trouble(program):
+            raise self.fail(*trouble, p_word)
+        return Outcome(Control.CALL, program, repeats)
+
+    def _refuse_unused(self, words: BlockWords) -> None:
+        for name, word in words.unused():
+            if name in self.dialect.ignored_addresses:
+                self.messages.add(f"'{name}' has no effect here and is ignored")
+            elif name in self.state.axis_names:
+                raise self.fail(
+                    f"'{name}' cannot stand beside this function",
+                    "Write the move in a block of its own.",
+                    word,
+                )
+            elif word.letter in _AXIS_LETTERS:
+                names = ", ".join(self.state.axis_names)
+                raise self.fail(
+                    f"there is no axis '{name}' on machine '{self.state.machine.name}'",
+                    f"Its axes are {names}; take the word out, or choose another machine.",
+                    word,
+                )
+            elif name in _BELONGS_TO:
+                raise self.fail(
+                    f"'{name}' has no meaning in this block", f"It belongs to {_BELONGS_TO[name]}.", word
+                )
+            else:
+                value = code_text(word.value)
+                raise self.fail(
+                    f"the address '{name}' is not known in dialect '{self.dialect.name}'",
+                    f"Take {name}{'=' if word.index is not None else ''}{value} out, or list '{name}' in the "
+                    "dialect's ignored_addresses.",
+                    word,
+                )

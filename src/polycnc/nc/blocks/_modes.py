@@ -1,0 +1,255 @@
+"""Modal words: what holds until it is said otherwise, from units to the work offset."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks._actions import Action, Group
+from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._compensation import Side
+from polycnc.nc.blocks._coordinates import MACHINE_ZERO, work_group
+from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._modal import (
+    ABSOLUTE,
+    ARC_ABSOLUTE,
+    AXIS_P,
+    AXIS_Q,
+    AXIS_R,
+    EXACT_STOP,
+    FEED,
+    FEED_INVERSE_TIME,
+    FEED_MODE,
+    FEED_NUMBER,
+    FEED_PER_MINUTE,
+    FEED_PER_REVOLUTION,
+    INCH,
+    NO_AXIS,
+    PLANE,
+    PLANE_LETTERS,
+    PLANE_XY,
+    PLANE_YZ,
+    PLANE_ZX,
+    set_inch,
+    set_plane,
+)
+from polycnc.nc.blocks._moves import Wait
+from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
+from polycnc.nc.text._scan_plain import Word
+from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
+
+LONGEST_DWELL_S = 1e7
+_INCREMENTS_PER_INCH_STEP = 0.1  # an increment in inch is a tenth of the number that it is in mm
+_DEFAULT_WORK_OFFSET = "G54"
+_TIME_LETTERS_WITH_INCREMENTS = "XU"
+_PLANES = {Action.PLANE_XY: PLANE_XY, Action.PLANE_ZX: PLANE_ZX, Action.PLANE_YZ: PLANE_YZ}
+_FEED_MODES = {
+    Action.FEED_PER_MINUTE: FEED_PER_MINUTE,
+    Action.FEED_PER_REVOLUTION: FEED_PER_REVOLUTION,
+    Action.FEED_INVERSE_TIME: FEED_INVERSE_TIME,
+}
+_SIDES = {Action.COMP_OFF: 0, Action.COMP_LEFT: 1, Action.COMP_RIGHT: -1}
+_LENGTH_SIGNS = {Action.LENGTH_OFF: 0, Action.LENGTH_PLUS: 1, Action.LENGTH_MINUS: -1}
+
+
+@dataclass
+class Modes:
+    """Carry out the modal words of a block."""
+
+    state: ChannelState
+    dialect: Dialect
+    messages: Messages
+    auxiliary: Auxiliary
+    fail: Fail
+
+    def set_units_and_plane(self, words: BlockWords) -> None:
+        """Carry out the words that say how the numbers of the block are meant.
+
+        Raises:
+            ProgramError: the plane changes while a function depends on it.
+        """
+        modal = self.state.modal
+        if g := words.g.get(Group.UNITS):
+            set_inch(modal, g.action is Action.INCH)
+        words.increment = self.dialect.increment * (_INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0)
+        g = words.g.get(Group.PLANE)
+        if g is None or _PLANES[g.action] == modal.whole[PLANE]:
+            return
+        if self.state.side:
+            raise self.fail(
+                "the plane changes while radius compensation is active", "Cancel it with G40 first.", g.word
+            )
+        if self.state.cycle.action and Group.CYCLE_CANCEL not in words.g:
+            raise self.fail(
+                "the plane changes while a drilling cycle is active", "Cancel it with G80 first.", g.word
+            )
+        set_plane(modal, _PLANES[g.action])
+
+    def set_feed(self, words: BlockWords) -> None:
+        """Carry out the feed mode and F.
+
+        Raises:
+            ProgramError: a feed that is not above zero.
+        """
+        state, modal = self.state, self.state.modal
+        if g := words.g.get(Group.FEED_MODE):
+            mode = _FEED_MODES[g.action]
+            if mode != modal.whole[FEED_MODE]:
+                modal.real[FEED] = 0.0  # a number in another unit
+            modal.whole[FEED_MODE] = mode
+        state.feed_word = 0.0
+        if self._dwell_letter(words) == "F":
+            return
+        word = words.take("F")
+        if word is None:
+            return
+        if word.value <= 0.0:
+            raise self.fail(
+                f"the feed {code_text(word.value)} is not above zero", "Write a positive F.", word
+            )
+        state.feed_word = word.value
+        if modal.whole[FEED_MODE] != FEED_INVERSE_TIME:
+            modal.real[FEED] = word.value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
+            modal.real[FEED_NUMBER] = word.value
+
+    def dwell(self, words: BlockWords, line: int) -> list[Wait]:
+        """Return the wait of a dwell, if there is one.
+
+        Raises:
+            ProgramError: a dwell without a time, or with one that cannot be meant.
+        """
+        g = words.g.get(Group.DWELL)
+        if g is None:
+            return []
+        letter = self._dwell_letter(words)
+        word = words.take(letter)
+        if word is None:
+            letters = " or ".join(", ".join(self.dialect.dwell).rsplit(", ", 1))
+            raise self.fail(f"a dwell (G{g.code}) without a time", f"Add {letters} and the time.", g.word)
+        seconds = self._dwell_s(word, self.dialect.dwell[letter])
+        if not 0.0 <= seconds <= LONGEST_DWELL_S:
+            what = "negative" if seconds < 0.0 else "longer than anybody waits"
+            raise self.fail(
+                f"the dwell {word.letter}{code_text(word.value)} is {what}", "Write a time from 0 up.", word
+            )
+        return [Wait(seconds, line)]
+
+    def _dwell_letter(self, words: BlockWords) -> str:
+        """Return the address that gives the time of the block's dwell; empty if there is none."""
+        if Group.DWELL not in words.g:
+            return ""
+        return next((letter for letter in self.dialect.dwell if letter in words.by_letter), "")
+
+    def _dwell_s(self, word: Word, unit: str) -> float:
+        if unit == "rev":
+            spindle = self.state.spindle
+            rpm = spindle.speed if spindle.direction else 0.0
+            if rpm <= 0.0:
+                raise self.fail("a dwell in revolutions with the spindle at rest", "Start it first.", word)
+            return word.value * SECONDS_PER_MINUTE / rpm
+        if self.dialect.increment and not word.point and word.letter in _TIME_LETTERS_WITH_INCREMENTS:
+            return word.value * self.dialect.increment
+        return dwell_seconds(word, unit)
+
+    def set_length(self, words: BlockWords) -> None:
+        """Carry out tool length compensation: G43, G44, G49 and H.
+
+        Raises:
+            ProgramError: there is no Z axis, or H is no tool.
+        """
+        g = words.g.get(Group.LENGTH_COMPENSATION)
+        coordinates = self.state.coordinates
+        sign = coordinates.length_sign if g is None else _LENGTH_SIGNS[g.action]
+        if g is None and (sign == 0 or "H" not in words.by_letter):
+            return  # an H that is left over is reported as such
+        h_word = words.take("H")
+        axis = int(self.state.modal.letter_axis[ord("Z") - ord("A")])
+        if axis == NO_AXIS:
+            if sign and g is not None:
+                raise self.fail(
+                    "tool length compensation on a machine without a Z axis", "Take it out.", g.word
+                )
+            return
+        if sign == 0:
+            coordinates.set_length(axis, 0)
+            return
+        tool = self.state.tool if h_word is None else whole_number(h_word, "a tool offset number", self.fail)
+        data = self.auxiliary.tool_data(tool)
+        coordinates.set_length(axis, sign, data.length_mm + data.wear_length_mm)
+
+    def set_work_offset(self, words: BlockWords) -> None:
+        """Carry out a work offset, or leaving one."""
+        g = words.g.get(Group.WORK_OFFSET)
+        if g is None:
+            return
+        group = work_group(g.word.value)
+        if g.action is Action.WORK_OFFSET_OFF:
+            self.state.coordinates.select_work_offset(group, MACHINE_ZERO)
+            return
+        name = f"G{g.code}"
+        offsets = self.state.machine.offsets
+        if name not in offsets and (offsets or name != _DEFAULT_WORK_OFFSET):
+            self.messages.add(f"{name}: the machine has no such work offset; zero is used")
+        self.state.coordinates.select_work_offset(group, name)
+
+    def set_others(self, words: BlockWords) -> None:
+        """Carry out stopping, absolute or incremental, and retract level; note what has no effect."""
+        state, whole = self.state, self.state.modal.whole
+        g = words.g
+        if stopping := g.get(Group.STOPPING):
+            whole[EXACT_STOP] = stopping.action is Action.EXACT_STOP
+            if stopping.action is Action.CONTINUOUS:
+                self._set_path_tolerance(words)
+        if distance := g.get(Group.DISTANCE):
+            whole[ABSOLUTE] = distance.action is Action.ABSOLUTE
+        if distance := g.get(Group.ARC_DISTANCE):
+            whole[ARC_ABSOLUTE] = distance.action is Action.ARC_CENTER_ABSOLUTE
+        if retract := g.get(Group.RETRACT):
+            state.cycle = replace(state.cycle, retract_to_initial=retract.action is Action.RETRACT_INITIAL)
+        for ignored in words.ignored:
+            self.messages.add(f"G{ignored.code} has no effect here and is ignored")
+
+    def _set_path_tolerance(self, words: BlockWords) -> None:
+        """Take over how far corners may be rounded: P, else what the machine allows."""
+        tolerance = None if Group.DWELL in words.g else words.take("P")
+        words.take("Q")
+        if tolerance is None:
+            self.state.path_tolerance_mm = self.state.machine.path.path_tolerance_mm
+            return
+        if tolerance.value < 0.0:
+            raise self.fail("the path tolerance P is negative", "Write P from 0 up.", tolerance)
+        inch = MM_PER_INCH if self.state.modal.whole[INCH] else 1.0
+        self.state.path_tolerance_mm = tolerance.value * inch
+
+    def radius_compensation(self, words: BlockWords, line: int) -> Callable[[], None] | None:
+        """Carry out G40, G41, G42 and D; return what changes the stage, to be called when all else is right.
+
+        Raises:
+            ProgramError: D is no tool, or the plane is not there.
+        """
+        state = self.state
+        g = words.g.get(Group.RADIUS_COMPENSATION)
+        d_word = words.take("D")
+        if d_word is not None:
+            state.compensation_tool = whole_number(d_word, "a tool offset number", self.fail)
+        if g is not None:
+            state.side = _SIDES[g.action]
+            if state.side == 0:
+                return state.compensation.cancel
+        elif state.side == 0 or d_word is None:
+            return None
+        whole = state.modal.whole
+        plane = (int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R]))
+        if NO_AXIS in plane[:2]:
+            letters = PLANE_LETTERS[int(whole[PLANE])][:2]
+            raise self.fail(
+                f"radius compensation in the plane {letters}, which this machine does not have",
+                "Select a plane of the machine's axes with G17, G18 or G19.",
+                None if g is None else g.word,
+            )
+        tool = state.tool if state.compensation_tool is None else state.compensation_tool
+        data = self.auxiliary.tool_data(tool)
+        radius = data.radius_mm + data.wear_radius_mm
+        return lambda: state.compensation.start(Side(state.side), radius, plane, line)

@@ -1,0 +1,371 @@
+"""Motion blocks: end points, straight lines, arcs, and the limits they must keep."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks._actions import Group
+from polycnc.nc.blocks._arcs import (
+    ARC_NO_RADIUS,
+    ARC_OFF_CIRCLE,
+    ARC_OK,
+    ARC_RADIUS_AT_SAME_POINT,
+    ARC_RADIUS_TOO_SMALL,
+    ARC_TOO_LARGE,
+    TWO_PI,
+    arc_by_center,
+    arc_by_radius,
+    arc_extents,
+)
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._modal import (
+    ABSOLUTE,
+    ARC_ABSOLUTE,
+    ARC_RELATIVE,
+    ARC_TOLERANCE,
+    AXIS_P,
+    AXIS_Q,
+    AXIS_R,
+    CENTER_LETTERS,
+    EXACT_STOP,
+    FEED,
+    FEED_INVERSE_TIME,
+    FEED_MODE,
+    FEED_NUMBER,
+    FEED_PER_REVOLUTION,
+    LARGEST,
+    MODULO_AXIS,
+    MOTION_ARC_CW,
+    MOTION_RAPID,
+    NO_AXIS,
+    PLANE,
+    PLANE_LETTERS,
+    RAPID_STOP,
+    short_way,
+)
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point
+from polycnc.nc.blocks._words import BlockWords, Fail, code_text
+from polycnc.nc.text._scan_plain import Word
+from polycnc.units import SECONDS_PER_MINUTE
+
+LIMIT_ROUNDING = 1e-6
+"""A position this little past a soft limit (mm or degree) is one on it, reached by rounding."""
+
+_ARC_TROUBLE = {
+    ARC_NO_RADIUS: (
+        "the arc has no radius",
+        "Give the way from the start to the centre (I J K), or a radius R that is not 0.",
+    ),
+    ARC_RADIUS_TOO_SMALL: (
+        "the radius is {off:.6g} mm too small to reach the end point",
+        "R must be at least half the distance between start and end.",
+    ),
+    ARC_RADIUS_AT_SAME_POINT: (
+        "an arc with R ends where it starts, so its centre is unknown",
+        "Write a full circle with I J K.",
+    ),
+    ARC_OFF_CIRCLE: (
+        "the end point is {off:.6g} mm off the circle about the given centre",
+        "Check the end point and the centre (I J K); the dialect's [arcs] says how much is tolerated.",
+    ),
+    ARC_TOO_LARGE: ("the radius of the arc is larger than any machine", "Check R, or I J K."),
+}
+
+
+@dataclass
+class MotionBuilder:
+    """Turn the words of a motion block into moves, by the modal state."""
+
+    state: ChannelState
+    dialect: Dialect
+    messages: Messages
+    fail: Fail
+    exact_stop_block: bool = False
+    words: BlockWords = field(default_factory=BlockWords)
+
+    def __post_init__(self) -> None:
+        self._low = self.state.modal.low.tolist()
+        self._high = self.state.modal.high.tolist()
+        self._modulo = [int(kind) == MODULO_AXIS for kind in self.state.modal.rotary]
+
+    def begin(self, words: BlockWords) -> None:
+        """Begin a block with these words."""
+        self.words = words
+        self.exact_stop_block = Group.EXACT_STOP_BLOCK in words.g
+
+    def axis_words(self) -> dict[int, float]:
+        """Take the axis words of the block: axis index -> value in mm or degree, not placed yet."""
+        found = {}
+        by_letter = self.words.by_letter
+        for index, name in enumerate(self.state.axis_names):
+            if name in by_letter:
+                value = self.words.length(name)
+                if value is not None:
+                    found[index] = value * float(self.state.modal.scale[index])
+        return found
+
+    def axis_word_left(self) -> bool:
+        """Tell whether there is an axis word that nothing has taken."""
+        return any(letter in self.state.axis_names for letter, _ in self.words.unused())
+
+    def target(self, axis_values: dict[int, float], machine_coordinates: bool = False) -> Point:
+        """Return the machine position that axis words ask for; axes without a word stay."""
+        modal = self.state.modal
+        point: list[float] = modal.position.tolist()
+        absolute = bool(modal.whole[ABSOLUTE])
+        for index, value in axis_values.items():
+            if machine_coordinates:
+                point[index] = self.turned(index, value, point[index])
+            elif absolute:
+                point[index] = self.turned(index, value + float(modal.offset[index]), point[index])
+            else:
+                point[index] += value
+        return tuple(point)
+
+    def turned(self, axis: int, wanted: float, position: float) -> float:
+        """Return where an axis goes for position `wanted`: the short way if positions repeat."""
+        if self._modulo[axis] and abs(wanted) <= LARGEST:
+            return short_way(wanted, position)
+        return wanted
+
+    def check_limits(self, point: Point, what: str = "would go to") -> None:
+        """Refuse a point outside the soft limits.
+
+        With radius compensation it is the compensated path that counts in the plane, see `check_path`.
+
+        Raises:
+            ProgramError: names the axis, the position and the limit.
+        """
+        whole = self.state.modal.whole
+        compensated = self.state.side != 0 or self.state.compensation.active
+        later = (int(whole[AXIS_P]), int(whole[AXIS_Q])) if compensated else ()
+        if trouble := self._limit_trouble(point, what, later):
+            index, text, hint = trouble
+            raise self.fail(text, hint, self.words.first(self.state.axis_names[index]))
+
+    def check_path(self, item: Move) -> None:
+        """Refuse a compensated move that leaves the soft limits.
+
+        Raises:
+            CompensationError: names the axis, the position and the limit.
+        """
+        for point, what in _points(item):
+            if trouble := self._limit_trouble(point, what):
+                _, text, hint = trouble
+                raise CompensationError(
+                    f"with radius compensation {text}", reason="limit", line=item.line, hint=hint
+                )
+
+    def _limit_trouble(
+        self, point: Point, what: str, but: tuple[int, ...] = ()
+    ) -> tuple[int, str, str] | None:
+        """Return the axis whose limit a point passes, what is wrong and what to do; None if all is well."""
+        for index, value in enumerate(point):
+            low, high = self._low[index], self._high[index]
+            if low - LIMIT_ROUNDING <= value <= high + LIMIT_ROUNDING or index in but:
+                continue
+            axis = self.state.machine.axes[index]
+            limit = low if value < low else high
+            if abs(limit) == LARGEST:
+                text = f"axis {axis.name} {what} {value:.6g} {axis.unit}, further than any machine"
+                return index, text, "Check the number."
+            return (
+                index,
+                f"axis {axis.name} {what} {value:.3f} {axis.unit}, past its soft limit of "
+                f"{limit:.3f} {axis.unit}",
+                "Check the program, the work offset and the machine's soft limits (machine coordinates).",
+            )
+        return None
+
+    def line(self, end: Point, rapid: bool, line: int) -> Line:
+        """Return a straight move from the programmed position to `end`."""
+        self.check_limits(end)
+        start = self.start
+        feed = Feed() if rapid else self.feed(start, end)
+        stop = self.exact_stop or (rapid and bool(self.state.modal.whole[RAPID_STOP]))
+        return Line(start, end, feed, rapid, stop, line)
+
+    @property
+    def start(self) -> Point:
+        """The programmed position, in machine coordinates."""
+        return tuple(self.state.modal.position.tolist())
+
+    @property
+    def exact_stop(self) -> bool:
+        """Whether the present block comes to rest at its end."""
+        return bool(self.state.modal.whole[EXACT_STOP]) or self.exact_stop_block
+
+    def place(self) -> Word | None:
+        """Return the word that best shows what the block wants to move."""
+        return self.words.g_word(Group.MOTION) or self.words.first(*self.state.axis_names, *"IJKR")
+
+    def feed(self, start: Point, end: Point, straight: bool = True) -> Feed:
+        """Return the feed of a move by the active feed mode.
+
+        Raises:
+            ProgramError: no feed, or feed per revolution with the spindle at rest.
+        """
+        modal = self.state.modal
+        mode = modal.whole[FEED_MODE]
+        if mode == FEED_INVERSE_TIME:
+            if self.state.feed_word <= 0.0:
+                raise self.fail(
+                    "a feed move with inverse time (G93) needs its own F",
+                    "Add F to every block with G1, G2 or G3.",
+                    self.place(),
+                )
+            return Feed(duration_s=SECONDS_PER_MINUTE / self.state.feed_word)
+        value = float(modal.real[FEED])
+        if value <= 0.0:
+            raise self.fail(
+                "a feed move without a feed", "Program F in this or an earlier block.", self.place()
+            )
+        if straight and all(rotary or a == b for a, b, rotary in zip(start, end, modal.rotary, strict=True)):
+            value = float(modal.real[FEED_NUMBER])  # only rotary axes move: the feed is in degrees
+        if mode == FEED_PER_REVOLUTION:
+            rpm = self.rpm(start, end) if self.state.spindle.direction else 0.0
+            if rpm <= 0.0:
+                raise self.fail(
+                    "feed per revolution (G95) with the spindle at rest",
+                    "Start the spindle with S and M3 or M4 first.",
+                    self.place(),
+                )
+            value *= rpm
+        return Feed(speed_mm_s=value / SECONDS_PER_MINUTE)
+
+    def rpm(self, start: Point, end: Point) -> float:
+        """Return the spindle speed; with constant surface speed at the middle of the block's X."""
+        spindle = self.state.spindle
+        if not spindle.surface_speed:
+            return spindle.speed
+        modal = self.state.modal
+        x = int(modal.letter_axis[ord("X") - ord("A")])
+        # Twice the mean radius, from the axis of the workpiece: program zero.
+        diameter = 0.0 if x == NO_AXIS else abs(start[x] + end[x] - 2.0 * float(modal.offset[x]))
+        top = self.state.machine.spindle.max_rpm
+        return top if diameter <= 0.0 else min(top, spindle.speed * 1000.0 / (math.pi * diameter))
+
+    def move(self, end: Point, motion: int, line: int) -> Move:
+        """Return the move of a G0, G1, G2 or G3 block."""
+        if motion >= MOTION_ARC_CW:
+            return self._arc(end, motion == MOTION_ARC_CW, line)
+        return self.line(end, motion == MOTION_RAPID, line)
+
+    def _arc(self, end: Point, clockwise: bool, line: int) -> Move:
+        """Return a circular move to `end` by centre (I J K) or radius (R), or the line that stands for it.
+
+        Raises:
+            ProgramError: no centre, a centre word outside the plane, an end point off the circle, a limit.
+        """
+        whole = self.state.modal.whole
+        p, q, r = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
+        if NO_AXIS in (p, q):
+            letters = PLANE_LETTERS[int(whole[PLANE])][:2]
+            raise self.fail(
+                f"an arc in the plane {letters}, which this machine does not have",
+                "Select a plane of the machine's axes with G17, G18 or G19.",
+                self.place(),
+            )
+        center = self._center_words(int(whole[PLANE]))
+        radius = None if "R" in self.state.axis_names else self.words.length("R")
+        if not center and radius is None:
+            if self.dialect.arcs.no_center == "line":
+                self.messages.add("an arc with neither centre nor radius goes straight to its end point")
+                return self.line(end, False, line)
+            raise self.fail("an arc needs a centre or a radius", "Add I J K or R.", self.place())
+        if center and radius is not None:
+            raise self.fail(
+                "an arc has both a radius R and a centre", "Write one of them.", self.words.first("R")
+            )
+        start = self.start
+        center_p, center_q, sweep = self._circle(start, end, p, q, center, radius, clockwise)
+        extra = TWO_PI * (self._turns() - 1)
+        sweep = sweep - extra if clockwise else sweep + extra
+        feed = self.feed(start, end, straight=False)
+        arc = Arc(start, end, (center_p, center_q), sweep, (p, q, r), feed, self.exact_stop, line)
+        for passed, what in _points(arc):
+            self.check_limits(passed, what)
+        return arc
+
+    def _center_words(self, plane: int) -> dict[str, float]:
+        """Take I J K; one that is not of the plane may stand there if it is 0."""
+        center = {}
+        for letter in "IJK":
+            value = self.words.length(letter)
+            if value is None:
+                continue
+            if letter in CENTER_LETTERS[plane]:
+                center[letter] = value
+            elif value != 0.0:
+                raise self.fail(
+                    f"'{letter}' is no centre word of the plane {PLANE_LETTERS[plane][:2]}",
+                    f"Use {' and '.join(CENTER_LETTERS[plane])}, or select another plane (G17, G18, G19).",
+                    self.words.first(letter),
+                )
+        return center
+
+    def _turns(self) -> int:
+        turns = self.words.value("P")
+        if turns is None:
+            return 1
+        if turns != int(turns) or not 1 <= turns <= LARGEST:
+            raise self.fail(
+                f"the number of turns P{code_text(turns)} of an arc is not a whole number from 1 up",
+                "Write P1, P2, ...",
+                self.words.first("P"),
+            )
+        return int(turns)
+
+    def _circle(
+        self,
+        start: Point,
+        end: Point,
+        p: int,
+        q: int,
+        center: dict[str, float],
+        radius: float | None,
+        clockwise: bool,
+    ) -> tuple[float, float, float]:
+        """Return the centre and the sweep of an arc of up to one turn."""
+        modal = self.state.modal
+        tolerance = float(modal.real[ARC_TOLERANCE])
+        ends = start[p], start[q], end[p], end[q]
+        if radius is not None:
+            found = arc_by_radius(*ends, radius * float(modal.scale[p]), clockwise, tolerance)
+        else:
+            at = [
+                self._center(axis, center.get(letter), start)
+                for axis, letter in zip((p, q), CENTER_LETTERS[int(modal.whole[PLANE])], strict=True)
+            ]
+            found = arc_by_center(*ends, at[0], at[1], clockwise, tolerance, float(modal.real[ARC_RELATIVE]))
+        status, center_p, center_q, sweep, off = found
+        if status != ARC_OK:
+            what, hint = _ARC_TROUBLE[status]
+            raise self.fail(
+                what.format(off=off), hint, self.words.first(*("R" if radius is not None else "IJK"))
+            )
+        return center_p, center_q, sweep
+
+    def _center(self, axis: int, value: float | None, start: Point) -> float:
+        modal = self.state.modal
+        if value is None:
+            return start[axis]
+        length = value * float(modal.scale[axis])
+        return length + float(modal.offset[axis]) if modal.whole[ARC_ABSOLUTE] else start[axis] + length
+
+
+def _points(item: Move) -> Iterator[tuple[Point, str]]:
+    """Yield the points of a move that must be inside the limits, and how it comes there."""
+    yield item.end, "would go to"
+    if isinstance(item, Arc):
+        p, q = item.plane[:2]
+        ends = item.start[p], item.start[q], item.end[p], item.end[q]
+        for corner in arc_extents(*ends, *item.center, item.sweep_rad):
+            point = list(item.end)
+            point[p], point[q] = corner
+            yield tuple(point), "would pass"

@@ -1,0 +1,80 @@
+"""Functions that take the axis words of their block for themselves: G28, G53 (one block), G92, G92.1."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from polycnc.nc.blocks._actions import Action
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._modal import MOTION_LINEAR, MOTION_RAPID
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._words import Fail, GWord
+
+_CANCEL_FIRST = "Cancel it with G40 first."
+
+
+@dataclass
+class NonModal:
+    """Carry out the non-modal functions."""
+
+    state: ChannelState
+    motion: MotionBuilder
+    fail: Fail
+
+    def carry_out(self, g: GWord, motion: int, line: int) -> list[Line]:
+        """Return the moves of a block with such a function; `motion` is the motion in force.
+
+        Raises:
+            ProgramError: the block does not fit the function, or a limit would be passed.
+        """
+        match g.action:
+            case Action.SET_POSITION:
+                self._set_position(g)
+            case Action.CLEAR_SET_POSITION:
+                self._refuse_compensation(g, self.state.compensation.active)
+                self.state.coordinates.clear_shift()
+            case Action.REFERENCE_RETURN:
+                return self._reference_return(g, line)
+            case Action.MACHINE_COORDINATES:
+                return self._machine_move(g, motion, line)
+            case _:
+                raise self.fail(f"G{g.code} cannot be carried out", "Take it out.", g.word)
+        return []
+
+    def _refuse_compensation(self, g: GWord, active: bool) -> None:
+        if active:
+            raise self.fail(f"G{g.code} while radius compensation is active", _CANCEL_FIRST, g.word)
+
+    def _set_position(self, g: GWord) -> None:
+        self._refuse_compensation(g, self.state.compensation.active)
+        values = self.motion.axis_words()
+        if not values:
+            raise self.fail(
+                f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
+            )
+        for axis, value in values.items():
+            self.state.coordinates.set_position(axis, value)
+
+    def _reference_return(self, g: GWord, line: int) -> list[Line]:
+        """Go to the intermediate point that the axis words name, then with these axes (all, if none) home."""
+        self._refuse_compensation(g, self.state.side != 0)
+        values = self.motion.axis_words()
+        start = self.motion.start
+        middle = self.motion.target(values)
+        self.motion.check_limits(middle, "would pass")
+        home = tuple(
+            self.motion.turned(index, axis.home, middle[index])
+            if index in values or not values
+            else middle[index]
+            for index, axis in enumerate(self.state.machine.axes)
+        )
+        self.motion.check_limits(home, "would go home to")
+        return [Line(start, middle, Feed(), True, True, line), Line(middle, home, Feed(), True, True, line)]
+
+    def _machine_move(self, g: GWord, motion: int, line: int) -> list[Line]:
+        self._refuse_compensation(g, self.state.side != 0)
+        if motion not in (MOTION_RAPID, MOTION_LINEAR) or self.state.cycle.action:
+            raise self.fail(f"G{g.code} goes with G0 or G1 only", "Write G0 or G1 in this block.", g.word)
+        end = self.motion.target(self.motion.axis_words(), machine_coordinates=True)
+        return [self.motion.line(end, motion == MOTION_RAPID, line)]

@@ -1,0 +1,164 @@
+"""The words of one block, sorted by what they ask for, and refused when they contradict each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from polycnc.errors import ProgramError
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks._actions import GROUP_OF, Action, Group, MAction
+from polycnc.nc.text._scan_plain import Block, Word
+
+Fail = Callable[[str, str, Word | None], ProgramError]
+
+LARGEST_M = 99999
+_OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
+_COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
+
+
+@dataclass(frozen=True, slots=True)
+class GWord:
+    """A G word and what it does in this dialect."""
+
+    word: Word
+    code: str
+    action: Action
+
+
+@dataclass(frozen=True, slots=True)
+class MWord:
+    """An M word and what it does in this dialect."""
+
+    word: Word
+    code: int
+    action: MAction
+
+
+@dataclass
+class BlockWords:
+    """Hold a block's G words by modal group, its M words in order, and all other words by address.
+
+    Each word of an address is for one function: who takes it first has it. `increment` is the size of a
+    length without a decimal point, 0 if such numbers are as they stand.
+    """
+
+    g: dict[Group, GWord] = field(default_factory=dict)
+    ignored: list[GWord] = field(default_factory=list)
+    m: list[MWord] = field(default_factory=list)
+    by_letter: dict[str, Word] = field(default_factory=dict)
+    increment: float = 0.0
+    _used: set[str] = field(default_factory=set)
+
+    def take(self, letter: str) -> Word | None:
+        """Return the word of `letter`, if there is one that nothing has taken, and take it."""
+        word = self.by_letter.get(letter)
+        if word is None or letter in self._used:
+            return None
+        self._used.add(letter)
+        return word
+
+    def value(self, letter: str) -> float | None:
+        """Return the number of the word of `letter` and take it."""
+        word = self.take(letter)
+        return None if word is None else word.value
+
+    def length(self, letter: str) -> float | None:
+        """Return the number of the word of `letter`, which is a length or an angle, and take it."""
+        word = self.take(letter)
+        if word is None:
+            return None
+        return word.value * self.increment if self.increment and not word.point else word.value
+
+    def first(self, *letters: str) -> Word | None:
+        """Return the word of the first of `letters` that stands in the block, taken or not."""
+        for letter in letters:
+            if letter in self.by_letter:
+                return self.by_letter[letter]
+        return None
+
+    def g_word(self, group: Group) -> Word | None:
+        """Return the word of a modal group, to show its place."""
+        g = self.g.get(group)
+        return None if g is None else g.word
+
+    def unused(self) -> Iterator[tuple[str, Word]]:
+        """Yield address and word of all that nothing has taken."""
+        for letter, word in self.by_letter.items():
+            if letter not in self._used:
+                yield letter, word
+
+
+def code_text(value: float) -> str:
+    """Return a number as it is usually written in a program: 1, 54, 5.1, 12000."""
+    return f"{value:.0f}" if value.is_integer() and abs(value) < 1e16 else f"{value:.10g}"
+
+
+def sort_words(block: Block, dialect: Dialect, fail: Fail) -> BlockWords:
+    """Sort the words of `block`.
+
+    Raises:
+        ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
+    """
+    words = BlockWords()
+    for word in block.words:
+        if word.letter == "G" and word.index is None:
+            _add_g(word, words, dialect, fail)
+        elif word.letter == "M" and word.index is None:
+            _add_m(word, words, dialect, fail)
+        else:
+            _add_value(word, words, fail)
+    return words
+
+
+def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
+    action = dialect.g_action(word.value)
+    code = code_text(word.value)
+    if action is None:
+        raise fail(f"G{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
+    group = GROUP_OF[action]
+    entry = GWord(word, code, action)
+    if group is Group.IGNORED:
+        words.ignored.append(entry)
+        return
+    if group in words.g:
+        raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
+    words.g[group] = entry
+
+
+def _add_m(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
+    if word.value != int(word.value) or not 0 <= word.value <= LARGEST_M:
+        raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
+    code = int(word.value)
+    action = dialect.m_action(code)
+    if action is None:
+        raise fail(f"M{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
+    for other in words.m:
+        if other.code == code or (action.group and other.action.group == action.group):
+            raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)
+        if MAction.COOLANT_OFF in (action, other.action) and (
+            action in _COOLANT_ON or other.action in _COOLANT_ON
+        ):
+            raise _exclude(f"M{other.code}", f"M{code}", "coolant", word, fail)
+    words.m.append(MWord(word, code, action))
+
+
+def _exclude(first: str, second: str, group: str, word: Word, fail: Fail) -> ProgramError:
+    if first == second:
+        return fail(f"{first} stands twice in this block", "Write it once.", word)
+    name = group.replace("_", " ")
+    return fail(f"{first} and {second} exclude each other (group '{name}')", "Write one of them.", word)
+
+
+def _add_value(word: Word, words: BlockWords, fail: Fail) -> None:
+    letter = word.letter if word.index is None else f"{word.letter}{word.index}"
+    if letter in words.by_letter:
+        raise fail(f"'{letter}' stands twice in this block", "Write each address once.", word)
+    words.by_letter[letter] = word
+
+
+def dwell_seconds(word: Word, unit: str) -> float:
+    """Return the time of a dwell word in a unit of time: s, ms, or s_or_ms (seconds only with a point)."""
+    if unit == "ms" or (unit == "s_or_ms" and not word.point):
+        return word.value / 1000.0
+    return word.value

@@ -1,0 +1,1 @@
+"""The compiled interpreter for runs of plain blocks."""

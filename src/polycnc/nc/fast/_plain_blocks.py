@@ -1,0 +1,409 @@
+"""The compiled modal kernel: runs of plain motion blocks go straight from words into the channel queue.
+
+It knows straight and circular motion, absolute and incremental, and feed. At the first block that
+holds anything else, or anything wrong, it stops without having changed anything for that block, and the
+ordinary interpreter takes it. So it needs no errors of its own, and both ways give the same motion.
+
+A compiled call costs by the arrays that it hands over, so what runs for every block takes those it needs.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel import (
+    RAPID,
+    STOP,
+    AxisLimits,
+    Paths,
+    Segments,
+    add_line,
+    append_arc,
+    append_line,
+    compiled,
+    entry,
+)
+from polycnc.nc._dialect import DialectTables
+from polycnc.nc.blocks._actions import Action
+from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
+from polycnc.nc.blocks._modal import (
+    ABSOLUTE,
+    ARC_ABSOLUTE,
+    ARC_RELATIVE,
+    ARC_TOLERANCE,
+    AXIS_P,
+    AXIS_Q,
+    EXACT_STOP,
+    FEED,
+    FEED_MODE,
+    FEED_NUMBER,
+    FEED_PER_MINUTE,
+    INCH,
+    LARGEST,
+    LINEAR_AXIS,
+    MODULO_AXIS,
+    MOTION,
+    MOTION_ARC_CCW,
+    MOTION_ARC_CW,
+    MOTION_LINEAR,
+    MOTION_RAPID,
+    NO_AXIS,
+    ORDINARY,
+    RAPID_STOP,
+    WORD_P,
+    WORD_Q,
+    Floats,
+    Ints,
+    Modal,
+    short_way,
+)
+from polycnc.nc.text._scan import COMMENT, WordColumns
+from polycnc.units import MM_PER_INCH
+
+# Why it stopped.
+ALL_DONE = 0
+NOT_PLAIN = 1
+QUEUE_FULL = 2
+
+RESERVE = 8  # slots that the ordinary path may need for one block
+
+# What a letter is, besides G.
+_UNKNOWN = 0
+_NUMBER = 1
+_LENGTH = 2
+
+# Columns of `said`: what a block says, and the letters of each sort as bits.
+_MOTION, _ABSOLUTE, _SEEN, _AXES, _CENTERS, _RADIUS = range(6)
+_SAID_COLUMNS = 6
+
+_LETTERS = 26
+_A = ord("A")
+_F, _G, _I, _J, _K, _N, _R = (ord(letter) - _A for letter in "FGIJKNR")
+_F_BIT = 1 << _F
+_RAPID = int(Action.RAPID)
+_LINEAR = int(Action.LINEAR)
+_ARC_CW = int(Action.ARC_CW)
+_ARC_CCW = int(Action.ARC_CCW)
+_ABSOLUTE_WORD = int(Action.ABSOLUTE)
+_INCREMENTAL_WORD = int(Action.INCREMENTAL)
+_PER_MINUTE_WORD = int(Action.FEED_PER_MINUTE)
+
+_short_way = compiled(short_way)
+
+
+class FastWork(NamedTuple):
+    """Scratch of the compiled kernel: what letters are, what one block says, and the point it goes to."""
+
+    role: npt.NDArray[np.int8]  # [26]
+    axis_letter: npt.NDArray[np.int8]  # [n] letter of each axis, NO_AXIS if its name is longer
+    value: Floats  # [26]
+    said: Ints
+    target: Floats  # [n]
+
+
+def make_fast_work(modal: Modal) -> FastWork:
+    """Allocate the scratch for the axes of `modal`."""
+    role = np.full(_LETTERS, _UNKNOWN, np.int8)
+    role[[_N, _F]] = _NUMBER
+    role[[_I, _J, _K, _R]] = _LENGTH
+    axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
+    said = np.zeros(_SAID_COLUMNS, np.int64)
+    said[_CENTERS] = 1 << _I | 1 << _J | 1 << _K
+    said[_RADIUS] = 1 << _R
+    for letter, axis in enumerate(modal.letter_axis):
+        if axis != NO_AXIS:
+            role[letter] = _LENGTH
+            axis_letter[axis] = letter
+            said[_AXES] |= 1 << letter
+    said[_RADIUS] &= ~said[_AXES]  # on a machine with an axis R it is that axis
+    return FastWork(role, axis_letter, np.zeros(_LETTERS), said, np.zeros(len(modal.position)))
+
+
+@entry
+def run_plain(
+    words: WordColumns,
+    block: int,
+    tables: DialectTables,
+    modal: Modal,
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    limits: AxisLimits,
+    work: FastWork,
+) -> tuple[int, int]:
+    """Interpret plain blocks from `block` on; return the first block that was not taken, and why."""
+    if modal.whole[ORDINARY] != 0:
+        return block, NOT_PLAIN
+    return _run(words, block, tables, modal, seg, paths, g, limits, work)
+
+
+@compiled
+def _run(
+    words: WordColumns,
+    block: int,
+    tables: DialectTables,
+    modal: Modal,
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    limits: AxisLimits,
+    work: FastWork,
+) -> tuple[int, int]:
+    whole = modal.whole
+    said = work.said
+    path = paths.row
+    inch = MM_PER_INCH if whole[INCH] != 0 else 1.0
+    n_blocks = int(words.counts[1])
+    while block < n_blocks:
+        if path[g]["capacity"] - (path[g]["tail"] - path[g]["head"]) <= RESERVE:
+            return block, QUEUE_FULL
+        if (words.flags[block] & ~COMMENT) != 0 or words.skip_level[block] != 0:
+            return block, NOT_PLAIN
+        first, after = words.first_word[block], words.first_word[block + 1]
+        if not _read(
+            words.letter,
+            words.value,
+            words.point,
+            first,
+            after,
+            tables.g_action,
+            tables.least_input,
+            whole,
+            work,
+        ):
+            return block, NOT_PLAIN
+        seen = said[_SEEN]
+        motion = said[_MOTION]
+        feed, feed_number = modal.real[FEED], modal.real[FEED_NUMBER]
+        if seen & _F_BIT:
+            feed_number = work.value[_F]
+            feed = feed_number * inch
+            if whole[FEED_MODE] != FEED_PER_MINUTE or feed <= 0.0:
+                return block, NOT_PLAIN
+        circular = seen & (said[_CENTERS] | said[_RADIUS])
+        if (seen & said[_AXES]) | circular:
+            is_arc = motion >= MOTION_ARC_CW
+            if (circular != 0 and not is_arc) or motion < MOTION_RAPID:
+                return block, NOT_PLAIN
+            if motion != MOTION_RAPID and (feed <= 0.0 or whole[FEED_MODE] != FEED_PER_MINUTE):
+                return block, NOT_PLAIN
+            if not _target(
+                modal.position,
+                modal.scale,
+                modal.offset,
+                modal.low,
+                modal.high,
+                modal.rotary,
+                work,
+            ):
+                return block, NOT_PLAIN
+            flags = RAPID if motion == MOTION_RAPID else 0
+            if whole[EXACT_STOP] != 0 or (motion == MOTION_RAPID and whole[RAPID_STOP] != 0):
+                flags |= STOP
+            speed = math.inf if motion == MOTION_RAPID else feed / 60.0
+            if (
+                feed != feed_number
+                and motion == MOTION_LINEAR
+                and _only_rotary(modal.rotary, modal.position, work.target)
+            ):
+                speed = feed_number / 60.0
+            tag = words.line[block]
+            if is_arc:
+                if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
+                    return block, NOT_PLAIN
+            elif path[g]["tolerance"] > 0.0:
+                append_line(seg, paths, g, limits, work.target, speed, flags, tag)
+            else:
+                add_line(
+                    seg.row,
+                    seg.start,
+                    seg.end,
+                    path,
+                    paths.queued,
+                    g,
+                    limits.feed_axis,
+                    work.target,
+                    speed,
+                    flags,
+                    tag,
+                )
+            for i in range(work.target.shape[0]):
+                modal.position[i] = work.target[i]
+        whole[MOTION] = motion
+        whole[ABSOLUTE] = said[_ABSOLUTE]
+        modal.real[FEED], modal.real[FEED_NUMBER] = feed, feed_number
+        block += 1
+    return block, ALL_DONE
+
+
+@compiled
+def _read(
+    letters: npt.NDArray[np.uint8],
+    values: Floats,
+    points: npt.NDArray[np.uint8],
+    first: int,
+    after: int,
+    g_action: npt.NDArray[np.int16],
+    least_input: float,
+    whole: Ints,
+    work: FastWork,
+) -> bool:
+    """Put what the words of a block say into `work`; False at the first that is not plain."""
+    motion = whole[MOTION]
+    absolute = whole[ABSOLUTE]
+    groups = 0  # modal groups that had a word, as bits
+    seen = 0
+    for w in range(first, after):
+        letter = int(letters[w]) - _A
+        if letter < 0 or letter >= _LETTERS:
+            return False
+        value = values[w]
+        if letter == _G:
+            if not 0.0 <= value < 1000.0:
+                return False
+            code = int(value * 10.0 + 0.5)
+            if code >= g_action.shape[0] or value * 10.0 != code:
+                return False
+            action = g_action[code]
+            if action in (_LINEAR, _RAPID, _ARC_CW, _ARC_CCW):
+                group = 1
+                motion = _motion_of(action)
+            elif action in (_ABSOLUTE_WORD, _INCREMENTAL_WORD):
+                group = 2
+                absolute = 1 if action == _ABSOLUTE_WORD else 0
+            elif action == _PER_MINUTE_WORD and whole[FEED_MODE] == FEED_PER_MINUTE:
+                group = 4
+            else:
+                return False  # planes, units and all else are rare enough for the ordinary path
+            if groups & group:
+                return False
+            groups |= group
+            continue
+        bit = 1 << letter
+        role = work.role[letter]
+        if role == _UNKNOWN or seen & bit or (role == _LENGTH and least_input > 0.0 and points[w] == 0):
+            return False
+        seen |= bit
+        work.value[letter] = value
+    said = work.said
+    said[_MOTION], said[_ABSOLUTE], said[_SEEN] = motion, absolute, seen
+    return True
+
+
+@compiled
+def _motion_of(action: int) -> int:
+    if action == _LINEAR:
+        return MOTION_LINEAR
+    if action == _RAPID:
+        return MOTION_RAPID
+    return MOTION_ARC_CW if action == _ARC_CW else MOTION_ARC_CCW
+
+
+@compiled
+def _target(
+    position: Floats,
+    scale: Floats,
+    offset: Floats,
+    low: Floats,
+    high: Floats,
+    rotary: npt.NDArray[np.uint8],
+    work: FastWork,
+) -> bool:
+    """Put the programmed end point into `work.target`; False if it lies outside the soft limits."""
+    seen = work.said[_SEEN]
+    absolute = work.said[_ABSOLUTE]
+    for i in range(work.target.shape[0]):
+        at = position[i]
+        letter = int(work.axis_letter[i])  # uncompiled, the shift below would stay within 8 bits
+        if letter >= 0 and seen & (1 << letter):
+            step = work.value[letter] * scale[i]
+            if absolute != 0:
+                at = step + offset[i]
+                if rotary[i] == MODULO_AXIS:
+                    if not -LARGEST <= at <= LARGEST:
+                        return False
+                    at = _short_way(at, position[i])
+            else:
+                at += step
+        if not low[i] <= at <= high[i]:
+            return False
+        work.target[i] = at
+    return True
+
+
+@compiled
+def _only_rotary(rotary: npt.NDArray[np.uint8], start: Floats, end: Floats) -> bool:
+    linear = 0
+    for i in range(end.shape[0]):
+        if rotary[i] == LINEAR_AXIS and end[i] != start[i]:
+            linear += 1
+    return linear == 0
+
+
+@compiled
+def _arc(
+    modal: Modal,
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    limits: AxisLimits,
+    work: FastWork,
+    speed: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    whole = modal.whole
+    seen = work.said[_SEEN]
+    clockwise = work.said[_MOTION] == MOTION_ARC_CW
+    p, q = whole[AXIS_P], whole[AXIS_Q]
+    bit_p, bit_q = 1 << whole[WORD_P], 1 << whole[WORD_Q]
+    center = seen & work.said[_CENTERS]
+    has_radius = (seen & work.said[_RADIUS]) != 0
+    if p < 0 or q < 0 or center & ~(bit_p | bit_q) or whole[ARC_ABSOLUTE] != 0 or has_radius == (center != 0):
+        return False
+    start_p, start_q = modal.position[p], modal.position[q]
+    end_p, end_q = work.target[p], work.target[q]
+    if has_radius:
+        status, center_p, center_q, sweep, _ = arc_by_radius(
+            start_p,
+            start_q,
+            end_p,
+            end_q,
+            work.value[_R] * modal.scale[p],
+            clockwise,
+            modal.real[ARC_TOLERANCE],
+        )
+    else:
+        center_p = start_p
+        center_q = start_q
+        if center & bit_p:
+            center_p += work.value[whole[WORD_P]] * modal.scale[p]
+        if center & bit_q:
+            center_q += work.value[whole[WORD_Q]] * modal.scale[q]
+        status, center_p, center_q, sweep, _ = arc_by_center(
+            start_p,
+            start_q,
+            end_p,
+            end_q,
+            center_p,
+            center_q,
+            clockwise,
+            modal.real[ARC_TOLERANCE],
+            modal.real[ARC_RELATIVE],
+        )
+    if status != ARC_OK:
+        return False
+    dp, dq = start_p - center_p, start_q - center_q
+    radius = math.sqrt(dp * dp + dq * dq)
+    if not (
+        modal.low[p] <= center_p - radius
+        and center_p + radius <= modal.high[p]
+        and modal.low[q] <= center_q - radius
+        and center_q + radius <= modal.high[q]
+    ):
+        return False  # the ordinary path looks closer
+    return append_arc(seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag)

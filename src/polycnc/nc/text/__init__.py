@@ -1,0 +1,1 @@
+"""Program text: bytes to words and blocks."""

@@ -1,0 +1,1 @@
+"""The macro language and the control file that holds the macros."""

@@ -1,0 +1,221 @@
+"""An output control file: read, checked as a whole and compiled; then it starts runs that write programs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from polycnc.errors import ConfigurationError, SourcePosition, UsageError
+from polycnc.machine import KeyPath, Locator, parse_toml, validate
+from polycnc.post.macros._compile import Compiled, Style, compile_macro, used_words
+from polycnc.post.macros._control_parameters import SECTIONS, ControlTables, Parameters
+from polycnc.post.macros._control_symbols import ControlFlaw, read_symbols
+from polycnc.post.macros._expression import Flaw
+from polycnc.post.macros._format import read_format
+from polycnc.post.macros._macro import read_macro
+from polycnc.post.macros._run import MacroRun, Write
+from polycnc.post.macros._symbols import Symbols
+
+CONTROLS: tuple[str, ...] = ("bosch-pnc", "din", "fanuc-lathe", "fanuc-mill")
+"""Names of the control files that come with polycnc."""
+
+_SHOWN_FLAWS = 20
+
+
+@dataclass(frozen=True, slots=True)
+class ControlFile:
+    """A control file, checked and compiled; `load_control` and `parse_control` make it."""
+
+    file: str
+    parameters: Parameters
+    variables: frozenset[str]
+    """Keys of the function variables."""
+    _macros: Mapping[str, Compiled] = field(repr=False)
+    _symbols: Symbols = field(repr=False)
+    _style: Style = field(repr=False)
+    _places: _MacroPlaces = field(repr=False)
+
+    def has(self, macro: str) -> bool:
+        """Tell whether the file has a macro."""
+        return macro in self._macros
+
+    def start(self, write: Write) -> MacroRun:
+        """Return a run for one output program; every block goes to `write` as a line with a line feed."""
+        return MacroRun(self._macros, self._symbols, self._style, write, self._places.position)
+
+
+def load_control(source: str | Path) -> ControlFile:
+    """Return a control file by the name of one that comes with polycnc, or from a file in UTF-8 or Shift-JIS.
+
+    Raises:
+        UsageError: There is no such file.
+        ConfigurationError: It is not a control file; position and hint tell where and what to do.
+    """
+    if isinstance(source, str) and source in CONTROLS:
+        return _shipped(source)
+    path = Path(source)
+    try:
+        data = path.read_bytes()
+    except FileNotFoundError:
+        raise UsageError(
+            f"there is no control file '{source}'",
+            hint=f"Use {', '.join(CONTROLS)}, or the path of a control file.",
+        ) from None
+    except OSError as error:
+        raise UsageError(f"cannot read '{source}': {error.strerror}") from error
+    return parse_control(_decoded(data, str(source)), str(source))
+
+
+def parse_control(text: str, file: str = "control file") -> ControlFile:
+    """Return the control file that `text` describes; `file` is its name in errors.
+
+    Raises:
+        ConfigurationError: A key, a value or a line of a macro is wrong. Everything is checked; the first
+            problem has its position and the others follow, one per line.
+    """
+    data, locator = parse_toml(text, file)
+    data, locator = _in_english(data, locator)
+    tables = validate(ControlTables, data, locator)
+    try:
+        symbols = read_symbols(tables)
+    except ControlFlaw as flaw:
+        raise ConfigurationError(flaw.what, hint=flaw.hint, position=locator.position(flaw.at)) from None
+    places = _MacroPlaces(text, locator, tables.nc_macros)
+    style = _style(tables.parameters)
+    macros = _compiled(tables.nc_macros, symbols, style, places)
+    return ControlFile(file, tables.parameters, frozenset(symbols.variables), macros, symbols, style, places)
+
+
+def shipped_text(name: str) -> str:
+    """Return the text of a control file that comes with polycnc, to start one's own from."""
+    return (resources.files("polycnc.post") / "control" / f"{name}.toml").read_text(encoding="utf-8")
+
+
+@cache
+def _shipped(name: str) -> ControlFile:
+    return parse_control(shipped_text(name), f"{name}.toml")
+
+
+def _decoded(data: bytes, file: str) -> str:
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as utf_8:
+        try:
+            return data.decode("cp932")
+        except UnicodeDecodeError as shift_jis:
+            line = data.count(b"\n", 0, max(utf_8.start, shift_jis.start)) + 1
+            raise ConfigurationError(
+                f"'{file}' is neither UTF-8 nor Shift-JIS text: line {line} has bytes of neither",
+                hint="save the file as UTF-8",
+            ) from None
+
+
+def _in_english(data: dict[str, Any], locator: Locator) -> tuple[dict[str, Any], Locator]:
+    """Return data and locator with the sections under their English names."""
+    written: dict[str, str] = {}
+    for key in data:
+        name = SECTIONS.get(key, key)
+        if name in written:
+            raise ConfigurationError(
+                f"[{key}] is the section [{written[name]}] a second time",
+                hint="join the two",
+                position=locator.position((key,)),
+            )
+        written[name] = key
+    return {name: data[key] for name, key in written.items()}, _SectionLocator(locator, written)
+
+
+class _SectionLocator(Locator):
+    """Find keys whose first part is the English name of a section that the file writes otherwise."""
+
+    def __init__(self, locator: Locator, written: Mapping[str, str]) -> None:
+        self.__dict__.update(locator.__dict__)
+        self._written = written
+
+    def position(self, path: KeyPath) -> SourcePosition:
+        if path and isinstance(path[0], str):
+            path = (self._written.get(path[0], path[0]), *path[1:])
+        return super().position(path)
+
+
+def _style(parameters: Parameters) -> Style:
+    return Style(
+        separator=parameters.separator,
+        numbered=parameters.sequence_place,
+        number_format=read_format(parameters.sequence_format),
+        number_step=parameters.sequence_step,
+        number_start=parameters.sequence_start,
+        number_highest=parameters.sequence_highest,
+    )
+
+
+def _compiled(
+    texts: Mapping[str, str], symbols: Symbols, style: Style, places: _MacroPlaces
+) -> dict[str, Compiled]:
+    flaws: list[tuple[str, Flaw]] = []
+    read = {name: read_macro(text) for name, text in texts.items()}
+    used = used_words(statements for statements, _ in read.values())
+    macros: dict[str, Compiled] = {}
+    for name, (statements, unread) in read.items():
+        compiled, unknown = compile_macro(name, statements, symbols, style, used, sound=not unread)
+        flaws += [(name, flaw) for flaw in (*unread, *unknown)]
+        if compiled is not None:
+            macros[name] = compiled
+    if flaws:
+        raise _all_flaws(flaws, places)
+    return macros
+
+
+def _all_flaws(flaws: list[tuple[str, Flaw]], places: _MacroPlaces) -> ConfigurationError:
+    found = []
+    for macro, flaw in flaws:
+        position = places.position(macro, flaw.line, flaw.at)
+        found.append((position, f"[nc_macros] {macro}, line {flaw.line}: {flaw.what}", flaw.hint))
+    found.sort(key=lambda each: (each[0].line, each[0].column))
+    (position, what, hint), *others = found
+    also = [f"also {place}: {text}" + (f" ({more})" if more else "") for place, text, more in others]
+    if len(also) > _SHOWN_FLAWS:
+        also = [*also[:_SHOWN_FLAWS], f"and {len(also) - _SHOWN_FLAWS} more"]
+    if also and hint:
+        hint = f"on line {position.line}: {hint}"
+    return ConfigurationError(what, hint="\n".join([*also, hint]).strip("\n"), position=position)
+
+
+_VALUE = re.compile(r"""(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')[ \t]*=[ \t]*('''|\"""|'|")(\r?\n)?""")
+
+
+class _MacroPlaces:
+    """Know where in the control file each line of each macro stands."""
+
+    def __init__(self, text: str, locator: Locator, macros: Mapping[str, str]) -> None:
+        lines = text.split("\n")
+        self._begin: dict[str, tuple[int, int]] = {}
+        self._lines = {name: macro.split("\n") for name, macro in macros.items()}
+        self._locator = locator
+        self._count = len(lines)
+        for name in macros:
+            key = locator.position(("nc_macros", name))
+            rest = "\n".join(lines[key.line - 1 : key.line + 1])
+            if found := _VALUE.match(rest, key.column - 1):
+                begins_below = found[2] is not None and len(found[1]) == 3
+                self._begin[name] = (key.line + 1, 0) if begins_below else (key.line, found.end(1))
+
+    def position(self, macro: str, line: int, at: int) -> SourcePosition:
+        """Return the place of a macro's line (from 1) and column (from 0).
+
+        In texts with backslashes, where columns cannot be told, the macro's line is shown by itself.
+        """
+        text = self._lines[macro][line - 1]
+        first, column = self._begin.get(macro, (0, 0))
+        column = column if line == 1 else 0
+        place = self._locator.position(("nc_macros", macro))
+        if first and first + line - 1 <= self._count:
+            place = self._locator.at_line(first + line - 1, column + at + 1)
+            if place.text.startswith(text, column):
+                return place
+        return SourcePosition(place.file, place.line, at + 1, text)

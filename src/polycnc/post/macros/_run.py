@@ -1,0 +1,199 @@
+"""One run of a control file's macros: the state from block to block, and the way from an error back to its macro."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from types import CodeType
+from typing import Any, NoReturn
+
+from polycnc.errors import ProgramError, SourcePosition, UsageError
+from polycnc.post.macros._compile import Compiled, Style
+from polycnc.post.macros._events import MACROS
+from polycnc.post.macros._format import decimal, plain
+from polycnc.post.macros._symbols import Symbols
+
+Write = Callable[[str], object]
+Locate = Callable[[str, int, int], SourcePosition]
+Value = float | str
+_NOTHING: Mapping[str, Value] = {}
+
+
+class MacroRun:
+    """Call macros for one output program; `ControlFile.start` makes it.
+
+    Modes, last outputs, variables and the sequence number last from call to call, over all paths of the program.
+    """
+
+    __slots__ = ("_known", "_locate", "_macros", "_places", "_symbols", "_values")
+
+    def __init__(
+        self, macros: Mapping[str, Compiled], symbols: Symbols, style: Style, write: Write, locate: Locate
+    ) -> None:
+        self._symbols = symbols
+        self._locate = locate
+        self._places = {compiled.code.co_filename: (name, compiled) for name, compiled in macros.items()}
+        self._values: dict[str, Value] = dict(symbols.values)
+        self._known = len(self._values)
+        state = (
+            self._values,
+            [0] * len(symbols.groups),
+            [None] * len(symbols.variables),
+            [None] * len(symbols.variables),
+            [style.number_start],
+            write,
+        )
+        self._macros: dict[str, Callable[[], None] | None] = dict.fromkeys(MACROS)
+        for name, compiled in macros.items():
+            self._macros[name] = _built(compiled.code)(*state)
+
+    def call(self, macro: str, words: Mapping[str, Value] = _NOTHING) -> None:
+        """Set the words given, then run a macro; each block goes to `write` with a line feed at its end.
+
+        A macro that the control file does not have writes nothing; the words are set all the same. Words are
+        spelled in capitals. Numbers are finite; a text has one line.
+
+        Raises:
+            UsageError: There is no such macro, or no such word that holds a text.
+            ProgramError: The macro divides by zero, takes the root of a negative number, or the like.
+        """
+        self._values.update(words)
+        if len(self._values) != self._known:
+            self._check_names(words)
+        try:
+            function = self._macros[macro]
+        except KeyError:
+            raise UsageError(
+                f"there is no macro '{macro}'", hint=f"macros: {', '.join(sorted(MACROS))}"
+            ) from None
+        if function is None:
+            return
+        try:
+            function()
+        except (ArithmeticError, ValueError, TypeError) as error:
+            self._explain(error, words)
+
+    def formatted(self, name: str, value: float) -> str:
+        """Return a number in the format of a function variable, as `$T$` would write it.
+
+        Raises:
+            UsageError: The control file has no such function variable.
+        """
+        variable = self._symbols.variables.get(name)
+        if variable is None:
+            raise UsageError(f"the control file has no function variable {name}")
+        return variable.format.text(value)
+
+    def _check_names(self, words: Mapping[str, Value]) -> None:
+        """Check names that no macro uses: they have no effect, but a misspelled one should not go unnoticed."""
+        for name in words:
+            if name != name.upper() or not name.isidentifier():
+                raise UsageError(
+                    f"'{name}' is not a word", hint="words are spelled in capitals, like X or COMMENT"
+                )
+        self._known = len(self._values)
+
+    def _explain(self, error: Exception, words: Mapping[str, Value]) -> NoReturn:
+        """Raise what stands behind an error in compiled code, at its place in the macro; others go on as they are."""
+        if isinstance(error, UsageError):
+            raise error
+        found = self._place(error)
+        if found is None:
+            raise error
+        for name, value in words.items():
+            if isinstance(value, str) and not self._symbols.is_text(name):
+                raise UsageError(f"the word {name} is a number, not {value!r}") from error
+        macro, line, column = found
+        what, hint = _meaning(error)
+        raise ProgramError(
+            f"[nc_macros] {macro}, line {line}: {what}", position=self._locate(macro, line, column), hint=hint
+        ) from error
+
+    def _place(self, error: Exception) -> tuple[str, int, int] | None:
+        """Return macro, line and column that an error stems from; None if it is not the macro's."""
+        found = None
+        trace = error.__traceback__
+        while trace is not None:
+            file = trace.tb_frame.f_code.co_filename
+            if named := self._places.get(file):
+                name, compiled = named
+                writes = compiled.lines[trace.tb_lineno - 1].lstrip().startswith("write(")
+                if writes and not isinstance(error, UnicodeEncodeError):
+                    return None
+                found = (name, *compiled.places[trace.tb_lineno - 1])
+            trace = trace.tb_next
+        return found
+
+
+def _built(code: CodeType) -> Callable[..., Callable[[], None]]:
+    scope = dict(_SCOPE)
+    exec(code, scope)
+    build: Callable[..., Callable[[], None]] = scope["build"]
+    return build
+
+
+def _meaning(error: Exception) -> tuple[str, str]:
+    match error:
+        case ZeroDivisionError():
+            return "division by zero", "test the divisor with IF before"
+        case UnicodeEncodeError():
+            return (
+                f"the character '{error.object[error.start]}' cannot be written in {error.encoding}",
+                "use other characters, or another 'encoding' in the parameters",
+            )
+        case OverflowError():
+            return "the number is not finite", "look at what the expression is made of"
+        case _:
+            return f"a function has no value there ({error})", "test its argument with IF before"
+
+
+def _text(name: str, text: Value) -> str:
+    """Return the text of a word, which stays within its block.
+
+    Raises:
+        UsageError: It has more than one line.
+    """
+    if not isinstance(text, str):
+        raise UsageError(f"the word {name} is a text, not {text!r}")
+    if "\n" in text or "\r" in text:
+        raise UsageError(f"the text of {name} has more than one line", hint="give each line by itself")
+    return text
+
+
+def _dms(degrees: float) -> float:
+    """Return an angle packed as degrees, two digits of minutes, two digits of seconds: 12.5 becomes 12.3."""
+    seconds = round(abs(degrees) * 3600.0, 6)
+    minutes, seconds = divmod(seconds, 60.0)
+    whole, minutes = divmod(minutes, 60.0)
+    return math.copysign(whole + minutes / 100.0 + seconds / 10000.0, degrees)
+
+
+def _adms(packed: float) -> float:
+    """Return the degrees of a packed angle: 12.3 becomes 12.5."""
+    digits = round(abs(packed) * 10000.0, 6)
+    minutes, seconds = divmod(digits, 100.0)
+    whole, minutes = divmod(minutes, 100.0)
+    return math.copysign(whole + minutes / 60.0 + seconds / 3600.0, packed)
+
+
+_SCOPE: dict[str, Any] = {
+    "SIN": math.sin,
+    "COS": math.cos,
+    "TAN": math.tan,
+    "ASIN": math.asin,
+    "ACOS": math.acos,
+    "ATAN": math.atan,
+    "DEG": math.degrees,
+    "RAD": math.radians,
+    "SQRT": math.sqrt,
+    "EXP": math.exp,
+    "LOG10": math.log10,
+    "LOG": math.log,
+    "DABS": abs,
+    "DMS": _dms,
+    "ADMS": _adms,
+    "text": _text,
+    "plain": plain,
+    "decimal": decimal,
+}
+"""What compiled macros may call; angles of SIN, COS, TAN, ASIN, ACOS, ATAN are in radians (Manual 001, 6)."""

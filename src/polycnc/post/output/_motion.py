@@ -1,0 +1,239 @@
+"""Moves: from points and arcs of the tool path to the words of RAPID, LINEAR, ARC_CW and ARC_CCW."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+from polycnc.post.output._output import Output
+from polycnc.post.output._rotary import table_angles
+from polycnc.post.tool_path._arcs import TWO_PI, Arc, cuts, sweep_of
+from polycnc.post.tool_path._cycles import Step
+from polycnc.post.tool_path._records import UPRIGHT, Circle, Delta, Feed, From, Goto, Home, Rapid, Vector
+
+_TILTED = 1e-6
+_FLAT_MM = 1e-7
+
+
+class Motion:
+    """The tool on its way: position and tool axis as the tool path has them, feed, and lengths so far."""
+
+    def __init__(self, output: Output) -> None:
+        self.position: Vector | None = None
+        self.axis: Vector = UPRIGHT
+        self.feed: float | None = None
+        self.per_revolution = False
+        self.feed_mm = self.rapid_mm = 0.0
+        self.arcs = 0
+        self._output = output
+        self._call = output.call
+        self._parameters = output.parameters
+        self._scale = output.scale
+        self._rapid = False
+        self._must_write = True
+        self._home: Vector | None = None
+        self._tilt = self._turn = 0.0
+        self._rotary: dict[str, float] = {}
+        self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
+
+    def set_feed(self, record: Feed) -> None:
+        """Take the feed of later moves."""
+        self.feed, self.per_revolution = record.value, record.per_revolution
+
+    def set_rapid(self, record: Rapid) -> None:
+        """Make the next move a rapid."""
+        self._rapid = True
+
+    def set_rapid_off(self) -> None:
+        """Forget a RAPID that stood before a hole: a cycle says itself which of its moves are rapids."""
+        self._rapid = False
+
+    def travelled(self, steps: Iterable[Step], end: Vector) -> None:
+        """Take the position behind a hole that a macro drilled, and the lengths of its steps."""
+        here = self.position
+        for step in steps:
+            length = 0.0 if here is None else math.dist(here, step.point)
+            if step.kind == "rapid":
+                self.rapid_mm += length
+            else:
+                self.feed_mm += length
+            here = step.point
+        self.position = end
+        self._must_write = False
+
+    def set_position(self, record: From) -> None:
+        """Take where the tool stands."""
+        self.position = self._home = (record.x, record.y, record.z)
+        if record.axis is not None:
+            self.axis = record.axis
+
+    def moved_by_macro(self) -> None:
+        """Know that the machine may stand elsewhere: the next move is written, wherever it goes."""
+        self._must_write = True
+
+    def behind(self, record: Delta) -> Vector:
+        """Return the end point of a move by a distance."""
+        if self.position is None:
+            raise self._output.fail(
+                record.line, "a move by a distance from an unknown point", "Write FROM or GOTO before it."
+            )
+        x, y, z = self.position
+        if record.along_axis:
+            i, j, k = self.axis
+            return x + i * record.x, y + j * record.x, z + k * record.x
+        return x + record.x, y + record.y, z + record.z
+
+    def go_home(self, record: Home) -> None:
+        """Go to where FROM was."""
+        if self._home is None:
+            raise self._output.fail(record.line, "GOHOME without a FROM", "Write FROM at the beginning.")
+        self._rapid = True
+        self.goto(Goto(record.line, *self._home))
+
+    def goto(self, record: Goto) -> None:
+        """Move straight to a point."""
+        line, x, y, z, axis = record
+        rapid, self._rapid = self._rapid, False
+        self.straight(line, (x, y, z), axis, rapid)
+
+    def straight(self, line: int, end: Vector, axis: Vector | None, rapid: bool) -> None:
+        """Move straight to a point, by rapid or with the feed."""
+        if axis is not None and axis != self.axis:
+            self._lean(line, axis)
+            self._must_write = True
+        start = self.position
+        if start == end and not self._must_write:
+            return
+        self._must_write = False
+        x, y, z = end
+        if start is None:
+            start = end
+        scale = self._scale
+        words: dict[str, float | str] = {
+            "X": x * scale,
+            "Y": y * scale,
+            "Z": z * scale,
+            "STARTX": start[0] * scale,
+            "STARTY": start[1] * scale,
+            "STARTZ": start[2] * scale,
+        }
+        if self._rotary:
+            words.update(self._rotary)
+        self.position = end
+        if rapid:
+            self.rapid_mm += math.dist(start, end)
+            self._check("RAPID", line)
+            self._call("RAPID", words)
+        else:
+            self.feed_mm += math.dist(start, end)
+            self._check("LINEAR", line)
+            words["F"], words["FEEDMODE"] = self.feed_words(line)
+            self._call("LINEAR", words)
+
+    def feed_words(self, line: int) -> tuple[float, float]:
+        """Return F and FEEDMODE.
+
+        Raises:
+            ProgramError: there is no feed yet.
+        """
+        if self.feed is None:
+            raise self._output.fail(line, "a feed move without a feed", "Write FEDRAT before it.")
+        return self.feed * self._scale, 95.0 if self.per_revolution else 94.0
+
+    def circle(self, record: Circle) -> None:
+        """Move along an arc: in pieces as the parameters say, or in lines."""
+        line, start = record.line, self.position
+        self._rapid = False
+        if start is None:
+            raise self._output.fail(line, "an arc without a start point", "Write FROM or GOTO before it.")
+        end = (record.x, record.y, record.z)
+        sweep = sweep_of(start, end, record.center, record.normal) + TWO_PI * (record.turns - 1)
+        whole = Arc(start, end, record.center, record.normal, sweep)
+        self.feed_mm += whole.length
+        self.arcs += 1
+        before = self.feed_mm
+        if self._stays_arc(whole):
+            for piece in whole.pieces(cuts(whole, self._parameters.arc_split)):
+                self._arc(line, piece)
+        else:
+            self._chords(line, whole)
+        self.feed_mm = before
+
+    def _stays_arc(self, arc: Arc) -> bool:
+        p = self._parameters
+        found = arc.plane()
+        return (
+            p.arcs == "arcs"
+            and found is not None
+            and found[0] in p.arc_planes
+            and p.arc_min_radius_mm <= arc.radius <= p.arc_max_radius_mm
+            and (p.helix == "arcs" or abs(arc.rise) <= _FLAT_MM)
+            and self._output.control.has("ARC_CW")
+            and self._output.control.has("ARC_CCW")
+        )
+
+    def _chords(self, line: int, arc: Arc) -> None:
+        for point in arc.chords(self._parameters.tolerance_mm):
+            self.straight(line, point, None, False)
+
+    def _arc(self, line: int, arc: Arc) -> None:
+        """Write one arc of up to a whole turn; one so flat that it is a line within the tolerance as a line."""
+        found = arc.plane()
+        assert found is not None
+        if arc.height <= self._parameters.tolerance_mm:
+            self._chords(line, arc)
+            return
+        plane, clockwise = found
+        scale, decimals = self._scale, self._parameters.decimals
+        start = [round(value * scale, decimals) for value in arc.start]
+        center = [round(value * scale, decimals) for value in arc.center]
+        absolute = self._parameters.arc_center == "absolute"
+        i, j, k = center if absolute else (c - s for c, s in zip(center, start, strict=True))
+        normal_word = {17: "K", 18: "J", 19: "I"}[plane]
+        radius = arc.radius * scale
+        x, y, z = arc.end
+        words: dict[str, float | str] = {
+            "X": x * scale,
+            "Y": y * scale,
+            "Z": z * scale,
+            "STARTX": arc.start[0] * scale,
+            "STARTY": arc.start[1] * scale,
+            "STARTZ": arc.start[2] * scale,
+            "I": i,
+            "J": j,
+            "K": k,
+            "R": radius if arc.sweep <= math.pi + 1e-9 else -radius,
+            "PLANE": float(plane),
+            "SWEEP": math.degrees(arc.sweep),
+        }
+        words[normal_word] = 0.0
+        words["F"], words["FEEDMODE"] = self.feed_words(line)
+        self.position = arc.end
+        self._must_write = False
+        self._call("ARC_CW" if clockwise else "ARC_CCW", words)
+
+    def _check(self, macro: str, line: int) -> None:
+        if not self._needs[macro]:
+            raise self._output.fail(
+                line,
+                f"the control file has no macro {macro}",
+                f"Add {macro} to [nc_macros] of the control file.",
+            )
+
+    def _lean(self, line: int, axis: Vector) -> None:
+        """Take a new tool axis, and the rotary positions or words for it."""
+        kind = self._parameters.rotary
+        self.axis = axis
+        if kind == "none":
+            if math.dist(axis, UPRIGHT) > _TILTED:
+                raise self._output.fail(
+                    line,
+                    "the tool is tilted, and the control file has no rotary axes",
+                    "Set 'rotary' in its parameters, or let the CAM system keep the tool axis 0, 0, 1.",
+                )
+            return
+        self._rotary = {"TOOLI": axis[0], "TOOLJ": axis[1], "TOOLK": axis[2]}
+        if kind != "vector":
+            self._tilt, self._turn = table_angles(axis, kind, self._tilt, self._turn)
+            self._rotary["A" if kind == "ac_table" else "B"] = self._tilt
+            self._rotary["C"] = self._turn

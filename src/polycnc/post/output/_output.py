@@ -1,0 +1,65 @@
+"""Where events become blocks: macros are called, blocks collected, and what a control file lacks is remarked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from polycnc.errors import ProgramError
+from polycnc.post.macros._control_file import ControlFile
+from polycnc.post.tool_path._tool_path import ToolPath
+from polycnc.units import MM_PER_INCH
+
+Words = Mapping[str, float | str]
+_NOTHING: Words = {}
+
+
+class Output:
+    """One program in the making."""
+
+    def __init__(self, control: ControlFile, tool_path: ToolPath, out: Callable[[str], object]) -> None:
+        self.control = control
+        self.parameters = control.parameters
+        self.scale = 1.0 / MM_PER_INCH if control.parameters.units == "inch" else 1.0
+        self._tool_path = tool_path
+        self._out = out
+        self._lines: list[str] = []
+        self._written = 0
+        self._run = control.start(self._lines.append)
+        self.call = self._run.call
+
+    @property
+    def blocks(self) -> int:
+        """How many blocks there are so far."""
+        return self._written + len(self._lines)
+
+    def flush(self) -> None:
+        """Hand on the blocks collected."""
+        self._written += len(self._lines)
+        self._out("".join(self._lines))
+        self._lines.clear()
+
+    def frame(self, macro: str, words: Words = _NOTHING) -> None:
+        """Call a macro that a control file may leave out."""
+        self.call(macro, words)
+
+    def state(self, macro: str, line: int, words: Words = _NOTHING) -> None:
+        """Call a macro whose absence is remarked."""
+        if not self.control.has(macro):
+            self._tool_path.remarks.add(
+                line, f"the control file has no macro {macro}, so nothing was written"
+            )
+        self.call(macro, words)
+
+    def formatted(self, variable: str, value: float) -> str:
+        """Return a number as the control writes it behind an address, plainly if it has no such address."""
+        if variable in self.control.variables:
+            return self._run.formatted(variable, value)
+        return f"{variable}{value:g}"
+
+    def remark(self, line: int, text: str) -> None:
+        """Remark something about a line of the tool path."""
+        self._tool_path.remarks.add(line, text)
+
+    def fail(self, line: int, what: str, hint: str) -> ProgramError:
+        """Return the error for a line of the tool path."""
+        return ProgramError(what, position=self._tool_path.position(line), hint=hint)

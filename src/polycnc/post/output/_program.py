@@ -1,0 +1,330 @@
+"""Drive a control file's macros by the records of a tool path: each event calls its macro, once, in order.
+
+The driver keeps what events need to know of one another: where the tool is, feed, tool, spindle, cycle. What it
+gives to macros is told in `_events`. Moves and holes have files of their own.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+from polycnc.post.macros._control_file import ControlFile
+from polycnc.post.output._drilling import Drilling
+from polycnc.post.output._motion import Motion
+from polycnc.post.output._output import Output
+from polycnc.post.tool_path._records import (
+    Circle,
+    Compensation,
+    Coolant,
+    Cycle,
+    CycleOff,
+    Delta,
+    Dwell,
+    End,
+    Feed,
+    From,
+    Goto,
+    Home,
+    Path,
+    Rapid,
+    Spindle,
+    Stop,
+    Text,
+    Tool,
+    ToolShape,
+)
+from polycnc.post.tool_path._source import Remark
+from polycnc.post.tool_path._tool_path import ToolPath
+
+Progress = Callable[[float], None]
+
+_CHUNK_RECORDS = 4096
+
+
+@dataclass(frozen=True, slots=True)
+class PostSummary:
+    """What was written: blocks, records that were read, lengths of the moves, arcs, holes, and remarks."""
+
+    blocks: int
+    records: int
+    feed_mm: float
+    rapid_mm: float
+    arcs: int
+    holes: int
+    tools: int
+    remarks: tuple[Remark, ...]
+
+
+@dataclass(slots=True)
+class BlockMap:
+    """Say for each line of the program which record of the tool path, and which line, it came from.
+
+    Entry r is for record r, from 0: its last block, and its line. One more is for what ends the program, with line 0.
+    """
+
+    last_block: array[int] = field(default_factory=lambda: array("q"))
+    line: array[int] = field(default_factory=lambda: array("q"))
+
+    def add(self, last_block: int, line: int) -> None:
+        """Say that the blocks up to `last_block`, from where the last entry ended, came from `line`."""
+        self.last_block.append(last_block)
+        self.line.append(line)
+
+
+def post_program(
+    tool_path: ToolPath,
+    control: ControlFile,
+    out: Callable[[str], object],
+    *,
+    progress: Progress | None = None,
+    block_map: BlockMap | None = None,
+) -> PostSummary:
+    """Write the program of a tool path: `out` gets its text in pieces of whole lines.
+
+    `progress` is called now and then with the part that is done, 0 to 1. `block_map` is filled with the origin of
+    each block that moves.
+
+    Raises:
+        ProgramError: the tool path or the control file asks for what cannot be posted.
+    """
+    output = Output(control, tool_path, out)
+    driver = _Driver(output)
+    handlers = driver.handlers()
+    records = 0
+    for record in tool_path:
+        records += 1
+        handlers[record.__class__](record)
+        if block_map is not None:
+            block_map.add(output.blocks, record.line)
+        if not records % _CHUNK_RECORDS:
+            output.flush()
+            if progress is not None:
+                progress(tool_path.part_read)
+        if record.__class__ is End:
+            break
+    last_of_path = output.blocks
+    driver.end()
+    if block_map is not None and output.blocks > last_of_path:
+        block_map.add(output.blocks, 0)
+    output.flush()
+    motion = driver.motion
+    return PostSummary(
+        blocks=output.blocks,
+        records=records,
+        feed_mm=motion.feed_mm,
+        rapid_mm=motion.rapid_mm,
+        arcs=motion.arcs,
+        holes=driver.drilling.holes,
+        tools=driver.tools,
+        remarks=tuple(tool_path.remarks.all()),
+    )
+
+
+class _Driver:
+    """One program: the frame of program, operations and tools around its moves."""
+
+    def __init__(self, output: Output) -> None:
+        self.output = output
+        self.motion = Motion(output)
+        self.drilling = Drilling(output, self.motion)
+        self.tools = 0
+        self._part = self._machine = ""
+        self._path = ""
+        self._path_number = 0
+        self._started = self._in_path = False
+        self._shape = ToolShape(0, "", 0.0, 0.0)
+        self._tool_number = 0
+        self._turning: Spindle | None = None
+
+    def handlers(self) -> dict[type[Any], Callable[[Any], None]]:
+        """Return the function for each kind of record."""
+        return {
+            Text: self._text,
+            Path: self._path_record,
+            ToolShape: self._tool_shape,
+            Tool: self._working(self._tool),
+            Spindle: self._working(self._spindle),
+            Feed: self.motion.set_feed,
+            Rapid: self.motion.set_rapid,
+            From: self.motion.set_position,
+            Goto: self._goto,
+            Delta: self._working(self._delta),
+            Home: self._working(self._home),
+            Circle: self._working(self._circle),
+            Cycle: self._working(self.drilling.begin),
+            CycleOff: self._working(self.drilling.end_or_resume),
+            Coolant: self._working(self._coolant),
+            Compensation: self._working(self._compensation),
+            Dwell: self._working(self._dwell),
+            Stop: self._working(self._stop),
+            End: self._end_record,
+        }
+
+    def end(self) -> None:
+        """End the program."""
+        self._begin()
+        self.drilling.finish()
+        self._end_path()
+        self.output.frame("PROGRAM_END")
+
+    def _working(self, handler: Callable[[Any], None]) -> Callable[[Any], None]:
+        """Return `handler` for a record that belongs to an operation."""
+
+        def work(record: Any) -> None:
+            if not self._in_path:
+                self._begin_path()
+            handler(record)
+
+        return work
+
+    def _begin(self) -> None:
+        if not self._started:
+            self._started = True
+            units = 20.0 if self.output.parameters.units == "inch" else 21.0
+            words: dict[str, float | str] = {
+                "PARTNAME": self._part,
+                "MACHINENAME": self._machine,
+                "UNITS": units,
+            }
+            self.output.frame("PROGRAM_START", words)
+
+    def _begin_path(self) -> None:
+        self._begin()
+        self._in_path = True
+        self._path_number += 1
+        self.output.frame("PATH_START", self._path_words())
+
+    def _end_path(self) -> None:
+        if self._in_path:
+            self._in_path = False
+            self.drilling.finish()
+            self.output.frame("PATH_END", self._path_words())
+
+    def _path_words(self) -> dict[str, float | str]:
+        return {"PATHNAME": self._path, "PATHNUMBER": float(self._path_number)}
+
+    def _path_record(self, record: Path) -> None:
+        self._end_path()
+        self._path = _plain(record.name or "")
+
+    def _end_record(self, record: End) -> None:
+        """Nothing: the end of the tool path follows."""
+
+    def _text(self, record: Text) -> None:
+        text = _plain(record.text)
+        if record.kind == "part":
+            self._part = text
+        elif record.kind == "machine":
+            self._machine = text
+        else:
+            if not self._in_path:
+                self._begin_path()
+            if record.kind == "comment":
+                self.output.frame("COMMENT", {"COMMENT": text})
+            else:
+                self.output.state("INSERT", record.line, {"COMMENT": record.text})
+
+    def _tool_shape(self, record: ToolShape) -> None:
+        old = self._shape
+        self._shape = ToolShape(
+            record.line,
+            old.name if record.name is None else _plain(record.name),
+            old.diameter if record.diameter is None else record.diameter,
+            old.length if record.length is None else record.length,
+        )
+
+    def _tool(self, record: Tool) -> None:
+        self.drilling.finish()
+        self._tool_shape(ToolShape(record.line, record.name, None, record.length))
+        self.tools += 1
+        self._tool_number = record.number
+        number = float(record.number)
+        scale = self.output.scale
+        words: dict[str, float | str] = {
+            "T": number,
+            "TOOLCHANGE": self.output.formatted("T", number),
+            "TOOLNAME": self._shape.name or "",
+            "TOOLDIAMETER": (self._shape.diameter or 0.0) * scale,
+            "TOOLLENGTH": (self._shape.length or 0.0) * scale,
+            "H": number if record.h is None else float(record.h),
+            "D": number if record.d is None else float(record.d),
+        }
+        self.output.state("TOOL_CHANGE", record.line, words)
+        self.motion.moved_by_macro()
+
+    def _spindle(self, record: Spindle) -> None:
+        self.drilling.finish()
+        if record.sense == "off":
+            self.output.state("SPINDLE_OFF", record.line)
+            return
+        before = self._turning
+        sense = record.sense if record.sense != "on" or before is None else before.sense
+        speed = record.speed
+        surface = record.surface
+        if speed is None:
+            if before is None or before.speed is None:
+                raise self.output.fail(
+                    record.line, "the spindle turns before its speed is known", "Give a speed."
+                )
+            speed, surface = before.speed, before.surface
+        self._turning = Spindle(record.line, "cw" if sense == "on" else sense, speed, surface)
+        self.drilling.rpm = 0.0 if surface else speed
+        self.drilling.spindle_sense = self._turning.sense
+        words: dict[str, float | str] = {
+            "S": self._spindle_number(speed, surface),
+            "SPINDLEMODE": 96.0 if surface else 97.0,
+        }
+        self.output.state("SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW", record.line, words)
+
+    def _spindle_number(self, speed: float, surface: bool) -> float:
+        """Return the number of S: revolutions per minute, or the surface speed in m or feet per minute."""
+        in_feet = surface and self.output.parameters.units == "inch"
+        return speed / 0.3048 if in_feet else speed
+
+    def _goto(self, record: Goto) -> None:
+        if not self._in_path:
+            self._begin_path()
+        if self.drilling.cycle is None:
+            self.motion.goto(record)
+        else:
+            self.drilling.hole(record)
+
+    def _delta(self, record: Delta) -> None:
+        target = self.motion.behind(record)
+        self._goto(Goto(record.line, *target))
+
+    def _home(self, record: Home) -> None:
+        self.drilling.finish()
+        self.motion.go_home(record)
+
+    def _circle(self, record: Circle) -> None:
+        if self.drilling.cycle is not None:
+            raise self.output.fail(
+                record.line, "an arc within a drilling cycle", "Write CYCLE/OFF before it."
+            )
+        self.motion.circle(record)
+
+    def _coolant(self, record: Coolant) -> None:
+        self.output.state(f"COOLANT_{record.mode.upper()}", record.line)
+
+    def _compensation(self, record: Compensation) -> None:
+        words: dict[str, float | str] = {}
+        if record.side != "off":
+            words["D"] = float(self._tool_number if record.d is None else record.d)
+        self.output.state(f"COMP_{record.side.upper()}", record.line, words)
+
+    def _dwell(self, record: Dwell) -> None:
+        words: dict[str, float | str] = {"DWELL": record.seconds, "DWELLREV": record.revolutions}
+        self.output.state("DWELL", record.line, words)
+
+    def _stop(self, record: Stop) -> None:
+        self.output.state("OPTIONAL_STOP" if record.optional else "STOP", record.line)
+
+
+def _plain(text: str) -> str:
+    """Return a text that can stand in a comment of any control: one line, no parentheses."""
+    text = "".join(char if char.isprintable() else " " for char in text)
+    return text.replace("(", "[").replace(")", "]").strip()

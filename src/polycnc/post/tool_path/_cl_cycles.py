@@ -1,0 +1,109 @@
+"""Drilling cycles in APT words: by name (DEPTH, CLEAR, ...) as CAM systems write them today, or by place.
+
+By name the levels count from the point: DEPTH or FEDTO downwards, CLEAR upwards; RAPTO goes further down from
+CLEAR, or is the level itself where there is no CLEAR; RETURN or RTRCTO is the level to leave to. By place the
+numbers are the depth, the feed with its unit, and the clearance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from polycnc.post.tool_path._cl_statement import Statement
+from polycnc.post.tool_path._records import Cycle, CycleKind
+from polycnc.units import MM_PER_INCH
+
+_KINDS: dict[str, CycleKind] = {
+    "DRILL": "drill",
+    "THRU": "drill",
+    "FACE": "dwell",
+    "CSINK": "dwell",
+    "CBORE": "dwell",
+    "DEEP": "deep",
+    "DEEPHL": "deep",
+    "BRKCHP": "chip_break",
+    "TAP": "tap",
+    "BORE": "bore",
+    "REAM": "bore",
+}
+_PECKS = ("STEP", "INCR")
+_NUMBERED = ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RETURN", "RTRCTO", "DWELL", *_PECKS)
+
+
+def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[float, bool]]) -> Cycle:
+    """Return the cycle of a CYCLE statement; `units` are the words of feeds: factor, and per revolution.
+
+    Raises:
+        ProgramError: an unknown cycle, or one without a depth.
+    """
+    words = statement.words()
+    # NX writes CYCLE/DRILL,DEEP: the more special word counts.
+    named = [_KINDS[word] for word in _KINDS if word in words]
+    if not named:
+        first = statement.peek()
+        raise statement.fail(
+            f"the cycle '{first.text}' is not known" if first else "a cycle without a kind",
+            f"Known are {', '.join(_KINDS)}.",
+            first,
+        )
+    kind = named[-1] if named[0] == "drill" else named[0]
+    values, bare, feed, per_revolution = _split(statement, scale, units)
+    depth = values.get("DEPTH", values.get("FEDTO"))
+    if depth is None and bare:
+        depth = bare.pop(0)
+    if depth is None:
+        raise statement.fail(
+            "a cycle without a depth", "Write it like CYCLE/DRILL,DEPTH,10,MMPM,100,CLEAR,2."
+        )
+    clear = values.get("CLEAR")
+    if clear is None and bare:
+        if kind == "tap" and len(bare) > 1:
+            bare.pop(0)  # threads per inch
+        clear = bare.pop(0)
+    rapid_to = values.get("RAPTO", 0.0)
+    start = rapid_to if clear is None else clear - rapid_to
+    out = values.get("RETURN", values.get("RTRCTO", start if clear is None else clear))
+    dwell = values.get("DWELL", 0.0)
+    if kind == "drill" and dwell > 0.0:
+        kind = "dwell"
+    peck = next((values[word] for word in _PECKS if word in values), bare.pop(0) if bare else 0.0)
+    if kind in ("deep", "chip_break") and not peck > 0.0:
+        raise statement.fail(
+            "a cycle with pecks that does not say how deep they are", "Write STEP and a length."
+        )
+    bottom = abs(depth)
+    if not start > -bottom:
+        raise statement.fail("a cycle whose feed begins below its depth", "Check CLEAR, RAPTO and DEPTH.")
+    leave = None if out == 0.0 and "RETURN" in values else max(out, start)
+    return Cycle(statement.line, kind, bottom, start, leave, feed, per_revolution, peck, dwell)
+
+
+def _split(
+    statement: Statement, scale: float, units: Mapping[str, tuple[float, bool]]
+) -> tuple[dict[str, float], list[float], float | None, bool]:
+    """Return the numbers behind words, those without one, the feed, and whether that is per revolution."""
+    values: dict[str, float] = {}
+    bare: list[float] = []
+    feed: float | None = None
+    per_revolution = False
+    known = {**units, "PERMIN": (scale, False), "PERREV": (scale, True), "PITCH": (scale, True)}
+    for token in statement:
+        number = token.number
+        if number is not None:
+            bare.append(number * scale)
+        elif token.text in known:
+            factor, per_revolution = known[token.text]
+            if len(bare) >= 2:  # by place the feed comes before its unit
+                feed = bare.pop() / scale * factor
+            else:
+                feed = statement.number("a feed") * factor
+        elif token.text == "TPI":
+            feed, per_revolution = MM_PER_INCH / statement.number("threads per inch"), True
+        elif token.text in _NUMBERED:
+            value = statement.number(f"a number behind {token.text}")
+            values[token.text] = value if token.text == "DWELL" else value * scale
+            if token.text in _PECKS:
+                statement.numbers()  # further, smaller pecks
+    if feed is not None and not feed > 0.0:
+        raise statement.fail(f"a cycle with a feed of {feed:g}", "Give a feed above 0.")
+    return values, bare, feed, per_revolution

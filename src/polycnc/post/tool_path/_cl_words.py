@@ -1,0 +1,284 @@
+"""What each APT word says: one function for each, and the table that leads to them."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from typing import Literal
+
+from polycnc.post.tool_path import _cl_moves
+from polycnc.post.tool_path._cl_cycles import read_cycle
+from polycnc.post.tool_path._cl_reading import Handler, Reading
+from polycnc.post.tool_path._cl_statement import Statement
+from polycnc.post.tool_path._records import (
+    Compensation,
+    Coolant,
+    CycleOff,
+    Dwell,
+    End,
+    Feed,
+    Path,
+    Rapid,
+    Record,
+    Spindle,
+    Stop,
+    Text,
+    Tool,
+    ToolShape,
+)
+from polycnc.units import MM_PER_INCH
+
+TEXTS = re.compile(r"\s*(PARTNO|PPRINT|INSERT|REMARK|TPRINT)\b\s*/?\s?(.*)", re.IGNORECASE)
+"""Statements whose text is taken as it stands, with or without a slash."""
+
+IGNORED = frozenset(
+    (
+        *(
+            "REMARK",
+            "PAINT",
+            "DISPLY",
+            "MSYS",
+            "HEADER",
+            "INTOL",
+            "OUTTOL",
+            "TOLER",
+            "MULTAX",
+            "CUT",
+            "CLPRNT",
+        ),
+        *("NOPOST", "PLABEL", "LEADER", "REWIND", "CATPROCESS", "AUTOPS", "TLONPS", "TLOFPS", "PSIS", "CSYS"),
+    )
+)
+"""Words that say nothing to a control."""
+
+LEFT_OUT_MOTION = frozenset(
+    (
+        *("ARC", "GO", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN", "THREAD", "INDEX", "ROTABL"),
+        *("ROTATE", "ROTHED", "TRACUT", "COPY", "TRANS", "ORIGIN", "DNTCUT", "SPLINE", "NURBS", "GOCLER"),
+    )
+)
+"""Words that move the tool or its coordinates and are not known: leaving them out would cut another part."""
+
+_FEED_UNITS = {
+    "MMPM": (1.0, False),
+    "MMPR": (1.0, True),
+    "IPM": (MM_PER_INCH, False),
+    "IPR": (MM_PER_INCH, True),
+    "FPM": (12.0 * MM_PER_INCH, False),
+}
+
+
+def _text(kind: Literal["part", "comment", "insert"]) -> Handler:
+    def read(reading: Reading, statement: Statement) -> Iterator[Record]:
+        found = TEXTS.match(statement.pieces[0].part)
+        first = found[2] if found else ""
+        text = "".join([first, *(piece.part for piece in statement.pieces[1:])])
+        yield Text(statement.line, kind, text.strip())
+
+    return read
+
+
+def _tool_name(reading: Reading, statement: Statement) -> Iterator[Record]:
+    found = TEXTS.match(statement.pieces[0].part)
+    yield ToolShape(statement.line, name=(found[2] if found else "").split(",")[0].strip())
+
+
+def _nothing(reading: Reading, statement: Statement) -> Iterator[Record]:
+    return iter(())
+
+
+def _machine(reading: Reading, statement: Statement) -> Iterator[Record]:
+    yield Text(statement.line, "machine", statement.rest.split(",")[0].strip())
+
+
+def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
+    words = statement.words()
+    if words & {"MM", "MILLIMETERS"}:
+        reading.scale = 1.0
+    elif words & {"INCH", "INCHES", "IN"}:
+        reading.scale = MM_PER_INCH
+    elif words & {"CM", "CENTIMETERS"}:
+        reading.scale = 10.0
+    else:
+        raise statement.fail("UNITS without a unit", "Write UNITS/MM or UNITS/INCHES.")
+    return iter(())
+
+
+def _tool_path(reading: Reading, statement: Statement) -> Iterator[Record]:
+    names = [name.strip() for name in statement.rest.split(",")]
+    yield Path(statement.line, names[0])
+    if len(names) > 2 and names[1].upper() == "TOOL":
+        yield ToolShape(statement.line, name=names[2])
+
+
+def _end_of_path(reading: Reading, statement: Statement) -> Iterator[Record]:
+    yield Path(statement.line, None)
+
+
+def _tool_data(reading: Reading, statement: Statement) -> Iterator[Record]:
+    for token in statement:
+        if token.number is None and token.text in ("MILL", "DRILL", "TCUTTER"):
+            numbers = [n * reading.scale for n in statement.numbers()]
+            if numbers:
+                yield ToolShape(statement.line, None, numbers[0], numbers[2] if len(numbers) > 2 else None)
+            return
+
+
+def _cutter(reading: Reading, statement: Statement) -> Iterator[Record]:
+    yield ToolShape(statement.line, diameter=statement.number("a diameter") * reading.scale)
+
+
+def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
+    if (token := statement.peek()) is not None and token.text == "TOOL":
+        next(iter(statement))
+    number = statement.number("a tool number")
+    if number != int(number) or number < 0:
+        raise statement.fail(
+            f"a tool number must be a whole number, not {number:g}", "Write it like LOADTL/3."
+        )
+    length = statement.value_of("LENGTH", "a length")
+    offset = statement.value_of("ADJUST", "an offset number")
+    if offset is None:
+        offset = statement.value_of("OSETNO", "an offset number")
+    radius = statement.value_of("CUTCOM", "an offset number")
+    yield Tool(
+        statement.line,
+        int(number),
+        None,
+        None if length is None else length * reading.scale,
+        None if offset is None else int(offset),
+        None if radius is None else int(radius),
+    )
+
+
+def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
+    words = statement.words()
+    speed = next((n for token in statement if (n := token.number) is not None), None)
+    for word in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
+        if word in words and statement.value_of(word, "a number") == speed:
+            raise statement.fail(f"SPINDL names {word} before its speed", "Write the speed first.")
+    sense: Literal["cw", "ccw", "off", "on"] = "on"
+    if "OFF" in words:
+        sense = "off"
+    elif words & {"CCLW", "CCW"}:
+        sense = "ccw"
+    elif words & {"CLW", "CW"} or speed is not None:
+        sense = "cw"
+    surface = bool(words & {"SFM", "SMM"})
+    if speed is not None and "SFM" in words:
+        speed *= 12.0 * MM_PER_INCH / 1000.0
+    yield Spindle(statement.line, sense, speed, surface)
+
+
+def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
+    words = statement.words()
+    if "RAPID" in words:
+        yield Rapid(statement.line)
+        return
+    if "INVERS" in words:
+        raise statement.fail("an inverse time feed", "Let the CAM system write feeds per minute.")
+    value = next((n for token in statement if (n := token.number) is not None), None)
+    if value is None:
+        raise statement.fail("FEDRAT needs a feed", "Write it like FEDRAT/250,MMPM.")
+    if value <= 0.0:
+        raise statement.fail(f"a feed of {value:g}", "Give a feed above 0.")
+    unit = next((_FEED_UNITS[word] for word in words if word in _FEED_UNITS), None)
+    scale, per_revolution = unit or (reading.scale, "PERREV" in words)
+    yield Feed(statement.line, value * scale, per_revolution)
+
+
+def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
+    words = statement.words()
+    if "OFF" in words or "NOMORE" in words:
+        yield CycleOff(statement.line)
+    elif "ON" in words:
+        yield CycleOff(statement.line, on=True)
+    else:
+        yield read_cycle(statement, reading.scale, _FEED_UNITS)
+
+
+def _coolant(reading: Reading, statement: Statement) -> Iterator[Record]:
+    words = statement.words()
+    mode: Literal["flood", "mist", "through", "off"] = "flood"
+    if "OFF" in words:
+        mode = "off"
+    elif words & {"MIST", "AIR"}:
+        mode = "mist"
+    elif words & {"THRU", "THRUTL", "TAPKUL"}:
+        mode = "through"
+    yield Coolant(statement.line, mode)
+
+
+def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
+    words = statement.words()
+    side: Literal["left", "right", "off"] = "off"
+    if "OFF" in words:
+        side = "off"
+    elif "LEFT" in words:
+        side = "left"
+    elif "RIGHT" in words:
+        side = "right"
+    else:
+        raise statement.fail("CUTCOM without a side", "Write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF.")
+    number = next((n for token in statement if (n := token.number) is not None), None)
+    yield Compensation(statement.line, side, None if number is None else int(number))
+
+
+def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:
+    value = next((n for token in statement if (n := token.number) is not None), None)
+    if value is None or value < 0.0:
+        raise statement.fail("DELAY needs a time", "Write it in seconds, like DELAY/1.5, or as DELAY/5,REV.")
+    if "REV" in statement.words():
+        yield Dwell(statement.line, revolutions=value)
+    else:
+        yield Dwell(statement.line, seconds=value)
+
+
+def _stop(optional: bool) -> Handler:
+    def read(reading: Reading, statement: Statement) -> Iterator[Record]:
+        yield Stop(statement.line, optional)
+
+    return read
+
+
+def _end(reading: Reading, statement: Statement) -> Iterator[Record]:
+    yield End(statement.line)
+
+
+HANDLERS: dict[str, Handler] = {
+    "PARTNO": _text("part"),
+    "PPRINT": _text("comment"),
+    "INSERT": _text("insert"),
+    "REMARK": _nothing,
+    "TPRINT": _tool_name,
+    "MACHIN": _machine,
+    "UNITS": _units,
+    "TOOLPATH": _tool_path,
+    "END-OF-PATH": _end_of_path,
+    "TLDATA": _tool_data,
+    "CUTTER": _cutter,
+    "LOADTL": _tool,
+    "LOAD": _tool,
+    "TOOLNO": _tool,
+    "TURRET": _tool,
+    "SPINDL": _spindle,
+    "FEDRAT": _feed,
+    "RAPID": _cl_moves.rapid,
+    "GOTO": _cl_moves.goto,
+    "FROM": _cl_moves.start_from,
+    "GODLTA": _cl_moves.delta,
+    "GOHOME": _cl_moves.home,
+    "CIRCLE": _cl_moves.circle,
+    "MOVARC": _cl_moves.circle,
+    "INDIRV": _cl_moves.direction,
+    "TLON,GOFWD": _cl_moves.follow_circle,
+    "CYCLE": _cycle,
+    "COOLNT": _coolant,
+    "CUTCOM": _compensation,
+    "DELAY": _dwell,
+    "STOP": _stop(False),
+    "OPSTOP": _stop(True),
+    "END": _end,
+    "FINI": _end,
+}
+"""The known words, each with the function that reads its statement."""
