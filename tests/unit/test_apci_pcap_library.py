@@ -17,8 +17,9 @@ from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.controllers.library import IN
 from polycnc.errors import UsageError
-from polycnc.machine import Poll
-from support.apci_pc import LATENCY, Pc
+from polycnc.machine import Elapsed, Poll
+from support.apci_pc import LATENCY, SCAN_S, Pc, near
+from support.time_sources import FakeWall
 
 NUMBERED = ("an", "axis")
 
@@ -147,7 +148,7 @@ def test_messages_go_where_the_program_wants(caplog: pytest.LogCaptureFixture) -
 # ---------------------------------------------------------------------- time
 
 
-def test_a_status_call_lets_one_scan_pass_and_others_none() -> None:
+def test_reading_the_same_again_lets_one_scan_pass_and_other_calls_none() -> None:
     pc = Pc(clock=Poll(1))
     start = pc.board.clock.cycles
     axes = pc.close(0)
@@ -156,13 +157,39 @@ def test_a_status_call_lets_one_scan_pass_and_others_none() -> None:
     pc.tsrp[0].tp = 1.0
     pcap.jr(axes, pc.tsrp)
     pcap.rdEffRadius(0)
-    assert pc.board.clock.cycles == start
-    pcap.rdrp(pc.tsrp[0])
-    pcap.rdaxst(pc.tsrp[0])
+    pcap.rdEffRadius(0)
+    for axis in (0, 1):  # all of one scan
+        pcap.rdrp(pc.tsrp[axis])
+        pcap.rdaxst(pc.tsrp[axis])
+        pcap.rdaxstb(axis, 13)
+        pcap.rdaxstb(axis, 14)
     pcap.rdErrorReg()
+    assert pc.board.clock.cycles == start
+    pcap.rdrp(pc.tsrp[1])
+    assert pc.board.clock.cycles == start + 1
+    pcap.rdaxstb(1, 14)
+    pcap.rdErrorReg()
+    assert pc.board.clock.cycles == start + 1
+    pcap.rdErrorReg()
+    pcap.rdaxstb(1, 14)
+    pcap.rdaxstb(1, 14)
     assert pc.board.clock.cycles == start + 3
     pcap.rdrp(pcap.TSRP(an=9))
+    pcap.rdrp(pcap.TSRP(an=9))
     assert pc.board.clock.cycles == start + 3
+
+
+def test_a_program_that_sleeps_between_its_polls_sees_a_board_in_real_time() -> None:
+    wall = FakeWall()
+    pc = Pc("[[axis]]\njac = 100.0\njvl = 10.0\n", clock=Elapsed(wall))
+    axes = pc.close(0)
+    pc.tsrp[0].tp = 14.0  # 0.1 s to 10 units/s, 1.3 s at it, 0.1 s to rest
+    start_s = wall.time_s
+    pcap.ja(axes, pc.tsrp)
+    while not pcap.rdaxstb(0, 13):
+        wall.time_s += 0.01
+    assert wall.time_s - start_s == near(1.5, abs=0.02)
+    assert pc.board.clock.now_s == near(wall.time_s - start_s, abs=2 * SCAN_S)
 
 
 def test_polling_to_the_next_event_ends_at_once_and_gives_the_same_motion() -> None:
@@ -386,6 +413,7 @@ def test_two_programs_have_their_own_boards_and_time() -> None:
     assert here.InitMcuSystem3(tsrp, pcap.ROSI(), 0, "system.dat")[0] == 0
     assert there.rdrv(0) == 0.0  # it has not initialised
     assert (mine.clock.cycles, theirs.clock.cycles) == (0, 0)
+    here.rdrp(tsrp[0])
     here.rdrp(tsrp[0])
     assert (mine.clock.cycles, theirs.clock.cycles) == (3, 0)
     assert pcap.CardSelect(0) == -1

@@ -197,17 +197,18 @@ def test_there_are_1000_common_variables_of_each_kind() -> None:
     assert CDBUF.unpack(doubles.pack()).cd[999] == 0.1
 
 
-def test_an_array_of_the_wrong_length_or_a_long_text_does_not_fit() -> None:
+def test_a_long_array_or_text_and_a_large_number_do_not_fit() -> None:
     for record, value, what in (
-        (CDBUF, [1.0], r"CDBUF\.cd .*\n.*double\[1000\]"),
+        (CDBUF, [1.0] * 1001, r"CDBUF\.cd .*\n.*double\[1000\]"),
         (ROSI, "x" * 80, r"ROSI\.revision .*79 characters"),
-        (CTRLPARAMS, [[1.0]], r"double\[15\]\[15\]"),
-        (CTRLPARAMS, [[1.0] * 15] * 14 + [[1.0]], r"double\[15\]\[15\]"),
+        (CTRLPARAMS, [[1.0]] * 16, r"double\[15\]\[15\]"),
+        (CTRLPARAMS, [[1.0] * 15] * 14 + [[1.0] * 16], r"double\[15\]\[15\]"),
         (AS, "high", r"AS\.unoa"),
         (CIBUF, [2**31] + [0] * 999, r"CIBUF\.ci .*too large"),
     ):
         with pytest.raises(UsageError, match=what):
             record(value)
+    assert LMP(dtm=[2.5, -1.0]).dtm == [2.5, -1.0, *[0.0] * 16]  # as C fills up
     axis = TSRP(kp=5.5)
     with pytest.raises(UsageError, match=r"TSRP\.kp"):
         axis.kp = "high"  # type: ignore[assignment]

@@ -80,7 +80,7 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
 
 @entry
 def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
-    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [2, n].
+    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
 
     If the last segment before is running, the path goes on through its end, unless that is too close. With a
     path tolerance a line waits for the one after it, or for `closed`.
@@ -108,13 +108,15 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
     accel = seg.row[k]["full_accel"]
-    if path["override"] > 0.0:
-        for count in range(head, first):
-            row = seg.row[slot(paths, g, count)]
+    for count in range(head, min(first, last)):
+        row = seg.row[slot(paths, g, count)]
+        row["bound"] = max(row["bound"], row["out"])
+        if path["override"] > 0.0:
             row["cap"] = min(row["cap"], row["feed"] * path["override"])
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
+        seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["full_accel"] = accel
     for count in range(head, min(first, last - 1)):
         row, after = seg.row[slot(paths, g, count)], seg.row[slot(paths, g, count + 1)]

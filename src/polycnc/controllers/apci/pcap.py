@@ -21,9 +21,15 @@ passed as it is (`wrtrac(500.0)`).
 A call that does not reach the board, because it is not booted or the program has not called InitMcuSystem3, changes
 nothing: codes are -4 (0 of rdSampleTime and rdslsp), bits and numbers 0. The same goes for an axis that is not there,
 and for numbers that are not finite or beyond 1e100, with code 1; a selection with such an axis is ignored as a whole.
+What no C compiler would take, such as a record of another kind, is a UsageError.
 
 Time stands still but for calls that read what the board changes by itself (positions, status, common variables, ...):
-each lets one scan pass before it reads, so polling loops end. `attach(clock=...)` chooses otherwise.
+one that reads what has been read in this scan already lets one scan pass before it reads, so polling loops end, and
+what is read together comes from one scan. `attach(clock=...)` chooses otherwise.
+
+Calls may come from several threads; one at a time is carried out. A program of its own, with its own boards and time,
+is a `Session()`, which has all functions as attributes. `FUNCTIONS` is the table of all calls, `STRUCTURES` that of all
+records.
 """
 
 from __future__ import annotations

@@ -224,3 +224,10 @@ def _all_told(hint: Any) -> Iterator[Any]:
     for each in getattr(hint, "__metadata__", ()):
         yield each
         yield from _all_told(each)
+
+
+# fmt: off
+__all__ = [
+    "IN", "INOUT", "OUT", "Argument", "Coded", "Direction", "Function", "LengthOf", "Out",
+]
+# fmt: on

@@ -9,8 +9,9 @@ that is too large are as in C, and what C code fills in place is filled in place
         type: SHORT
         data: Annotated[Longs, Times(6)]
 
-An array takes any sequence of its length. A text of type `str` is one in Python too, in Latin-1. What has no place in
-the memory (a plain annotation, what a pointer points to) is held beside it and begins as its type's zero.
+An array takes any sequence that is not longer, and is zero behind it, as in C. A text of type `str` is one in Python
+too, in Latin-1. What has no place in the memory (a plain annotation, what a pointer points to) is held beside it and
+begins as its type's zero.
 """
 
 from __future__ import annotations
@@ -280,12 +281,12 @@ class _Array:
             return value
         made = self._filled(value, whole, counts)
         whole_numbers = self._element.ctype not in (ctypes.c_double, ctypes.c_float)
-        if self._checked and whole_numbers and len(counts) == 1 and made != list(value):
+        if self._checked and whole_numbers and len(counts) == 1 and made[: len(value)] != list(value):
             raise ValueError("a number is too large")
         return made
 
     def _filled(self, value: Any, whole: Any, counts: tuple[int, ...]) -> Any:
-        if len(value) != counts[0]:
+        if len(value) > counts[0]:
             raise ValueError(f"{len(value)} elements")
         if len(counts) > 1:
             value = [self._filled(each, whole._type_, counts[1:]) for each in value]
@@ -357,3 +358,11 @@ def variant(cls: K, *, pack: int | None = None, **counts: int) -> K:
     base = Union if issubclass(cls, ctypes.Union) else Structure
     packed = replace(table, elements=elements, pack=table.pack if pack is None else pack)
     return _laid_out(cls, (base,), packed, variant_of=cls)
+
+
+# fmt: off
+__all__ = [
+    "Address", "Chars", "Doubles", "Field", "Latin", "Layout", "Longs", "Shorts", "Structure", "Texts",
+    "Times", "UChars", "UShorts", "Union", "layout", "layouts", "structure", "variant",
+]
+# fmt: on

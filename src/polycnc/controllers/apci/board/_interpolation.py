@@ -39,7 +39,7 @@ def go(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds) -> None:
     """Begin an interpolation at once, if nothing is wrong with it."""
     units = _checked(board, axes, speeds, shape.numbers)
     if units is not None:
-        board.command(tuple(axes), partial(_begin, board, units, speeds, shape))
+        board.command(tuple(axes), partial(begin_interpolation, board, units, speeds, shape))
 
 
 def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index: int = -1) -> None:
@@ -104,7 +104,7 @@ def _path(board: Board, units: PathUnits, shape: Shape, start: Sequence[float]) 
     return e
 
 
-def _begin(board: Board, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
+def begin_interpolation(board: Board, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
     """Begin a direct interpolation from where the axes are now, with the speed they have."""
     state = board.state
     e = _path(board, units, shape, [float(board.kernel.base[i]) for i in units.axes])

@@ -47,22 +47,9 @@ def _command(name: str) -> Callable[..., None]:
 
 mla, mlr, mca, mcr, mha, mhr, mca3d, mcr3d = map(_command, MOVES)
 
+# fmt: off
 __all__ = [
-    "MOVES",
-    "Circle",
-    "Helix",
-    "Kind",
-    "Line",
-    "SpaceCircle",
-    "Speeds",
-    "go",
-    "mca",
-    "mca3d",
-    "mcr",
-    "mcr3d",
-    "mha",
-    "mhr",
-    "mla",
-    "mlr",
-    "queue",
+    "MOVES", "Circle", "Helix", "Kind", "Line", "SpaceCircle", "Speeds", "go", "mca", "mca3d", "mcr",
+    "mcr3d", "mha", "mhr", "mla", "mlr", "queue",
 ]
+# fmt: on

@@ -25,7 +25,7 @@ from polycnc.controllers.apci.sap import CncFileError, read_cnc
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.library import Refused
 from polycnc.controllers.library import Session as AnySession
-from polycnc.machine import Poll, Way
+from polycnc.machine import Poll, Polling, Way
 
 UNKNOWN_ERROR = 1
 """Ruling: what functions with the usual status return for an axis or a number that cannot be."""
@@ -82,10 +82,13 @@ class Session(AnySession):
         """Put boards into the PC, numbered from 0, and load the library anew; return the boards' slots.
 
         `booted` boards are as mcfg.exe leaves them, with operating system and system file; else BootFile is the first
-        call. In either case a program then calls InitMcuSystem3. `clock` says what a call that reads a status does to
-        the board's time: `Poll(1)` lets one scan pass, `Poll(1000)` the time to the next end of a profile or interrupt
-        but at most 1000 scans, `None` nothing, so that only `Board.advance` does. `folder` and `path` are the program's
-        current directory and search path, `revision` is that of the operating system, `show` gets the message boxes.
+        call. A booted board that was made without a system file takes the one that InitMcuSystem names, if it is there.
+        In either case a program then calls InitMcuSystem3. `clock` says what a call that reads a status which has been
+        read in this scan already does to the boards' time: `Poll(1)` lets one scan pass, `Poll(1000)` the time to the
+        next end of a profile or interrupt but at most 1000 scans, `None` nothing, so that only `Board.advance` does;
+        with `Elapsed` every call lets the time pass that has passed for the program. `folder` and `path` are the
+        program's current directory and search path, `revision` is that of the operating system, `show` gets the message
+        boxes.
 
         Booting makes a new `Board`, which `board` returns.
         """
@@ -105,7 +108,8 @@ class Session(AnySession):
         with self.lock:
             self.application = Application(pc, folder, path)
             self.messages = Messages(show)
-            self.clock, self.lines = clock, lines
+            self.polling, self.lines = Polling(clock, self._boards), lines
+            self._said = False
         return tuple(pc.slots)
 
     def detach(self) -> None:
@@ -133,6 +137,7 @@ class Session(AnySession):
         """
         slot, status = self.application.slot, self.application.status()
         if slot is None or status is not Status.DONE or not isinstance(slot.board, InstalledBoard):
+            self._say_that_nothing_happens(slot)
             raise Refused(status or UNKNOWN_ERROR)
         return slot.board
 
@@ -142,7 +147,9 @@ class Session(AnySession):
         Raises:
             Refused: A call does not reach it.
         """
-        return self.installed().board
+        board = self.installed().board
+        self.polling.call(board, until=EVENTS)
+        return board
 
     def polled(self) -> Board:
         """Return the selected board after time has passed.
@@ -151,7 +158,7 @@ class Session(AnySession):
             Refused: A call does not reach it.
         """
         board = self.usable()
-        self.let_time_pass(board)
+        self.polling.read(board, self.asked, until=EVENTS)
         return board
 
     def axis(self, number: int) -> Axis:
@@ -172,7 +179,7 @@ class Session(AnySession):
             Refused: There is none, or the board is not reached.
         """
         axis = self.axis(number)
-        self.let_time_pass(axis.board)
+        self.polling.read(axis.board, (self.asked, number), until=EVENTS)
         return axis
 
     def named_in(self, record: TSRP) -> Exchange:
@@ -226,10 +233,15 @@ class Session(AnySession):
             raise Refused(UNKNOWN_ERROR)
         return self.lines[slot.board]
 
-    def let_time_pass(self, board: Board) -> None:
-        """Do what a status call does to the time of the board."""
-        if self.clock is not None:
-            self.clock.run(partial(board.advance, until=EVENTS))
+    def _say_that_nothing_happens(self, slot: Slot | None) -> None:
+        """Log, once, that calls do not reach a board: a program that polls it would wait for ever without a word."""
+        if not self._said:
+            self._said = True
+            why = "there is no board" if slot is None else "the program has not called InitMcuSystem3"
+            _log.warning("calls do not reach a board and do nothing: %s", why)
+
+    def _boards(self) -> list[Board]:
+        return [installed.board for installed in self.lines]
 
     @property
     def revision(self) -> str:
@@ -243,7 +255,7 @@ class Session(AnySession):
 
 
 def _in_slot(board: Board) -> InstalledBoard:
-    installed = InstalledBoard(board.config)
+    installed = InstalledBoard(board.config if board.is_described else None)
     installed.take(board)
     return installed
 
