@@ -6,10 +6,12 @@ within the distance that braking takes, because the motion has already been plan
 
 from __future__ import annotations
 
+import numpy as np
+
 from polycnc.kernel._geometry import is_curved
 from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._limits import AxisLimits, least_accel
+from polycnc.kernel._limits import AxisLimits, feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._path import HELD, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
@@ -71,6 +73,8 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
     """Return the count up to which segments will not change: a line that may yet be rounded off waits."""
     path = paths.row[g]
     tail = int(path["tail"])
+    if path["limit"] < tail:
+        return int(path["limit"])
     if tail > path["prepared"] and path["tolerance"] > 0.0 and path["closed"] == 0:
         row = seg.row[slot(paths, g, tail - 1)]
         if row["kind"] == LINE and not row["flags"] & (RAPID | STOP):
@@ -99,6 +103,16 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
         plan_again(seg, paths, g, dt)
 
 
+@compiled
+def _lower_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> None:
+    """Lower the cap of a segment that keeps all else it was planned with."""
+    row = seg.row[k]
+    if row["flags"] & RAPID:
+        row["cap"] = min(row["cap"], overridden_rapid(line_speed(seg, k, limits), path))
+    else:
+        row["cap"] = min(row["cap"], feed_in_force(row, path))
+
+
 @entry
 def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
     """Take over a new override, feed hold or its release from where path `g` stands now."""
@@ -108,10 +122,8 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
     accel = seg.row[k]["full_accel"]
-    if path["override"] > 0.0:
-        for count in range(head, first):
-            row = seg.row[slot(paths, g, count)]
-            row["cap"] = min(row["cap"], row["feed"] * path["override"])
+    for count in range(head, first):
+        _lower_cap(seg, slot(paths, g, count), limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]

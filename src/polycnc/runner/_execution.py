@@ -144,7 +144,7 @@ class Execution:
         target = self._target()
         clock = self.machine.state.clock[0]
         clock["mask"] = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
-        clock["low_water"] = self._row["planned"] - target
+        self._row["low_water"] = self._row["planned"] - target
         while self.alarm is None and self._row["head"] < target:
             self.machine.advance(_STEP_CYCLES)
             raised = int(clock["raised"])
