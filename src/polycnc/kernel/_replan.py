@@ -13,9 +13,9 @@ from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import AxisLimits, feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
-from polycnc.kernel._path import HELD, RUNNING, Paths, slot
+from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
-from polycnc.kernel._segments import LINE, RAPID, STOP, WAIT, Floats, Segments
+from polycnc.kernel._segments import LINE, RAPID, STOP, WAIT, Floats, Segments, set_wait
 
 
 @compiled
@@ -111,6 +111,35 @@ def _lower_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> None
         row["cap"] = min(row["cap"], overridden_rapid(line_speed(seg, k, limits), path))
     else:
         row["cap"] = min(row["cap"], feed_in_force(row, path))
+
+
+@entry
+def earliest_limit(seg: Segments, paths: Paths, g: int, dt: float) -> int:
+    """Return the lowest `limit` that path `g` can still rest before."""
+    path = paths.row[g]
+    if path["state"] != RUNNING and path["state"] != HELD:
+        return int(path["head"])
+    return min(frozen_until(seg, paths, g, dt) + 1, int(path["prepared"]))
+
+
+@entry
+def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
+    """Forget what path `g`, which is at rest, has still to go along; it stands where it is."""
+    path = paths.row[g]
+    tag = path["tag"]
+    path["tail"] = path["head"]
+    for i in range(paths.queued.shape[1]):
+        paths.queued[g, i] = paths.position[g, i]
+    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag)  # where it stands
+    path["head"] += 1
+    path["tail"] = path["head"]
+    path["prepared"] = path["head"]
+    path["planned"] = path["head"]
+    if path["state"] != IDLE:
+        path["state"] = READY
+    path["entry_share"] = 0.0
+    path["pending"] = 0
+    path["limit"] = NO_LIMIT
 
 
 @entry
