@@ -17,7 +17,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -266,7 +266,7 @@ class BlockRecords:
         codes = np.rint(value[is_g] * 10.0)
         inside = (codes >= 0.0) & (codes < len(self._tables.g_action))
         actions = self._tables.g_action[np.where(inside, codes, 0.0).astype(np.int64)]
-        actions = np.where(inside, actions, 0).astype(np.int64)
+        actions = np.where(inside, actions, 0)
         g_block = block[is_g]
         is_f = letter == _F
         return _Replay(
@@ -278,7 +278,7 @@ class BlockRecords:
 
 
 def _said(
-    blocks: npt.NDArray[np.int64], actions: npt.NDArray[np.int64], values: dict[int, float]
+    blocks: npt.NDArray[np.int64], actions: npt.NDArray[np.signedinteger[Any]], values: dict[int, float]
 ) -> tuple[list[int], list[float]]:
     found = np.isin(actions, list(values))
     return blocks[found].tolist(), [values[action] for action in actions[found].tolist()]

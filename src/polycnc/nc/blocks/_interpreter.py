@@ -9,7 +9,7 @@ or end.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import Enum
 
 from polycnc.errors import ProgramError
@@ -242,11 +242,13 @@ class Interpreter:
 
     def _tagged(self, items: list[QueueItem], line: int) -> list[QueueItem]:
         """Return the items with the reference of the block's record, another one than the block just before has."""
+        if not items:
+            return items
         tag = self._reference(line)
         if tag == self._last_tag:
             tag ^= AGAIN
         self._last_tag = tag
-        return [replace(item, tag=tag) for item in items]
+        return [item.tagged(tag) for item in items]
 
     def _compensated(self, items: list[QueueItem], change: Callable[[], None] | None) -> list[QueueItem]:
         """Return what of the items the queue gets now; radius compensation may hold moves back."""

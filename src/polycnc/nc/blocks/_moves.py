@@ -41,6 +41,10 @@ class Line:
     line: int
     tag: int = 0
 
+    def tagged(self, tag: int) -> Line:
+        """Return the same move as part of another block."""
+        return Line(self.start, self.end, self.feed, self.rapid, self.exact_stop, self.line, tag)
+
 
 @dataclass(frozen=True, slots=True)
 class Arc:
@@ -61,6 +65,13 @@ class Arc:
     line: int
     tag: int = 0
 
+    def tagged(self, tag: int) -> Arc:
+        """Return the same move as part of another block."""
+        sweep, plane = self.sweep_rad, self.plane
+        return Arc(
+            self.start, self.end, self.center, sweep, plane, self.feed, self.exact_stop, self.line, tag
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Wait:
@@ -74,6 +85,10 @@ class Wait:
     events: tuple[str, ...] = field(default=())
     stop: Stop | None = None
     tag: int = 0
+
+    def tagged(self, tag: int) -> Wait:
+        """Return the same wait as part of another block."""
+        return Wait(self.duration_s, self.line, self.events, self.stop, tag)
 
 
 Move: TypeAlias = Line | Arc
