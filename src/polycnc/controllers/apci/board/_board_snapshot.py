@@ -41,7 +41,9 @@ def put_back(board: Board, snapshot: Snapshot) -> None:
     try:
         changes = _changes(board, data)
     except (KeyError, IndexError, TypeError, ValueError, UsageError) as error:
-        raise SnapshotError(f"the snapshot of a {_KIND} is damaged: {error}", hint="use another one") from error
+        raise SnapshotError(
+            f"the snapshot of a {_KIND} is damaged: {error}", hint="use another one"
+        ) from error
     snapshot.put_back(arrays)
     board.clock.go_back(snapshot.cycle, epoch)
     for change in changes:
