@@ -59,6 +59,7 @@ def send(handle: IMC_HANDLE, fifo: int, instruction: Instruction) -> IMC_STATUS:
 def taken(handle: IMC_HANDLE, fits: bool) -> IMC_STATUS:
     """Return the status of an instruction; time passes if it does not fit, as a program will try again."""
     if fits:
+        handle.session.note_sent(handle.card)
         return IMC_OK
     handle.session.let_queue_run(handle.reach())
     return IMC_FIFO_FULL

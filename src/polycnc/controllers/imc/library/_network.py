@@ -125,6 +125,7 @@ class Session(AnySession):
         self.ports: tuple[Port, ...] = ()
         self.adapters: tuple[NetCard, ...] = (NetCard(),)
         self.polling = Polling(None, self._cards)
+        self._sent: dict[CardLike, int] = {}  # in which cycle
         self.handles: set[IMC_HANDLE] = set()
 
     def attach(
@@ -164,6 +165,7 @@ class Session(AnySession):
             self.ports, self.adapters = tuple(placed), tuple(nets)
             self.polling = Polling(clock, self._cards)
             self.handles.clear()
+            self._sent.clear()
         return tuple(placed)
 
     def detach(self) -> None:
@@ -214,8 +216,17 @@ class Session(AnySession):
         return IMC_OK
 
     def let_time_pass(self, card: CardLike) -> None:
-        """Do what a call that reads does to the time of a card, and keep the other cards in step with it."""
+        """Do what a call that reads does to the time of a card, and keep the other cards in step with it.
+
+        What has been sent in this cycle is taken first, or a program that waits for it would not even see it begin.
+        """
+        if self._sent.pop(card, -1) == card.clock.cycles:
+            self.polling.let_pass(card, until=EVENTS)
         self.polling.read(card, self.asked, until=EVENTS)
+
+    def note_sent(self, card: CardLike) -> None:
+        """Note that an instruction waits for the next cycle of a card."""
+        self._sent[card] = card.clock.cycles
 
     def let_queue_run(self, card: CardLike) -> None:
         """Do what finding a queue full does to the time of a card."""
