@@ -33,7 +33,12 @@ SETTINGS = (
 
 
 def polyline(
-    points: Floats, feed: float, *, stops: bool = False, speed: Floats = SPEED, acceleration: Floats = ACCELERATION
+    points: Floats,
+    feed: float,
+    *,
+    stops: bool = False,
+    speed: Floats = SPEED,
+    acceleration: Floats = ACCELERATION,
 ) -> KernelState:
     """Return a machine at the first point, ready to go through the others."""
     state = make_state(3, cycle_s=CYCLE_S, segments=4096, record_cycles=1 << 15)

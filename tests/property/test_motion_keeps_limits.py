@@ -159,7 +159,9 @@ def test_any_override_and_blocks_that_come_late_keep_the_limits_and_the_end(dept
 
 
 # Seeds with which a plan was once changed within the last cycle before a corner.
-@pytest.mark.parametrize(("overrides", "length"), [((2.0, 0.05), 0.157), ((0.0, 1.3), 0.3), ((0.05, 0.0, 2.0), 0.05)])
+@pytest.mark.parametrize(
+    ("overrides", "length"), [((2.0, 0.05), 0.157), ((0.0, 1.3), 0.3), ((0.05, 0.0, 2.0), 0.05)]
+)
 def test_overrides_in_every_cycle_around_a_corner_keep_the_limits(
     overrides: tuple[float, ...], length: float
 ) -> None:

@@ -241,9 +241,7 @@ def shaped_ramp(
 
 
 @compiled
-def _along_legs(
-    ramps: Floats, legs: int, speed: float, t: float, jerkrel: float
-) -> tuple[float, float]:
+def _along_legs(ramps: Floats, legs: int, speed: float, t: float, jerkrel: float) -> tuple[float, float]:
     """Return distance and speed at time `t` into a ramp that begins with `speed` and has the legs at `legs`."""
     gone = 0.0
     for leg in range(legs, legs + 6, 2):
