@@ -26,24 +26,52 @@ name = "A2"
 
 PROGRAMS = {
     "a common variable": "BEGIN REPEAT UNTIL CI7 = 3; CI8 := CI8 + 5 END.",
-    "again and again": "BEGIN WHILE TRUE DO BEGIN WHILE CI7 < 2 DO; CI8 := CI8 + CI7; WHILE CI7 >= 2 DO; END END.",
-    "a position": "BEGIN REPEAT UNTIL A1.rp > 2.5; CD4 := A1.rp; REPEAT UNTIL A1.rp <= 1.25; CD5 := A1.dp END.",
-    "a status": "BEGIN WHILE A1.axst AND 1024 <> 0 DO; CI9 := A1.axst; WHILE A1.axst AND 1024 = 0 DO; CD6 := A1.rp END.",
+    "again and again": (
+        "BEGIN WHILE TRUE DO BEGIN WHILE CI7 < 2 DO; CI8 := CI8 + CI7; WHILE CI7 >= 2 DO; END END."
+    ),
+    "a position": (
+        "BEGIN REPEAT UNTIL A1.rp > 2.5; CD4 := A1.rp; REPEAT UNTIL A1.rp <= 1.25; CD5 := A1.dp END."
+    ),
+    "a status": (
+        "BEGIN WHILE A1.axst AND 1024 <> 0 DO; CI9 := A1.axst; WHILE A1.axst AND 1024 = 0 DO; "
+        "CD6 := A1.rp END."
+    ),
     "an input": "BEGIN REPEAT UNTIL A2.digi AND 4 <> 0; CI10 := A2.digi END.",
     "an event": "EVENT e ON CI7 = 4; BEGIN CI11 := CI11 + 1 END; BEGIN WHILE TRUE DO; END.",
-    "an event in a wait": "EVENT e ON A1.rp > 1.5; BEGIN CI11 := CI11 + 1; CD7 := A1.rp END; BEGIN wt (2700.0); CI12 := 1 END.",
-    "short waits": "BEGIN REPEAT wt (3.3); UNTIL CI7 = 5; CI13 := 17; REPEAT wt (1.3); wt (5.2) UNTIL CI7 = 1; CI13 := 19 END.",
-    "waits for axes": "BEGIN WHILE TRUE DO BEGIN wt (A1); IF CI7 = 6 THEN CI14 := CI14 + 1; wt (4.0) END END.",
-    "memory": "VAR i: INTEGER; x: DOUBLE; BEGIN REPEAT x := A2.rp * 2.0; FOR i := 1 TO 3 DO x := x + 0.25; UNTIL CI7 = 2; CD8 := x END.",
-    "a function": "FUNCTION f (a: INTEGER): INTEGER; BEGIN f := a * 3 - CI7 END; BEGIN REPEAT UNTIL f (2) = 1; CI15 := f (7) END.",
-    "a long loop": "VAR i: INTEGER; BEGIN REPEAT FOR i := 1 TO 37 DO; UNTIL CI7 = 4; CI16 := i END.",
+    "an event in a wait": (
+        "EVENT e ON A1.rp > 1.5; BEGIN CI11 := CI11 + 1; CD7 := A1.rp END; BEGIN wt (2700.0); CI12 := 1 END."
+    ),
+    "short waits": (
+        "BEGIN REPEAT wt (3.3); UNTIL CI7 = 5; CI13 := 17; REPEAT wt (1.3); wt (5.2) UNTIL CI7 = "
+        "1; CI13 := 19 END."
+    ),
+    "waits for axes": (
+        "BEGIN WHILE TRUE DO BEGIN wt (A1); IF CI7 = 6 THEN CI14 := CI14 + 1; wt (4.0) END END."
+    ),
+    "memory": (
+        "VAR i: INTEGER; x: DOUBLE; BEGIN REPEAT x := A2.rp * 2.0; FOR i := 1 TO 3 DO x := x + "
+        "0.25; UNTIL CI7 = 2; CD8 := x END."
+    ),
+    "a function": (
+        "FUNCTION f (a: INTEGER): INTEGER; BEGIN f := a * 3 - CI7 END; BEGIN REPEAT UNTIL f (2) "
+        "= 1; CI15 := f (7) END."
+    ),
+    "a long loop": ("VAR i: INTEGER; BEGIN REPEAT FOR i := 1 TO 37 DO; UNTIL CI7 = 4; CI16 := i END."),
     "a count": "VAR i: INTEGER; BEGIN REPEAT i := i + 1 UNTIL CI7 = 3; CI17 := i END.",
-    "a heartbeat": "BEGIN WHILE TRUE DO BEGIN CI20 := CI20 + 1; IF CI7 = 5 THEN stopcnct (0); IF CI7 = 6 THEN contcnct (0) END END.",
+    "a heartbeat": (
+        "BEGIN WHILE TRUE DO BEGIN CI20 := CI20 + 1; IF CI7 = 5 THEN stopcnct (0); IF CI7 = 6 "
+        "THEN contcnct (0) END END."
+    ),
     "a buffer": "BEGIN REPEAT UNTIL RDCBI (8) = 77; CI18 := RDCBI (12) END.",
-    "moves": "BEGIN cl (A2); A2.jac := 100; A2.jvl := 20; WHILE TRUE DO BEGIN REPEAT UNTIL CI7 = 1; jr (A2 := 0.5); wt (A2); REPEAT UNTIL CI7 <> 1 END END.",
+    "moves": (
+        "BEGIN cl (A2); A2.jac := 100; A2.jvl := 20; WHILE TRUE DO BEGIN REPEAT UNTIL CI7 = 1; "
+        "jr (A2 := 0.5); wt (A2); REPEAT UNTIL CI7 <> 1 END END."
+    ),
     "latches": "BEGIN WHILE A2.lp = 0.0 DO; CD9 := A2.lp END.",
     "the queue": "BEGIN WHILE A1.MCiS = 0 DO; CI19 := A1.lsm END.",
 }
+
+BUFFER = bytes([9] * 8 + [77, 0, 0, 0, 5, 6, 7, 0])
 
 
 def rig(fast: bool, monkeypatch: pytest.MonkeyPatch) -> tuple[Board, BoardTasks]:

@@ -94,7 +94,8 @@ def attach(
     """Put boards into the PC, numbered from 0, and load the library anew; return the boards' slots.
 
     `booted` boards are as mcfg.exe leaves them, with operating system and system file; else BootFile is the first
-    call. A booted board that was made without a system file takes the one that InitMcuSystem names, if it is there. In either case a program then calls InitMcuSystem3. `clock` says what a call that reads a status does to the
+    call. A booted board that was made without a system file takes the one that InitMcuSystem names, if it is there.
+    In either case a program then calls InitMcuSystem3. `clock` says what a call that reads a status does to the
     board's time: `Poll(1)` lets one scan pass, `Poll(1000)` the time to the next end of a profile or interrupt but at
     most 1000 scans, `None` nothing, so that only `Board.advance` does. `folder` and `path` are the program's current
     directory and search path, `revision` is that of the operating system, `show` gets the message boxes.
@@ -110,6 +111,7 @@ def attach(
         made.lines[installed] = line = InterruptLine()
         if booted:
             slot.running = slot.sysfile_loaded = True
+            slot.has_defaults = not installed.is_described
             installed.interface.start_firmware()
         connect = partial(_connect, installed, line)
         connect(installed.board)
