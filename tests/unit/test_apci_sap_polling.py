@@ -190,3 +190,29 @@ def test_a_task_stopped_by_another_one_stands_where_its_last_turn_has_left_it(
         assert board.state.ci[1] == 1
         seen.append(picture(board, tasks))
     assert seen[0] == seen[1]
+
+
+@pytest.mark.parametrize("name", ["a common variable", "short waits", "an event", "a function"])
+def test_a_snapshot_of_a_polling_board_goes_on_as_the_board_does(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+    for fast in (True, False):
+        board, tasks = rig(fast, monkeypatch)
+        tasks.load(sap.compile_program(PROGRAMS[name]))
+        tasks.tasks.startcnct(0)
+        board.advance(137)
+        kept = board.snapshot()
+        board.advance(61)
+        seen.append(picture(board, tasks))
+        board.state.ci[7] = 3
+        board.advance(40)
+        board.restore(kept)
+        assert board.snapshot() == kept
+        board.advance(61)
+        seen.append(picture(board, tasks))
+        board.state.ci[7] = 4
+        board.advance(50)
+        seen.append(picture(board, tasks))
+    assert seen[0] == seen[1] == seen[3] == seen[4]
+    assert seen[2] == seen[5]

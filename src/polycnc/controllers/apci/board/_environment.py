@@ -73,6 +73,16 @@ class InterfaceStatus:
         self.is_down = False  # an error has reset the inputs and outputs; only a boot brings them back
         self._hardware = _POWER_UP
 
+    @property
+    def bits(self) -> tuple[int, int, int]:
+        """What the hardware has collected, the register, and whether inputs and outputs are down."""
+        return int(self._hardware), int(self.word), int(self.is_down)
+
+    @bits.setter
+    def bits(self, bits: tuple[int, int, int]) -> None:
+        self._hardware, self.word, down = bits
+        self.is_down = bool(down)
+
     def start_firmware(self) -> None:
         """Take over what the hardware has collected and erase it there, as BootFile does."""
         self.word = Ifs.edv | Ifs.cncrdy | self._hardware
