@@ -216,3 +216,14 @@ def test_a_snapshot_of_a_polling_board_goes_on_as_the_board_does(
         seen.append(picture(board, tasks))
     assert seen[0] == seen[1] == seen[3] == seen[4]
     assert seen[2] == seen[5]
+
+
+@pytest.mark.parametrize("instructions", [7, 100, 333])
+def test_a_board_may_run_other_numbers_of_instructions_in_a_scan(instructions: int) -> None:
+    board = Board(parse_system_file(f"[rulings]\ninstructions_per_scan = {instructions}\n"))
+    tasks = BoardTasks(board)
+    tasks.load(sap.compile_program("BEGIN WHILE TRUE DO CI3 := CI3 + 1 END."))
+    tasks.tasks.startcnct(0)
+    board.advance(60)
+    # a pass: the condition, the jump out, three and a store, the jump back
+    assert int(board.state.ci[3]) == pytest.approx(60 * instructions / 7, abs=1)

@@ -505,3 +505,18 @@ def test_a_contour_longer_than_the_spooler_runs_without_a_break_while_it_is_refi
     rig.scans_until_end()
     assert rig.board.axes[0].rp == pytest.approx(total * step, abs=1e-9)
     assert rig.board.errorreg == 0
+
+
+def test_a_board_may_take_a_start_at_rest_only() -> None:
+    rig = Rig("[rulings]\nssms_undoes_sstps = false\n")
+    for way in (11.0, 7.0):
+        mlr(rig.board, (0,), (way,), SLOW, spool=True)
+    ssms(rig.board, (0,))
+    rig.board.advance(20)
+    sstps(rig.board, (0,))
+    ssms(rig.board, (0,))
+    rig.scans_until_end()
+    assert rig.board.axes[0].rp == 11.0
+    ssms(rig.board, (0,))
+    rig.scans_until_end()
+    assert rig.board.axes[0].rp == 18.0

@@ -52,7 +52,7 @@ def __getattr__(name: str) -> int:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_ADDRESSES])
+    return sorted(__all__)
 
 
 __all__ = [
@@ -63,6 +63,7 @@ __all__ = [
     *_motion.__all__,
     *_path.__all__,
     *_structs.__all__,
+    *_ADDRESSES,
     "FUNCTIONS",
     "IMC_HANDLE",
     "NetCard",
