@@ -39,7 +39,7 @@ def page() -> str:
 
 def _tables(model: type[BaseModel], path: str) -> Iterator[str]:
     inner: list[tuple[type[BaseModel], str]] = []
-    yield f"\n## {'The file' if not path else path}\n"
+    yield f"\n## {path or 'The file'}\n"
     yield (model.__doc__ or "").strip() + "\n"
     yield "| key | value | default | meaning |"
     yield "| --- | --- | --- | --- |"

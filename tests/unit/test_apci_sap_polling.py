@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import pytest
 
@@ -95,26 +95,40 @@ def picture(board: Board, tasks: BoardTasks) -> tuple[object, ...]:
     return tuple(seen)
 
 
-def _script(seed: int) -> list[tuple[int, Callable[[Board, BoardTasks], None]]]:
-    """Return what happens from outside: after how many scans, what."""
+@dataclass(frozen=True)
+class Outside:
+    """Something that happens between two calls of the board: what, and with what."""
+
+    after_scans: int
+    what: str
+    value: int
+    way: float
+
+    def act(self, board: Board, tasks: BoardTasks) -> None:
+        """Let it happen."""
+        if self.what == "variable":
+            board.state.ci[7] = self.value
+        elif self.what == "input":
+            board.set_input(3, self.value > 3)
+        elif self.what == "jog":
+            jr(board, (0,), (self.way,))
+        elif self.what == "buffer":
+            tasks.tasks.wrcbcnct(self.value % 4, 16, BUFFER)
+        else:
+            control = tasks.tasks.stopcnct if self.value % 2 else tasks.tasks.contcnct
+            control(self.value // 2)
+
+
+def _script(seed: int) -> list[Outside]:
+    """Return what happens from outside."""
     rng = random.Random(seed)
-    steps: list[tuple[int, Callable[[Board, BoardTasks], None]]] = []
-    for _ in range(30):
-        value, level, way = rng.randrange(8), rng.random() < 0.5, rng.uniform(-3.0, 5.0)
-        choices: list[Callable[[Board, BoardTasks], None]] = [
-            lambda board, tasks, value=value: board.state.ci.__setitem__(7, value),
-            lambda board, tasks, value=value: board.state.ci.__setitem__(7, value),
-            lambda board, tasks, level=level: board.set_input(3, level),
-            lambda board, tasks, way=way: jr(board, (0,), (way,)),
-            lambda board, tasks, value=value: tasks.tasks.wrcbcnct(
-                value % 4, 16, bytes([value] * 8 + [77, 0, 0, 0, 5, 6, 7, 0])
-            ),
-            lambda board, tasks, value=value: (tasks.tasks.stopcnct, tasks.tasks.contcnct)[value % 2](
-                value // 2
-            ),
-        ]
-        steps.append((rng.choice((1, 2, 3, 40, 170, 330)), rng.choice(choices)))
-    return steps
+    kinds = ("variable", "variable", "input", "jog", "buffer", "task")
+    return [
+        Outside(
+            rng.choice((1, 2, 3, 40, 170, 330)), rng.choice(kinds), rng.randrange(8), rng.uniform(-3.0, 5.0)
+        )
+        for _ in range(30)
+    ]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -131,10 +145,10 @@ def test_polling_tasks_do_bit_for_bit_what_every_turn_would_do(
             tasks.load(sap.compile_program(PROGRAMS[name], task=number))
             tasks.tasks.startcnct(number)
         seen = []
-        for scans, act in _script(seed):
-            board.advance(scans)
+        for each in _script(seed):
+            board.advance(each.after_scans)
             seen.append(picture(board, tasks))
-            act(board, tasks)
+            each.act(board, tasks)
         pictures.append(seen)
     for k, (quick, slow) in enumerate(zip(*pictures, strict=True)):
         assert quick == slow, (names, k)
@@ -148,7 +162,12 @@ def test_a_task_that_polls_needs_no_turns_while_nothing_changes(
 ) -> None:
     turns = []
     run = Task.run
-    monkeypatch.setattr(Task, "run", lambda self, budget: (turns.append(1), run(self, budget))[1])
+
+    def counted(self: Task, budget: int) -> None:
+        turns.append(1)
+        run(self, budget)
+
+    monkeypatch.setattr(Task, "run", counted)
     board, tasks = rig(True, monkeypatch)
     for number in range(4):
         tasks.load(sap.compile_program(PROGRAMS[name], task=number))

@@ -490,7 +490,7 @@ def test_a_start_behind_a_pause_takes_axes_at_rest_along_and_no_jogging_one() ->
 def test_a_contour_longer_than_the_spooler_runs_without_a_break_while_it_is_refilled() -> None:
     rig = Rig(axes=1)
     total, sent, step = 1200, 0, 0.125
-    rates = []
+    rates: list[float] = []
     while sent < total:
         while sent < total and free_bytes(rig.board, 0) > 130_000:
             last = sent == total - 1

@@ -315,7 +315,8 @@ def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
     card.memory[lib.groupnumLoc, 0] = 3
     card.memory[lib.pathaxisnum1Loc, 0] = 2
     card.memory[lib.pathaxisnum2Loc, 0] = 5
-    assert lib.IMC_PutContourData(handle, [1.9, -2.9, 3, 4], 4, P1) == lib.IMC_OK
+    values: list[Any] = [1.9, -2.9, 3, 4]
+    assert lib.IMC_PutContourData(handle, values, 4, P1) == lib.IMC_OK
     assert lib.IMC_PutContourData(handle, [1, 2, 3, 4, 5], 5, P1) == lib.IMC_OUT_OF_RANGE
     assert lib.IMC_PutContourData(handle, [1, 2, 3, 4, 5], 5, P2) == lib.IMC_OK
     assert card.told == [(P1, Displacements((1, -2, 3, 4))), (P2, Displacements((1, 2, 3, 4, 5)))]
@@ -351,6 +352,8 @@ def test_a_star_import_brings_functions_codes_and_addresses() -> None:
 
 
 def test_floats_are_converted_where_c_converts_them(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
-    assert lib.IMC_SetParam32(handle, lib.mcstgposLoc, -1234.9, 2, Q) == lib.IMC_OK
-    assert lib.IMC_MoveVelocity(handle, 2.5 * 65536, 1, Q) == lib.IMC_OK
+    position: Any = -1234.9
+    velocity: Any = 2.5 * 65536
+    assert lib.IMC_SetParam32(handle, lib.mcstgposLoc, position, 2, Q) == lib.IMC_OK
+    assert lib.IMC_MoveVelocity(handle, velocity, 1, Q) == lib.IMC_OK
     assert card.told == [(Q, Write(12, -1234, 2, 2)), (Q, WriteMany((Write(6, 163840, 1, 2),)))]

@@ -44,7 +44,7 @@ from polycnc.controllers.imc.library._types import (
 from polycnc.controllers.library import Refused
 
 CLOCKWISE = 1  # of the functions that take coordinates one by one; in the structure it is 0
-_AXES_OF_POINTS = {
+_AXES_OF_POINTS: dict[int, int] = {
     SEL_CFIFO: address("groupnum"),
     SEL_PFIFO1: address("pathaxisnum1"),
     SEL_PFIFO2: address("pathaxisnum2"),
