@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from itertools import pairwise
 from pathlib import Path
 
@@ -24,7 +25,7 @@ from polycnc.controllers.apci import (
 from polycnc.controllers.apci.board._axis_commands import cl
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._jog_commands import ja, jr
-from polycnc.controllers.apci.board._move_commands import Speeds, mlr
+from polycnc.controllers.apci.board._move_commands import Speeds, mca, mcr, mlr
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from support.apci_pc import Pc
@@ -341,3 +342,38 @@ def test_a_position_is_commanded_to_the_axis_that_was_named() -> None:
     ja(board, (1,), (3.25,))
     board.advance(2000)
     assert [axis.rp for axis in board.axes] == [0.0, 3.25]
+
+
+@pytest.mark.covers("apci.mca", "apci.mcr")
+@pytest.mark.parametrize("absolute", [True, False])
+def test_a_circle_goes_round_a_centre_that_lies_on_no_axis(absolute: bool) -> None:
+    start, centre, phi = (2.5, -4.25, 1.125), (6.1, 3.7), -137.0
+    rig = Rig()
+    ja(rig.board, (0, 1, 2), start)
+    rig.scans_until_end()
+    rig.forget()
+    command = mca if absolute else mcr
+    given = centre if absolute else (centre[0] - start[0], centre[1] - start[1])
+    command(rig.board, (0, 1), given, phi, Speeds(200.0, 30.0))
+    rig.scans_until_end()
+    x, y = rig.setpoints(0), rig.setpoints(1)
+    radius = math.hypot(start[0] - centre[0], start[1] - centre[1])
+    assert [math.hypot(a - centre[0], b - centre[1]) for a, b in zip(x, y, strict=True)] == pytest.approx(
+        [radius] * len(x), rel=1e-9
+    )
+    angle = math.atan2(start[1] - centre[1], start[0] - centre[0]) + math.radians(phi)
+    end = (centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle), start[2])
+    assert tuple(axis.rp for axis in rig.board.axes) == pytest.approx(end, abs=1e-9)
+
+
+@pytest.mark.covers("apci.wrgf")
+def test_another_gear_factor_changes_the_counts_of_a_unit() -> None:
+    pc = Pc("[[axis]]\nslsp = 4000.0\ngf = 0.25\n")
+    assert pc.board.axes[0].counts_per_unit == 1000.0
+    record = pcap.TSRP(an=0)
+    record.gf = 0.375
+    pcap.wrgf(record)
+    assert pc.board.axes[0].counts_per_unit == 1500.0
+    record = pcap.TSRP(an=0)
+    pcap.rdgf(record)
+    assert record.gf == 0.375
