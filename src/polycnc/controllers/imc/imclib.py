@@ -55,7 +55,7 @@ def __getattr__(name: str) -> int:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_ADDRESSES])
+    return sorted(__all__)
 
 
 __all__ = [
@@ -66,6 +66,7 @@ __all__ = [
     *_motion.__all__,
     *_path.__all__,
     *_structs.__all__,
+    *_ADDRESSES,
     "FUNCTIONS",
     "IMC_HANDLE",
     "NetCard",

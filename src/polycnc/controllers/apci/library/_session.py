@@ -100,6 +100,7 @@ class Session(AnySession):
             lines[installed] = line = InterruptLine()
             if booted:
                 slot.running = slot.sysfile_loaded = True
+                slot.has_defaults = not installed.is_described
                 installed.interface.start_firmware()
             connect = partial(_connect, installed, line)
             connect(installed.board)

@@ -99,7 +99,7 @@ class Application:
             return BootCode.DEVICE_ADDRESSES
         if fault := slot.first_fault(FAULTS_BEFORE_RESET):
             return fault
-        slot.running = slot.sysfile_loaded = False
+        slot.running = slot.sysfile_loaded = slot.has_defaults = False
         slot.boots += 1
         slot.board.reset()
         if fault := slot.first_fault(FAULTS_IN_BOOTING):
@@ -176,6 +176,7 @@ class Application:
             return TransferCode.DAMAGED
         slot.board.load_system(config)
         slot.sysfile_loaded = True
+        slot.has_defaults = False
         return TransferCode.DONE
 
     def get_env_str(self, env: CppString) -> int:
@@ -201,10 +202,9 @@ class Application:
         slot = self._reach()
         for axis in range(MAXAXIS):
             tsrp[axis].an = axis
-        defaults = slot.sysfile_loaded and not slot.board.is_described
-        if defaults or not slot.sysfile_loaded:
+        if slot.has_defaults or not slot.sysfile_loaded:
             loaded = self.txbf(filename) if named_only else self.txbf2(filename)
-            if defaults and loaded == TransferCode.CANNOT_OPEN:
+            if slot.has_defaults and loaded == TransferCode.CANNOT_OPEN:
                 _log.warning("there is no system file '%s': the board keeps its default parameters", filename)
             elif loaded != TransferCode.DONE:
                 return loaded

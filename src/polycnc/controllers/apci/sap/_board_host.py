@@ -262,6 +262,7 @@ class BoardTasks:
     def __init__(self, board: Board) -> None:
         self.tasks = Tasks(BoardHost(board))
         self._board = board
+        self._budget = board.config.rulings.instructions_per_scan
         self._reads: frozenset[Read] = frozenset()
         self._watched: list[tuple[int, int]] | None = []
         board.tasks = self
@@ -272,7 +273,7 @@ class BoardTasks:
 
     def scans_to_wait(self) -> float:
         """Return for how many scans no task has anything to do; infinity if they wait for profiles."""
-        sleep = self.tasks.sleep(is_watchable)
+        sleep = self.tasks.sleep(is_watchable, self._budget)
         rows = self._rows(sleep.reads)
         if rows is None or any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
             arm(self._board, ())
@@ -287,7 +288,7 @@ class BoardTasks:
 
     def run_scan(self) -> None:
         """Let every task do what it can within one scan."""
-        self.tasks.run_scan()
+        self.tasks.run_scan(self._budget)
 
     def halt(self) -> None:
         """Halt all tasks."""
