@@ -18,8 +18,9 @@ from polycnc.nc.cpl._host import (
     SubProgram,
     Waiting,
 )
+from polycnc.nc.cpl._permanent import PermanentMemory
 from polycnc.nc.cpl._program import Linker, Program, compile_program, holds_cpl
-from polycnc.nc.cpl._run import Run
+from polycnc.nc.cpl._run import Run, undeclared
 from polycnc.nc.cpl._strings import CharacterField, text_of
 
 __all__ = [
@@ -37,6 +38,7 @@ __all__ = [
     "Lines",
     "Linker",
     "NcValues",
+    "PermanentMemory",
     "Program",
     "Run",
     "Step",
@@ -48,4 +50,5 @@ __all__ = [
     "holds_cpl",
     "number_in",
     "text_of",
+    "undeclared",
 ]

@@ -121,7 +121,7 @@ def tangent(degrees: float) -> float:
         raise Fault(INVALID_PARAMETER, "the tangent of this angle is infinite")
     if degrees % 90.0 == 45.0:
         return 1.0 if degrees % 180.0 == 45.0 else -1.0
-    return math.tan(math.radians(math.fmod(degrees, 360.0)))
+    return math.tan(math.radians(math.fmod(degrees, 180.0)))
 
 
 def _in_degrees(function: Callable[[float], float], value: float) -> float:

@@ -157,4 +157,4 @@ def single(value: float) -> float:
     Raises:
         OverflowError: It is too large.
     """
-    return float(struct.unpack("f", struct.pack("f", value))[0])
+    return float(struct.unpack("<f", struct.pack("<f", value))[0])

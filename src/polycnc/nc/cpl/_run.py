@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 from typing import Any, NamedTuple, NoReturn
 
-from polycnc.errors import PolycncError
+from polycnc.errors import PolycncError, ProgramError
 from polycnc.language import Flaw, frame_of
 from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
@@ -113,6 +113,9 @@ class Run:
         return {each.name: shown(values.get(each.python)) for each in local}
 
     def _enter(self, program: Program, arguments: Arguments) -> None:
+        for error in undeclared(program, self._host.permanent):
+            self.stop()
+            raise error
         make = program.traced.load(_SCOPE)["program"]
         generator = make(self.globals, self._host.permanent, self._host, arguments)
         self.stack.append(Level(program, generator, arguments.linked))
@@ -154,6 +157,16 @@ class Run:
         raise self._linker.source(frame.name).error(Flaw(frame.place, what, hint, code=code)) from error
 
 
+def undeclared(program: Program, permanent: Container[str]) -> list[ProgramError]:
+    """Return an error for each permanent variable of a program that the control does not have."""
+    hint = "declare it in wmhperm.dat or anwperm.dat, and write the mark of its type: % ! ? $"
+    return [
+        program.source.error(Flaw(at, f"there is no permanent variable {each.name}", hint))
+        for each, at in program.variables.items()
+        if each.scope == "permanent" and each.name not in permanent
+    ]
+
+
 def shown(value: object) -> object:
     """Return the value of a variable as it is shown: texts as texts, fields as the field."""
     return _strings.text_of(value) if isinstance(value, _strings.CharacterField | _strings.Part) else value
@@ -167,6 +180,12 @@ def _meaning(error: Exception) -> tuple[str, str, str]:
             return "division by zero", "test the divisor with IF before", ""
         case OverflowError():
             return "the value is out of the range of its type", "INTEGER has 32 bits, REAL reaches 3.4E38", ""
+        case TypeError() if "subscript" in str(error) or "item assignment" in str(error):
+            return (
+                "INVALID VARIABLE: the field is not dimensioned",
+                "write DIM before the first use of the field",
+                "",
+            )
         case TypeError():
             fault = _numbers.not_assigned()
             return fault.what, fault.hint, fault.code

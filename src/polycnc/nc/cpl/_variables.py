@@ -20,7 +20,8 @@ PERMANENT_NUMBERS = 100
 PERMANENT_FIELD = "@_R"
 _INTERNAL = ("@_RES_DOUBLE", "@_RES_DWORD")
 _SIGNIFICANT = 8
-_SIGNIFICANT_PERMANENT = 16
+SIGNIFICANT_PERMANENT = 16
+"""How many characters of a permanent name count, @ among them: so the manual reckons the memory of @_R."""
 _PARAMETER = re.compile(r"P([0-9]{1,3})[A-Z_]*")
 _NUMBERED = re.compile(r"@([0-9]+)[A-Z_]*%?")
 
@@ -55,6 +56,15 @@ def variable(token: Token) -> Variable:
     return Variable(name, "global" if word[0] == "#" else "local", kind)
 
 
+def variable_at(at: int, word: str) -> Variable:
+    """Return the variable of a name at an offset.
+
+    Raises:
+        Flaw: There is none.
+    """
+    return variable(Token("name", word, word, at))
+
+
 def _permanent(token: Token, base: str, kind: Kind) -> Variable:
     if numbered := _NUMBERED.fullmatch(token.word):
         digits = numbered[1].lstrip("0")
@@ -71,4 +81,4 @@ def _permanent(token: Token, base: str, kind: Kind) -> Variable:
         return Variable(base, "permanent", "D")
     if not base[1:2].isalpha():
         raise Flaw(token.at, f"{token} is no variable", "behind @ stands a number or a capital letter")
-    return Variable(base[: _SIGNIFICANT_PERMANENT + 1] + MARKS.get(kind, ""), "permanent", kind)
+    return Variable(base[:SIGNIFICANT_PERMANENT] + MARKS.get(kind, ""), "permanent", kind)
