@@ -50,7 +50,7 @@ class Compiler:
         self.variables: dict[Variable, int] = {}
         self._source = source
         self._stepping = stepping
-        self._hosts: dict[str, str] = {}
+        self._hosts: dict[str, tuple[str, int]] = {}
         self._values = Values(self._use, self._host, self._box)
         self._boxes: list[tuple[str, Name]] = []
         self._count = 0
@@ -97,7 +97,8 @@ class Compiler:
                     )
                 elif variable.scope == "global":
                     whole.put(f"G.setdefault({variable.name!r})")
-            for python, made in self._hosts.items():
+            for python, (made, at) in self._hosts.items():
+                whole.place = at
                 whole.put(f"{python} = {made}")
             if self._jumps:
                 whole.put("pc = 0")
@@ -161,14 +162,10 @@ class Compiler:
             return f"M[{variable.name!r}]"
         return variable.python
 
-    def _host(self, name: str) -> str:
-        python = "f_" + name.replace("#", "_n").replace("$", "_s")
-        self._hosts[python] = f"host.function({name!r})"
+    def _host(self, name: str, at: int, door: str = "function") -> str:
+        python = f"{door}_{name.replace('#', '_n').replace('$', '_s')}"
+        self._hosts.setdefault(python, (f"host.{door}({name!r})", at))
         return python
-
-    def _setter(self, name: str) -> str:
-        self._hosts[f"s_{name}"] = f"host.setter({name!r})"
-        return f"s_{name}"
 
     def _box(self, name: Name) -> str:
         self._count += 1
@@ -297,9 +294,9 @@ class Compiler:
             field, text = self._values.stored(first), self._values.text(statement.value)
             self._out.put(f"put_part({field}, {start}, {number}, {text})")
             return
-        value = self._values.value(statement.value)
-        call = self._values.host_call(target).partition("(")[2]
-        self._out.put(f"{self._setter(target.function)}({self._values.rounded(value).text}, {call}")
+        value = self._passed(statement.value)
+        setter = self._host(target.function, target.at, "setter")
+        self._out.put(f"{setter}({', '.join((value, *self._values.arguments(target)))})")
 
     def _store(self, target: Name, typed: Typed) -> None:
         """Assign a value to a variable that is no text."""
@@ -377,8 +374,8 @@ class Compiler:
         condition = "None"
         if statement.condition is not None:
             state = "True" if statement.state is None else self._values.condition(statement.state)
-            name, _, arguments = self._values.host_call(statement.condition).partition("(")
-            condition = f"ic_condition({name}, {state}, {statement.negated}, {arguments}"
+            asked = self._host("IC", statement.condition.at), *self._values.arguments(statement.condition)
+            condition = f"ic_condition({state}, {statement.negated}, {', '.join(asked)})"
         duration = "None" if statement.duration_ms is None else self._values.integer(statement.duration_ms)
         answer = self._temporary()
         self._out.put(f"{answer} = yield Waiting({statement.line}, {condition}, {duration})")

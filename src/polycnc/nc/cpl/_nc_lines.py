@@ -19,6 +19,7 @@ _ADDRESS = re.compile(r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*(?=\[)")
 _WORD = re.compile(
     r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*([+-]?)[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)(?![0-9]*\])"
 )
+_BRACKET = re.compile(r'\[(?:[^\]"]|"[^"]*")*\]')
 _DIN = re.compile(r"[ \t]*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*DIN[ \t]*\)", re.IGNORECASE)
 
 
@@ -72,7 +73,7 @@ def _sub_call(
     behind = found.end()
     arguments: tuple[Expression | None, ...] = ()
     if text[behind:end].startswith("["):
-        reader = Reader(text, behind + 1, end)
+        reader = _inside(text, behind, end)
         arguments, open_end = reader.arguments("]")
         if open_end or None in arguments:
             raise Flaw(behind, "an argument of a sub-program is missing")
@@ -83,6 +84,12 @@ def _sub_call(
             behind, "a sub-program call stands alone in its block", "put the other words into the next block"
         )
     return SubCall(at, line, address, name, tuple(each for each in arguments if each is not None))
+
+
+def _inside(text: str, at: int, end: int) -> Reader:
+    """Return a reader of what stands in brackets; it does not look at what follows them."""
+    found = _BRACKET.match(text, at, end)
+    return Reader(text, at + 1, found.end() if found else end)
 
 
 class _Words:
@@ -129,7 +136,7 @@ class _Words:
         return NcWord(at, found[1].upper(), value, int(found[2]) if found[2] else None)
 
     def _bracket(self, at: int) -> Expression:
-        reader = Reader(self._text, at + 1, self._end)
+        reader = _inside(self._text, at, self._end)
         tree = reader.expression()
         reader.tokens.expect("]", "close the bracket")
         self._at = reader.tokens.behind

@@ -66,6 +66,7 @@ class Linker:
     def __init__(self, find: Find, *, stepping: bool = False) -> None:
         self._find = find
         self._stepping = stepping
+        self._faulty: set[str] = set()
         self._programs: dict[str, Program] = {}
         self._files: dict[tuple[str, str], tuple[str, str] | None] = {}
 
@@ -112,10 +113,13 @@ class Linker:
         return self._files[key]
 
     def _compiled(self, text: str, file: str, errors: list[ProgramError]) -> Program | None:
+        if file in self._faulty:
+            return None
         if file not in self._programs:
             program, found = compile_program(text, file, stepping=self._stepping)
             errors += found
             if program is None:
+                self._faulty.add(file)
                 return None
             self._programs[file] = program
         return self._programs[file]

@@ -52,7 +52,9 @@ def read_program(source: Source) -> tuple[list[Statement], list[Flaw]]:
     for line in range(1, source.line_count + 1):
         begin = source.begin(line)
         reader.line(line, begin, begin + len(source.line(line)))
-    for opened in reader.open:
+    for opened in (
+        () if reader.flaws else reader.open
+    ):  # else it may be a line that could not be read that closes it
         keyword = type(opened).__name__.upper()
         reader.flaws.append(Flaw(opened.at, f"the {keyword} has no {_CLOSERS[type(opened)]}"))
     return reader.top, reader.flaws
@@ -95,6 +97,8 @@ class _ProgramReader:
                 self._nc(begin, end, number)
         except Flaw as flaw:
             self.flaws.append(flaw)
+        except _Consequence:
+            pass
 
     def _target(self, at: int, name: str) -> None:
         """Note a place that is jumped to; most numbers are not."""
@@ -178,6 +182,8 @@ class _ProgramReader:
 
     def _top(self, kind: type[Structure], keyword: str, at: int) -> Structure:
         if not self.open or not isinstance(self.open[-1], kind):
+            if self.flaws:  # the line that opens it may be one that could not be read
+                raise _Consequence
             inside = f"; open is {type(self.open[-1]).__name__.upper()}" if self.open else ""
             raise Flaw(at, f"{keyword} without its {kind.__name__.upper()}{inside}")
         return self.open[-1]
@@ -386,6 +392,10 @@ class _ProgramReader:
         if condition is None and duration is None:
             raise Flaw(at, "WAIT with parentheses has a condition or a duration")
         return Wait(at, self._line, condition, state, negated, duration, result)
+
+
+class _Consequence(Exception):  # noqa: N818 (never leaves this module)
+    """Something is wrong that may come from what was wrong before."""
 
 
 class _Unreachable(list[Statement]):

@@ -265,7 +265,7 @@ def _inserted(host: Host, value: object, column: int) -> tuple[BlockWord, ...]:
 
 
 def _ic_condition(
-    function: Callable[..., object], state: object, negated: bool, *arguments: object
+    state: object, negated: bool, function: Callable[..., object], *arguments: object
 ) -> Callable[[], bool]:
     wanted = bool(state) != negated
     return lambda: function(*arguments) == wanted

@@ -46,7 +46,7 @@ class Values:
     """
 
     def __init__(
-        self, use: Callable[[Variable, int], str], host: Callable[[str], str], box: Callable[[Name], str]
+        self, use: Callable[[Variable, int], str], host: Callable[[str, int], str], box: Callable[[Name], str]
     ) -> None:
         self._use = use
         self._host = host
@@ -177,15 +177,16 @@ class Values:
 
     def host_call(self, call: Call) -> str:
         """Return the call of a function of the control."""
+        parts = [self._host(call.function, call.at), *self.arguments(call)]
+        if FUNCTIONS[call.function].waiting:
+            return f"(yield from wait_for({', '.join(parts)}))"
+        return f"{parts[0]}({', '.join(parts[1:])})"
+
+    def arguments(self, call: Call) -> list[str]:
+        """Return the arguments of a call of the control, one by one."""
         function = FUNCTIONS[call.function]
-        given = list(call.arguments)
-        parts = [self._argument(function, place, tree) for place, tree in enumerate(given)]
-        if call.open:
-            parts.append("open=True")
-        name = self._host(call.function)
-        if function.waiting:
-            return f"(yield from wait_for({', '.join((name, *parts))}))"
-        return f"{name}({', '.join(parts)})"
+        parts = [self._argument(function, place, tree) for place, tree in enumerate(call.arguments)]
+        return [*parts, "open=True"] if call.open else parts
 
     def _argument(self, function: Function, place: int, tree: Expression | None) -> str:
         if tree is None:
