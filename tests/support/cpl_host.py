@@ -45,7 +45,9 @@ class RecordingHost:
 class Ran:
     """A program that ran to its end: `events` without pauses, `blocks` as texts, `run` with its globals."""
 
-    def __init__(self, text: str, host: RecordingHost | None = None, *, wait: int = 1, stepping: bool = False) -> None:
+    def __init__(
+        self, text: str, host: RecordingHost | None = None, *, wait: int = 1, stepping: bool = False
+    ) -> None:
         self.host = host or RecordingHost()
         linker = Linker(self.host.program, stepping=stepping)
         main, errors = linker.link(text, "main.cpl")
@@ -64,7 +66,9 @@ class Ran:
         self.blocks: list[str] = []
         for index, event in enumerate(self.events):
             if isinstance(event, Lines):
-                self.blocks += [sources[index].line(line).strip() for line in range(event.first, event.last + 1)]
+                self.blocks += [
+                    sources[index].line(line).strip() for line in range(event.first, event.last + 1)
+                ]
             elif isinstance(event, NcValues):
                 self.blocks.append(
                     " ".join(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import pytest
 
 from polycnc.errors import ProgramError
@@ -178,9 +180,9 @@ def test_jumps_out_of_loops_and_into_structures() -> None:
 def test_a_hundred_jump_destinations_are_reached_in_any_order() -> None:
     order = [(7 * index) % 100 for index in range(100)]
     lines = [f"10 #N%=0 : GOTO {1000 + order[0]}"]
-    nexts = dict(zip(order, [*order[1:], None], strict=True))
+    nexts: dict[int, int] = dict(itertools.pairwise(order))
     for index in range(100):
-        goto = "GOTO .END" if nexts[index] is None else f"GOTO {1000 + nexts[index]}"
+        goto = f"GOTO {1000 + nexts[index]}" if index in nexts else "GOTO .END"
         lines.append(f"{1000 + index} #N%=#N%*3+{index} : #N%=#N%-INT(#N%/9973)*9973 : {goto}")
     expected = 0
     for index in order:
@@ -509,7 +511,12 @@ def test_wait_names_its_condition_duration_and_result(
 ) -> None:
     state = [True]
     calls: list[tuple[int, ...]] = []
-    host = RecordingHost({"IC": lambda *arguments: calls.append(arguments) or state[0]})
+
+    def ic(*arguments: int) -> bool:
+        calls.append(arguments)
+        return state[0]
+
+    host = RecordingHost({"IC": ic})
     ran = Ran(f"5 TIME%=250 : E1?=FALSE : E2?=FALSE : E7?=TRUE\n10 {text}", host, wait=2)
     event = ran.events[0]
     assert isinstance(event, Waiting)

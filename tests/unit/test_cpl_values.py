@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+import operator
+from collections.abc import Callable
 
 import numpy as np
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.nc.cpl import CharacterField, Field, PermanentMemory, text_of
+from polycnc.nc.cpl import CharacterField, Field, PermanentMemory, compile_program, text_of
 from support.cpl_host import Ran, RecordingHost
 
 
@@ -357,7 +359,11 @@ def test_and_binds_tighter_than_a_comparison() -> None:
 
 @pytest.mark.covers("cpl.NOT", "cpl.AND", "cpl.OR", "cpl.XOR")
 def test_logic_follows_the_table_for_booleans_and_bits() -> None:
-    operators = {"AND": lambda a, b: a & b, "OR": lambda a, b: a | b, "XOR": lambda a, b: a ^ b}
+    operators: dict[str, Callable[[int, int], int]] = {
+        "AND": operator.and_,
+        "OR": operator.or_,
+        "XOR": operator.xor,
+    }
     words = {False: "FALSE", True: "TRUE"}
     for name, function in operators.items():
         for left in (False, True):
@@ -498,6 +504,50 @@ def test_wrong_uses_of_functions_are_refused_before_the_start() -> None:
         "#A=)": "a value is missing before ')'",
     }.items():
         assert failure(text).what == what
+
+
+RESERVED = """
+    ABS ACOS AND APOS ASC ASIN ATAN AXO AXP BCD BIN BMP CASE CALL CHR$ CIR CLG CLOCK CLOSE CLR CLS COF COL COS CPROBE
+    CPOS CSF DATE DIM DLG DLF DO DSP DPC ELSE END ENDDLG ENDIF ENDCASE EOF ERASE FALSE FIL FILEACCESS FILEDATE FILEPOS
+    FILESIZE FOR FXC FXCR FXDEL FXINS GETERR GMD GOTO GPR GWD IC IF INKEY INP INP# INSTR INT LABEL LEN LIN LJUST MCA
+    MCODS MCOPS MID$ MMC MPOS MWD NCF NEXT NJUST NOT NUL OF OPENR OPENW OR OTHERWISE PDIM PLC PPOS PRN PRN# PROBE REM
+    REPEAT REWRITE RGB ROUND SCL SCS SD SDR SEEK SFK SIN SPOS SQRT STEP STR$ TAN TC TDA TFO THEN TIME TRIM$ TRUE UNTIL
+    VAL WAIT WHILE WPOS XOR
+"""
+
+
+@pytest.mark.covers("cpl.reserved")
+def test_reserved_words_are_no_variables() -> None:
+    for word in RESERVED.split():
+        assert word == "REM" or compile_program(f"10 {word}=5", "x")[0] is None, word
+        assert compile_program(f"10 DIM {word}(5)", "x")[0] is None, word
+        assert compile_program(f"10 CALL P [{word}XY%]", "x")[0] is not None or "#" in word or "$" in word, (
+            word
+        )
+
+
+@pytest.mark.covers(
+    "cpl.kw.COM",
+    "cpl.kw.FIX",
+    "cpl.kw.FIXB",
+    "cpl.kw.FIXE",
+    "cpl.kw.MIC",
+    "cpl.kw.TD",
+    "cpl.kw.TDR",
+    "cpl.kw.TXT$",
+)
+@pytest.mark.parametrize("word", ["COM", "FIX", "FIXB", "FIXE", "MIC", "TD", "TDR", "TXT$"])
+def test_words_without_a_function_are_reserved_all_the_same(word: str) -> None:
+    for text in (f"{word}=5", word, f"{word}(1)", f"#A={word}"):
+        assert failure(text).what == f"{word} has no function", text
+
+
+@pytest.mark.covers("cpl.codechars")
+def test_points_and_commas_are_text_within_strings() -> None:
+    assert value('#A$="1,5.7:#@%?!;=" : #B$="(["', "#A$") == "1,5.7:#@%?!;="
+    assert value("#A=.5+5.") == 5.5
+    assert failure("#A=1,5").what == "the instruction does not go on with ','"
+    assert failure("#A=1 & 2").what == "'&' has no meaning here"
 
 
 def test_fields_and_strings_keep_their_python_types() -> None:

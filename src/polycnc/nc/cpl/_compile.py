@@ -61,6 +61,7 @@ class Compiler:
         self._apart: set[int] = set()
         self._gotos: set[str] = set()
         self._jumps = False
+        self._loops = 0
 
     def compile(self, statements: list[Statement], name: str) -> Traced[int] | None:
         """Return the program compiled, None if something is wrong with it."""
@@ -234,12 +235,10 @@ class Compiler:
                 (self._jumped_if if id(statement) in self._apart else self._if)(statement)
             case Case():
                 (self._jumped_case if id(statement) in self._apart else self._case)(statement)
-            case For():
-                self._for(statement)
-            case While():
-                self._loop(statement, lambda: self._values.condition(statement.condition))
-            case Repeat():
-                self._repeat(statement)
+            case For() | While() | Repeat():
+                self._loops += 1
+                self._any_loop(statement)
+                self._loops -= 1
             case Dim():
                 self._dim(statement)
             case SubCall():
@@ -333,10 +332,15 @@ class Compiler:
             put(f"{place} = {float(constant)!r}")
         elif _fits(kind, typed, constant):
             put(f"{place} = {text}")
-        elif typed.leaf or (kind == "I" and given != "I"):
+        elif typed.leaf or (kind == "I" and given != "I") or not self._is_hot:
             put(f"{place} = {_CONVERSIONS[kind]}({text})")
         else:
             self._put_checked(place, direct, kind, text)
+
+    @property
+    def _is_hot(self) -> bool:
+        """Whether what is written now may run many times: then it is worth the longer Python of `_put_checked`."""
+        return self._jumps or self._loops > 0
 
     def _put_checked(self, place: str, direct: bool, kind: str, text: str) -> None:
         """Assign what was reckoned: bring it to its type and see that it is in range."""
@@ -536,6 +540,15 @@ class Compiler:
             self._body(statement.body)
             behind()
             self._tick()
+
+    def _any_loop(self, statement: For | While | Repeat) -> None:
+        match statement:
+            case For():
+                self._for(statement)
+            case While():
+                self._loop(statement, lambda: self._values.condition(statement.condition))
+            case Repeat():
+                self._repeat(statement)
 
     def _repeat(self, statement: Repeat) -> None:
         until = statement.condition

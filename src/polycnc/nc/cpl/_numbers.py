@@ -23,12 +23,18 @@ def not_assigned() -> Fault:
 
 
 def single_rounder() -> Callable[[float], float]:
-    """Return a function that rounds to single precision, exactly as a store into 32 bits does."""
+    """Return a function that rounds to single precision, exactly as a store into 32 bits does.
+
+    It raises OverflowError for what is too large.
+    """
     cell = array("f", (0.0,))
 
     def rounded(value: float) -> float:
         cell[0] = value
-        return cell[0]
+        value = cell[0]
+        if value - value:
+            raise OverflowError
+        return value
 
     return rounded
 
@@ -45,10 +51,7 @@ def to_real(value: object) -> float | None:
     number = to_double(value)
     if number is None:
         return None
-    number = _single(number)
-    if number - number:
-        raise OverflowError
-    return number
+    return _single(number)
 
 
 def to_double(value: object) -> float | None:

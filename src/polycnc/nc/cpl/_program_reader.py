@@ -39,7 +39,7 @@ _STRUCTURES = 100
 _NUMBERED = re.compile(r"[ \t]*([0-9]+)")
 _JUMPS = re.compile(r"GOTO[ \t]*(N?)0*([0-9]+)", re.IGNORECASE)
 _NC_JUMP = re.compile(r"N([0-9]+)")
-_PROGRAM_NAME = re.compile(r"[^\s\[\]:,]+")
+_PROGRAM_NAME = re.compile(r"[A-Za-z0-9_/][^\s\[\]:,=]*")
 _ENDS = frozenset(("ELSE", "ENDIF", "NEXT", "UNTIL", "END", "ENDCASE", "LABEL", "OTHERWISE", "REM", ":"))
 _CLOSERS = {If: "ENDIF", For: "NEXT", While: "END", Repeat: "UNTIL", Case: "ENDCASE"}
 _LARGEST = (1 << 31) - 1
