@@ -214,3 +214,19 @@ def test_threads_take_turns() -> None:
     for thread in threads:
         thread.join()
     assert (len(card.told), set(overlaps)) == (16, {1})
+
+
+def test_two_programs_have_their_own_network_handles_and_time() -> None:
+    mine, theirs = ToldCard(), ToldCard()
+    here, there = lib.Session(), lib.Session()
+    here.attach(mine, clock=Poll(7))
+    there.attach(theirs, clock=Poll(4))
+    assert lib.IMC_Open(0, 0) == (lib.IMC_DEVICE_NOT_FOUND, None)  # nothing is attached to the module's own
+    (_, first), (_, second) = here.IMC_Open(0, 0), there.IMC_Open(0, 0)
+    assert here.IMC_GetParam16(second, lib.movingLoc, 0) == (lib.IMC_INVALID_HANDLE, 0)
+    assert here.IMC_GetParam16(first, lib.movingLoc, 0) == (lib.IMC_OK, 0)
+    assert (mine.cycles, theirs.cycles) == (7, 0)
+    assert there.IMC_GetPatamBit(second, lib.movingLoc, 0, 0) == (lib.IMC_OK, 0)
+    assert (mine.cycles, theirs.cycles) == (7, 4)
+    assert here.IMC_Close(first) == lib.IMC_OK
+    assert here.IMC_Close(first) == lib.IMC_INVALID_HANDLE

@@ -40,7 +40,6 @@ CLOCK_ROW = np.dtype(
         ("mask", np.int64),  # reasons that stop `advance`
         ("raised", np.int64),  # reasons met in its last cycle
         ("axis", np.int64),  # the axis of the last axis reason, -1 none
-        ("low_water", np.int64),  # planned segments at which QUEUE_LOW is raised
         ("main_path", np.int64),  # the path whose block and feed are recorded
     ],
     align=True,
@@ -71,7 +70,7 @@ class KernelState(NamedTuple):
     plant: Plant
     switches: Switches
     recorder: Recorder
-    work: Floats  # [2, n] scratch
+    work: Floats  # [3, n] scratch
 
 
 def make_state(
@@ -96,7 +95,6 @@ def make_state(
     clock = np.zeros(1, CLOCK_ROW)
     clock["dt"] = cycle_s
     clock["axis"] = -1
-    clock["low_water"] = 1024
     return KernelState(
         clock=clock,
         owner=np.full(axes, POINT_TO_POINT, np.int64),
@@ -115,5 +113,5 @@ def make_state(
         plant=make_plant(axes),
         switches=make_switches(axes),
         recorder=make_recorder(record_cycles, axes, record_actual),
-        work=np.zeros((2, axes)),
+        work=np.zeros((3, axes)),
     )

@@ -8,13 +8,12 @@ from polycnc.controllers.imc.core._event_codes import SHAPES, EventCommand, Even
 from polycnc.controllers.imc.core._event_codes import TAKE as TAKE_SECOND
 from polycnc.controllers.imc.core._instructions import Event, InstallEvents, Segment
 from polycnc.controllers.imc.core._parameters import address
-from polycnc.controllers.imc.library._call import call, check_place, send, taken
+from polycnc.controllers.imc.library._call import LIBRARY, card_call, check_place, send, taken
 from polycnc.controllers.imc.library._codes import (
     IMC_INVALID_PARAM,
     IMC_OK,
     IMC_OUT_OF_RANGE,
     IMC_STATUS,
-    Refused,
 )
 from polycnc.controllers.imc.library._memory import signed_32
 from polycnc.controllers.imc.library._network import IMC_HANDLE
@@ -25,6 +24,9 @@ from polycnc.controllers.imc.library._types import (
     ArcDirection,
     Axis,
     CaptureCount,
+    Captured,
+    CapturedLeft,
+    CapturedNumber,
     EventCount,
     Events,
     PathQueue,
@@ -35,38 +37,39 @@ from polycnc.controllers.imc.library._types import (
     SegmentData,
     SegmentInfo,
 )
+from polycnc.controllers.library import Refused
 
 CLOCKWISE = 1  # of the functions that take coordinates one by one; in the structure it is 0
 _GROUPNUM = address("groupnum")
 
 
-@call()
+@card_call
 def IMC_AddLineNWithVel(Handle: IMC_HANDLE, pdata: SegmentInfo, fifoSel: PathQueue) -> IMC_STATUS:
     """Add a line of N axes with its own speeds (Manual 004, 3.5.1)."""
     speeds = pdata.SegTgVel, pdata.SegEndVel
     return send(Handle, fifoSel, _segment(Handle, pdata.data, speeds, arc=False))
 
 
-@call()
+@card_call
 def IMC_AddLineN(Handle: IMC_HANDLE, pdata: SegmentData, fifoSel: PathQueue) -> IMC_STATUS:
     """Add a line of N axes with the speeds of the path space (Manual 004, 3.5.2)."""
     return send(Handle, fifoSel, _segment(Handle, pdata, None, arc=False))
 
 
-@call()
+@card_call
 def IMC_AddArcLineWithVel(Handle: IMC_HANDLE, pdata: SegmentInfo, fifoSel: PathQueue) -> IMC_STATUS:
     """Add an arc of the first two axes, the others going along evenly, with its own speeds (Manual 004, 3.5.3)."""
     speeds = pdata.SegTgVel, pdata.SegEndVel
     return send(Handle, fifoSel, _segment(Handle, pdata.data, speeds, arc=True))
 
 
-@call()
+@card_call
 def IMC_AddArcLine(Handle: IMC_HANDLE, pdata: SegmentData, fifoSel: PathQueue) -> IMC_STATUS:
     """Add an arc of the first two axes, the others going along, with the speeds of the space (Manual 004, 3.5.4)."""
     return send(Handle, fifoSel, _segment(Handle, pdata, None, arc=True))
 
 
-@call()
+@card_call
 def IMC_AddArcWithVel(
     Handle: IMC_HANDLE,
     TgVel: IMC32,
@@ -82,7 +85,7 @@ def IMC_AddArcWithVel(
     return send(Handle, fifoSel, _arc((Endx, Endy), (centerX, centerY), dir, (TgVel, EndVel)))
 
 
-@call()
+@card_call
 def IMC_AddArc(
     Handle: IMC_HANDLE,
     Endx: IMC32,
@@ -96,7 +99,7 @@ def IMC_AddArc(
     return send(Handle, fifoSel, _arc((Endx, Endy), (centerX, centerY), dir, None))
 
 
-@call()
+@card_call
 def IMC_AddSpiralWithVel(
     Handle: IMC_HANDLE,
     TgVel: IMC32,
@@ -113,7 +116,7 @@ def IMC_AddSpiralWithVel(
     return send(Handle, fifoSel, _arc((Endx, Endy, EndLine), (centerX, centerY), dir, (TgVel, EndVel)))
 
 
-@call()
+@card_call
 def IMC_AddSpiral(
     Handle: IMC_HANDLE,
     Endx: IMC32,
@@ -128,7 +131,7 @@ def IMC_AddSpiral(
     return send(Handle, fifoSel, _arc((Endx, Endy, EndLine), (centerX, centerY), dir, None))
 
 
-@call()
+@card_call
 def IMC_PutContourData(
     Handle: IMC_HANDLE, pdata: Points, nWords: PointWords, fifoSel: PointQueue
 ) -> IMC_STATUS:
@@ -146,7 +149,7 @@ def IMC_PutContourData(
     return taken(Handle, card.push_points(values))
 
 
-@call()
+@card_call
 def IMC_InstallEvent(Handle: IMC_HANDLE, pEvent: Events, EventNum: EventCount, fifoSel: Queue) -> IMC_STATUS:
     """Add up to 31 events to the card, which holds 128 (Manual 004, 3.7.1)."""
     if EventNum > len(pEvent):
@@ -157,17 +160,17 @@ def IMC_InstallEvent(Handle: IMC_HANDLE, pEvent: Events, EventNum: EventCount, f
     return send(Handle, fifoSel, InstallEvents(events))
 
 
-@call()
+@card_call
 def IMC_ClearFIFO(Handle: IMC_HANDLE, fifoSel: AnyQueue) -> IMC_STATUS:
     """Empty a queue and end the wait that it is in (Manual 004, 3.8)."""
     Handle.reach().clear_fifo(fifoSel)
     return IMC_OK
 
 
-@call([], 0, 0)
+@card_call
 def IMC_GetCapData(
     Handle: IMC_HANDLE, rdnum: CaptureCount, axis: Axis
-) -> tuple[IMC_STATUS, list[int], int, int]:
+) -> tuple[IMC_STATUS, Captured, CapturedNumber, CapturedLeft]:
     """Take up to `rdnum`, at most 120, captured positions: return them, their number and how many are left.
 
     Bit 10 of encpctr lets the probe capture (Manual 004, 3.9).
@@ -237,3 +240,27 @@ def _event(handle: IMC_HANDLE, info: EventInfo) -> Event:
 
 def _operand(handle: IMC_HANDLE, at: int, axis: int) -> tuple[int, int]:
     return at, check_place(handle, at, axis)
+
+
+# Other names: as the manual misprints them, and for what its print has lost.
+IMC_AddApiralWithVel = LIBRARY.alias("IMC_AddApiralWithVel", IMC_AddSpiralWithVel)
+IMC_AddApiralWitchVel = LIBRARY.alias("IMC_AddApiralWitchVel", IMC_AddSpiralWithVel)
+IMC_AddContourData = LIBRARY.alias("IMC_AddContourData", IMC_PutContourData)
+
+__all__ = [
+    "IMC_AddApiralWitchVel",
+    "IMC_AddApiralWithVel",
+    "IMC_AddArc",
+    "IMC_AddArcLine",
+    "IMC_AddArcLineWithVel",
+    "IMC_AddArcWithVel",
+    "IMC_AddContourData",
+    "IMC_AddLineN",
+    "IMC_AddLineNWithVel",
+    "IMC_AddSpiral",
+    "IMC_AddSpiralWithVel",
+    "IMC_ClearFIFO",
+    "IMC_GetCapData",
+    "IMC_InstallEvent",
+    "IMC_PutContourData",
+]
