@@ -1,5 +1,6 @@
 """CPL: the language inside part programs, and what it needs of the control that runs it (Manual 003)."""
 
+from polycnc.nc.cpl._blocks import CplLanguage, CplSource
 from polycnc.nc.cpl._faults import Fault
 from polycnc.nc.cpl._fields import Field
 from polycnc.nc.cpl._formats import default_format, groups, number_in
@@ -20,7 +21,7 @@ from polycnc.nc.cpl._host import (
 )
 from polycnc.nc.cpl._permanent import PermanentMemory
 from polycnc.nc.cpl._program import Linker, Program, compile_program, holds_cpl
-from polycnc.nc.cpl._run import Run, undeclared
+from polycnc.nc.cpl._run import Execution, Run, undeclared
 from polycnc.nc.cpl._strings import CharacterField, text_of
 
 __all__ = [
@@ -30,7 +31,10 @@ __all__ = [
     "BlockWord",
     "Box",
     "CharacterField",
+    "CplLanguage",
+    "CplSource",
     "Event",
+    "Execution",
     "Fault",
     "Field",
     "Host",

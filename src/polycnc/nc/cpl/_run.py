@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Container
-from dataclasses import dataclass
+from collections.abc import Callable, Container, Sequence
 from typing import Any, NamedTuple, NoReturn
 
 from polycnc.errors import PolycncError, ProgramError
@@ -22,6 +21,7 @@ from polycnc.nc.cpl._host import (
     Item,
     Lines,
     NcValues,
+    Pause,
     Step,
     SubProgram,
     Waiting,
@@ -38,30 +38,94 @@ class Arguments(NamedTuple):
     linked: bool = True
 
 
-@dataclass(slots=True)
-class Level:
-    """A running program: where it is, `line`, is known whenever it has yielded."""
+class Execution:
+    """One program that runs: its next event, and its run-time errors at their places."""
 
-    program: Program
-    generator: Any
-    linked: bool
-    line: int = 0
+    def __init__(
+        self, program: Program, linker: Linker, host: Host, variables: dict[str, Any], arguments: Arguments
+    ) -> None:
+        for error in undeclared(program, host.permanent):
+            raise error
+        self.program = program
+        self.linked = arguments.linked and not program.marked_din
+        self.line = 0
+        """The line of the last event."""
+        self._linker = linker
+        make = program.traced.load(_SCOPE)["program"]
+        self._generator = make(variables, host.permanent, host, arguments)
+
+    def step(self, answer: object = None) -> Event | None:
+        """Return the next event, None at the end; `answer` is that to the last one (WAIT: 0, 1 or 2).
+
+        Raises:
+            ProgramError: The program does what it must not.
+        """
+        try:
+            event: Event = self._generator.send(answer)
+        except StopIteration:
+            return None
+        except (Fault, ArithmeticError, TypeError, ValueError) as error:
+            self._explain(error)
+        if not isinstance(event, Pause):
+            self.line = event[0]
+        return event
+
+    def close(self) -> None:
+        """End the program."""
+        self._generator.close()
+
+    def called(self, call: SubProgram, running: Sequence[Program]) -> Program:
+        """Return the sub-program that is called, `running` being those under way.
+
+        Raises:
+            ProgramError: There is none, or it must not be called here.
+        """
+        program = self._linker.sub_program(call.address, call.name)
+        if program is None:
+            raise self._error(
+                call, f"there is no sub-program {call.name}", "write it into a file of this name"
+            )
+        if len(running) > NESTING:
+            raise self._error(call, f"sub-programs are nested more than {NESTING} deep")
+        if program in running:
+            raise self._error(call, f"{call.name} calls itself", "recursive calls are not possible")
+        if (call.unlinked or program.marked_din) and not program.is_plain:
+            hint = f"take DIN from the call of {call.name} or from its first line"
+            raise self._error(call, CPL_IN_UNLINKED.what, hint)
+        return program
+
+    def local_variables(self) -> dict[str, object]:
+        """Return the local variables by name."""
+        values = self._generator.gi_frame.f_locals if self._generator.gi_frame is not None else {}
+        local = (each for each in self.program.variables if each.scope in ("local", "parameter"))
+        return {each.name: shown(values.get(each.python)) for each in local}
+
+    def _error(self, call: SubProgram, what: str, hint: str = "") -> ProgramError:
+        source = self.program.source
+        text = source.line(call.line)
+        return source.error(Flaw(source.begin(call.line) + len(text) - len(text.lstrip()), what, hint))
+
+    def _explain(self, error: Exception) -> NoReturn:
+        frame = frame_of(error, self._linker.traced)
+        if frame is None:
+            raise error
+        what, hint, code = _meaning(error)
+        raise self._linker.source(frame.name).error(Flaw(frame.place, what, hint, code=code)) from error
 
 
 class Run:
     """One run of a main program with its sub-programs; global variables live as long as it.
 
     Call `step` for the next thing that the control has to do; None is the end. A sub-program call is not handed out
-    but entered (its program is on `stack` then), unless it is one that only the control knows.
+    but entered: its program is on `stack` then.
     """
 
     def __init__(self, main: Program, linker: Linker, host: Host) -> None:
         self.globals: dict[str, Any] = {}
-        self.stack: list[Level] = []
+        self.stack: list[Execution] = []
         self._host = host
         self._linker = linker
-        self._answer: object = None
-        self._enter(main, Arguments(linked=not main.marked_din))
+        self._enter(main, Arguments())
 
     def step(self, answer: object = None) -> Event | None:
         """Return the next event; `answer` is that to the last one (WAIT: 0, 1 or 2).
@@ -69,33 +133,27 @@ class Run:
         Raises:
             ProgramError: The program does what it must not; the run is over.
         """
-        while self.stack:
-            level = self.stack[-1]
-            try:
-                event: Event = level.generator.send(answer)
-            except StopIteration:
-                self.stack.pop()
+        try:
+            while self.stack:
+                event = self.stack[-1].step(answer)
                 answer = None
-                continue
-            except PolycncError:
-                self.stop()
-                raise
-            except (Fault, ArithmeticError, TypeError, ValueError) as error:
-                self._explain(error)
-            answer = None
-            if isinstance(event, SubProgram):
-                level.line = event.line
-                self._call(event, level)
-                continue
-            if event is not PAUSE:
-                level.line = event[0]  # type: ignore[index]
-            return event
+                if event is None:
+                    self.stack.pop()
+                elif isinstance(event, SubProgram):
+                    caller = self.stack[-1]
+                    program = caller.called(event, [each.program for each in self.stack])
+                    self._enter(program, Arguments(event.arguments, caller.linked))
+                else:
+                    return event
+        except PolycncError:
+            self.stop()
+            raise
         return None
 
     def leave(self) -> bool:
         """End the program that runs now (M30, M17); tell whether another one goes on."""
         if self.stack:
-            self.stack.pop().generator.close()
+            self.stack.pop().close()
         return bool(self.stack)
 
     def stop(self) -> None:
@@ -105,56 +163,10 @@ class Run:
 
     def local_variables(self) -> dict[str, object]:
         """Return the local variables of the program that runs now, by name."""
-        if not self.stack:
-            return {}
-        level = self.stack[-1]
-        values = level.generator.gi_frame.f_locals
-        local = (each for each in level.program.variables if each.scope in ("local", "parameter"))
-        return {each.name: shown(values.get(each.python)) for each in local}
+        return self.stack[-1].local_variables() if self.stack else {}
 
     def _enter(self, program: Program, arguments: Arguments) -> None:
-        for error in undeclared(program, self._host.permanent):
-            self.stop()
-            raise error
-        make = program.traced.load(_SCOPE)["program"]
-        generator = make(self.globals, self._host.permanent, self._host, arguments)
-        self.stack.append(Level(program, generator, arguments.linked))
-
-    def _call(self, call: SubProgram, level: Level) -> None:
-        source = level.program.source
-        at = source.begin(call.line)
-        at += len(source.line(call.line)) - len(source.line(call.line).lstrip())
-        flaw: Flaw | None = None
-        program = None
-        try:
-            program = self._linker.sub_program(call.address, call.name)
-        except PolycncError:
-            self.stop()
-            raise
-        if program is None:
-            flaw = Flaw(at, f"there is no sub-program {call.name}", "write it into a file of this name")
-        elif len(self.stack) > NESTING:
-            flaw = Flaw(at, f"sub-programs are nested more than {NESTING} deep")
-        elif any(running.program is program for running in self.stack):
-            flaw = Flaw(at, f"{call.name} calls itself", "recursive calls are not possible")
-        elif (call.unlinked or program.marked_din) and not program.is_plain:
-            flaw = Flaw(
-                at,
-                CPL_IN_UNLINKED.what,
-                f"take DIN from the call of {call.name} or from its first line",
-            )
-        if flaw is not None or program is None:
-            self.stop()
-            raise source.error(flaw or Flaw(at, "no program"))
-        self._enter(program, Arguments(call.arguments, level.linked))
-
-    def _explain(self, error: Exception) -> NoReturn:
-        frame = frame_of(error, self._linker.traced)
-        self.stop()
-        if frame is None:
-            raise error
-        what, hint, code = _meaning(error)
-        raise self._linker.source(frame.name).error(Flaw(frame.place, what, hint, code=code)) from error
+        self.stack.append(Execution(program, self._linker, self._host, self.globals, arguments))
 
 
 def undeclared(program: Program, permanent: Container[str]) -> list[ProgramError]:
