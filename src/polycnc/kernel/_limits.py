@@ -450,8 +450,8 @@ def share_acceleration(
     row["gain"] = 2.0 * accel * length
     first, last = yield_before * before, row["yield_before"] * row["junction"]
     if first > 0.0 or last > 0.0:
-        from_start = beside_corner(before, accel, dt, length) if first > 0.0 else 0.0
-        to_end = beside_corner(row["junction"], accel, dt, length) if last > 0.0 else 0.0
+        from_start = beside_corner(before, accel, first, dt, length) if first > 0.0 else 0.0
+        to_end = beside_corner(row["junction"], accel, last, dt, length) if last > 0.0 else 0.0
         both = max(0.0, from_start + to_end - length)
         lost = first * (from_start - both) + last * (to_end - both) + max(first, last) * both
         row["gain"] -= 2.0 * accel * lost

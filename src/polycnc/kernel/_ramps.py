@@ -30,9 +30,13 @@ MOST_SHARE = 0.75  # of its acceleration is all that a segment gives up
 
 
 @compiled
-def beside_corner(speed: float, accel: float, dt: float, length: float) -> float:
-    """Return how far the path can be from a corner passed with `speed` within `dt`, at most `length`."""
-    return min(length, (speed + 0.5 * accel * dt) * dt)
+def beside_corner(speed: float, accel: float, share: float, dt: float, length: float) -> float:
+    """Return how far, at most `length`, the path may be from a corner passed with `speed` within `dt`.
+
+    It has given up `share` of `accel` till then. A greater share than a half counts as a half, so that what is lost by it
+    never falls with the speed.
+    """
+    return min(length, (speed + 0.5 * accel * (1.0 - min(share, 0.5)) * dt) * dt)
 
 
 @compiled
@@ -56,7 +60,7 @@ def set_pieces(
     speed = min(speed_out, top)
     last = min(MOST_SHARE, yield_out * speed)
     from_start = min(zone, length) if share > 0.0 and zone > 0.0 else 0.0
-    to_end = beside_corner(speed, accel, dt, length) if last > 0.0 else 0.0
+    to_end = beside_corner(speed, accel, last, dt, length) if last > 0.0 else 0.0
     both = max(0.0, from_start + to_end - length)
     ramps[PIECES] = from_start - both
     ramps[PIECES + 1] = accel * (1.0 - share)

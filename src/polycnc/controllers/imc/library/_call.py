@@ -52,7 +52,7 @@ def send(handle: IMC_HANDLE, fifo: int, instruction: Instruction) -> IMC_STATUS:
     """Put an instruction into a queue of the card; one in IFIFO is carried out before the call is over."""
     status = taken(handle, handle.reach().push(fifo, instruction))
     if status == IMC_OK and fifo == SEL_IFIFO:
-        handle.let_cycle_pass()
+        handle.session.let_cycle_pass(handle.card)
     return status
 
 
@@ -60,7 +60,7 @@ def taken(handle: IMC_HANDLE, fits: bool) -> IMC_STATUS:
     """Return the status of an instruction; time passes if it does not fit, as a program will try again."""
     if fits:
         return IMC_OK
-    handle.reach_later()
+    handle.session.let_queue_run(handle.reach())
     return IMC_FIFO_FULL
 
 

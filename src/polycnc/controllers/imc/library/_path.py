@@ -247,20 +247,11 @@ IMC_AddApiralWithVel = LIBRARY.alias("IMC_AddApiralWithVel", IMC_AddSpiralWithVe
 IMC_AddApiralWitchVel = LIBRARY.alias("IMC_AddApiralWitchVel", IMC_AddSpiralWithVel)
 IMC_AddContourData = LIBRARY.alias("IMC_AddContourData", IMC_PutContourData)
 
+# fmt: off
 __all__ = [
-    "IMC_AddApiralWitchVel",
-    "IMC_AddApiralWithVel",
-    "IMC_AddArc",
-    "IMC_AddArcLine",
-    "IMC_AddArcLineWithVel",
-    "IMC_AddArcWithVel",
-    "IMC_AddContourData",
-    "IMC_AddLineN",
-    "IMC_AddLineNWithVel",
-    "IMC_AddSpiral",
-    "IMC_AddSpiralWithVel",
-    "IMC_ClearFIFO",
-    "IMC_GetCapData",
-    "IMC_InstallEvent",
-    "IMC_PutContourData",
+    "IMC_AddApiralWitchVel", "IMC_AddApiralWithVel", "IMC_AddArc", "IMC_AddArcLine",
+    "IMC_AddArcLineWithVel", "IMC_AddArcWithVel", "IMC_AddContourData", "IMC_AddLineN",
+    "IMC_AddLineNWithVel", "IMC_AddSpiral", "IMC_AddSpiralWithVel", "IMC_ClearFIFO", "IMC_GetCapData",
+    "IMC_InstallEvent", "IMC_PutContourData",
 ]
+# fmt: on
