@@ -41,7 +41,7 @@ def at_run_time(text: str, host: RecordingHost | None = None) -> ProgramError:
 # Blocks
 
 
-@pytest.mark.covers("cpl.ncblock", "cpl.ex.353", "cpl.program", "cpl.start", "cpl.use")
+@pytest.mark.covers("cpl.ncblock", "cpl.ex.353", "cpl.program")
 def test_nc_blocks_and_cpl_blocks_mix() -> None:
     ran = Ran("N100 G1 X150 Y100.525\nG1 X150 Y100.525\n10 #A=2.5\nN20 X[#A]\nM30")
     assert ran.events == [
@@ -120,7 +120,6 @@ def test_a_colon_goes_on_with_a_block_and_rem_ends_it() -> None:
     assert errors("10 #A=1 :\n?") == ["2:1 '?' has no meaning here"]
 
 
-@pytest.mark.covers("cpl.remark.nc")
 def test_remarks_of_nc_blocks_stay_with_the_control() -> None:
     assert Ran("N10 (MSG,Position [x] reached)\n(remark)\n1 A=1").events == [Lines(1, 2)]
 
@@ -360,7 +359,7 @@ def test_an_endless_loop_lets_time_pass_and_never_ends() -> None:
 # Sub-programs
 
 
-@pytest.mark.covers("cpl.sub", "cpl.CALL", "cpl.ex.1089", "cpl.ex.1132", "cpl.param.Pn")
+@pytest.mark.covers("cpl.CALL", "cpl.ex.1089", "cpl.ex.1132", "cpl.param.Pn")
 def test_a_sub_program_gets_its_parameters_by_value() -> None:
     sub = (
         "1 FACTOR=P1 : XVALUE%=P2% : COMPTAB%=P3%\nN1 G1 X[XVALUE%*FACTOR]\n"
@@ -376,7 +375,6 @@ def test_a_sub_program_gets_its_parameters_by_value() -> None:
     assert at_run_time("10 CALL P999 [7.5]", host).what == "INVALID ASSIGNMENT"
 
 
-@pytest.mark.covers("cpl.sub.GMP")
 def test_sub_programs_are_called_from_nc_blocks() -> None:
     host = RecordingHost(programs={"SP": "1 #A=#A+P1", "G81": "1 #A=#A*P1"})
     ran = Ran("1 #A=2\nN10 P SP[3.5]\nN20 G81[10] (remark)\nN30 X[#A]\nN40 G81", host)
@@ -396,14 +394,12 @@ def test_sub_programs_are_nested_seven_deep() -> None:
     assert error.what == "sub-programs are nested more than 7 deep"
 
 
+@pytest.mark.covers("cpl.sub")
 def test_a_program_does_not_call_itself() -> None:
     programs = {"A": "1 CALL B", "B": "1 CALL A"}
     assert errors("10 CALL A", programs) == ["1:3 A calls itself"]
-    host = RecordingHost(programs={"A": "(DIN)\nN1 P B", "B": "N1 P A"})
-    assert at_run_time("10 CALL A", host).what in (
-        "A calls itself",
-        "CPL elements in a sub-program excluded from linking",
-    )
+    unlinked = RecordingHost(programs={"A": "1 B=1\n2 CALL A"})
+    assert at_run_time("(DIN)\nN1 P A", unlinked).what == "A calls itself"
 
 
 def test_calls_stand_alone_in_their_blocks() -> None:
@@ -415,7 +411,6 @@ def test_calls_stand_alone_in_their_blocks() -> None:
     assert errors("10 CALL NONE") == ["1:4 there is no sub-program NONE"]
 
 
-@pytest.mark.covers("cpl.link")
 def test_linking_checks_sub_programs_and_finds_everything_at_once() -> None:
     programs = {"GOOD": "1 #A=1", "BAD": "1 #A=\n2 GOTO .NONE"}
     linker = Linker(RecordingHost(programs=programs).program)
@@ -494,6 +489,7 @@ def test_wait_in_cpl_and_nc_blocks() -> None:
     assert errors("20 #A=1 : WAIT") == ["1:11 a block with WAIT has no colon"]
 
 
+@pytest.mark.covers("cpl.ex.1235", "cpl.ex.1236", "cpl.ex.1237", "cpl.ex.1238")
 @pytest.mark.parametrize(
     ("text", "asked", "met", "duration"),
     [

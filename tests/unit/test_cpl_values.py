@@ -250,7 +250,7 @@ def test_internal_variables_are_refused(name: str) -> None:
 
 
 @pytest.mark.covers(
-    "cpl.ex.637", "cpl.ex.574", "cpl.ex.623", "cpl.var.defperm", "cpl.file.wmhperm.dat", "cpl.perm.DEF.INT",
+    "cpl.ex.637", "cpl.ex.574", "cpl.ex.623", "cpl.file.wmhperm.dat", "cpl.perm.DEF.INT",
     "cpl.perm.DEF.REAL", "cpl.perm.DEF.DOUBLE", "cpl.perm.DEF.BOOL", "cpl.perm.DEF.CHAR",
 )  # fmt: skip
 def test_declared_variables_take_the_values_of_their_types() -> None:
