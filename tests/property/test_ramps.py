@@ -23,6 +23,7 @@ from polycnc.kernel._ramps import (
     ramps_at,
     ramps_duration,
     set_one_piece,
+    set_pieces,
 )
 
 speeds = st.one_of(st.just(0.0), st.floats(1e-3, 1e3))
