@@ -41,9 +41,10 @@ def _measured(folder: Path, programs: dict[str, Path], runs: int) -> dict[str, P
 
 
 def _cache_folder() -> str:
-    from polycnc.kernel._jit import CACHE_BASE
+    from polycnc.jit import CACHE_FOLDER
 
-    return str(CACHE_BASE.parent)
+    assert CACHE_FOLDER is not None
+    return str(CACHE_FOLDER.parents[1])
 
 
 def _own(found: dict[str, Process], few: int, many: int, grown_file_mb: float) -> list[Figure]:

@@ -78,7 +78,7 @@ def say_if_cold(every_cycle: bool = False) -> None:
     """Say why the first run of its kind takes longer: cycle by cycle, or in closed form."""
     from polycnc.kernel import is_cold
 
-    if is_cold("advance" if every_cycle else "skip_path"):
+    if is_cold("polycnc.kernel._advance.advance" if every_cycle else "polycnc.kernel._interpolate.skip_path"):
         say_error(COLD_START)
 
 

@@ -1,0 +1,24 @@
+"""Compile functions with numba, and keep what was compiled on disk under what it was made from.
+
+A kept function is found again by the content of all it reaches, not by the time or the place of files: a second
+checkout, a reinstallation and a copied cache compile nothing, nor does a change that no compiled function reaches.
+"""
+
+from polycnc.jit._cache import FILES
+from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, is_cold, versions
+from polycnc.jit._files import CACHE_FOLDER, Files
+from polycnc.jit._reach import Fingerprints, NotKnownError
+
+__all__ = [
+    "CACHE_FOLDER",
+    "FILES",
+    "OPEN_INTERNALS",
+    "Files",
+    "Fingerprints",
+    "NotKnownError",
+    "allocating",
+    "compiled",
+    "entry",
+    "is_cold",
+    "versions",
+]

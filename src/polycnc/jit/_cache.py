@@ -1,0 +1,134 @@
+"""A cache for numba that knows a compiled function by its content: code, types of arguments, compiler and processor."""
+
+from __future__ import annotations
+
+import hashlib
+import pickle
+import sys
+from collections.abc import Iterator
+from functools import lru_cache
+from typing import Any
+
+import llvmlite
+import numba
+import numpy as np
+from numba.core import compiler, serialize
+from numba.core import types as numba_types
+from numba.core.caching import _Cache
+
+from polycnc.jit._files import CACHE_FOLDER, Files, Lock
+from polycnc.jit._reach import Fingerprints
+
+FILES = Files(CACHE_FOLDER)
+FINGERPRINTS = Fingerprints()
+
+# numba's own annotations leave these out.
+_config: Any = numba.config
+_NAMED: Any = numba_types.BaseNamedTuple
+_rebuild: Any = compiler.CompileResult._rebuild
+_dumps: Any = serialize.dumps
+_SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "LLVM_PASS_OPT")
+
+
+@lru_cache
+def _compiler() -> str:
+    """Return what compiles: interpreter, numba, what it stands on, and its settings."""
+    versions = (
+        sys.implementation.cache_tag,
+        getattr(sys, "abiflags", ""),
+        numba.__version__,
+        llvmlite.__version__,
+        np.__version__,
+    )
+    return repr((versions, [getattr(_config, name, None) for name in _SETTINGS]))
+
+
+def _types(argument: Any) -> Iterator[str]:
+    """Describe the type of an argument; numba's text for a named tuple leaves out which class it is."""
+    yield str(argument)
+    if isinstance(argument, _NAMED):
+        yield f"{argument.instance_class.__module__}.{argument.instance_class.__qualname__}{argument.fields}"
+        for each in argument:
+            yield from _types(each)
+
+
+def _hexadecimal(*parts: str) -> str:
+    return hashlib.blake2b("\n".join(parts).encode(), digest_size=10).hexdigest()
+
+
+class ContentCache(_Cache):
+    """The kept files of one compiled function; holds the lock of a file from a miss until it is written."""
+
+    def __init__(self, dispatcher: Any) -> None:
+        self._dispatcher = dispatcher
+        self._lock = Lock(None)
+        self._enabled = True
+
+    @property
+    def cache_path(self) -> str:
+        """The folder of the files."""
+        return str(CACHE_FOLDER)
+
+    @property
+    def family(self) -> str:
+        """How the stems of all versions of the function begin."""
+        function = self._dispatcher.py_func
+        return f"{function.__module__}.{function.__qualname__}".replace("<locals>", "-")
+
+    def version(self) -> str:
+        """Return how the stems of the function as it is now begin, for all types of arguments."""
+        return f"{self.family}-{_hexadecimal(FINGERPRINTS.of(self._dispatcher), _compiler())}"
+
+    def load_overload(self, sig: Any, target_context: Any) -> Any:
+        """Return the function for these types of arguments; when it is not there, hold others from making it."""
+        target_context.refresh()
+        if not self._enabled:
+            return None
+        stem = self._stem(sig, target_context.codegen())
+        found = self._read(stem, target_context)
+        if found is None:
+            self.release()
+            self._lock = FILES.lock(stem)
+            found = self._read(stem, target_context)  # another process may have made it meanwhile
+            if found is not None:
+                self.release()
+        return found
+
+    def save_overload(self, sig: Any, data: Any) -> None:
+        """Keep a function that was just compiled."""
+        keeps = (
+            self._enabled and not data.library.has_dynamic_globals and all(x.can_cache for x in data.lifted)
+        )
+        if keeps:
+            FILES.write(self._stem(sig, data.codegen), self.family, _dumps(data._reduce()))
+        self.release()
+
+    def release(self) -> None:
+        """Let other processes make what this one was going to make."""
+        self._lock.release()
+
+    def enable(self) -> None:
+        """Look for files and write them."""
+        self._enabled = True
+
+    def disable(self) -> None:
+        """Neither look for files nor write them."""
+        self._enabled = False
+
+    def flush(self) -> None:
+        """Do nothing: what is kept is right as long as its key is."""
+
+    def _stem(self, sig: Any, codegen: Any) -> str:
+        arguments = sig if isinstance(sig, tuple) else (*sig.args, sig.return_type)
+        described = (text for argument in arguments for text in _types(argument))
+        return f"{self.version()}-{_hexadecimal(repr(codegen.magic_tuple()), *described)}"
+
+    def _read(self, stem: str, target_context: Any) -> Any:
+        data = FILES.read(stem)
+        if data is None:
+            return None
+        try:
+            return _rebuild(target_context, *pickle.loads(data))
+        except Exception as error:  # whole but strange: whatever it raises, the way out is to compile
+            FILES.remark(f"{stem} cannot be loaded ({type(error).__name__}: {error}); it is compiled anew")
+            return None
