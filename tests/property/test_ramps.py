@@ -17,11 +17,12 @@ from polycnc.kernel._ramps import (
     TIME_CRUISE,
     TIME_IN,
     TIME_OUT,
-    plan_halt,
+    halting_distance,
     plan_pause,
     plan_ramps,
     ramps_at,
     ramps_duration,
+    set_one_piece,
 )
 
 speeds = st.one_of(st.just(0.0), st.floats(1e-3, 1e3))
@@ -45,6 +46,7 @@ def test_a_segment_is_gone_along_once_and_within_its_limits(
     speed_in: float, length: float, cap: float, accel: float, out: float, jerkrel: float
 ) -> None:
     ramps = np.zeros(REGISTERS)
+    set_one_piece(ramps, length, accel)
     plan_ramps(ramps, speed_in, length, cap, accel, out, 2.0)
     duration = ramps_duration(ramps)
     assert duration > 0.0
@@ -71,23 +73,25 @@ def test_a_segment_is_gone_along_once_and_within_its_limits(
 
 def test_the_wanted_end_speed_is_met_where_it_can_be() -> None:
     ramps = np.zeros(REGISTERS)
+    set_one_piece(ramps, 100.0, 10.0)
     plan_ramps(ramps, 0.0, 100.0, 20.0, 10.0, 5.0, 0.0)
     # 20 mm up to 20 mm/s, 18.75 mm down to 5 mm/s, 61.25 mm between.
     assert ramps[[SPEED_IN, SPEED_PEAK, SPEED_OUT]].tolist() == [0.0, 20.0, 5.0]
     assert ramps[[TIME_IN, TIME_CRUISE, TIME_OUT]].tolist() == [2.0, 61.25 / 20.0, 1.5]
+    set_one_piece(ramps, 0.2, 10.0)
     plan_ramps(ramps, 0.0, 0.2, 20.0, 10.0, 5.0, 0.0)
     assert ramps[SPEED_OUT] == 2.0  # sqrt(2 * 10 * 0.2): what is reached
+    set_one_piece(ramps, 0.6, 10.0)
     plan_ramps(ramps, 4.0, 0.6, 20.0, 10.0, 0.0, 0.0)
     assert ramps[SPEED_OUT] == 2.0  # sqrt(16 - 12): what is left
 
 
-def test_a_halt_stops_on_the_way_if_there_is_room() -> None:
-    ramps = np.zeros(REGISTERS)
-    plan_halt(ramps, 10.0, 100.0, 50.0, 3.0)
-    assert ramps_duration(ramps) == 0.2
-    assert ramps_at(ramps, 0.2, 0.0) == (4.0, 0.0)
-    plan_halt(ramps, 10.0, 0.75, 50.0, 3.0)
-    assert ramps_at(ramps, ramps_duration(ramps), 0.0) == (3.75, 5.0)
+def test_a_halt_needs_its_way_with_what_a_corner_leaves() -> None:
+    assert halting_distance(10.0, 50.0, 0.0, 0.7) == 1.0
+    assert halting_distance(10.0, 50.0, 0.5, 0.0) == 1.0
+    # With 30 of 50 mm/s2 for 0.7 mm: 100 - 42 are left, which 0.58 mm take off.
+    assert halting_distance(10.0, 50.0, 0.7, 0.4) == pytest.approx(1.28)
+    assert halting_distance(6.0, 50.0, 0.7, 0.4) == pytest.approx(0.6)
 
 
 def test_a_pause_stands_still() -> None:

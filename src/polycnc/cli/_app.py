@@ -9,6 +9,7 @@ import typer
 from polycnc import __version__
 from polycnc.cli import _check, _conformance, _machine, _post, _run, _sap
 from polycnc.cli._errors import end_on_termination, guarded
+from polycnc.cli._output import print_remarks
 
 app = typer.Typer(
     name="polycnc",
@@ -54,5 +55,6 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a terminal may lack a character of a file name
     if "scipy" not in sys.modules:
         sys.modules["scipy"] = None  # type: ignore[assignment]  # numba would load it: 0.3 s, for nothing here
+    print_remarks()
     end_on_termination()
     app(prog_name="polycnc")

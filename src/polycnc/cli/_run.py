@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say, say_error, say_if_cold
+from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say, say_error
 
 if TYPE_CHECKING:
     import numpy as np
@@ -78,7 +78,6 @@ def run_command(
             sinks.append(stack.enter_context(runner.TraceWriter(trace, config, servo)).add)
         if servo:
             _say_if_ideal(config)
-        say_if_cold(every_cycle=servo or bool(sinks))
 
         def rows(piece: Floats) -> None:
             for sink in sinks:

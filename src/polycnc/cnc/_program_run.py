@@ -297,7 +297,7 @@ class ProgramRun:
             most = self.before_cycles(cycles - done) or cycles - done
             if moving and self._state not in (RunState.ACTIVE, RunState.HOLD):
                 break
-            ran = self.machine.advance(1 if condition is not None else most)
+            ran = self.machine.advance(1 if condition is not None else most, until=int(clock["mask"]))
             done += ran
             self.after_cycles(ran)
             if moving and self._state not in (RunState.ACTIVE, RunState.HOLD):

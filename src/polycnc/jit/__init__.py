@@ -5,12 +5,14 @@ checkout, a reinstallation and a copied cache compile nothing, nor does a change
 """
 
 from polycnc.jit._cache import FILES
-from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, is_cold, versions
+from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, versions
 from polycnc.jit._files import CACHE_FOLDER, Files
+from polycnc.jit._notice import COMPILING
 from polycnc.jit._reach import Fingerprints, NotKnownError
 
 __all__ = [
     "CACHE_FOLDER",
+    "COMPILING",
     "FILES",
     "OPEN_INTERNALS",
     "Files",
@@ -19,6 +21,5 @@ __all__ = [
     "allocating",
     "compiled",
     "entry",
-    "is_cold",
     "versions",
 ]

@@ -100,10 +100,6 @@ class Files:
             with contextlib.suppress(OSError):
                 self._sweep(family)
 
-    def exists(self, stem_begin: str) -> bool:
-        """Tell whether there is a file with this beginning of its stem."""
-        return self._folder is not None and any(self._folder.glob(f"{stem_begin}*.nbc"))
-
     def lock(self, stem: str) -> Lock:
         """Wait until no other process makes this file, and keep others from making it until released."""
         if self._folder is None:

@@ -19,7 +19,7 @@ from polycnc.kernel._append import (
     append_wait,
 )
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
-from polycnc.kernel._jit import compiled, entry, is_cold
+from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import AxisLimits, make_limits
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._path import (
@@ -161,7 +161,6 @@ __all__ = [
     "free_slots",
     "give_to_path",
     "give_to_point_to_point",
-    "is_cold",
     "make_limits",
     "make_paths",
     "make_segments",

@@ -32,16 +32,19 @@ from polycnc.kernel._path import (
 from polycnc.kernel._ramps import (
     FROM_S,
     LENGTH,
+    MOST_SHARE,
     SPEED_OUT,
     SPEED_PEAK,
     TIME_CRUISE,
     TIME_IN,
     Floats,
-    plan_halt,
+    beside_corner,
+    halting_distance,
     plan_pause,
     plan_ramps,
     ramps_at,
     ramps_duration,
+    set_pieces,
 )
 from polycnc.kernel._segments import RAPID, TURN, WAIT, WAIT_EVENT, Segments
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
@@ -71,15 +74,16 @@ def _account_time(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
 
 
 @compiled
-def _leave(seg: Segments, paths: Paths, g: int, seconds: float, share: float) -> None:
-    """Go on to the next segment after `seconds` in this one, through a corner that takes `share`."""
+def _leave(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
+    """Go on to the next segment after `seconds` in this one."""
     path, totals = paths.row[g], paths.totals[g]
     row = seg.row[slot(paths, g, path["head"])]
     _account_time(seg, paths, g, seconds)
     totals[SEGMENTS] += 1.0
     if not row["flags"] & TURN:  # degrees are no path length
         totals[RAPID_LENGTH if row["flags"] & RAPID else FEED_LENGTH] += row["length"]
-    path["entry_share"] = share
+    path["entry_share"] = 0.0
+    path["entry_zone"] = 0.0
     path["head"] += 1
 
 
@@ -93,7 +97,7 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
         if is_held(path, seg.row[k]) or seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
             break
         event = int(seg.geo[k, WAIT_EVENT])
-        _leave(seg, paths, g, 0.0, 0.0)
+        _leave(seg, paths, g, 0.0)
         if event >= 0:
             path["event"] = event
             return EVENT
@@ -101,8 +105,23 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
 
 
 @compiled
-def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead: float) -> None:
-    """Plan the segment at `head` from path length `s` on, entered with `speed` `lead` seconds ago."""
+def _enter(seg: Segments, paths: Paths, g: int, speed: float, share: float, dt: float) -> None:
+    """Note what the segment at `head` gives up near its start, which is passed with `speed`."""
+    path = paths.row[g]
+    row = seg.row[slot(paths, g, path["head"])]
+    path["entry_share"] = share
+    if share > 0.0:
+        path["entry_zone"] = beside_corner(speed, row["accel"], dt, row["length"])
+
+
+@compiled
+def _plan_from(
+    seg: Segments, paths: Paths, g: int, speed: float, s: float, lead: float, most: float, dt: float
+) -> None:
+    """Plan the segment at `head` from path length `s` on, entered with `speed` `lead` seconds ago.
+
+    `most` is the highest speed at its end.
+    """
     path, ramps = paths.row[g], paths.ramps[g]
     count = int(path["head"])
     k = slot(paths, g, count)
@@ -112,11 +131,37 @@ def _plan_from(seg: Segments, paths: Paths, g: int, speed: float, s: float, lead
     path["pending"] = 0
     if row["kind"] == WAIT:
         plan_pause(ramps, seg.geo[k, GEO_WAIT_S])
-    elif is_held(path, row) or row["cap"] <= 0.0:
-        plan_halt(ramps, speed, row["length"] - s, row["accel"], s)
     else:
         out = row["out"] if path["depth"] == 0 else window_speed(seg, paths, g, count)
-        plan_ramps(ramps, speed, row["length"] - s, row["cap"], row["accel"], out, s)
+        out = min(out, most)
+        length = row["length"] - s
+        if is_held(path, row) or row["cap"] <= 0.0:
+            needed = halting_distance(speed, row["accel"], path["entry_zone"] - s, path["entry_share"])
+            through = min(speed, max(out, row["bound"])) if needed > length else 0.0
+            _plan_pieces(path, row, ramps, speed, s, min(needed, length), speed, through, 0.0, dt)
+        else:
+            _plan_pieces(path, row, ramps, speed, s, length, row["cap"], out, out, dt)
+            if ramps[SPEED_OUT] > out and row["bound"] > out:  # too late to brake down to a lower override
+                _plan_pieces(path, row, ramps, speed, s, length, row["cap"], row["bound"], out, dt)
+
+
+@compiled
+def _plan_pieces(
+    path: np.void,
+    row: np.void,
+    ramps: Floats,
+    speed: float,
+    s: float,
+    length: float,
+    cap: float,
+    through: float,
+    out: float,
+    dt: float,
+) -> None:
+    """Plan `length` from `s` on to speed `out`, ready to pass the corner there with up to `through`."""
+    zone, share, accel = path["entry_zone"] - s, path["entry_share"], row["accel"]
+    set_pieces(ramps, speed, length, accel, through, zone, share, row["yield_before"], dt)
+    plan_ramps(ramps, speed, length, cap, accel, out, s)
 
 
 @compiled
@@ -137,7 +182,8 @@ def in_ramp(paths: Paths, g: int, t: float) -> bool:
 def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     """Plan the running segment anew from where the path stands, unless the next sample is beyond it anyway.
 
-    An S-shaped ramp that is under way is finished first, so that the acceleration does not step.
+    An S-shaped ramp that is under way is finished first, so that the acceleration does not step. A corner less than a
+    cycle away is not passed faster than was planned before.
     """
     path, ramps = paths.row[g], paths.ramps[g]
     row = seg.row[slot(paths, g, path["head"])]
@@ -149,7 +195,12 @@ def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     elif ramps_duration(ramps) - t > dt or ends_within(row, ramps):
         _account_time(seg, paths, g, t)
         s, speed = ramps_at(ramps, t, path["jerkrel"])
-        _plan_from(seg, paths, g, speed, min(s, row["length"]), 0.0)
+        s = min(s, row["length"])
+        planned = 0.0 if ends_within(row, ramps) else ramps[SPEED_OUT]
+        _plan_from(seg, paths, g, speed, s, 0.0, math.inf, dt)
+        if ramps[SPEED_OUT] > planned and ramps_duration(ramps) < dt:
+            # The last cycle before the corner has begun, and gave up no more than the speed planned then needs.
+            _plan_from(seg, paths, g, speed, s, 0.0, planned, dt)
 
 
 @compiled
@@ -162,10 +213,10 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         if path["head"] >= path["prepared"] or is_held(path, seg.row[slot(paths, g, path["head"])]):
             return STILL
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, 0.0, 0.0)
+        _plan_from(seg, paths, g, 0.0, 0.0, 0.0, math.inf, dt)
     elif path["state"] == HELD and not is_held(path, seg.row[slot(paths, g, path["head"])]):
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0)
+        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, math.inf, dt)
     elif path["state"] != RUNNING:
         return STILL
     path["cycles"] += 1
@@ -187,15 +238,16 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
                 _account_time(seg, paths, g, t)
             else:
                 path["state"] = READY
-                _leave(seg, paths, g, t, 0.0)
+                _leave(seg, paths, g, t)
             return RESTED
-        _leave(seg, paths, g, duration, row["share"])
+        share = min(MOST_SHARE, row["yield_after"] * speed)
+        _leave(seg, paths, g, duration)
         if path["head"] >= path["prepared"]:  # a prescribed end speed, and nothing to go on with
             path["state"] = READY
-            path["entry_share"] = 0.0
             return RESTED
         t -= duration
-        _plan_from(seg, paths, g, speed, 0.0, t)
+        _enter(seg, paths, g, speed, share, dt)
+        _plan_from(seg, paths, g, speed, 0.0, t, math.inf, dt)
 
 
 @compiled

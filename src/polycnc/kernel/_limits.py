@@ -2,10 +2,11 @@
 
 What an axis does in two neighbouring cycles weighs the motion with a triangle two cycles wide. A corner's change of
 velocity must fit under it together with the ramps beside it and with the other corners nearby. It does if every
-change is at most `share / CORNER_MARGIN` of what the axis' acceleration gives in a cycle, or in the time to the
-next corner where that is shorter, and if the ramps on both sides leave that share alone. On a curve the
-centripetal and the tangential part share what is left after the corners' fixed part: as a circle where they are a
-quarter turn apart (arcs), as a sum elsewhere (splines). See docs/explanation/motion.md.
+change is at most a part (over CORNER_MARGIN) of what the axis' acceleration gives in a cycle, or in the time to the
+next corner where that is shorter, and if the ramps leave that part alone within a cycle of the corner. An axis that the
+ramps do not use up has that much for the corner anyway. On a curve the centripetal and the tangential part share what
+is left after the corners' fixed part: as a circle where they are a quarter turn apart (arcs), as a sum elsewhere
+(splines). See docs/explanation/motion.md.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ import numpy.typing as npt
 from polycnc.kernel._circle3d import circle3d_tangent_bound
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
+from polycnc.kernel._ramps import MOST_SHARE, beside_corner
 from polycnc.kernel._segments import (
     ARC,
     CIRCLE3D,
@@ -39,14 +41,14 @@ from polycnc.kernel._segments import (
 )
 from polycnc.kernel._spline import Splines, spline_bounds_between
 
-CORNER_SHARE = 0.5  # highest part of an axis' acceleration that a corner between lines may use
 CURVE_CORNER_SHARE = 0.1  # the same beside a curve, which needs the rest for itself
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
 CENTRIPETAL_SHARE = 0.75  # highest part that the curvature of an arc may use
 SPLINE_CENTRIPETAL_SHARE = 0.45
 CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
-LEAST_PART = 0.5  # of `full_accel` is left whatever the corners and the override turn out to be
+LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
+WORTH = 0.5  # of a corner's speed is what the ramp beside it may lose; more and stopping would be as good
 
 
 class AxisLimits(NamedTuple):
@@ -104,7 +106,7 @@ def line_speed(seg: Segments, k: int, limits: AxisLimits) -> float:
 def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work: Floats) -> None:
     """Set `cap` and `full_accel` of segment `k`: feed times override, within what every axis allows.
 
-    `work` is scratch, [2, n].
+    `work` is scratch, [3, n].
     """
     row = seg.row[k]
     kind = row["kind"]
@@ -201,56 +203,258 @@ def _fitting_square(allowed: float, change: float, row: np.void) -> float:
 
 
 @compiled
+def _lasts(row: np.void, speed: float, time: float) -> bool:
+    """Tell whether a segment takes at least `time`, one of its ends being passed with `speed`."""
+    return bool(row["length"] >= (speed + 0.5 * row["full_accel"] * time) * time)
+
+
+@compiled
+def _yielded(corner: float, used: float) -> float:
+    """Return the part of its ramps a line gives away to an axis that needs `corner` and has `used` of its own."""
+    return max(0.0, 1.0 - (1.0 - corner) / used) if used > 1.0 - corner else 0.0
+
+
+@compiled
+def _yielded_alone(step: float, less: float) -> float:
+    """Return what both lines give away at a corner that is two cycles from any other.
+
+    `step` is the axis' change of velocity over what its acceleration gives in a cycle. One line uses the axis up, the
+    other uses `less` of it, so a part of the triangle is free: with q of it between the sample and the corner, the
+    need is q step - q^2 (1 - less) / 2, and what is given away counts at least (1 + less q) / 2.
+    """
+    most = 2.0 * step / (1.0 + less)
+    return min(most, step * step / (1.0 - less)) if less < 1.0 else most
+
+
+@compiled
 def limit_junction(
-    seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats
+    seg: Segments, k: int, following: int, limits: AxisLimits, jerkrel: float, dt: float, work: Floats
 ) -> None:
-    """Set `junction` and `share` at the end of segment `k`, which segment `following` continues."""
+    """Set `junction`, `yield_before` and `yield_after` of the end of segment `k`, which `following` continues.
+
+    `work` is scratch, [3, n]: first the tangents, then what `_give_way` takes.
+    """
     row, after = seg.row[k], seg.row[following]
     row["junction"] = 0.0
-    row["share"] = 0.0
+    row["yield_before"] = 0.0
+    row["yield_after"] = 0.0
     if row["flags"] & STOP or row["kind"] == WAIT or after["kind"] == WAIT:
         return
     segment_tangent(seg, k, 1.0, work[0])
     segment_tangent(seg, following, 0.0, work[1])
     curved = is_curved(seg, k) or is_curved(seg, following)
-    most = CURVE_CORNER_SHARE if curved else CORNER_SHARE
     speed = min(row["cap"], after["cap"])
-    square = speed * speed
     corner = False
+    needs = False
+    accel_before, accel_after = row["full_accel"], after["full_accel"]
     for i in range(work.shape[1]):
         change = abs(work[1, i] - work[0, i])
+        acceleration = limits.acceleration[i]
+        work[2, i] = 0.0
         if change <= STRAIGHT:
-            work[0, i] = 0.0
             continue
-        corner = True
         jump = limits.jump[i]
-        allowed = (jump / dt if jump >= 0.0 else most * limits.acceleration[i]) / CORNER_MARGIN
-        top = jump if jump >= 0.0 else allowed * dt
-        # What share of its acceleration the axis needs per speed and time, for the second pass.
-        work[0, i] = change / limits.acceleration[i] if jump < 0.0 else 0.0
-        if allowed < math.inf:
-            square = min(square, top * top / (change * change))
-            square = min(square, _fitting_square(allowed, change, row))
-            square = min(square, _fitting_square(allowed, change, after))
+        if jump >= 0.0:
+            corner = True
+            work[2, i] = -change
+            if jump < speed * change:
+                speed = jump / change
+        elif acceleration < math.inf:
+            corner = True
+            needs = True
+            inverse = 1.0 / acceleration
+            before = min(1.0, abs(work[0, i]) * accel_before * inverse) if work[0, i] != 0.0 else 0.0
+            behind = min(1.0, abs(work[1, i]) * accel_after * inverse) if work[1, i] != 0.0 else 0.0
+            most = CURVE_CORNER_SHARE if curved else 1.0 - max(before, behind) * (1.0 - MOST_SHARE)
+            need = change * inverse
+            if most * dt < speed * need:
+                speed = most * dt / need
+            work[0, i], work[1, i], work[2, i] = before, behind, need
+            continue
+        work[0, i], work[1, i] = 0.0, 0.0
     if corner:
-        speed = math.sqrt(square)
+        near = not (_lasts(row, speed, CORNER_MARGIN * dt) and _lasts(after, speed, CORNER_MARGIN * dt))
+        if near:
+            speed = _speed_between(seg, k, following, limits, dt, work, speed)
+        if needs and speed > 0.0:
+            speed = _give_way(seg, k, following, jerkrel, dt, work, speed, near)
     row["junction"] = speed
-    need = 0.0
-    for i in range(work.shape[1]):
-        need = max(need, work[0, i])
-    if corner and need > 0.0 and speed > 0.0:
-        row["share"] = CORNER_MARGIN * need * speed / min(dt, min(_gap_s(row, speed), _gap_s(after, speed)))
 
 
 @compiled
-def share_acceleration(seg: Segments, k: int, share_before: float, jerkrel: float) -> None:
-    """Set `accel` of segment `k` to what the corners at its two ends leave; a curve has put their part aside.
+def _speed_between(
+    seg: Segments, k: int, following: int, limits: AxisLimits, dt: float, work: Floats, speed: float
+) -> float:
+    """Return the highest speed up to `speed` where the next corner is less than a cycle away.
 
-    An S-shaped ramp has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
+    `work` holds what each axis uses on both sides and the time it needs per speed, or minus its change where it may jump.
+    """
+    row, after = seg.row[k], seg.row[following]
+    curved = is_curved(seg, k) or is_curved(seg, following)
+    square = speed * speed
+    for i in range(work.shape[1]):
+        if work[2, i] > 0.0:
+            most = CURVE_CORNER_SHARE if curved else 1.0 - max(work[0, i], work[1, i]) * (1.0 - MOST_SHARE)
+            need = work[2, i]
+        elif work[2, i] < 0.0:
+            most = limits.jump[i] / dt
+            need = -work[2, i]
+        else:
+            continue
+        square = min(square, _fitting_square(most / CORNER_MARGIN, need, row))
+        square = min(square, _fitting_square(most / CORNER_MARGIN, need, after))
+    return math.sqrt(square)
+
+
+@compiled
+def _give_way(
+    seg: Segments, k: int, following: int, jerkrel: float, dt: float, work: Floats, speed: float, near: bool
+) -> float:
+    """Set what the lines beside a corner give away to it; return its speed, `speed` or what is worth it.
+
+    `work` holds what each axis uses on both sides and the time it needs per speed; `near`: the next corner is.
+    """
+    row, after = seg.row[k], seg.row[following]
+    free_before, free_after = is_curved(seg, k), is_curved(seg, following)  # a curve has put its part aside
+    long_before, long_after = True, True
+    time = dt
+    if near:
+        long_before, long_after = _lasts(row, speed, dt), _lasts(after, speed, dt)
+        time = min(dt, min(_gap_s(row, speed), _gap_s(after, speed)) / CORNER_MARGIN)
+    before = 0.0 if free_before else _given(work, 0, speed, time)
+    behind = 0.0 if free_after else _given(work, 1, speed, time)
+    loses = long_before and before * row["full_accel"] * dt > WORTH * speed
+    loses = loses or (long_after and behind * after["full_accel"] * dt > WORTH * speed)
+    if loses:
+        alone = speed if free_before or free_after else _speed_alone(row, after, dt, work, speed)
+        far = not (free_before or free_after)
+        far = far and _lasts(row, alone, 2.0 * dt) and _lasts(after, alone, 2.0 * dt)
+        if far:
+            speed = alone
+        else:
+            if long_before and not free_before:
+                speed = _worth_speed(row, after, work, 0, dt, speed)
+            if long_after and not free_after:
+                speed = _worth_speed(after, row, work, 1, dt, speed)
+        if speed <= 0.0:
+            return 0.0
+        time = min(dt, min(_gap_s(row, speed), _gap_s(after, speed)) / CORNER_MARGIN)
+        before, behind = 0.0, 0.0
+        for i in range(work.shape[1]):
+            if work[2, i] > 0.0:
+                step = work[2, i] * speed
+                given, taken = _yielded(step / time, work[0, i]), _yielded(step / time, work[1, i])
+                if far:
+                    both = _yielded_alone(step / dt, min(work[0, i], work[1, i]))
+                    if both < max(given, taken):
+                        given, taken = both, both
+                before, behind = max(before, given), max(behind, taken)
+        before = 0.0 if free_before else before
+        behind = 0.0 if free_after else behind
+    if near:
+        if not (free_before or _lasts(row, speed, dt) or _saves_time(row, speed, before, jerkrel, dt)):
+            return 0.0
+        if not (free_after or _lasts(after, speed, dt) or _saves_time(after, speed, behind, jerkrel, dt)):
+            return 0.0
+    row["yield_before"] = before / speed
+    row["yield_after"] = behind / speed
+    return speed
+
+
+@compiled
+def _given(work: Floats, side: int, speed: float, time: float) -> float:
+    """Return the part of its ramps that the line on one side gives to a corner within `time` of the next."""
+    share = 0.0
+    for i in range(work.shape[1]):
+        if work[2, i] > 0.0:
+            share = max(share, _yielded(work[2, i] * speed / time, work[side, i]))
+    return share
+
+
+@compiled
+def _speed_alone(row: np.void, after: np.void, dt: float, work: Floats, speed: float) -> float:
+    """Return the highest speed up to `speed` at a corner far from others that costs no more than WORTH of it."""
+    accel = max(row["full_accel"], after["full_accel"])
+    for i in range(work.shape[1]):
+        if work[2, i] > 0.0:
+            crude = min(
+                _worth_of_axis(row, work[2, i], work[0, i], dt, speed),
+                _worth_of_axis(after, work[2, i], work[1, i], dt, speed),
+            )
+            if crude < speed:
+                step = work[2, i] / dt
+                less = min(work[0, i], work[1, i])
+                speed = min(speed, max(crude, WORTH * (1.0 - less) / (step * step * accel * dt)))
+    return speed
+
+
+@compiled
+def _worth_of_axis(row: np.void, need: float, used: float, dt: float, speed: float) -> float:
+    """Return the highest speed at which a line gives one axis no more than WORTH of it, by a full cycle each way."""
+    accel = row["full_accel"]
+    if _yielded(need * speed / dt, used) * accel * dt <= WORTH * speed:
+        return speed
+    return float((1.0 - used) / (need / dt - used * WORTH / (accel * dt)))
+
+
+@compiled
+def _worth_speed(row: np.void, other: np.void, work: Floats, side: int, dt: float, speed: float) -> float:
+    """Return the highest speed up to `speed` at which line `row`, longer than a cycle, loses no more than WORTH of it.
+
+    It loses what it gives away of its acceleration for a cycle.
+    """
+    time = min(dt, _gap_s(other, speed) / CORNER_MARGIN)
+    accel = row["full_accel"]
+    lowest = speed
+    for i in range(work.shape[1]):
+        need, used = work[2, i], work[side, i]
+        if need <= 0.0:
+            continue
+        if time == dt:
+            lowest = min(lowest, _worth_of_axis(row, need, used, dt, speed))
+        elif _yielded(need * speed / time, used) * accel * dt > WORTH * speed:
+            # So slow that the way to the next corner takes as long as the change of velocity needs.
+            longer = CORNER_MARGIN * need * accel * dt / WORTH
+            slow = other["length"] / longer - 0.5 * other["full_accel"] * longer
+            lowest = float(min(lowest, max(0.0, slow)))
+    return lowest
+
+
+@compiled
+def _saves_time(row: np.void, speed: float, share: float, jerkrel: float, dt: float) -> bool:
+    """Tell whether a short line from rest to a corner at `speed` takes no longer than from rest to rest.
+
+    At rest at both ends it takes a cycle at least.
+    """
+    length, accel = row["length"], row["full_accel"] / (1.0 + jerkrel)
+    give = share * accel * length / speed  # what is given away grows with the speed that is reached
+    reached = min(speed, math.sqrt(give * give + 2.0 * accel * length) - give)
+    less = accel * (1.0 - share * reached / speed)
+    time = reached / less + (length - 0.5 * reached * reached / less) / reached
+    return bool(time <= max(dt, 2.0 * math.sqrt(length / accel)))
+
+
+@compiled
+def share_acceleration(
+    seg: Segments, k: int, before: float, yield_before: float, jerkrel: float, dt: float
+) -> None:
+    """Set `accel` of segment `k`, and `gain`: what its ramps add to the squared speed beside both its corners.
+
+    `before` is the junction at its start, of which the segment gives `yield_before` per speed to that corner. An S-shaped
+    ramp has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
     """
     row = seg.row[k]
-    left = 1.0 if is_curved(seg, k) else 1.0 - max(share_before, row["share"])
-    row["accel"] = row["full_accel"] * left / (1.0 + jerkrel)
+    accel = row["full_accel"] / (1.0 + jerkrel)
+    length = row["length"]
+    row["accel"] = accel
+    row["gain"] = 2.0 * accel * length
+    first, last = yield_before * before, row["yield_before"] * row["junction"]
+    if first > 0.0 or last > 0.0:
+        from_start = beside_corner(before, accel, dt, length) if first > 0.0 else 0.0
+        to_end = beside_corner(row["junction"], accel, dt, length) if last > 0.0 else 0.0
+        both = max(0.0, from_start + to_end - length)
+        lost = first * (from_start - both) + last * (to_end - both) + max(first, last) * both
+        row["gain"] -= 2.0 * accel * lost
 
 
 @compiled

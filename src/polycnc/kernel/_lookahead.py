@@ -37,13 +37,16 @@ def limit_queue(
         limit_segment(seg, slot(paths, g, count), limits, row, work)
     for count in range(first_end, tail):
         k = slot(paths, g, count)
+        seg.row[k]["bound"] = 0.0
         if count + 1 < tail:
-            limit_junction(seg, k, slot(paths, g, count + 1), limits, dt, work)
+            limit_junction(seg, k, slot(paths, g, count + 1), limits, jerkrel, dt, work)
         else:
             seg.row[k]["junction"] = 0.0
-            seg.row[k]["share"] = 0.0
-        before = seg.row[slot(paths, g, count - 1)]["share"] if count > head else row["entry_share"]
-        share_acceleration(seg, k, before, jerkrel)
+            seg.row[k]["yield_before"] = 0.0
+            seg.row[k]["yield_after"] = 0.0
+        last = seg.row[slot(paths, g, max(count - 1, head))]
+        entered = last["junction"] if count > head else 0.0  # what lies before the head is planned no more
+        share_acceleration(seg, k, entered, last["yield_after"], jerkrel, dt)
 
 
 @compiled
@@ -65,8 +68,9 @@ def _last_limit(row: np.void, closed: bool) -> float:
 @compiled
 def _last_gain(row: np.void, closed: bool, jerkrel: float) -> float:
     """Return how much the last segment known can take off the squared speed, whatever corner will follow it."""
-    accel = row["accel"] if closed or row["flags"] & STOP else least_accel(row, jerkrel)
-    return float(2.0 * accel * row["length"])
+    if closed or row["flags"] & STOP:
+        return float(row["gain"])
+    return float(2.0 * least_accel(row, jerkrel) * row["length"])
 
 
 @compiled
@@ -96,7 +100,7 @@ def plan_path(seg: Segments, paths: Paths, g: int) -> None:
         else:
             limit = end_limit(row)
             limit *= limit
-            gain = 2.0 * row["accel"] * row["length"]
+            gain = row["gain"]
             out = min(limit, rest)
             if not met and out == min(limit, more):
                 met = True
@@ -121,7 +125,7 @@ def window_speed(seg: Segments, paths: Paths, g: int, count: int) -> float:
     for other in range(last - 1, count, -1):
         row = seg.row[slot(paths, g, other)]
         limit = end_limit(row)
-        rest = min(limit * limit, rest) + 2.0 * row["accel"] * row["length"]
+        rest = min(limit * limit, rest) + row["gain"]
     return min(end_limit(seg.row[slot(paths, g, count)]), math.sqrt(rest))
 
 

@@ -50,7 +50,11 @@ PATH_ROW = np.dtype(
         ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
         ("tolerance", np.float64),  # how far the path may leave a corner between lines appended from now on
         ("lead", np.float64),  # time into the running segment at sample 0
-        ("entry_share", np.float64),  # what the corner last passed takes of the acceleration
+        (
+            "entry_share",
+            np.float64,
+        ),  # part of its acceleration that the running segment gives up near its start
+        ("entry_zone", np.float64),  # up to which path length in it
         ("speed", np.float64),  # path speed now
         ("tag", np.int64),  # tag of the segment that gave the last setpoint
         ("flags", np.int8),  # of that segment

@@ -84,7 +84,7 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
 
 @entry
 def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
-    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [2, n].
+    """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
 
     If the last segment before is running, the path goes on through its end, unless that is too close. With a
     path tolerance a line waits for the one after it, or for `closed`.
@@ -105,12 +105,14 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
 
 @compiled
 def _lower_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> None:
-    """Lower the cap of a segment that keeps all else it was planned with."""
+    """Lower the cap of a segment that keeps all else it was planned with; an override of 0 holds it instead."""
     row = seg.row[k]
     if row["flags"] & RAPID:
-        row["cap"] = min(row["cap"], overridden_rapid(line_speed(seg, k, limits), path))
+        cap = overridden_rapid(line_speed(seg, k, limits), path)
     else:
-        row["cap"] = min(row["cap"], feed_in_force(row, path))
+        cap = feed_in_force(row, path)
+    if cap > 0.0:
+        row["cap"] = min(row["cap"], cap)
 
 
 @entry
@@ -151,11 +153,14 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
     accel = seg.row[k]["full_accel"]
-    for count in range(head, first):
-        _lower_cap(seg, slot(paths, g, count), limits, path)
+    for count in range(head, min(first, last)):
+        passed = slot(paths, g, count)
+        seg.row[passed]["bound"] = max(seg.row[passed]["bound"], seg.row[passed]["out"])
+        _lower_cap(seg, passed, limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
+        seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["full_accel"] = accel
     for count in range(head, min(first, last - 1)):
         row, after = seg.row[slot(paths, g, count)], seg.row[slot(paths, g, count + 1)]

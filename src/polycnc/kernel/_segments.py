@@ -47,11 +47,17 @@ SEGMENT_ROW = np.dtype(
         ("feed", np.float64),  # programmed path speed, inf for rapids
         ("end_speed", np.float64),  # prescribed speed at the end, or negative: the look-ahead decides
         ("cap", np.float64),  # highest path speed that feed and axes allow
-        ("full_accel", np.float64),  # path acceleration that the axes allow, before corners take their share
+        ("full_accel", np.float64),  # path acceleration that the axes allow
         ("accel", np.float64),  # mean acceleration of its ramps
         ("junction", np.float64),  # highest speed through the end
-        ("share", np.float64),  # part of the acceleration that the corner at the end uses up
+        ("yield_before", np.float64),  # part of `accel` given up near its end, per speed through it
+        ("yield_after", np.float64),  # the same of the following segment near its start
+        ("gain", np.float64),  # by how much its ramps can change the squared speed, at the least
         ("out", np.float64),  # planned speed at the end
+        (
+            "bound",
+            np.float64,
+        ),  # earlier planned speed there, if the path may be too close to reach a lower one
         ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
         ("kind", np.int8),
         ("flags", np.int8),

@@ -70,7 +70,7 @@ class KernelState(NamedTuple):
     plant: Plant
     switches: Switches
     recorder: Recorder
-    work: Floats  # [2, n] scratch
+    work: Floats  # [3, n] scratch
 
 
 def make_state(
@@ -113,5 +113,5 @@ def make_state(
         plant=make_plant(axes),
         switches=make_switches(axes),
         recorder=make_recorder(record_cycles, axes, record_actual),
-        work=np.zeros((2, axes)),
+        work=np.zeros((3, axes)),
     )

@@ -10,6 +10,7 @@ from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace
 from polycnc.runner._run import check, program_text, run
 from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
 from polycnc.runner._verify import Violation, verify_trace
+from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
     from polycnc.runner._post import PostResult, post_file
@@ -37,6 +38,7 @@ __all__ = [
     "Trace",
     "TraceWriter",
     "Violation",
+    "WallClock",
     "check",
     "check_plot_file",
     "counted",

@@ -21,11 +21,15 @@ LED_PLACES = {  # on the board: green, yellow, red
 _POWER_UP = int(Ifs.pfe | Ifs.scpfe)
 
 
+SERIAL_NUMBER = "80010001"
+"""Ruling: the serial number of a board that has been given none."""
+
+
 class EnvironmentStrings:
     """Named texts that are stored on the board, for getEnvStr."""
 
     def __init__(self, strings: Mapping[str, str] | None = None) -> None:
-        self._strings: dict[str, str] = {}
+        self._strings = {"SerialNumber": SERIAL_NUMBER}
         for name, value in (strings or {}).items():
             self.write(name, value)
 
@@ -66,6 +70,15 @@ class InterfaceStatus:
     def __init__(self) -> None:
         self.word = 0
         self._hardware = _POWER_UP
+
+    @property
+    def bits(self) -> tuple[int, int]:
+        """What the hardware has collected, and the register."""
+        return int(self._hardware), int(self.word)
+
+    @bits.setter
+    def bits(self, bits: tuple[int, int]) -> None:
+        self._hardware, self.word = bits
 
     def start_firmware(self) -> None:
         """Take over what the hardware has collected and erase it there, as BootFile does."""

@@ -50,18 +50,27 @@ class Library:
         self.messages = Messages(show)
         self.clock = clock
         self.lines: dict[InstalledBoard, InterruptLine] = {}
+        self._said = False
 
     def installed(self) -> InstalledBoard | None:
         """Return the selected board if it can be used: there, booted and initialised."""
         slot = self.application.slot
         if slot is None or self.application.status() is not Status.DONE:
+            self._say_that_nothing_happens(slot)
             return None
         return slot.board if isinstance(slot.board, InstalledBoard) else None
+
+    def _say_that_nothing_happens(self, slot: Slot | None) -> None:
+        """Log, once, that calls do not reach a board: a program that polls it would wait for ever without a word."""
+        if not self._said:
+            self._said = True
+            why = "there is no board" if slot is None else "the program has not called InitMcuSystem3"
+            _log.warning("calls do not reach a board and do nothing: %s", why)
 
     def let_time_pass(self, board: Board) -> None:
         """Do what a status call does to the time of the board."""
         if self.clock is not None:
-            self.clock.run(partial(board.advance, until=EVENTS))
+            self.clock.run(board, until=EVENTS)
 
 
 _library = Library(Pc(), ".", (), None, _log.warning)
@@ -85,7 +94,7 @@ def attach(
     """Put boards into the PC, numbered from 0, and load the library anew; return the boards' slots.
 
     `booted` boards are as mcfg.exe leaves them, with operating system and system file; else BootFile is the first
-    call. In either case a program then calls InitMcuSystem3. `clock` says what a call that reads a status does to the
+    call. A booted board that was made without a system file takes the one that InitMcuSystem names, if it is there. In either case a program then calls InitMcuSystem3. `clock` says what a call that reads a status does to the
     board's time: `Poll(1)` lets one scan pass, `Poll(1000)` the time to the next end of a profile or interrupt but at
     most 1000 scans, `None` nothing, so that only `Board.advance` does. `folder` and `path` are the program's current
     directory and search path, `revision` is that of the operating system, `show` gets the message boxes.
@@ -128,7 +137,7 @@ def board() -> Board:
 
 
 def _in_slot(board: Board) -> InstalledBoard:
-    installed = InstalledBoard(board.config)
+    installed = InstalledBoard(board.config if board.is_described else None)
     installed.take(board)
     return installed
 

@@ -5,6 +5,7 @@ An `Application` is one program with the library loaded; it uses one board at a 
 
 from __future__ import annotations
 
+import logging
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -30,6 +31,8 @@ from polycnc.controllers.apci.pc._slots import (
     revision_numbers,
 )
 from polycnc.errors import ConfigurationError, UsageError
+
+_log = logging.getLogger("polycnc.apci")
 
 ELF_MAGIC = b"\x7fELF"
 SYSTEM_FILE = "system.dat"
@@ -198,9 +201,12 @@ class Application:
         slot = self._reach()
         for axis, record in enumerate(tsrp):
             record.an = axis
-        if not slot.sysfile_loaded:
+        defaults = slot.sysfile_loaded and not slot.board.is_described
+        if defaults or not slot.sysfile_loaded:
             loaded = self.txbf(filename) if named_only else self.txbf2(filename)
-            if loaded != TransferCode.DONE:
+            if defaults and loaded == TransferCode.CANNOT_OPEN:
+                _log.warning("there is no system file '%s': the board keeps its default parameters", filename)
+            elif loaded != TransferCode.DONE:
                 return loaded
         for axis in range(slot.board.number_of_axes):
             for name, value in slot.board.axis_parameters(axis).items():

@@ -50,6 +50,10 @@ class BootableBoard(Protocol):
     def number_of_axes(self) -> int:
         """Return the number of axis channels."""
 
+    @property
+    def is_described(self) -> bool:
+        """Tell whether somebody has said what the board is; otherwise it has defaults."""
+
     def reset(self) -> None:
         """Become as after a start of the operating system; nothing of a system file is left."""
 

@@ -12,6 +12,8 @@ from polycnc.controllers.apci.board import _move_commands as moves
 from polycnc.controllers.apci.board import _spool_commands as spooler
 from polycnc.controllers.apci.board._move_commands import Speeds
 from polycnc.controllers.apci.sap import Call, Program, Tasks
+from polycnc.controllers.apci.sap._polling import Read
+from polycnc.controllers.apci.sap._watching import arm, is_watchable, watched_by
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -167,9 +169,11 @@ class BoardHost:
         return self.board.clock.cycle_s
 
     def axis_index(self, name: str) -> int | None:
-        """Return the index of the axis called `name`, None if there is none."""
-        names = [each.upper() for each in self.board.config.axis_names]
-        return names.index(name.upper()) if name.upper() in names else None
+        """Return the index of the axis called `name`, or A1, A2, ... by its number; None if there is none."""
+        given = [each.upper() for each in self.board.config.axis_names]
+        numbered = [f"A{number}" for number in range(1, len(given) + 1)]
+        known = given if name.upper() in given else numbered
+        return known.index(name.upper()) if name.upper() in known else None
 
     def call(self, call: Call) -> None:
         """Give a command."""
@@ -261,6 +265,8 @@ class BoardTasks:
     def __init__(self, board: Board) -> None:
         self.tasks = Tasks(BoardHost(board))
         self._board = board
+        self._reads: frozenset[Read] = frozenset()
+        self._watched: list[tuple[int, int]] | None = []
         board.tasks = self
 
     def load(self, program: Program) -> None:
@@ -269,10 +275,18 @@ class BoardTasks:
 
     def scans_to_wait(self) -> float:
         """Return for how many scans no task has anything to do; infinity if they wait for profiles."""
-        sleep = self.tasks.sleep()
-        if any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
+        sleep = self.tasks.sleep(is_watchable)
+        rows = self._rows(sleep.reads)
+        if rows is None or any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
+            arm(self._board, ())
             return 0
+        arm(self._board, rows)
         return math.inf if sleep.scans is None else sleep.scans
+
+    def _rows(self, reads: frozenset[Read]) -> list[tuple[int, int]] | None:
+        if reads != self._reads:
+            self._reads, self._watched = reads, watched_by(reads)
+        return self._watched
 
     def run_scan(self) -> None:
         """Let every task do what it can within one scan."""
@@ -281,3 +295,11 @@ class BoardTasks:
     def halt(self) -> None:
         """Halt all tasks."""
         self.tasks.halt_all()
+
+    def save(self) -> list[dict[str, Any]]:
+        """Return the state of all tasks, with their programs, as plain data."""
+        return self.tasks.save()
+
+    def read_saved(self, data: Any) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back."""
+        return self.tasks.read_saved(data)

@@ -94,6 +94,10 @@ class Depths(StrictModel):
     pfifo2: Depth = Field(default=4096, description="Queue of path space 2.")
     cfifo: Depth = Field(default=4096, description="Queue of contour points.")
 
+    def of(self, fifo: int) -> int:
+        """Return the depth of queue `fifo`, numbered as the card's functions number them, in words."""
+        return (self.ififo, self.qfifo, self.pfifo1, self.pfifo2, self.cfifo)[fifo]
+
 
 class CardConfig(StrictModel):
     """A card: its axes, queues and power-on state."""
