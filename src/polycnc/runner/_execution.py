@@ -143,10 +143,10 @@ class Execution:
     def _step(self) -> None:
         target = self._target()
         clock = self.machine.state.clock[0]
-        clock["mask"] = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
+        until = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
         clock["low_water"] = self._row["planned"] - target
         while self.alarm is None and self._row["head"] < target:
-            self.machine.advance(_STEP_CYCLES)
+            self.machine.advance(_STEP_CYCLES, until=until)
             raised = int(clock["raised"])
             if raised & PATH_EVENT:
                 self._note_event()

@@ -8,15 +8,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import reset_system
+from polycnc.controllers.apci.board._board_snapshot import put_back, take_snapshot
 from polycnc.controllers.apci.board._board_variables import COMMON_VARIABLES, Tasks, Variables
+from polycnc.controllers.apci.board._command import Command
 from polycnc.controllers.apci.board._path_units import PathUnits
 from polycnc.controllers.apci.board._setup import load_parameters, set_up_plant
+from polycnc.controllers.apci.board._status import BoardStatus, board_status
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
@@ -24,20 +27,10 @@ from polycnc.controllers.apci.core._registers import OUTPUTS, ErrorReg, ModeReg
 from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, run_scans
 from polycnc.controllers.apci.core._state import BoardState, Floats, make_board_state
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
-from polycnc.machine import Clock, Way
+from polycnc.machine import Clock, Snapshot, wait
 
 LATENCY_SCANS = 2  # after which a direct command takes effect (Manual 002, 2.2.8.1)
 _AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own begins
-
-
-@dataclass(slots=True)
-class _Command:
-    """A direct command on its way."""
-
-    due: int  # clock cycles
-    axes: tuple[int, ...]
-    orders: tuple[int, ...]  # of these axes, when it was given
-    begin: Callable[[], None]
 
 
 class Board:
@@ -63,8 +56,8 @@ class Board:
         self.interrupts: list[Callable[[], None]] = []
         self.units_in_use: dict[tuple[tuple[int, ...], int, int, int], PathUnits | None] = {}
         self.planned = self.config  # the system file that was loaded last
-        self._pending: list[_Command] = []
-        self._orders = [0] * n  # a command is void when its axes have had another since
+        self.pending: list[Command] = []
+        self.orders = [0] * n  # a command is void when its axes have had another since
         set_up_plant(self)
         load_parameters(self, self.config)
 
@@ -188,54 +181,54 @@ class Board:
         """Time since the board was booted."""
         return self.clock.now_s
 
-    def command(self, axes: tuple[int, ...], begin: Callable[[], None]) -> None:
+    def command(self, axes: tuple[int, ...], begin: partial[None]) -> None:
         """Let `axes` have a direct command: no profile end from now on; `begin` is called when it takes effect."""
         for i in axes:
             row = self.state.axis[i]
             row["commanded"] += 1
             row["pe"] = row["saf"] = 0
-        orders = tuple(self._orders[i] for i in axes)
-        self._pending.append(_Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
+        orders = tuple(self.orders[i] for i in axes)
+        self.pending.append(Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
 
     def cancel_commands(self, i: int) -> None:
         """Make void what was commanded to an axis and has not taken effect."""
-        self._orders[i] += 1
+        self.orders[i] += 1
         self.state.axis[i]["commanded"] = 0
 
     def _carry_out(self) -> None:
         """Carry out the direct commands that are due."""
-        while self._pending and self._pending[0].due <= self.clock.cycles:
-            command = self._pending.pop(0)
+        while self.pending and self.pending[0].due <= self.clock.cycles:
+            command = self.pending.pop(0)
             valid = [
-                i for i, order in zip(command.axes, command.orders, strict=True) if order == self._orders[i]
+                i for i, order in zip(command.axes, command.orders, strict=True) if order == self.orders[i]
             ]
             for i in valid:
                 self.state.axis[i]["commanded"] -= 1
             if len(valid) == len(command.axes):
                 command.begin()
 
-    def advance(self, scans: int, *, until: int = 0) -> int:
-        """Run up to `scans` scans; return how many were run.
+    def advance(self, cycles: int, *, until: int | None = None) -> int:
+        """Run up to `cycles` scans; return how many were run.
 
         Fewer after a scan in which one of the attentions `until` happened (`_scan`).
         """
-        done = 0
-        while done < scans:
+        done, wanted = 0, until or 0
+        while done < cycles:
             self._carry_out()
-            mask = INTERRUPT | RESET | until
-            piece = scans - done
+            mask = INTERRUPT | RESET | wanted
+            piece = cycles - done
             if self.tasks is not None:
                 waiting = self.tasks.scans_to_wait()
                 if waiting == 0:
                     self.tasks.run_scan()
                 piece = int(min(piece, max(waiting, 1)))
                 mask |= PROFILE_END  # a task may wait for it
-            if self._pending:
-                piece = min(piece, max(self._pending[0].due - self.clock.cycles, 1))
+            if self.pending:
+                piece = min(piece, max(self.pending[0].due - self.clock.cycles, 1))
             ran = int(run_scans(self.state, self.kernel, piece, mask))
             done += ran
             self.clock.tick(ran)
-            if self._attend() & until:
+            if self._attend() & wanted:
                 break
         self._carry_out()
         return done
@@ -258,19 +251,30 @@ class Board:
         for routine in self.interrupts if rises else ():
             routine()
 
-    def run(self, way: Way) -> int:
-        """Let the board run in one of the ways of its clock (`Step`, `Free`, ...); return the scans done."""
-        return way.run(self.advance)
-
     def wait(self, axes: tuple[int, ...] | None = None, limit_s: float = 3600.0) -> None:
         """Run until the profiles of `axes` (all if None) have ended, at most `limit_s`."""
         chosen = [self.axes[i] for i in (range(len(self.axes)) if axes is None else axes)]
-        end = self.clock.cycles + self.clock.cycles_for(limit_s)
-        while any(axis.is_busy for axis in chosen) and self.clock.cycles < end:
-            if self.advance(end - self.clock.cycles, until=PROFILE_END) == 0:
-                break
+        wait(self, lambda: not any(axis.is_busy for axis in chosen), until=PROFILE_END, limit_s=limit_s)
 
     def reset(self) -> None:
         """Reset the whole system, as rs does."""
-        self._pending.clear()
+        self.pending.clear()
         reset_system(self)
+
+    # ------------------------------------------------------------------ state
+
+    def status(self) -> BoardStatus:
+        """Return what the board is and does in the present scan."""
+        return board_status(self)
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state of the board, its drives, its tasks, and commands on their way."""
+        return take_snapshot(self)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this board, or of one with the same system file.
+
+        Raises:
+            SnapshotError: It is of something else, or damaged; nothing has changed.
+        """
+        put_back(self, snapshot)

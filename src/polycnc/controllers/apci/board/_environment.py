@@ -67,6 +67,15 @@ class InterfaceStatus:
         self.word = 0
         self._hardware = _POWER_UP
 
+    @property
+    def bits(self) -> tuple[int, int]:
+        """What the hardware has collected, and the register."""
+        return int(self._hardware), int(self.word)
+
+    @bits.setter
+    def bits(self, bits: tuple[int, int]) -> None:
+        self._hardware, self.word = bits
+
     def start_firmware(self) -> None:
         """Take over what the hardware has collected and erase it there, as BootFile does."""
         self.word = Ifs.edv | Ifs.cncrdy | self._hardware

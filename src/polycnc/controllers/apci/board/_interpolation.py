@@ -86,7 +86,7 @@ def interpolate(
                 units.acceleration_unit,
             )
     else:
-        board.command(tuple(axes), partial(_begin, board, units, speeds, shape))
+        board.command(tuple(axes), partial(begin_interpolation, board, units, speeds, shape))
 
 
 def _checked(board: Board, axes: Sequence[int], speeds: Speeds, numbers: Sequence[float]) -> PathUnits | None:
@@ -133,7 +133,7 @@ def _path(board: Board, units: PathUnits, shape: Shape, start: Sequence[float]) 
     return e
 
 
-def _begin(board: Board, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
+def begin_interpolation(board: Board, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
     """Begin a direct interpolation from where the axes are now, with the speed they have."""
     state = board.state
     e = _path(board, units, shape, [float(board.kernel.base[i]) for i in units.axes])

@@ -61,7 +61,7 @@ class Library:
     def let_time_pass(self, board: Board) -> None:
         """Do what a status call does to the time of the board."""
         if self.clock is not None:
-            self.clock.run(partial(board.advance, until=EVENTS))
+            self.clock.run(board, until=EVENTS)
 
 
 _library = Library(Pc(), ".", (), None, _log.warning)

@@ -281,3 +281,11 @@ class BoardTasks:
     def halt(self) -> None:
         """Halt all tasks."""
         self.tasks.halt_all()
+
+    def save(self) -> list[dict[str, Any]]:
+        """Return the state of all tasks, with their programs, as plain data."""
+        return self.tasks.save()
+
+    def read_saved(self, data: Any) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back."""
+        return self.tasks.read_saved(data)

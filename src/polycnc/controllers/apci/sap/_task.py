@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
 
+from polycnc.controllers.apci.sap._cnc_file import read_cnc, write_cnc
 from polycnc.controllers.apci.sap._faults import REFUSED, VALUE_RANGE, Fault
 from polycnc.controllers.apci.sap._host import Host
 from polycnc.controllers.apci.sap._linker import link
@@ -23,6 +24,13 @@ HALT_AT_WRITELN = 1 << 26  # in MODEREG
 
 RUNNING, HALTED_BY_WRITELN, WAITING = 0x1, 0x4, 0x8  # 0x2, single step, is declared as not implemented
 INCOMPLETE, COMPLETE = 0x1, 0x2
+
+# What makes up the state of a task beside its program and what it waits for.
+_CELLS = ("stack", "memory", "frames", "_armed")
+_NUMBERS = ("base", "next", "_errnum", "_errline", "_text_bits")
+_FLAGS = ("_by_writeln", "_in_event")
+_TEXTS = ("error", "_text")
+_KINDS: tuple[tuple[tuple[str, ...], type], ...] = ((_NUMBERS, int), (_FLAGS, bool), (_TEXTS, str))
 
 
 class State(Enum):
@@ -246,3 +254,42 @@ class Task:
 
     def _line(self, at: int) -> int:
         return self.program.code[at][2] if self.program is not None else 0
+
+    # State
+
+    def save(self) -> dict[str, Any]:
+        """Return program and state as plain data."""
+        waits = (self.waiting, self._waiting_before)
+        return {
+            "program": None if self.program is None else write_cnc(self.program),
+            "state": self.state.value,
+            "waits": [None if wait is None else [wait.until, wait.axes] for wait in waits],
+            **{name: getattr(self, name) for name in (*_CELLS, *_NUMBERS, *_FLAGS, *_TEXTS)},
+            "linked": bool(self._steps),
+        }
+
+    def read_saved(self, data: Mapping[str, Any]) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back.
+
+        Raises:
+            KeyError, TypeError, ValueError: It is damaged.
+        """
+        program = None if data["program"] is None else read_cnc(data["program"])
+        if program is None and data["linked"]:
+            raise ValueError("a task runs no program")
+        steps = link(self, program) if program is not None and data["linked"] else []
+        state = State(data["state"])
+        waits = [None if wait is None else Wait(wait[0], tuple(wait[1])) for wait in data["waits"]]
+        cells = {name: list(data[name]) for name in _CELLS}
+        cells["frames"] = [(int(back), int(base)) for back, base in cells["frames"]]
+        rest = {name: kind(data[name]) for names, kind in _KINDS for name in names}
+
+        def put() -> None:
+            self.program, self.state, self._steps = program, state, steps
+            self.waiting, self._waiting_before = waits
+            for name, values in cells.items():
+                getattr(self, name)[:] = values  # the steps hold on to these lists
+            for name, value in rest.items():
+                setattr(self, name, value)
+
+        return put

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from polycnc.controllers.apci.sap._faults import TASK_NUMBER, Fault
 from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Host
@@ -82,6 +84,26 @@ class Tasks:
     def gettskstr(self, task: int, size: int = STRING_BYTES) -> str:
         """Return the string of a task, at most `size` and at most 512 characters, and clear the tskinfo bits."""
         return self._tasks[task].take_text(size) if 0 <= task < TASKS else ""
+
+    # State
+
+    def save(self) -> list[dict[str, Any]]:
+        """Return the state of all tasks, with their programs, as plain data."""
+        return [task.save() for task in self._tasks]
+
+    def read_saved(self, data: Any) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back.
+
+        Raises:
+            KeyError, TypeError, ValueError: It is damaged.
+        """
+        changes = [task.read_saved(each) for task, each in zip(self._tasks, data, strict=True)]
+
+        def put() -> None:
+            for change in changes:
+                change()
+
+        return put
 
     # Common buffers
 

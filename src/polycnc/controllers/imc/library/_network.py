@@ -10,7 +10,6 @@ from __future__ import annotations
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 from polycnc.controllers.imc.core._state import AXIS_ERROR, AXIS_RESTED
 from polycnc.controllers.imc.library._attachable import CardLike
@@ -167,10 +166,10 @@ class Library:
         """Do what a status call does to the time of a card, and keep the other cards in step with it."""
         if self.clock is None:
             return
-        done = self.clock.run(partial(card.advance, until=AXIS_RESTED | AXIS_ERROR))
+        done = self.clock.run(card, until=AXIS_RESTED | AXIS_ERROR)
         for port in self.ports:
             if port.card is not card:
-                Step(done).run(port.card.advance)
+                Step(done).run(port.card)
 
     def let_cycle_pass(self) -> None:
         """Let one control cycle pass, the time of a call that a card answers at once."""
