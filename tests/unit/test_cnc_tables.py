@@ -98,7 +98,7 @@ def test_messages_are_shown_by_number_and_withdrawn() -> None:
     messages.withdraw(2002)
     saved = messages.snapshot()
     messages.withdraw()
-    assert messages.shown == ()
+    assert list(messages.shown) == []
     messages.restore(saved)
     assert len(messages.shown) == 1
     for number, text in ((-1, "a"), (1, " "), (1, "a\nb"), (1, "x" * 256)):

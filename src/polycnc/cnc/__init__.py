@@ -12,6 +12,7 @@ from polycnc.cnc._alarms import (
     OperatorMessages,
     PastAlarm,
 )
+from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
 from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
@@ -28,10 +29,15 @@ __all__ = [
     "AlarmRow",
     "AlarmTable",
     "Answer",
+    "AxisMotion",
     "ClearedBy",
     "ControlError",
     "Found",
     "Function",
+    "ManualData",
+    "ManualKind",
+    "ManualMotion",
+    "ManualState",
     "MemoryData",
     "OffsetTable",
     "OperatorMessage",
