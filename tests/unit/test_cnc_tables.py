@@ -110,18 +110,18 @@ def test_messages_are_shown_by_number_and_withdrawn() -> None:
 def test_timers_count_what_runs_and_last(tmp_path: Path) -> None:
     store, clock = Store(tmp_path / "s"), Clock(0.002)
     timers = Timers(store, clock, save_every_s=10.0)
-    for cycles, operating, cutting, tool in (
-        (700, False, False, 0),
-        (1500, True, False, 3),
-        (900, True, True, 3),
+    for cycles, operating, cutting_s, tool in (
+        (700, False, 0.0, 0),
+        (1500, True, 0.0, 3),
+        (900, True, 1.75, 3),
     ):
         clock.tick(cycles)
-        timers.count(cycles, operating=operating, cutting=cutting, tool=tool)
+        timers.count(cycles, operating=operating, cutting_s=cutting_s, tool=tool)
     shown = {timer: timers.seconds(timer) for timer in Timer}
     assert shown == pytest.approx(
-        {Timer.POWER_ON: 6.2, Timer.OPERATING: 4.8, Timer.CUTTING: 1.8, Timer.CYCLE: 4.8}
+        {Timer.POWER_ON: 6.2, Timer.OPERATING: 4.8, Timer.CUTTING: 1.75, Timer.CYCLE: 4.8}
     )
-    assert timers.tool_seconds(3) == pytest.approx(1.8)
+    assert timers.tool_seconds(3) == pytest.approx(1.75)
     timers.start_cycle()
     assert timers.seconds(Timer.CYCLE) == 0.0
     assert Timers(Store(), clock).seconds(Timer.OPERATING) == 0.0
@@ -132,8 +132,8 @@ def test_timers_count_what_runs_and_last(tmp_path: Path) -> None:
     store = Store(tmp_path / "s")
     again = Timers(store, Clock(0.001))
     assert again.seconds(Timer.OPERATING) == 77.0
-    assert again.seconds(Timer.CUTTING) == pytest.approx(1.8)
-    assert {tool: again.tool_seconds(tool) for tool in again.tools} == pytest.approx({3: 1.8, 4: 5.5})
+    assert again.seconds(Timer.CUTTING) == pytest.approx(1.75)
+    assert {tool: again.tool_seconds(tool) for tool in again.tools} == pytest.approx({3: 1.75, 4: 5.5})
     timers.restore(saved)
     assert timers.seconds(Timer.OPERATING) == pytest.approx(4.8)
     for bad in (-1.0, float("inf")):

@@ -16,6 +16,7 @@ class Refusal(StrEnum):
     ALARM = "alarm"  # an alarm must be cleared first
     EMERGENCY = "emergency"  # the emergency stop is on
     TRAVEL = "travel"  # the axis stands at the end of its travel in that direction
+    DISPLACED = "displaced"  # an axis is not where the program was interrupted
     NOT_REFERENCED = "not_referenced"
     NOT_FOUND = "not_found"
     EXISTS = "exists"

@@ -30,13 +30,12 @@ class TimersState:
 
     base_s: dict[Timer, float]
     cycles: dict[Timer, int]
-    tool_base_s: dict[int, float]
-    tool_cycles: dict[int, int]
+    tool_s: dict[int, float]
     saved_cycle: int
 
 
 class Timers:
-    """Count times in control cycles; they are saved every `save_every_s` of machine time, and by `save`.
+    """Count times; they are saved every `save_every_s` of machine time, and by `save`.
 
     A killed process loses at most what it counted since then.
     """
@@ -50,20 +49,19 @@ class Timers:
         kept = self._area.load()
         self._base_s = {timer: kept.get(timer.value, 0.0) for timer in Timer}
         self._cycles = dict.fromkeys(Timer, 0)
-        self._tool_base_s = {int(tool): time_s for tool, time_s in self._tool_area.load().items()}
-        self._tool_cycles: dict[int, int] = {}
+        self._tool_s = {int(tool): time_s for tool, time_s in self._tool_area.load().items()}
         self._saved_cycle = clock.cycles
 
-    def count(self, cycles: int, *, operating: bool = False, cutting: bool = False, tool: int = 0) -> None:
-        """Let cycles pass; `tool` is the one that cuts, 0 none."""
+    def count(self, cycles: int, *, operating: bool = False, cutting_s: float = 0.0, tool: int = 0) -> None:
+        """Let cycles pass, of which so much was cutting, with a tool (0 none)."""
         self._cycles[Timer.POWER_ON] += cycles
         if operating:
             self._cycles[Timer.OPERATING] += cycles
             self._cycles[Timer.CYCLE] += cycles
-        if cutting:
-            self._cycles[Timer.CUTTING] += cycles
+        if cutting_s > 0.0:
+            self._base_s[Timer.CUTTING] += cutting_s
             if tool:
-                self._tool_cycles[tool] = self._tool_cycles.get(tool, 0) + cycles
+                self._tool_s[tool] = self._tool_s.get(tool, 0.0) + cutting_s
         if self._clock.cycles - self._saved_cycle >= self._save_cycles:
             self.save()
 
@@ -73,12 +71,12 @@ class Timers:
 
     def tool_seconds(self, tool: int) -> float:
         """Return how long a tool has cut (s)."""
-        return self._tool_base_s.get(tool, 0.0) + self._tool_cycles.get(tool, 0) * self._clock.cycle_s
+        return self._tool_s.get(tool, 0.0)
 
     @property
     def tools(self) -> tuple[int, ...]:
         """The tools that have cut, or whose time was set."""
-        return tuple(sorted({*self._tool_base_s, *self._tool_cycles}))
+        return tuple(sorted(self._tool_s))
 
     def set_seconds(self, timer: Timer, time_s: float) -> None:
         """Set a timer (s), durably.
@@ -98,8 +96,7 @@ class Timers:
         """
         if tool < 1:
             raise ControlError(Refusal.DATA, f"there is no tool {tool}", hint="Tool numbers start at 1.")
-        self._tool_base_s[tool] = _checked_s(time_s)
-        self._tool_cycles.pop(tool, None)
+        self._tool_s[tool] = _checked_s(time_s)
         self.save()
 
     def start_cycle(self) -> None:
@@ -111,7 +108,7 @@ class Timers:
         """Make everything counted durable."""
         with self._store.transaction():
             self._area.save({timer.value: self.seconds(timer) for timer in Timer})
-            self._tool_area.save({tool: self.tool_seconds(tool) for tool in self.tools})
+            self._tool_area.save(dict(self._tool_s))
         self._saved_cycle = self._clock.cycles
 
     def snapshot(self) -> TimersState:
@@ -119,8 +116,7 @@ class Timers:
         return TimersState(
             dict(self._base_s),
             dict(self._cycles),
-            dict(self._tool_base_s),
-            dict(self._tool_cycles),
+            dict(self._tool_s),
             self._saved_cycle,
         )
 
@@ -128,8 +124,7 @@ class Timers:
         """Go back to a snapshot."""
         self._base_s = dict(state.base_s)
         self._cycles = dict(state.cycles)
-        self._tool_base_s = dict(state.tool_base_s)
-        self._tool_cycles = dict(state.tool_cycles)
+        self._tool_s = dict(state.tool_s)
         self._saved_cycle = state.saved_cycle
 
 
