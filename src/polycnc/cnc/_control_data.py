@@ -50,7 +50,7 @@ class ControlData:
 
     manual: ManualData = field(default_factory=ManualData)
     memory: MemoryData = field(default_factory=MemoryData)
-    alarms: AlarmTable = ALARMS
+    alarms: AlarmTable = field(default_factory=lambda: ALARMS)
     history_length: int = 100
     mode_change_while_running: OnModeChange = OnModeChange.REFUSE
     after_manual: AfterManual = AfterManual.REFUSE
