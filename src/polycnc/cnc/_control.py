@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from enum import IntFlag
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from polycnc.cnc._alarms import AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
@@ -86,8 +86,19 @@ class Control:
         self.manual = ManualMotion(
             self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
         )
+        live = machine_file.model_copy(update={"tools": self.tools, "offsets": self.offsets})
         self.channels = tuple(
-            ControlChannel(self.machine, path, self.dialect, self.manual, self._meet) for path in range(channels)
+            ControlChannel(
+                self.machine,
+                path,
+                self.dialect,
+                self.manual,
+                config=live,
+                library=self._sub_program,
+                dry_run_mm_min=self.data.dry_run_mm_min,
+                on_event=self._meet,
+            )
+            for path in range(channels)
         )
         self.clock = clock
         self._mode = Mode.AUTO
@@ -174,34 +185,25 @@ class Control:
         single_block: bool | None = None,
         optional_stop: bool | None = None,
         dry_run: bool | None = None,
-        machine_lock: bool | None = None,
         block_delete: frozenset[int] | None = None,
     ) -> None:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: The machine lock while a program is executed or interrupted, or a skip mark from 1 to 9 that
-                is none.
+            ControlError: A skip mark that is not from 1 to 9.
         """
-        given = {
+        given: dict[str, Any] = {
             "single_block": single_block,
             "optional_stop": optional_stop,
             "dry_run": dry_run,
-            "machine_lock": machine_lock,
             "block_delete": block_delete,
         }
         wanted = replace(self._switches, **{name: each for name, each in given.items() if each is not None})
         if not wanted.block_delete <= frozenset(range(1, 10)):
             raise ControlError(
-                Refusal.DATA, f"{sorted(wanted.block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
-            )
-        if wanted.machine_lock != self._switches.machine_lock and any(
-            channel.active or channel.interrupted for channel in self.channels
-        ):
-            raise ControlError(
-                Refusal.RUNNING,
-                "the machine lock cannot change while a program is executed or interrupted",
-                hint="Wait for its end, or reset it.",
+                Refusal.DATA,
+                f"{sorted(wanted.block_delete)} are not skip marks",
+                hint="Give numbers from 1 to 9.",
             )
         self._switches = wanted
         for channel in self.channels:
@@ -283,11 +285,7 @@ class Control:
 
     def reset(self) -> None:
         """Break off everything, and take away the alarms whose causes are gone; the axes brake."""
-        self.manual.stop_all()
-        for channel in self.channels:
-            channel.reset()
-        self._waiting.clear()
-        self.plc.cancel()
+        self._break_off()
         if self.data.reset_stops_spindle:
             self.spindle.stop()
         if self._emergency is Emergency.RESET_NEEDED:
@@ -304,17 +302,21 @@ class Control:
             self._emergency = Emergency.ON
             self.alarms.put("emergency_stop")
             self._raised |= ControlEvent.ALARM
-            self.manual.stop_all()
-            for channel in self.channels:
-                channel.reset()
-            self._waiting.clear()
-            self.plc.cancel()
+            self._break_off()
             self.spindle.stop()
             self._note_running()
         elif not on and self._emergency is Emergency.ON:
             self.alarms.cause_gone("emergency_stop")
             needed = self.data.emergency_needs_reset
             self._emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
+
+    def _break_off(self) -> None:
+        """Let everything brake, and forget what was under way."""
+        self.manual.stop_all()
+        for channel in self.channels:
+            channel.reset()
+        self._waiting.clear()
+        self.plc.cancel()
 
     # ------------------------------------------------------------------ editing
 
@@ -433,7 +435,8 @@ class Control:
         alarms, manual = self.alarms.active, self.manual.active
         row = self.machine.state.clock[0]
         row["mask"] = 0
-        for channel in self.channels:
+        for number, channel in enumerate(self.channels):
+            self._take_answers(number, channel)  # somebody may have answered since
             if channel.run is not None and not channel.returning:
                 cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
         due = self.plc.due_cycle()
@@ -482,6 +485,12 @@ class Control:
             for channel in self.channels:
                 channel.fail()
         self._note_running()
+
+    def _sub_program(self, number: int) -> ProgramText | None:
+        for name in self.data.sub_program_names:
+            if (found := name.format(number=number)) in self.programs:
+                return self.programs.text(found)
+        return None
 
     def _note_end(self, channel: ControlChannel) -> None:
         """Count the part of a program that has ended, or put its error among the alarms."""
@@ -560,7 +569,9 @@ class Control:
             )
         if self.alarms:
             first = self.alarms.active[0]
-            raise ControlError(Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset.")
+            raise ControlError(
+                Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset."
+            )
 
     def _to_begin(self, channel: ControlChannel, number: int, is_mdi: bool) -> ProgramText:
         """Return the text that a start executes now."""

@@ -10,8 +10,8 @@ from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunOptions, RunState
 from polycnc.kernel import give_to_point_to_point
-from polycnc.machine import Machine
-from polycnc.nc import BlockRecord, Dialect, Event, ProgramText
+from polycnc.machine import Machine, MachineConfig
+from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
 
 INTERRUPTED = frozenset(
     {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
@@ -32,6 +32,10 @@ class ControlChannel:
         path: int,
         dialect: Dialect,
         manual: ManualMotion,
+        *,
+        config: MachineConfig,
+        library: Library,
+        dry_run_mm_min: float,
         on_event: Callable[[ControlChannel, Event], bool],
     ) -> None:
         self.path = path
@@ -43,6 +47,9 @@ class ControlChannel:
         self._machine = machine
         self._dialect = dialect
         self._manual = manual
+        self._config = config
+        self._library = library
+        self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
         self._lent: tuple[float, ...] | None = None
 
@@ -87,13 +94,16 @@ class ControlChannel:
 
     # ------------------------------------------------------------------ commands
 
-    def begin(self, text: ProgramText, switches: Switches, overrides: Overrides, *, mdi: bool = False) -> None:
+    def begin(
+        self, text: ProgramText, switches: Switches, overrides: Overrides, *, mdi: bool = False
+    ) -> None:
         """Begin to execute a text from where the axes stand.
 
         Raises:
             ControlError: The axes are still braking.
         """
         self._check_rest()
+        last = self.run
         self.run = ProgramRun(
             self._machine,
             text,
@@ -104,9 +114,14 @@ class ControlChannel:
                 optional_stop=switches.optional_stop,
                 single_block=switches.single_block,
             ),
+            config=self._config,
+            library=self._library,
             on_event=lambda event: self._on_event(self, event),
-            before=self.run,
+            before=last if last is not None and last.state is RunState.COMPLETED else None,
         )
+        if last is not None and last.modal is not None:
+            # What was prepared and never executed is forgotten with a reset; the tool is still in the spindle.
+            self.run.channel.state.tool = last.modal.tool
         self.is_mdi = mdi
         self._lent = None
         self.set_switches(switches)
@@ -190,15 +205,16 @@ class ControlChannel:
         if self.run is not None:
             self.run.single_block = switches.single_block
             self.run.optional_stop = switches.optional_stop
-            self.run.dry_run = switches.dry_run
-            self.run.machine_lock = switches.machine_lock
-            self.run.block_delete = switches.block_delete
+            self._machine.state.paths.row[self.path]["dry_feed"] = (
+                self._dry_run_mm_s if switches.dry_run else 0.0
+            )
+            self.run.feed.replan()
 
     def set_overrides(self, overrides: Overrides) -> None:
         """Take over the overrides."""
         if self.run is not None:
+            self._machine.state.paths.row[self.path]["rapid_override"] = overrides.rapid
             self.run.feed_override = overrides.feed
-            self.run.rapid_override = overrides.rapid
 
     # ------------------------------------------------------------------ lent axes
 

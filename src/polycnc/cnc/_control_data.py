@@ -45,7 +45,9 @@ class ControlData:
 
     `rapid_overrides` are the steps of the rapid override. `referenced_at_start`: encoders that know their position when
     switched on. `reference_required`: no start of a program before all axes are referenced. `emergency_needs_reset`:
-    after an emergency stop a reset comes first. `reset_stops_spindle`, `count_parts` (at the program end) say so.
+    after an emergency stop a reset comes first. `answer_limit_s`: how long the PLC may take (None: for ever).
+    `dry_run_mm_min` is the feed of a dry run, `sub_program_names` are the names under which a called number is sought.
+    `reset_stops_spindle` and `count_parts` (at the program end) say so.
     """
 
     manual: ManualData = field(default_factory=ManualData)
@@ -63,6 +65,8 @@ class ControlData:
     rapid_overrides: tuple[float, ...] = (0.0, 0.25, 0.5, 1.0)
     spindle_overrides: tuple[float, float] = (0.0, 2.0)
     answer_limit_s: float | None = None
+    dry_run_mm_min: float = 3000.0
+    sub_program_names: tuple[str, ...] = ("O{number:04d}", "O{number}", "{number}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +101,6 @@ class Switches:
     single_block: bool = False
     optional_stop: bool = False
     dry_run: bool = False
-    machine_lock: bool = False
     block_delete: frozenset[int] = frozenset()
 
 

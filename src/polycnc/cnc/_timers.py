@@ -108,7 +108,7 @@ class Timers:
         """Make everything counted durable."""
         with self._store.transaction():
             self._area.save({timer.value: self.seconds(timer) for timer in Timer})
-            self._tool_area.save(dict(self._tool_s))
+            self._tool_area.save({tool: time_s for tool, time_s in self._tool_s.items()})  # noqa: C416
         self._saved_cycle = self._clock.cycles
 
     def snapshot(self) -> TimersState:

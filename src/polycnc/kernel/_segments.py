@@ -52,7 +52,7 @@ SEGMENT_ROW = np.dtype(
         ("junction", np.float64),  # highest speed through the end
         ("share", np.float64),  # part of the acceleration that the corner at the end uses up
         ("out", np.float64),  # planned speed at the end
-        ("tag", np.int32),  # the caller's name for the segment: the line of its block
+        ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
         ("kind", np.int8),
         ("flags", np.int8),
     ],

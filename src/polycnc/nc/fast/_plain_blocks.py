@@ -127,6 +127,8 @@ def make_fast_work(modal: Modal) -> FastWork:
 def run_plain(
     words: WordColumns,
     block: int,
+    n_blocks: int,
+    base: int,
     tables: DialectTables,
     modal: Modal,
     seg: Segments,
@@ -135,16 +137,21 @@ def run_plain(
     limits: AxisLimits,
     work: FastWork,
 ) -> tuple[int, int]:
-    """Interpret plain blocks from `block` on; return the first block that was not taken, and why."""
+    """Interpret plain blocks from `block` up to `n_blocks`; return the first block that was not taken, and why.
+
+    `base` is added to the line of a block for its reference.
+    """
     if modal.whole[ORDINARY] != 0:
         return block, NOT_PLAIN
-    return _run(words, block, tables, modal, seg, paths, g, limits, work)
+    return _run(words, block, n_blocks, base, tables, modal, seg, paths, g, limits, work)
 
 
 @compiled
 def _run(
     words: WordColumns,
     block: int,
+    n_blocks: int,
+    base: int,
     tables: DialectTables,
     modal: Modal,
     seg: Segments,
@@ -157,7 +164,6 @@ def _run(
     said = work.said
     path = paths.row
     inch = MM_PER_INCH if whole[INCH] != 0 else 1.0
-    n_blocks = int(words.counts[1])
     while block < n_blocks:
         if path[g]["capacity"] - (path[g]["tail"] - path[g]["head"]) <= RESERVE:
             return block, QUEUE_FULL
@@ -211,7 +217,7 @@ def _run(
                 and _only_rotary(modal.rotary, modal.position, work.target)
             ):
                 speed = feed_number / 60.0
-            tag = words.line[block]
+            tag = base + int(words.line[block])
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
                     return block, NOT_PLAIN
