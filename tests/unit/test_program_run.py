@@ -307,7 +307,8 @@ def test_single_block_stops_at_the_end_of_every_block_on_its_end_point() -> None
 
 
 def test_single_block_switched_on_in_motion_stops_at_the_next_end_that_can_be_reached() -> None:
-    # Blocks of 0.5 mm at 100 mm/s: braking takes 100 ** 2 / (2 * 5000) = 1 mm.
+    # Blocks of 0.5 mm at 100 mm/s: braking takes 100 ** 2 / (2 * 5000) = 1 mm, and four times that with the part of
+    # the acceleration that is left whatever corners come.
     program = "G1 F6000 X10\n" + "".join(f"X{10 + 0.5 * n:g}\n" for n in range(1, 61))
     run = program_run(program)
     run.start()
@@ -318,7 +319,7 @@ def test_single_block_switched_on_in_motion_stops_at_the_next_end_that_can_be_re
     assert stands(run) == "STOPPED_AT_BLOCK"
     stopped = run.position["X"]
     assert stopped * 2.0 == math.floor(stopped * 2.0)
-    assert at + 1.0 < stopped < at + 3.5
+    assert at + 1.0 < stopped < at + 6.0
     run.single_block = False
     run.resume()
     to_the_end(run)
