@@ -150,8 +150,7 @@ class Interpreter:
             raise
         if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
             self._queue.set_tolerance(self.state.path_tolerance_mm)
-        for item in items:
-            self._queue.put(item)
+        self._queue.put_block(items)
         return outcome
 
     def finish(self) -> None:

@@ -65,6 +65,15 @@ class QueueWriter:
         """Set how far the path may leave the corners of lines appended from now on."""
         self.paths.row[self.path]["tolerance"] = tolerance_mm
 
+    def put_block(self, items: list[QueueItem]) -> None:
+        """Append what a block gives; one that gives nothing after all, a move without length, is marked."""
+        row = self.paths.row[self.path]
+        before = int(row["tail"])
+        for item in items:
+            self.put(item)
+        if items and row["tail"] == before and not self.backlog:
+            self.mark(items[0].tag)
+
     def put(self, item: QueueItem) -> None:
         """Append one line, arc or wait, behind what waits for room."""
         if self.backlog or not self._has_room(item):
