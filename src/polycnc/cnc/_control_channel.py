@@ -10,7 +10,7 @@ from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunOptions, RunState
-from polycnc.kernel import give_to_point_to_point
+from polycnc.kernel import READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
 
@@ -83,6 +83,15 @@ class ControlChannel:
     def executed(self) -> BlockRecord | None:
         """The block that is executed, or was last."""
         return None if self.run is None else self.run.executed
+
+    @property
+    def next_block(self) -> BlockRecord | None:
+        """The block that comes next where the path stands between two blocks; None elsewhere, and where none is known."""
+        run = self.run
+        row = self._machine.state.paths.row[self.path]
+        if run is None or row["state"] != READY or row["head"] >= row["tail"]:
+            return None
+        return run.channel.records.block(run.feed.tags(int(row["head"]), int(row["head"]) + 1)[0])
 
     @property
     def programs(self) -> frozenset[str]:
