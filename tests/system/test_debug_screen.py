@@ -145,7 +145,7 @@ def test_without_textual_the_command_says_what_to_install(
     from polycnc.errors import UsageError
 
     monkeypatch.delitem(sys.modules, "polycnc.cli._debug_screen", raising=False)
-    monkeypatch.setitem(sys.modules, "textual", None)
+    monkeypatch.setitem(sys.modules, "textual.app", None)
     (tmp_path / "p.nc").write_text("M30\n")
     with pytest.raises(UsageError, match="needs textual") as caught:
         debug_command(tmp_path / "p.nc")

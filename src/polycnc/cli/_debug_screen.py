@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from pathlib import Path
 from typing import ClassVar
 
 from rich.segment import Segment
@@ -55,7 +57,7 @@ class Listing(ScrollView, can_focus=True):
         """Show a program with its executed line, the next one, and the lines of its breakpoints."""
         if text.name != self.name_shown:
             self.name_shown = text.name
-            self.border_title = text.name
+            self.border_title = Path(text.name).name
             self._lines = text.content.splitlines() or [b""]
             self.cursor = 1
             self._executed = None
@@ -145,7 +147,7 @@ class DebugScreen(App[None]):
             self.set_interval(_TICK_S, self._tick)
 
     def _tick(self) -> None:
-        if self.debugger.running or self._moves():
+        if self.query(Listing) and (self.debugger.running or self._moves()):
             self.pass_time(self.cycles_per_tick)
 
     def _moves(self) -> bool:
@@ -155,7 +157,8 @@ class DebugScreen(App[None]):
         """Let control cycles pass and show where that led."""
         left = cycles - self.debugger.pass_time(cycles)
         if left > 0 and self._moves():
-            self.debugger.control.advance(left)  # held: the axes still brake
+            # Held: the axes still brake.
+            self.debugger.control.advance(left, until=lambda: not self._moves())
         self.refresh_status()
 
     # ------------------------------------------------------------------ keys
@@ -181,9 +184,8 @@ class DebugScreen(App[None]):
         listing = self.query_one(Listing)
         self._do(lambda: self.debugger.toggle_breakpoint(Place(listing.name_shown, listing.cursor)))
 
-    def _do(self, command: object) -> None:
+    def _do(self, command: Callable[[], object]) -> None:
         """Carry a command out, or say why it was refused."""
-        assert callable(command)
         remark = ""
         try:
             command()
@@ -229,7 +231,7 @@ def _state(status: Status) -> Table:
     table.add_row("spindle", f"{spindle.actual_rpm:.0f} of {spindle.commanded_rpm:.0f} rpm")
     stack = () if channel.block is None else channel.block.stack
     for call in stack:
-        table.add_row("called by", Text(f"{call.program}:{call.line} ({call.repeat})"))
+        table.add_row("called by", Text(f"{Path(call.program).name}:{call.line}, round {call.repeat}"))
     return table
 
 
