@@ -86,7 +86,7 @@ class ControlChannel:
 
     @property
     def next_block(self) -> BlockRecord | None:
-        """The block that comes next where the path stands between two blocks; None elsewhere, and where none is known."""
+        """The block that comes next where the path stands between two blocks; None where none is known."""
         run = self.run
         row = self._machine.state.paths.row[self.path]
         if run is None or row["state"] != READY or row["head"] >= row["tail"]:
