@@ -15,6 +15,7 @@ from polycnc.cnc._alarms import (
 from polycnc.cnc._control import Control, ControlEvent
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import AfterManual, ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
 from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
 from polycnc.cnc._program_edit import ProgramEdit
@@ -47,6 +48,7 @@ __all__ = [
     "ControlData",
     "ControlError",
     "ControlEvent",
+    "ControlSnapshot",
     "Emergency",
     "Feed",
     "Found",

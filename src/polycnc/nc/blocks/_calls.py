@@ -165,7 +165,8 @@ class Calls:
                 return self._labels[text.name][program]
         if self._library is not None:
             found = self._library(program)
-            return None if found is None else Place(found)
+            if found is not None:
+                return Place(found)
         main = Path(self._main.name)
         if not main.is_file():
             return None  # a text from elsewhere has no folder
