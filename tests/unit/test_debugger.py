@@ -55,7 +55,7 @@ def test_it_stops_before_a_breakpoint_in_a_sub_program_of_its_own_file(
     assert debugger.status.channel.run_state is RunState.PROGRAM_STOP
     debugger.run()
     debugger.pass_time(100_000)
-    assert debugger.status.channel.run_state == RunState.COMPLETED
+    assert debugger.status.channel.run_state.name == "COMPLETED"
 
 
 def test_stepping_through_ends_where_the_undisturbed_run_ends(debugger: Debugger) -> None:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, TextSpan, WordsBlock
+from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, Statement, TextSpan, WordsBlock
 from polycnc.nc.cpl._host import Host, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
 from polycnc.nc.cpl._run import Arguments, Execution
@@ -107,10 +107,14 @@ class CplSource:
                     if wait.condition is not None or wait.duration_ms is not None:
                         self._waiting = _Wait(wait, self._language.milliseconds)
                     return Drain(wait.line)
-                case Step():
-                    pass
+                case Step() as step:
+                    return Statement(step.line)
                 case _:
                     return Pause.PAUSE
+
+    def leave(self) -> bool:
+        """Leave returns to the channel, which has entered every sub-program."""
+        return False
 
     def close(self) -> None:
         """End the program."""
