@@ -58,15 +58,16 @@ _START_OFFSET = "G54"
 class Channel:
     """Prepare one program for one path of a machine.
 
-    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is none), and
-    `library` gives sub-programs before files are looked for. `language` executes the programs that are more than
-    words. With `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are events like any other.
-    With `answers` the path waits at auxiliary functions for whoever runs it, not for the machine file's times; with `marks` blocks
-    that leave nothing in the queue are noted (see `QueueWriter`). `records` tells what block a segment belongs to.
-    `before` is the channel that used the path until now: with `keeps_modal` its modal state stays in force. With
-    `collect_errors` a refused block is noted in `errors` and left out; else preparation ends there with `error`. The
-    ordinary interpreter gives the same queue as the compiled kernel, which takes over after the first
-    `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
+    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is
+    none), and `library` gives sub-programs before files are looked for. `language` executes the programs that
+    are more than words. With `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are
+    events like any other. With `answers` the path waits at auxiliary functions for whoever runs it, not for
+    the machine file's times; with `marks` blocks that leave nothing in the queue are noted (see
+    `QueueWriter`). `records` tells what block a segment belongs to. `before` is the channel that used the
+    path until now: with `keeps_modal` its modal state stays in force. With `collect_errors` a refused block
+    is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
+    gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
+    it, and once compiling it, takes longer than they do.
     """
 
     def __init__(
