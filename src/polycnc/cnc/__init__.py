@@ -22,7 +22,7 @@ from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
-from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState, ToolTime
 from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
 from polycnc.cnc._stops import Breakpoint, Step
@@ -91,5 +91,6 @@ __all__ = [
     "TimersState",
     "Tool",
     "ToolTable",
+    "ToolTime",
     "first_comment",
 ]
