@@ -10,6 +10,7 @@ from polycnc.controllers.imc.card._card import Card
 from polycnc.controllers.imc.card._config import CardConfig, parse_card
 from polycnc.controllers.imc.core._instructions import Instruction
 from polycnc.controllers.imc.core._parameters import PARAMETERS
+from polycnc.machine import Clock
 
 
 class ToldCard:
@@ -23,15 +24,19 @@ class ToldCard:
         self.cleared: list[int] = []
         self.captured: dict[int, list[int]] = {}
         self.full = False
-        self.cycles = 0
+        self.clock = Clock(0.001)
         self.room_for_events = 128
 
     @property
     def axes(self) -> int:
         return self.config.number_of_axes
 
-    def advance(self, cycles: int, *, until: int = 0) -> int:
-        self.cycles += cycles
+    @property
+    def cycles(self) -> int:
+        return self.clock.cycles
+
+    def advance(self, cycles: int, *, until: int | None = None) -> int:
+        self.clock.tick(cycles)
         return cycles
 
     def read_words(self, at: int, axis: int, count: int) -> tuple[int, ...]:

@@ -10,7 +10,8 @@ import numpy as np
 from polycnc.kernel import ARC, LINE, RAPID, STOP, WAIT, give_to_path
 from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
-from polycnc.nc import Channel, Dialect, ProgramText, load_dialect
+from polycnc.nc import Channel, Dialect, ProgramText, line_of, load_dialect
+from polycnc.nc._block_records import LINE_MASK
 from polycnc.nc.blocks._modal import ORDINARY
 
 AXIS = '[[axis]]\nname = "{name}"\nvmax_mm_s = 500\namax_mm_s2 = 5000\nsoft_limits_mm = [{low}, {high}]\n'
@@ -98,7 +99,9 @@ def listing(channel: Channel, *, lines: bool = False) -> list[str]:
     items = [_item(channel, k) for k in slots]
     if not lines:
         return items
-    return [f"{int(state.seg.row[k]['tag']):4d}  {item}" for k, item in zip(slots, items, strict=True)]
+    return [
+        f"{line_of(int(state.seg.row[k]['tag'])):4d}  {item}" for k, item in zip(slots, items, strict=True)
+    ]
 
 
 def _item(channel: Channel, k: int) -> str:
@@ -144,8 +147,9 @@ def queue_bytes(channel: Channel) -> list[bytes]:
     state = channel.machine.state
     tail = int(state.paths.row[channel.path]["tail"])
     seg = state.seg
-    fields = ("length", "feed", "end_speed", "tag", "kind", "flags")
+    fields = ("length", "feed", "end_speed", "kind", "flags")
     columns = [np.ascontiguousarray(seg.row[name][:tail]) for name in fields]
+    columns.append(seg.row["tag"][:tail] & LINE_MASK)  # the numbers of contexts depend on the way
     columns += [seg.start[:tail], seg.end[:tail], seg.geo[:tail], seg.plane[:tail]]
     return [column.tobytes() for column in columns]
 
@@ -171,5 +175,5 @@ def channel_state(channel: Channel) -> dict[str, object]:
         "compensation": dict(vars(stage)) if stage.active else {},
         "messages": [(message.text, message.line, message.count) for message in channel.messages.all()],
         "tolerance": float(channel.writer.paths.row[channel.path]["tolerance"]),
-        "events": list(channel.writer.events),
+        "events": list(channel.writer.events.values()),
     }

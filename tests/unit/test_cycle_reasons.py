@@ -165,7 +165,7 @@ def test_a_wait_takes_whole_cycles_at_rest() -> None:
 
 def test_a_path_that_runs_out_of_planned_segments_says_so() -> None:
     state = state_of()
-    state.clock[0]["low_water"] = 2
+    state.paths.row[0]["low_water"] = 2
     lines(state, *((float(i), 0.0) for i in range(1, 40)), closed=False)
     run_until(state, QUEUE_LOW)
     row = state.paths.row[0]

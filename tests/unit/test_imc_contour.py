@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from polycnc.controllers.imc.core._parameters import address
-from support.imc_card import FLAG, IFIFO, move_absolute, ready_card, send, set_now, trace
+from support.imc_card import FLAG, IFIFO, enable_path, line, move_absolute, ready_card, send, set_now, trace
 
 
 def group(card, *axes: int, cycles: int = 20) -> None:  # type: ignore[no-untyped-def]
@@ -131,3 +131,62 @@ def test_a_touch_of_the_probe_captures_once() -> None:
     card.advance(10)
     assert card.read_capture(0, 5)[0] == (card.read("encp") - 5 * 9,)
     assert card.read_raw(address("counter")) == 1
+
+
+def test_an_axis_that_is_stopped_ends_the_contour_and_does_not_jump_later() -> None:
+    card = ready_card("number_of_axes = 4\n[[axis]]\nlimit_positive = 70.0\n")
+    set_now(card, ("aioctr", 0x3))
+    group(card, 0, 1, cycles=10)
+    card.push_points([40, 30] * 8)
+    send(card, IFIFO, ("startgroup", FLAG))
+    steps = trace(card, "curvel", 60)
+    assert max(steps) == 4
+    assert card.read("curpos") == 72
+    assert (int(card.read("error")) & 1, card.read("startgroup"), card.read("curvel", 1)) == (1, 0, 0)
+    set_now(card, ("error", 0), ("aioctr", 0))
+    move_absolute(card, 20)
+    steps = trace(card, "curvel", 60)
+    assert max(steps) == 0
+    assert card.read("curpos") == 20
+
+
+def test_an_axis_out_of_run_keeps_nothing_of_the_contour_for_a_later_path() -> None:
+    card = ready_card()
+    group(card, 0, cycles=50)
+    card.push_points([500] * 3)
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.advance(7)
+    send(card, IFIFO, ("run", 0))
+    card.advance(20)
+    assert (card.read("startgroup"), card.read("contouring"), card.read("curpos")) == (0, 0, 70)
+    set_now(card, ("run", FLAG), ("clrCFIFO", FLAG))
+    enable_path(card, 0)
+    line(card, 100, speed=4)
+    assert max(trace(card, "curvel", 30)) == 4
+    assert card.read("curpos") == 100
+
+
+def test_an_emergency_stop_ends_the_contour_for_good() -> None:
+    card = ready_card()
+    group(card, 0, cycles=4)
+    card.push_points([40] * 30)
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.advance(6)
+    send(card, IFIFO, ("emstop", 0x10))
+    card.advance(2)
+    here = card.read("curpos")
+    set_now(card, ("emstop", 0), ("error", 0), ("ena", FLAG), ("run", FLAG))
+    card.advance(50)
+    assert (card.read("curpos"), card.read("startgroup"), card.waiting_words(4) > 0) == (here, 0, True)
+
+
+def test_a_contour_waits_for_an_axis_that_is_on_a_path() -> None:
+    card = ready_card()
+    enable_path(card, 0)
+    line(card, 123, speed=6)
+    card.advance(4)
+    group(card, 0, 1, cycles=5)
+    card.push_points([7, 11] * 2)
+    send(card, IFIFO, ("startgroup", FLAG))
+    card.advance(80)
+    assert (card.read("curpos", 0), card.read("curpos", 1)) == (123 + 14, 22)

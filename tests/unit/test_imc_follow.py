@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
 
+from polycnc.controllers.imc import Card
+from polycnc.controllers.imc.core._instructions import WriteMany
 from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
     FLAG,
     IFIFO,
+    PFIFO1,
+    enable_path,
     event,
     install,
+    line,
     move_absolute,
     move_relative,
     ready_card,
     send,
     set_now,
+    setting,
     trace,
 )
 
@@ -334,3 +341,180 @@ def test_a_superimposed_move_shifts_a_slave() -> None:
     move_relative(card, 250, 1, system="pcs")
     card.advance(100)
     assert card.read("curpos", 1) - card.read("curpos", 0) == ahead + 250
+
+
+def _tgvel_in(card, cycles: int, speed: float, axis: int = 1) -> None:  # type: ignore[no-untyped-def]
+    """Set up a motion to a velocity in a time with one instruction, as the library does."""
+    values = {"syntype": 0, "synsrc": address("ticks"), "synaxis": 0, "synsrcvar": cycles, "mcstgvel": speed}
+    writes = (*values.items(), ("enasyn", FLAG))
+    assert card.push(IFIFO, WriteMany(tuple(setting(name, value, axis) for name, value in writes)))
+
+
+def _event_stop(card) -> None:  # type: ignore[no-untyped-def]
+    install(
+        card,
+        event("CMP32i", first=address("user32b3"), constant=7),
+        event("SET32", "Edge_GreatEqu", constant=0, target=address("mcstgvel"), target_axis=1),
+    )
+    card.advance(2)
+    set_now(card, ("user32b3", 9))
+
+
+STOPS: dict[str, Callable[[Card], None]] = {
+    "velocity 0": lambda card: send(card, IFIFO, ("mcstgvel", 0, 1)),
+    "event": _event_stop,
+    "go 0": lambda card: send(card, IFIFO, ("mcsgo", 0, 1)),
+}
+
+
+@pytest.mark.parametrize("stop", ["velocity 0", "event"])
+@pytest.mark.parametrize("pending", ["tgvel", "gear", "gear left", "distance"])
+def test_a_synchronous_motion_that_never_started_swallows_no_stop(pending: str, stop: str) -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 13, 1))
+    card.advance(20)
+    if pending == "tgvel":
+        _tgvel_in(card, 300, 41)
+    elif pending == "distance":
+        set_now(card, ("syntype", FLAG, 1), ("slavedist", 377, 1), ("synsrcvar", 210, 1), ("enasyn", FLAG, 1))
+    else:
+        _in_distance(card, start=False)
+    card.advance(5)
+    assert card.read("curvel", 1) == 13
+    if pending == "gear left":
+        send(card, IFIFO, ("engear", 0, 1))
+        card.advance(2)
+        assert card.read("curvel", 1) == 13
+    STOPS[stop](card)
+    card.wait([1], 1.0)
+    assert (card.read("curvel", 1), card.read("moving", 1)) == (0, 0)
+
+
+@pytest.mark.parametrize("stop", STOPS)
+@pytest.mark.parametrize("running", ["tgvel", "gear", "distance"])
+def test_a_synchronous_motion_whose_source_stands_still_swallows_no_stop(running: str, stop: str) -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 13, 1))
+    card.advance(20)
+    set_now(card, ("synsrc", address("curpos"), 1), ("synaxis", 2, 1), ("synsrcvar", 777, 1))
+    if running == "distance":
+        set_now(card, ("syntype", FLAG, 1), ("slavedist", 377, 1))
+    if running == "gear":
+        _in_distance(card, start=True)
+    else:
+        send(card, IFIFO, ("enasyn", FLAG, 1), ("startsyn", FLAG, 1))
+    card.advance(5)
+    STOPS[stop](card)
+    card.wait([1], 1.0)
+    assert (card.read("curvel", 1), card.read("moving", 1)) == (0, 0)
+    assert [card.read(name, 1) for name in ("startsyn", "enasyn", "engear")] == [0, 0, 0]
+
+
+def test_the_goal_of_a_synchronous_motion_does_not_move_its_axis_before_the_start() -> None:
+    card = ready_card()
+    _tgvel_in(card, 250, 37)
+    card.advance(30)
+    assert (card.read("curpos", 1), card.read("moving", 1), card.read("mcstgvel", 1)) == (0, 0, 37)
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(250)
+    assert (card.read("mcsvel", 1), card.read("startsyn", 1)) == (37, 0)
+    _tgvel_in(card, 100, 0)  # a goal of 0 is a goal
+    card.advance(30)
+    assert card.read("mcsvel", 1) == 37
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(50)
+    assert card.read("mcsvel", 1) == 18.5
+    card.advance(51)
+    assert card.read("moving", 1) == 0
+
+
+def test_the_goal_may_come_in_a_later_instruction_than_the_change_of_the_source() -> None:
+    card = ready_card()
+    for name, value in (("synsrc", address("ticks")), ("synsrcvar", 120), ("mcstgvel", 24), ("enasyn", FLAG)):
+        send(card, IFIFO, (name, value, 1))
+        card.advance(1)
+    assert card.read("mcsvel", 1) == 0
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(30)
+    assert card.read("mcsvel", 1) == 6
+
+
+def test_clear_and_leaving_the_gear_end_a_synchronous_motion_so_that_the_next_one_starts() -> None:
+    for name in ("clear", "engear"):
+        card = ready_card()
+        send(card, IFIFO, ("mcstgvel", 10))
+        card.advance(20)
+        set_now(card, ("synsrc", address("ticks"), 1), ("synsrcvar", 400, 1), ("enasyn", FLAG, 1))
+        gear(card, 0.7)
+        card.advance(1)
+        send(card, IFIFO, ("startsyn", FLAG, 1))
+        card.advance(100)
+        send(card, IFIFO, (name, FLAG if name == "clear" else 0, 1))
+        card.advance(1)
+        flags = ("startsyn", "enasyn", "engear")
+        assert [card.read(flag, 1) for flag in flags] == [0, 0, 0]
+        STOPS["velocity 0"](card)
+        card.wait([1], 1.0)
+        began = card.read("curpos", 1)
+        set_now(card, ("syntype", FLAG, 1), ("slavedist", 333, 1), ("slaveabs", 0, 1))
+        _timed(card, 130)
+        send(card, IFIFO, ("startsyn", FLAG, 1))
+        card.advance(131)
+        assert (card.read("curpos", 1), card.read("startsyn", 1)) == (began + 333, 0)
+
+
+def test_a_gear_that_waits_for_its_start_is_left_without_touching_a_move() -> None:
+    card = ready_card()
+    move_absolute(card, 1234, 1)
+    card.advance(10)
+    _in_distance(card, start=False)
+    card.advance(3)
+    send(card, IFIFO, ("engear", 0, 1))
+    card.wait()
+    assert (card.read("curpos", 1), card.read("moving", 1)) == (1234, 0)
+
+
+def test_a_coupling_that_cannot_begin_shows_that_it_was_refused() -> None:
+    card = ready_card()
+    set_now(card, ("run", 0, 1), ("enasyn", FLAG, 1), ("synsrcvar", 77, 1))
+    send(card, IFIFO, ("engear", FLAG, 1), ("startsyn", FLAG, 1))
+    card.advance(1)
+    assert (card.read("engear", 1), card.read("startsyn", 1)) == (0, 0)
+
+
+def test_a_gear_engaged_on_a_path_is_refused_and_behind_it_follows() -> None:
+    for queue, follows in ((IFIFO, False), (PFIFO1, True)):
+        card = ready_card()
+        enable_path(card, 1, 2)
+        line(card, 150, 70, speed=10)
+        card.advance(5)
+        for name, value in (("gearratio", 0.75), ("master", 0), ("gearsrc", MCSVEL), ("engear", FLAG)):
+            send(card, queue, (name, value, 1))
+        card.advance(3)
+        if not follows:
+            assert card.read("engear", 1) == 0
+        card.advance(40)
+        assert [card.read("curpos", i) for i in range(3)] == [0, 150, 70]
+        send(card, IFIFO, ("mcstgvel", 8))
+        card.advance(40)
+        assert (card.read("engear", 1), card.read("mcsvel", 1)) == ((FLAG, 6) if follows else (0, 0))
+
+
+@pytest.mark.parametrize("mover", ["path", "contour"])
+def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
+    card = ready_card()
+    send(card, IFIFO, ("mcstgvel", 9))
+    gear(card, 0.6)
+    card.advance(30)
+    began = card.read("curpos", 1)
+    if mover == "path":
+        enable_path(card, 1)
+        set_now(card, ("pathabs", 0, 1))
+        line(card, 207, speed=10)
+    else:
+        set_now(card, ("group_x", 1), ("groupnum", 1), ("groupsmooth", 30), ("startgroup", FLAG))
+        card.push_points([207])
+    card.advance(60)
+    assert (card.read("curpos", 1), card.read("engear", 1)) == (began + 207, 0)
+    card.advance(10)
+    assert card.read("moving", 1) == 0

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import pytest
 
-from polycnc.controllers.imc.core._instructions import Segment
+from polycnc.controllers.imc.core._instructions import Points, Segment
 from support.imc_card import (
     FLAG,
     IFIFO,
@@ -295,3 +295,108 @@ def test_smoothing_acts_behind_the_path() -> None:
     velocities = trace(card, "curvel", 160)
     assert max(abs(b - a) for a, b in pairwise(velocities)) <= 0.7
     assert card.read("curpos") == 1000
+
+
+@pytest.mark.parametrize("smooth", [0, 7])
+def test_an_axis_that_leaves_the_mapping_between_joined_segments_arrives(smooth: int) -> None:
+    card = ready_card()
+    set_now(card, *(("smooth", smooth, i) for i in range(3)))
+    enable_path(card, 0, 1)
+    line(card, 1000, 377, speed=10, end_speed=10)
+    send(card, PFIFO1, ("segmap_x1", 2))
+    line(card, 901, 622, speed=10)
+    card.advance(130)
+    assert card.read("curpos", 0) == 1000
+    card.wait()
+    assert _positions(card, 3) == [1000, 622, 901]
+    assert [card.read(name, 0) for name in ("moveinpath1", "moving", "mcsmoving")] == [0, 0, 0]
+
+
+def test_an_axis_that_has_left_the_mapping_takes_a_command_behind_the_joint() -> None:
+    card = ready_card()
+    enable_path(card, 0, 1)
+    line(card, 1003, 377, speed=10, end_speed=10)
+    send(card, PFIFO1, ("segmap_x1", 2))
+    move_absolute(card, 950, 0, PFIFO1)
+    line(card, 901, 622, speed=10)
+    card.advance(300)
+    assert _positions(card, 3) == [950, 622, 901]
+
+
+def test_an_axis_cannot_be_in_both_spaces_at_once() -> None:
+    card = ready_card()
+    set_now(card, ("stopfilt", 0, 0), ("stopfilt", 0, 1))
+    enable_path(card, 0, 1)
+    line(card, 700, 310, speed=10)
+    card.advance(10)
+    enable_path(card, 1, 2, space=2)
+    line(card, 55, 66, speed=10, space=2)
+    card.advance(5)
+    assert (card.read("error", 0), card.read("error", 1), card.read("error", 2)) == (0, 0x1000, 0x1000)
+    card.wait()
+    assert _positions(card, 3) == [700, 310, 0]
+
+
+@pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.pathaxisnum2", "imc.concept.pfifo_setup")
+@pytest.mark.parametrize("space", [1, 2])
+def test_no_segment_may_have_more_axes_than_the_space(space: int) -> None:
+    card = ready_card()
+    enable_path(card, 2, 0, 1, space=space)
+    set_now(card, (f"pathaxisnum{space}", 2))
+    line(card, 31, -42, speed=5, space=space)
+    card.wait()
+    line(card, 50, 60, 70, speed=5, space=space)
+    card.advance(40)
+    assert _positions(card, 3) == [-42, 0, 31]
+    assert [card.read("error", i) for i in range(4)] == [0x1000, 0x1000, 0x1000, 0]
+
+
+@pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.pathaxisnum2")
+@pytest.mark.parametrize("space", [1, 2])
+def test_points_in_a_path_queue_are_gone_along_with_the_speed_of_the_space(space: int) -> None:
+    card = ready_card()
+    enable_path(card, 2, 1, space=space)
+    values = (("pathaxisnum", 2), ("segtgvel", 5), ("pathacc", 0.25), ("segendvel", 0))
+    set_now(card, *((f"{name}{space}", value) for name, value in values))
+    queue = PFIFO1 + space - 1
+    assert card.push(queue, Points((30, 40) * 4))
+    assert card.push(queue, Points((30, 40, -6, 8) * 3))
+    assert card.waiting_words(queue) == 2 + 8 + 12
+    speeds = trace(card, f"pathvel{space}", 100)
+    # 380 pulses: 20 cycles up to 5, 20 down to rest, and 50 on each of the ramps
+    assert speeds[:21] == [0.25 * k for k in range(1, 21)] + [5.0]
+    assert max(speeds) == 5
+    assert sum(speed > 0 for speed in speeds) in (95, 96)
+    assert max(abs(b - a) for a, b in pairwise(speeds)) <= 0.25 + 1e-4
+    assert _positions(card, 3) == [0, 4 * 40 + 3 * 48, 4 * 30 + 3 * 24]
+    assert (card.waiting_words(queue), card.read(f"segID{space}")) == (0, 10)
+
+
+def test_points_slow_down_for_what_follows_and_take_the_override() -> None:
+    card = ready_card()
+    enable_path(card, 0)
+    set_now(card, ("pathaxisnum1", 1), ("segtgvel1", 8), ("pathacc1", 0.5), ("segendvel1", 2))
+    card.push(PFIFO1, Points((25,) * 40))
+    line(card, 1300, speed=2)
+    speeds = trace(card, "pathvel1", 60)
+    assert speeds[-1] == 8
+    send(card, IFIFO, ("feedrate1", 0.5))
+    assert trace(card, "pathvel1", 10)[-1] == 4
+    send(card, IFIFO, ("feedrate1", 1))
+    speeds = trace(card, "pathvel1", 400)
+    assert max(speeds) == 8
+    assert set(speeds[-150:-110]) <= {2.0, 0.0}
+    card.wait()
+    assert card.read("curpos") == 1300
+
+
+@pytest.mark.parametrize(("named", "points"), [(0, (3, 4)), (2, (3, 4, 5))])
+def test_points_that_are_not_whole_are_an_error(named: int, points: tuple[int, ...]) -> None:
+    card = ready_card()
+    enable_path(card, 1, 3)
+    set_now(card, ("pathaxisnum1", named), ("segtgvel1", 8))
+    card.push(PFIFO1, Points(points))
+    send(card, PFIFO1, ("user16b0", 5))
+    card.advance(20)
+    assert (card.read("error", 1), card.read("user16b0")) == (0x1000, 5)
+    assert card.waiting_words(PFIFO1) == 0

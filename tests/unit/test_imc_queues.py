@@ -7,8 +7,10 @@ import pytest
 from polycnc.controllers.imc.card._card import Fifo
 from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
 from polycnc.controllers.imc.core._instructions import (
+    ChangeBits,
     Event,
     InstallEvents,
+    Points,
     Segment,
     WaitParam,
     WaitTime,
@@ -159,7 +161,6 @@ def test_a_full_queue_takes_nothing_and_drains_with_time() -> None:
         assert card.push(queue, setting("user16b1", 99))
     card.advance(64)
     assert _cells(card)[:2] == [20, 99]
-    assert not card.push_points([0] * 4097)
 
 
 @pytest.mark.covers("imc.param.clrififo", "imc.param.cfifocnt", "imc.param.clrqfifo")
@@ -269,3 +270,40 @@ def test_a_segment_holds_its_own_queue_only() -> None:
     assert _cells(card) == [0, 1, 1]
     card.wait()
     assert (_cells(card), card.read("curpos")) == ([1, 1, 1], 500)
+
+
+def test_what_never_fits_into_a_queue_is_refused_and_not_put_off() -> None:
+    card = ready_card("[depths]\nqfifo = 64\ncfifo = 100\n")
+    writes = WriteMany(tuple(setting("user16b0", k) for k in range(22)))
+    with pytest.raises(UsageError, match="66 words never fit into SEL_QFIFO"):
+        card.push(QFIFO, writes)
+    assert card.push(PFIFO1, writes)
+    assert card.push_points([5] * 60)
+    assert not card.push_points([5] * 60)
+    with pytest.raises(UsageError, match="101 words never fit into SEL_CFIFO"):
+        card.push_points([5] * 101)
+    assert (card.waiting_words(1), card.waiting_words(4)) == (0, 60)
+    for queue in (IFIFO, QFIFO):
+        with pytest.raises(UsageError, match="for a path space"):
+            card.push(queue, Points((1, 2)))
+    with pytest.raises(UsageError, match="no points"):
+        card.push(PFIFO1, Points(()))
+
+
+@pytest.mark.covers("imc.concept.instruction_fifos")
+@pytest.mark.parametrize(("queue", "cycles"), [(IFIFO, 1), (QFIFO, 3), (PFIFO1, 1), (PFIFO2, 1)])
+def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
+    queue: Fifo, cycles: int
+) -> None:
+    card = ready_card()
+    set_now(card, ("startpath1", FLAG), ("startpath2", FLAG))
+    assert card.push(queue, setting("user16b0", 11))
+    assert card.push(queue, ChangeBits(address("user16b0"), 0x4, 0x1))
+    assert card.push(queue, WriteMany((setting("user16b1", 23), setting("user16b0", 37))))
+    assert _cells(card) == [0, 0, 0]
+    assert card.waiting_words(queue) == 3 + 4 + 6
+    card.advance(cycles - 1)
+    assert _cells(card)[:2] == ([14, 0] if cycles == 3 else [0, 0])
+    card.advance(1)
+    assert _cells(card)[:2] == [37, 23]
+    assert card.waiting_words(queue) == 0

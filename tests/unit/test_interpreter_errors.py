@@ -9,7 +9,6 @@ import pytest
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine
 from polycnc.nc import Channel, ProgramText, load_dialect
-from polycnc.nc.blocks._queue import QueueWriter
 from support.programs import FIVE, MILL, channel_state, listing, prepare, queue_bytes, refusal
 
 
@@ -171,37 +170,28 @@ def test_preparation_stops_when_the_queue_is_full_and_goes_on_when_there_is_room
     assert ends == wanted
 
 
-def test_a_block_that_needs_more_than_the_queue_asks_for_room() -> None:
+def test_a_block_that_needs_more_than_the_queue_waits_for_room() -> None:
     machine = Machine(MILL, segments=32)
     program = "F100 G0 Z10\nG83 X1 Z-100 R2 Q1\nM30\n"  # 102 pecks of three moves each
     channel = Channel(ProgramText.from_text(program), load_dialect("din"), machine)
     row = machine.state.paths.row[0]
-    calls = []
-
-    def make_room() -> None:
-        calls.append(int(row["tail"] - row["head"]))
+    lengths = []
+    while not channel.done:
+        channel.fill()
+        lengths.append(int(row["tail"] - row["head"]))
         row["head"] = row["tail"]
-
-    channel.on_full_queue(make_room)
-    channel.fill()
     assert channel.error is None
     assert int(row["tail"]) > 300
-    assert max(calls) <= 32
-    assert len(calls) >= 9
+    assert max(lengths) <= 32
+    assert len(lengths) >= 9
 
 
-def test_a_queue_that_stays_full_ends_preparation() -> None:
+def test_a_queue_that_stays_full_stays_as_it_is() -> None:
     machine = Machine(MILL, segments=32)
     channel = Channel(ProgramText.from_text("F100 G83 X1 Z-100 R2 Q1\n"), load_dialect("din"), machine)
-    channel.on_full_queue(lambda: None)
     channel.fill()
-    assert channel.done
+    filled = int(machine.state.paths.row[0]["tail"])
+    channel.fill()
+    assert not channel.done
     assert free_slots(machine.state.paths, 0) >= 0
-
-
-def test_nobody_to_make_room_is_a_mistake_in_the_calling_program() -> None:
-    machine = Machine(MILL, segments=32)
-    channel = Channel(ProgramText.from_text("F100 G83 X1 Z-100 R2 Q1\n"), load_dialect("din"), machine)
-    with pytest.raises(ValueError, match="the channel queue is full"):
-        channel.fill()
-    assert isinstance(channel.writer, QueueWriter)
+    assert int(machine.state.paths.row[0]["tail"]) == filled

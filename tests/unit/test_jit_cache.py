@@ -16,7 +16,7 @@ from typing import cast
 import pytest
 
 import polycnc
-from polycnc.jit import FILES, Files, Fingerprints, NotKnownError, compiled, versions
+from polycnc.jit import COMPILING, FILES, Files, Fingerprints, NotKnownError, compiled, versions
 from support.command import environment
 
 # A package of two cores above one kernel. Its entries are called with 3 and 2.5, and say how they came about.
@@ -75,9 +75,15 @@ def _start(folder: Path, cache: Path, **more: str) -> subprocess.Popen[str]:
     return subprocess.Popen(command, env=variables, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+def _end(process: subprocess.Popen[str]) -> tuple[str, str]:
+    """Return what a process printed and remarked, without the line that it is compiling: that one goes with it."""
+    said, remarks = process.communicate(timeout=240)
+    assert remarks.count(f"{COMPILING}\n") == ("compiled" in said), remarks
+    return said, remarks.replace(f"{COMPILING}\n", "")
+
+
 def _run(folder: Path, cache: Path) -> tuple[str, str]:
-    said, remarks = _start(folder, cache).communicate(timeout=240)
-    return said, remarks
+    return _end(_start(folder, cache))
 
 
 def _replace(path: Path, old: str, new: str) -> None:
@@ -161,14 +167,31 @@ def test_a_cache_that_cannot_be_written_means_compiling_with_one_remark(tree: Pa
 
 def test_processes_that_start_at_once_compile_once(tree: Path, tmp_path: Path) -> None:
     started = [_start(tree, tmp_path / "cold") for _ in range(3)]
-    said = [each.communicate(timeout=240) for each in started]
+    said = [_end(each) for each in started]
     assert [remarks for _, remarks in said] == ["", "", ""]
     assert [sum(f"{side} compiled" in text for text, _ in said) for side in ("left", "right")] == [1, 1]
 
 
 def test_opening_the_internals_compiles_no_entry_again(tree: Path, cache: Path) -> None:
-    opened = _start(tree, cache, POLYCNC_OPEN_INTERNALS="1").communicate(timeout=240)
+    opened = _end(_start(tree, cache, POLYCNC_OPEN_INTERNALS="1"))
     assert opened == (BOTH_LOADED, "")
+
+
+def test_what_came_with_the_package_is_loaded_and_not_kept_again(
+    tree: Path, tmp_path: Path, compiled_once: tuple[Path, Path]
+) -> None:
+    package = shutil.copytree(
+        Path(polycnc.__file__).parent / "jit",
+        tmp_path / "site" / "polycnc" / "jit",
+        copy_function=shutil.copyfile,
+    ).parent
+    (package / "__init__.py").touch()
+    site = str(package.parent)
+    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "PYTHONPATH": site}
+    assert _end(_start(tree, tmp_path / "made", **generic)) == (BOTH_COMPILED, "")
+    shutil.move(tmp_path / "made" / "polycnc" / "compiled", package / "_compiled")
+    assert _end(_start(tree, tmp_path / "kept", PYTHONPATH=site)) == (BOTH_LOADED, "")
+    assert not (tmp_path / "kept").exists()
 
 
 def test_old_versions_are_swept_and_what_was_used_last_stays(tmp_path: Path) -> None:

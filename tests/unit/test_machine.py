@@ -9,15 +9,14 @@ import numpy as np
 import pytest
 
 from polycnc.errors import UsageError
-from polycnc.machine import Free, Machine, Poll, Reason, Step, load_machine
+from polycnc.machine import Free, Machine, Reason, Step, load_machine
 
 
 def test_a_move_takes_its_closed_form_time_and_ends_on_the_target() -> None:
     machine = Machine(load_machine("mill3"))
     axis = machine.config.axes[0]
-    machine.stop_on(Reason.PROFILE_ENDED)
     machine.move("X", 100.0, speed=50.0)
-    cycles = machine.run(Poll(limit_cycles=100_000))
+    cycles = machine.advance(100_000, until=Reason.PROFILE_ENDED)
     ramp_s = 50.0 / axis.amax
     assert cycles == int(np.ceil((100.0 / 50.0 + ramp_s) / machine.config.cycle_s - 1e-6))
     assert machine.raised is Reason.PROFILE_ENDED
@@ -30,9 +29,9 @@ def test_a_new_target_on_the_way_is_taken_without_a_step_of_the_velocity() -> No
     machine = Machine(load_machine("mill3"), record_cycles=4000)
     amax = machine.config.axes[1].amax
     machine.move("Y", 200.0)
-    machine.run(Step(150))
+    Step(150).run(machine)
     machine.move("Y", -20.0)
-    machine.run(Step(2000))
+    Step(2000).run(machine)
     recorder = machine.state.recorder
     positions = recorder.rows[: int(recorder.filled[0]), 4 + 1]
     acceleration = np.diff(positions, 2) / machine.config.cycle_s**2
@@ -44,13 +43,13 @@ def test_the_same_steps_from_a_snapshot_are_the_same_to_the_last_bit() -> None:
     machine = Machine(load_machine("card6"), servo=True)
     for name, target in zip("XYZ", (12.3, -45.6, 7.8), strict=True):
         machine.move(name, target)
-    machine.run(Step(137))
+    Step(137).run(machine)
     saved = machine.snapshot()
-    machine.run(Step(300))
+    Step(300).run(machine)
     first = (machine.state.setpoint.copy(), machine.state.servo.actual.copy(), machine.clock.cycles)
     machine.restore(saved)
     assert machine.clock.cycles == 137
-    machine.run(Step(300))
+    Step(300).run(machine)
     assert np.array_equal(machine.state.setpoint, first[0])
     assert np.array_equal(machine.state.servo.actual, first[1])
     assert machine.clock.cycles == first[2]
@@ -59,8 +58,8 @@ def test_the_same_steps_from_a_snapshot_are_the_same_to_the_last_bit() -> None:
 def test_free_running_ends_with_its_condition() -> None:
     machine = Machine(load_machine("mill3"))
     machine.move("Z", -30.0)
-    way = Free(until=lambda: machine.setpoints["Z"] <= -15.0, limit_cycles=100_000, look_every_cycles=1)
-    machine.run(way)
+    way = Free(lambda: machine.setpoints["Z"] <= -15.0, limit_cycles=100_000, look_every_cycles=1)
+    way.run(machine)
     before = machine.setpoints["Z"]
     assert before <= -15.0
     assert before > -15.5
@@ -81,15 +80,14 @@ def test_a_move_that_cannot_be_meant_is_refused_and_changes_nothing(
     machine = Machine(load_machine("mill3"))
     with pytest.raises(UsageError, match=message):
         machine.move(axis, target, speed=speed)
-    machine.run(Step(100))
+    Step(100).run(machine)
     assert machine.setpoints == {"X": 0.0, "Y": 0.0, "Z": 0.0}
 
 
 def test_a_limit_switch_edge_stops_the_run_in_its_cycle() -> None:
     machine = Machine(load_machine("card6"))
-    machine.stop_on(Reason.SWITCH_EDGE)
     machine.move("X", 600.0)
-    machine.run(Poll(limit_cycles=100_000))
+    machine.advance(100_000, until=Reason.SWITCH_EDGE)
     assert machine.raised & Reason.SWITCH_EDGE
     assert 500.0 <= machine.actual["X"] < 500.0 + machine.config.axes[0].vmax * machine.config.cycle_s
     assert machine.state.switches.switch[0, 1]["rising_position"] == 500.0

@@ -12,8 +12,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.errors import UsageError
-from polycnc.machine import _store_file
-from polycnc.machine._store import Entry, Store
+from polycnc.machine import StoreError, _store_file
+from polycnc.machine._store import Area, Entry, Store
 
 
 @pytest.fixture(params=["memory", "file"])
@@ -479,3 +479,123 @@ def test_a_file_without_access_is_refused(tmp_path: Path) -> None:
     path.chmod(0)
     with pytest.raises(UsageError, match="cannot read"):
         Store(path)
+
+
+# --- what goes wrong while it is open
+
+
+def test_a_full_store_says_so_and_keeps_what_it_acknowledged(tmp_path: Path) -> None:
+    path = tmp_path / "machine.db"
+    with Store(path) as store:
+        programs = store.area("programs", bytes)
+        programs["O17"] = b"G1 X3" * 7
+        store.query("PRAGMA max_page_count = 12")
+        with pytest.raises(
+            StoreError, match=r"cannot use the store '.*': database or disk is full\nmake room"
+        ):
+            programs["O18"] = bytes(200_000)
+        with pytest.raises(StoreError, match="is full"):
+            programs.save({"O19": b"small", "O20": bytes(200_000)})
+        assert programs.load() == {"O17": b"G1 X3" * 7}
+        programs["O21"] = b"fits"
+    with Store(path) as store:
+        assert set(store.area("programs", bytes)) == {"O17", "O21"}
+
+
+def _write_behind_a_rollback(store: Store, numbers: Area[int]) -> None:
+    with store.transaction():
+        numbers[3] = 31
+        store.query("ROLLBACK")  # as SQLite does by itself after some errors
+        numbers[4] = 41
+
+
+def test_writes_behind_an_error_that_undid_the_transaction_are_refused(tmp_path: Path) -> None:
+    with Store(tmp_path / "machine.db") as store:
+        numbers = store.area("numbers", int)
+        with pytest.raises(StoreError, match="an error has undone the transaction"):
+            _write_behind_a_rollback(store, numbers)
+        assert numbers.load() == {}
+
+
+def test_a_page_that_is_damaged_says_so_when_it_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "machine.db"
+    with Store(path) as store:
+        store.area("numbers", int).save({number: number for number in range(5000)})
+    content = bytearray(path.read_bytes())
+    content[2 * 4096 :] = b"\xa5" * (len(content) - 2 * 4096)
+    path.write_bytes(content)
+    with Store(path) as store, pytest.raises(StoreError, match=r"damaged: .*malformed.*\nrestore a snapshot"):
+        store.area("numbers", int).load()
+
+
+def test_a_file_with_our_name_and_other_tables_says_so(tmp_path: Path) -> None:
+    path = tmp_path / "machine.db"
+    plain_database(
+        path,
+        "CREATE TABLE other (a)",
+        f"PRAGMA application_id = {_store_file.APPLICATION_ID}",
+        f"PRAGMA user_version = {len(_store_file.MIGRATIONS)}",
+    )
+    with Store(path) as store, pytest.raises(StoreError, match=r"is damaged: no such table: item\nrestore"):
+        store.area("numbers", int)[1] = 2
+
+
+@pytest.mark.parametrize("text", ['{"a": ', "[1]", "7", "[" * 5000])
+def test_contents_that_are_no_json_object_say_so(store: Store, text: str) -> None:
+    store.history("alarms").append({"number": 5})
+    store.area("tables", dict)["a"] = {"b": 1}
+    store.query("UPDATE entry SET content = ?", (text,))
+    store.query("UPDATE item SET value = ?, attributes = ?", (text, text))
+    with pytest.raises(StoreError, match="the store is damaged"):
+        store.history("alarms").read()
+    with pytest.raises(StoreError, match="the store is damaged"):
+        store.history("alarms").last(1)
+    with pytest.raises(StoreError, match="the store is damaged"):
+        store.area("tables", dict).attributes("a")
+    with pytest.raises(StoreError, match="the store is damaged"):
+        store.area("tables", dict).load()
+
+
+def test_what_is_too_large_or_no_text_is_refused(store: Store) -> None:
+    numbers, texts = store.area("numbers", int), store.area("texts", str)
+    with pytest.raises(UsageError, match="cannot be a key"):
+        numbers[2**63] = 1
+    with pytest.raises(StoreError, match="too large"):
+        2**64 in numbers  # noqa: B015
+    with pytest.raises(StoreError, match="cannot hold this text"):
+        texts["a"] = "\ud800"
+    with pytest.raises(StoreError, match="cannot hold this text"):
+        texts["\udfff"] = "a"
+    deep: dict[str, Any] = {}
+    for _ in range(100_000):
+        deep = {"in": deep}
+    with pytest.raises(UsageError, match="not a JSON object"):
+        store.history("alarms").append(deep)
+    while deep:
+        deep = deep["in"]
+    with pytest.raises(StoreError, match=r"too (big|large)"):
+        store.query("SELECT zeroblob(2000000000)")
+    assert (len(numbers), len(texts), len(store.history("alarms"))) == (0, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["a\0b", "n" * 5000])
+def test_a_name_that_no_file_can_have(tmp_path: Path, name: str) -> None:
+    with pytest.raises(StoreError, match=r"cannot (use|write|read) '"):
+        Store(tmp_path / name)
+    with Store() as store:
+        with pytest.raises(StoreError, match=r"cannot (use|write|read) '"):
+            store.snapshot(tmp_path / name)
+        with pytest.raises(StoreError, match=r"cannot (use|write|read) '|there is no snapshot"):
+            store.restore(tmp_path / name)
+
+
+def test_a_restore_that_does_not_fit_leaves_the_store_as_it_was(tmp_path: Path) -> None:
+    with Store() as source:
+        source.area("programs", bytes)["O1"] = bytes(300_000)
+        source.snapshot(tmp_path / "large.db")
+    with Store(tmp_path / "machine.db") as store:
+        store.area("numbers", int)[5] = 55
+        store.query("PRAGMA max_page_count = 12")
+        with pytest.raises(StoreError, match="is full"):
+            store.restore(tmp_path / "large.db")
+        assert store.area("numbers", int).load() == {5: 55}

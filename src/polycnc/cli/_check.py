@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from polycnc.cli._output import bold, print_json, say, say_if_cold
+from polycnc.cli._output import bold, print_json, say
 from polycnc.cli._run import DIALECT, MACHINE
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ def check_command(
 
     texts = [runner.program_text(program) for program in programs]
     config = load_machine(machine)
-    say_if_cold()
     found = {text.name: runner.check(text, config, dialect) for text in texts}
     total = sum(map(len, found.values()))
     if as_json:

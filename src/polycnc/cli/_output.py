@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -14,7 +15,6 @@ import typer
 if TYPE_CHECKING:
     from rich.progress import Progress, TaskID
 
-COLD_START = "Compiling the motion kernel; this happens once after an installation and takes some seconds."
 _BAR_AFTER_S = 2.0
 _BAR_STEP_S = 0.1
 
@@ -74,12 +74,18 @@ def _plain(data: Any) -> Any:
     return data
 
 
-def say_if_cold(every_cycle: bool = False) -> None:
-    """Say why the first run of its kind takes longer: cycle by cycle, or in closed form."""
-    from polycnc.kernel import is_cold
+class _Remarks(logging.Handler):
+    """Prints what the packages below log: why it takes a while, and what is wrong with the cache."""
 
-    if is_cold("polycnc.kernel._advance.advance" if every_cycle else "polycnc.kernel._interpolate.skip_path"):
-        say_error(COLD_START)
+    def emit(self, record: logging.LogRecord) -> None:
+        say_error(record.getMessage())
+
+
+def print_remarks() -> None:
+    """Print remarks of the packages below to standard error, as remarks of the command."""
+    log = logging.getLogger("polycnc")
+    log.addHandler(_Remarks())
+    log.propagate = False
 
 
 class _Bar:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from polycnc.cli._output import bold, bold_red, print_json, progress_bar, say, say_error, say_if_cold
+from polycnc.cli._output import bold, bold_red, print_json, progress_bar, say, say_error
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -77,9 +77,6 @@ def post_command(
         raise UsageError("no tool path", hint="Name the file of a tool path.")
     if as_json and output is None:
         raise UsageError("--json needs --output", hint="Name a file for the program, with -o.")
-    if verify:
-        say_if_cold()
-        say_if_cold(every_cycle=True)
     with progress_bar(tool_path.name) as bar:
         result = runner.post_file(
             tool_path,

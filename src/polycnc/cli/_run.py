@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say, say_error, say_if_cold
+from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say, say_error
 
 if TYPE_CHECKING:
     import numpy as np
@@ -60,6 +60,9 @@ def run_command(
             max=9,
         ),
     ] = None,
+    stop_at_m0: Annotated[
+        bool, typer.Option("--stop-at-m0", help="End the run at the first M0 instead of passing it.")
+    ] = False,
 ) -> None:
     """Run a part program on a simulated machine and say how long it takes and where it goes."""
     from polycnc import runner
@@ -78,7 +81,6 @@ def run_command(
             sinks.append(stack.enter_context(runner.TraceWriter(trace, config, servo)).add)
         if servo:
             _say_if_ideal(config)
-        say_if_cold(every_cycle=servo or bool(sinks))
 
         def rows(piece: Floats) -> None:
             for sink in sinks:
@@ -92,6 +94,7 @@ def run_command(
                 servo=servo,
                 check=False,
                 skip_levels=skip or (),
+                stop_at_m0=stop_at_m0,
                 rows=rows if sinks else None,
                 progress=bar,
             )

@@ -5,34 +5,39 @@ from __future__ import annotations
 import hashlib
 import pickle
 import sys
-from collections.abc import Iterator
 from functools import lru_cache
+from importlib import resources
 from typing import Any
 
 import llvmlite
 import numba
 import numpy as np
 from numba.core import compiler, serialize
-from numba.core import types as numba_types
 from numba.core.caching import _Cache
 
-from polycnc.jit._files import CACHE_FOLDER, Files, Lock
+from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files, Lock
+from polycnc.jit._notice import announce
 from polycnc.jit._reach import Fingerprints
+from polycnc.jit._reference import described
 
 FILES = Files(CACHE_FOLDER)
+_SHIPPED = Files(SHIPPED_FOLDER) if SHIPPED_FOLDER.is_dir() else None
 FINGERPRINTS = Fingerprints()
 
 # numba's own annotations leave these out.
 _config: Any = numba.config
-_NAMED: Any = numba_types.BaseNamedTuple
 _rebuild: Any = compiler.CompileResult._rebuild
 _dumps: Any = serialize.dumps
+ANY_PROCESSOR = ("generic", "")  # name and features by which numba makes code for every processor of a kind
 _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "LLVM_PASS_OPT")
 
 
 @lru_cache
 def _compiler() -> str:
-    """Return what compiles: interpreter, numba, what it stands on, and its settings."""
+    """Return what compiles: this package, interpreter, numba, what it stands on, and its settings."""
+    here = resources.files(__package__)
+    sources = [here.joinpath(name).read_bytes() for name in ("_compile.py", "_pipeline.py", "_reference.py")]
+    own = hashlib.blake2b(b"".join(each.replace(b"\r\n", b"\n") for each in sources)).hexdigest()
     versions = (
         sys.implementation.cache_tag,
         getattr(sys, "abiflags", ""),
@@ -40,16 +45,7 @@ def _compiler() -> str:
         llvmlite.__version__,
         np.__version__,
     )
-    return repr((versions, [getattr(_config, name, None) for name in _SETTINGS]))
-
-
-def _types(argument: Any) -> Iterator[str]:
-    """Describe the type of an argument; numba's text for a named tuple leaves out which class it is."""
-    yield str(argument)
-    if isinstance(argument, _NAMED):
-        yield f"{argument.instance_class.__module__}.{argument.instance_class.__qualname__}{argument.fields}"
-        for each in argument:
-            yield from _types(each)
+    return repr((own, versions, [getattr(_config, name, None) for name in _SETTINGS]))
 
 
 def _hexadecimal(*parts: str) -> str:
@@ -83,14 +79,22 @@ class ContentCache(_Cache):
         """Return the function for these types of arguments; when it is not there, hold others from making it."""
         target_context.refresh()
         if not self._enabled:
+            announce()
             return None
-        stem = self._stem(sig, target_context.codegen())
-        found = self._read(stem, target_context)
+        processor = target_context.codegen().magic_tuple()
+        if _SHIPPED is not None:
+            found = self._read(_SHIPPED, self._stem(sig, (processor[0], *ANY_PROCESSOR)), target_context)
+            if found is not None:
+                return found
+        stem = self._stem(sig, processor)
+        found = self._read(FILES, stem, target_context)
         if found is None:
             self.release()
             self._lock = FILES.lock(stem)
-            found = self._read(stem, target_context)  # another process may have made it meanwhile
-            if found is not None:
+            found = self._read(FILES, stem, target_context)  # another process may have made it meanwhile
+            if found is None:
+                announce()
+            else:
                 self.release()
         return found
 
@@ -100,7 +104,7 @@ class ContentCache(_Cache):
             self._enabled and not data.library.has_dynamic_globals and all(x.can_cache for x in data.lifted)
         )
         if keeps:
-            FILES.write(self._stem(sig, data.codegen), self.family, _dumps(data._reduce()))
+            FILES.write(self._stem(sig, data.codegen.magic_tuple()), self.family, _dumps(data._reduce()))
         self.release()
 
     def release(self) -> None:
@@ -118,17 +122,17 @@ class ContentCache(_Cache):
     def flush(self) -> None:
         """Do nothing: what is kept is right as long as its key is."""
 
-    def _stem(self, sig: Any, codegen: Any) -> str:
+    def _stem(self, sig: Any, processor: tuple[str, str, str]) -> str:
         arguments = sig if isinstance(sig, tuple) else (*sig.args, sig.return_type)
-        described = (text for argument in arguments for text in _types(argument))
-        return f"{self.version()}-{_hexadecimal(repr(codegen.magic_tuple()), *described)}"
+        texts = (text for argument in arguments for text in described(argument))
+        return f"{self.version()}-{_hexadecimal(repr(processor), *texts)}"
 
-    def _read(self, stem: str, target_context: Any) -> Any:
-        data = FILES.read(stem)
+    def _read(self, files: Files, stem: str, target_context: Any) -> Any:
+        data = files.read(stem)
         if data is None:
             return None
         try:
             return _rebuild(target_context, *pickle.loads(data))
         except Exception as error:  # whole but strange: whatever it raises, the way out is to compile
-            FILES.remark(f"{stem} cannot be loaded ({type(error).__name__}: {error}); it is compiled anew")
+            files.remark(f"{stem} cannot be loaded ({type(error).__name__}: {error}); it is compiled anew")
             return None

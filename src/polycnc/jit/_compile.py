@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import os
 from collections.abc import Callable
 from typing import Any, ParamSpec, TypeVar, cast
@@ -10,7 +12,9 @@ import numba
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import CPUDispatcher
 
-from polycnc.jit._cache import FILES, ContentCache
+from polycnc.jit._cache import ContentCache
+from polycnc.jit._pipeline import pipelines
+from polycnc.jit._reference import by_reference
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -18,6 +22,7 @@ R = TypeVar("R")
 # numba's own annotations leave out the options and settings that are used here.
 _config: Any = numba.config
 _njit: Any = numba.njit
+_INTERNAL, _ENTRY = pipelines()
 
 OPEN_INTERNALS = bool(os.environ.get("POLYCNC_OPEN_INTERNALS"))
 """Whether Python may call functions that are not entries: tests may."""
@@ -27,6 +32,7 @@ class _Entry(CPUDispatcher):
     """A compiled function that Python may call, and that is kept on disk."""
 
     _cache: ContentCache
+    _inner: Any
 
     def compile(self, sig: Any) -> Any:
         """Load or compile the function for these types of arguments."""
@@ -36,11 +42,25 @@ class _Entry(CPUDispatcher):
             finally:
                 self._cache.release()
 
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Let compiled callers call the internal function, without the detour."""
+        return self._inner.get_call_template(args, kws)
+
+    def get_overload(self, sig: Any) -> Any:
+        """Return what compiled callers call."""
+        return self._inner.get_overload(sig)
+
 
 class _Internal(CPUDispatcher):
     """A compiled function without a wrapper: numba would crash if Python called it."""
 
+    _compiler: Any
     _twin: Callable[..., object] | None = None
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        """Resolve a call by a compiled function: it passes states by reference."""
+        args = self._compiler.fold_argument_types(args, kws)[1]
+        return super().get_call_template(tuple(map(by_reference, args)), {})
 
     def __call__(self, *args: object, **kwargs: object) -> object:
         if not OPEN_INTERNALS:
@@ -49,17 +69,16 @@ class _Internal(CPUDispatcher):
                 "or set POLYCNC_OPEN_INTERNALS=1 in tests"
             )
         if self._twin is None:  # so that the functions that users run are the same with and without tests
-            self._twin = _as_entry(self.py_func, counted=self.targetoptions["_nrt"])
+            self._twin = _as_entry(self)
         return self._twin(*args, **kwargs)
 
 
 _entries: dict[str, _Entry] = {}  # by "module.name"
 
 
-def is_cold(name: str) -> bool:
-    """Tell whether the entry "module.name" is still to be compiled here; its module must have been imported."""
-    found = _entries.get(name)
-    return found is not None and not FILES.exists(found._cache.version())
+def entries() -> list[tuple[str, _Entry]]:
+    """Return "module.name" and dispatcher of the entries of all modules imported so far."""
+    return sorted(_entries.items())
 
 
 def versions() -> list[str]:
@@ -84,25 +103,37 @@ def allocating(function: Callable[P, R]) -> Callable[P, R]:
 
 def entry(function: Callable[P, R]) -> Callable[P, R]:
     """Compile `function` for Python and compiled callers, and keep the result on disk."""
-    dispatcher = _as_entry(function, counted=True)
-    if isinstance(dispatcher, _Entry):
-        _entries[f"{function.__module__}.{function.__qualname__}"] = dispatcher
-    return dispatcher
+    internal = _internal(function, counted=True)
+    if not isinstance(internal, _Internal):
+        return internal
+    found = _as_entry(internal)
+    _entries[f"{function.__module__}.{function.__qualname__}"] = found
+    return cast("Callable[P, R]", found)
 
 
 def _internal(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
     # A state is hundreds of words, which a real call puts on the stack one by one. That costs more than most
     # functions do, so they all become part of their callers. It changes no result.
-    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True}
+    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True, "forceinline": True, **_INTERNAL}
     dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **options)(function)
     if not _config.DISABLE_JIT:
         dispatcher.__class__ = _Internal
     return cast("Callable[P, R]", dispatcher)
 
 
-def _as_entry(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
-    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted)(function)
-    if not _config.DISABLE_JIT:
-        dispatcher.__class__ = _Entry
-        dispatcher._cache = ContentCache(dispatcher)
-    return cast("Callable[P, R]", dispatcher)
+def _as_entry(internal: _Internal) -> _Entry:
+    """Make what Python calls: it takes the arguments as they come, and passes states on by reference."""
+    function = internal.py_func
+    names = ", ".join(inspect.signature(function).parameters)
+    namespace: dict[str, Any] = {"__name__": function.__module__, "internal": internal}
+    exec(f"def entry({names}):\n    return internal({names})\n", namespace)
+    detour = namespace["entry"]
+    detour.__defaults__ = function.__defaults__
+    functools.update_wrapper(detour, function)
+    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=internal.targetoptions["_nrt"], **_ENTRY)(
+        detour
+    )
+    dispatcher.__class__ = _Entry
+    dispatcher._cache = ContentCache(dispatcher)
+    dispatcher._inner = internal
+    return cast("_Entry", dispatcher)

@@ -19,14 +19,19 @@ from polycnc.kernel._append import (
     append_wait,
 )
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
-from polycnc.kernel._jit import compiled, entry, is_cold
+from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import AxisLimits, make_limits
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._path import (
     FEED_LENGTH,
     FEED_S,
+    HELD,
+    IDLE,
+    NO_LIMIT,
     RAPID_LENGTH,
     RAPID_S,
+    READY,
+    RUNNING,
     SEGMENTS,
     TOP_SPEED,
     WAIT_S,
@@ -55,7 +60,7 @@ from polycnc.kernel._profile_shape import (
     ramp_distance,
 )
 from polycnc.kernel._recorder import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
-from polycnc.kernel._replan import prepare_path, replan_path
+from polycnc.kernel._replan import drop_queue, earliest_limit, prepare_path, replan_path
 from polycnc.kernel._segments import (
     ARC,
     LINE,
@@ -94,13 +99,16 @@ __all__ = [
     "FEED_LENGTH",
     "FEED_S",
     "FOLLOWING_ERROR",
+    "HELD",
     "IDEAL",
+    "IDLE",
     "IS_RAPID",
     "LEADING",
     "LIMIT_HIGH",
     "LIMIT_LOW",
     "LINE",
     "MAIN",
+    "NO_LIMIT",
     "OTHER_SOURCE",
     "PATH_EVENT",
     "PATH_RESTED",
@@ -113,8 +121,10 @@ __all__ = [
     "RAPID",
     "RAPID_LENGTH",
     "RAPID_S",
+    "READY",
     "RECORDER_FULL",
     "REFERENCE",
+    "RUNNING",
     "SEGMENTS",
     "SHORT_JUMP",
     "SHORT_OVERSHOOT",
@@ -144,12 +154,13 @@ __all__ = [
     "close_profile",
     "compiled",
     "cycle",
+    "drop_queue",
+    "earliest_limit",
     "entry",
     "follow_cycle",
     "free_slots",
     "give_to_path",
     "give_to_point_to_point",
-    "is_cold",
     "make_limits",
     "make_paths",
     "make_segments",

@@ -40,7 +40,7 @@ def _settle_path(state: KernelState, g: int) -> None:
         state.clock[0]["raised"] |= PATH_EVENT
         if state.clock[0]["mask"] & PATH_EVENT:
             break
-    if row["state"] == READY and row["head"] >= row["tail"]:
+    if row["state"] == READY and row["head"] >= min(row["tail"], row["limit"]):
         state.clock[0]["raised"] |= PATH_RESTED
 
 
@@ -52,7 +52,7 @@ def _run_paths(state: KernelState, dt: float) -> None:
             continue
         if path_cycle(state.seg, state.paths, g, dt) == RESTED:
             _settle_path(state, g)
-        if row["closed"] == 0 and row["planned"] - row["head"] <= state.clock[0]["low_water"]:
+        if row["closed"] == 0 and row["planned"] - row["head"] <= row["low_water"]:
             state.clock[0]["raised"] |= QUEUE_LOW
 
 

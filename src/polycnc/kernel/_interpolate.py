@@ -92,9 +92,9 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
     """Pass waits of no duration at a point of rest; return EVENT if one of them reports one, else STILL."""
     path = paths.row[g]
     path["event"] = -1
-    while path["state"] == READY and path["head"] < path["prepared"] and not is_held(path):
+    while path["state"] == READY and path["head"] < path["prepared"]:
         k = slot(paths, g, path["head"])
-        if seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
+        if is_held(path, seg.row[k]) or seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
             break
         event = int(seg.geo[k, WAIT_EVENT])
         _leave(seg, paths, g, 0.0)
@@ -135,7 +135,7 @@ def _plan_from(
         out = row["out"] if path["depth"] == 0 else window_speed(seg, paths, g, count)
         out = min(out, most)
         length = row["length"] - s
-        if is_held(path) or row["cap"] <= 0.0:
+        if is_held(path, row) or row["cap"] <= 0.0:
             needed = halting_distance(speed, row["accel"], path["entry_zone"] - s, path["entry_share"])
             through = min(speed, max(out, row["bound"])) if needed > length else 0.0
             _plan_pieces(path, row, ramps, speed, s, min(needed, length), speed, through, 0.0, dt)
@@ -210,11 +210,11 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
     if path["state"] == READY:
         while settle(seg, paths, g) == EVENT:
             pass  # whoever wants events has settled before, see `advance` and `skip_path`
-        if path["head"] >= path["prepared"] or is_held(path):
+        if path["head"] >= path["prepared"] or is_held(path, seg.row[slot(paths, g, path["head"])]):
             return STILL
         path["state"] = RUNNING
         _plan_from(seg, paths, g, 0.0, 0.0, 0.0, math.inf, dt)
-    elif path["state"] == HELD and not is_held(path):
+    elif path["state"] == HELD and not is_held(path, seg.row[slot(paths, g, path["head"])]):
         path["state"] = RUNNING
         _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, math.inf, dt)
     elif path["state"] != RUNNING:

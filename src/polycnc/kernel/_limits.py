@@ -28,6 +28,7 @@ from polycnc.kernel._segments import (
     LINE,
     RADIUS_END,
     RADIUS_START,
+    RAPID,
     SPLINE,
     SPLINE_FROM,
     SPLINE_INDEX,
@@ -70,14 +71,46 @@ def make_limits(axes: int) -> AxisLimits:
 
 
 @compiled
-def limit_segment(seg: Segments, k: int, limits: AxisLimits, override: float, work: Floats) -> None:
-    """Set `cap` and `full_accel` of segment `k`: programmed feed times override, within what every axis allows.
+def feed_in_force(row: np.void, path: np.void) -> float:
+    """Return the path speed that is asked for: the programmed feed, or that of a dry run, times the override.
+
+    An override of 0 holds the path, so its segments stay planned as they are programmed.
+    """
+    feed = row["feed"]
+    if row["flags"] & RAPID:
+        return float(feed)
+    if path["dry_feed"] > 0.0:
+        feed = path["dry_feed"]
+    return float(feed * path["override"] if path["override"] > 0.0 else feed)
+
+
+@compiled
+def overridden_rapid(cap: float, path: np.void) -> float:
+    """Return what the override of positioning leaves of a path speed that the axes allow."""
+    factor = path["rapid_override"] if path["rapid_override"] > 0.0 else 1.0
+    return float(min(cap * factor, path["rapid_top"]))
+
+
+@compiled
+def line_speed(seg: Segments, k: int, limits: AxisLimits) -> float:
+    """Return the path speed that the axes allow on line `k`."""
+    speed = math.inf
+    for i in range(limits.speed.shape[0]):
+        part = abs(seg.end[k, i] - seg.start[k, i]) / seg.row[k]["length"]
+        if part > 0.0:
+            speed = min(speed, limits.speed[i] / part)
+    return speed
+
+
+@compiled
+def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work: Floats) -> None:
+    """Set `cap` and `full_accel` of segment `k`: feed times override, within what every axis allows.
 
     `work` is scratch, [3, n].
     """
     row = seg.row[k]
     kind = row["kind"]
-    cap = row["feed"] * override
+    cap = feed_in_force(row, path)
     accel = math.inf
     if kind == WAIT:
         cap = 0.0
@@ -88,6 +121,8 @@ def limit_segment(seg: Segments, k: int, limits: AxisLimits, override: float, wo
             if part > 0.0:
                 cap = min(cap, limits.speed[i] / part)
                 accel = min(accel, limits.acceleration[i] / part)
+        if row["flags"] & RAPID:
+            cap = overridden_rapid(cap, path)
     else:
         cap, accel = _limit_curve(seg, k, limits, cap, work)
     row["cap"] = cap

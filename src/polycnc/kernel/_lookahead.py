@@ -33,9 +33,8 @@ def limit_queue(
     """Set the caps of the segments from count `first` on, and junctions and accelerations from `first_end` on."""
     row = paths.row[g]
     head, tail, jerkrel = int(row["head"]), int(row["prepared"]), row["jerkrel"]
-    override = row["override"] if row["override"] > 0.0 else 1.0  # an override of 0 holds the path
     for count in range(first, tail):
-        limit_segment(seg, slot(paths, g, count), limits, override, work)
+        limit_segment(seg, slot(paths, g, count), limits, row, work)
     for count in range(first_end, tail):
         k = slot(paths, g, count)
         seg.row[k]["bound"] = 0.0

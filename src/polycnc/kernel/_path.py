@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._ramps import REGISTERS
-from polycnc.kernel._segments import Floats
+from polycnc.kernel._segments import RAPID, WAIT, Floats
 
 Ints = npt.NDArray[np.int64]
 
@@ -20,6 +20,8 @@ IDLE = 0  # not started
 READY = 1  # started and at rest: the next segment begins with the next cycle
 RUNNING = 2  # the segment at `head` is being gone along
 HELD = 3  # at rest within a segment, until released
+
+NO_LIMIT = 1 << 62
 
 BLEND_COLUMNS = 15  # five points of three axes
 
@@ -36,10 +38,15 @@ PATH_ROW = np.dtype(
         ("tail", np.int64),  # count of segments appended
         ("prepared", np.int64),  # segments before this count are in the look-ahead and may run
         ("planned", np.int64),  # segments before this count have their final end speed
+        ("limit", np.int64),  # segments from this count on stay out of the look-ahead: the path rests before
+        ("low_water", np.int64),  # planned segments at which QUEUE_LOW is raised, negative never
         ("depth", np.int64),  # look-ahead in segments, 0 = unlimited
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
-        ("override", np.float64),  # factor of the programmed feeds; 0 holds the path
+        ("override", np.float64),  # factor of the programmed feeds; 0 holds moves at feed
+        ("rapid_override", np.float64),  # factor of positioning speeds; 0 holds positioning
+        ("rapid_top", np.float64),  # highest path speed of positioning
+        ("dry_feed", np.float64),  # path speed instead of every programmed feed, 0 = as programmed
         ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
         ("tolerance", np.float64),  # how far the path may leave a corner between lines appended from now on
         ("lead", np.float64),  # time into the running segment at sample 0
@@ -49,7 +56,7 @@ PATH_ROW = np.dtype(
         ),  # part of its acceleration that the running segment gives up near its start
         ("entry_zone", np.float64),  # up to which path length in it
         ("speed", np.float64),  # path speed now
-        ("tag", np.int32),  # tag of the segment that gave the last setpoint
+        ("tag", np.int64),  # tag of the segment that gave the last setpoint
         ("flags", np.int8),  # of that segment
         ("state", np.int8),
         ("hold", np.int8),  # feed hold
@@ -78,7 +85,11 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
     row["capacity"] = slots // paths
     row["base"] = np.arange(paths) * (slots // paths)
     row["override"] = 1.0
+    row["rapid_override"] = 1.0
+    row["rapid_top"] = np.inf
     row["event"] = -1
+    row["limit"] = NO_LIMIT
+    row["low_water"] = 1024
     return Paths(
         row=row,
         ramps=np.zeros((paths, REGISTERS)),
@@ -97,9 +108,14 @@ def start_path(paths: Paths, g: int) -> None:
 
 
 @compiled
-def is_held(path: np.void) -> bool:
-    """Tell whether a path may not move."""
-    return bool(path["hold"] != 0 or path["override"] <= 0.0)
+def is_held(path: np.void, row: np.void) -> bool:
+    """Tell whether a path may not go along the segment of this row; an override of 0 leaves waits alone."""
+    if path["hold"] != 0:
+        return True
+    if row["kind"] == WAIT:
+        return False
+    factor = path["rapid_override"] if row["flags"] & RAPID else path["override"]
+    return bool(factor <= 0.0)
 
 
 @compiled

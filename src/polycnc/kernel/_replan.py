@@ -6,14 +6,16 @@ within the distance that braking takes, because the motion has already been plan
 
 from __future__ import annotations
 
+import numpy as np
+
 from polycnc.kernel._geometry import is_curved
 from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._limits import AxisLimits, least_accel
+from polycnc.kernel._limits import AxisLimits, feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
-from polycnc.kernel._path import HELD, RUNNING, Paths, slot
+from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
-from polycnc.kernel._segments import LINE, RAPID, STOP, WAIT, Floats, Segments
+from polycnc.kernel._segments import LINE, RAPID, STOP, WAIT, Floats, Segments, set_wait
 
 
 @compiled
@@ -71,6 +73,8 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
     """Return the count up to which segments will not change: a line that may yet be rounded off waits."""
     path = paths.row[g]
     tail = int(path["tail"])
+    if path["limit"] < tail:
+        return int(path["limit"])
     if tail > path["prepared"] and path["tolerance"] > 0.0 and path["closed"] == 0:
         row = seg.row[slot(paths, g, tail - 1)]
         if row["kind"] == LINE and not row["flags"] & (RAPID | STOP):
@@ -99,6 +103,48 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
         plan_again(seg, paths, g, dt)
 
 
+@compiled
+def _lower_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> None:
+    """Lower the cap of a segment that keeps all else it was planned with; an override of 0 holds it instead."""
+    row = seg.row[k]
+    if row["flags"] & RAPID:
+        cap = overridden_rapid(line_speed(seg, k, limits), path)
+    else:
+        cap = feed_in_force(row, path)
+    if cap > 0.0:
+        row["cap"] = min(row["cap"], cap)
+
+
+@entry
+def earliest_limit(seg: Segments, paths: Paths, g: int, dt: float) -> int:
+    """Return the lowest `limit` that path `g` can still rest before."""
+    path = paths.row[g]
+    if path["state"] != RUNNING and path["state"] != HELD:
+        return int(path["head"])
+    return min(frozen_until(seg, paths, g, dt) + 1, int(path["prepared"]))
+
+
+@entry
+def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
+    """Forget what path `g`, which is at rest, has still to go along; it stands where it is."""
+    path = paths.row[g]
+    tag = path["tag"]
+    path["tail"] = path["head"]
+    for i in range(paths.queued.shape[1]):
+        paths.queued[g, i] = paths.position[g, i]
+    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag)  # where it stands
+    path["head"] += 1
+    path["tail"] = path["head"]
+    path["prepared"] = path["head"]
+    path["planned"] = path["head"]
+    if path["state"] != IDLE:
+        path["state"] = READY
+    path["entry_share"] = 0.0
+    path["entry_zone"] = 0.0
+    path["pending"] = 0
+    path["limit"] = NO_LIMIT
+
+
 @entry
 def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
     """Take over a new override, feed hold or its release from where path `g` stands now."""
@@ -109,10 +155,9 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     keeps = first < last and is_curved(seg, k)
     accel = seg.row[k]["full_accel"]
     for count in range(head, min(first, last)):
-        row = seg.row[slot(paths, g, count)]
-        row["bound"] = max(row["bound"], row["out"])
-        if path["override"] > 0.0:
-            row["cap"] = min(row["cap"], row["feed"] * path["override"])
+        passed = slot(paths, g, count)
+        seg.row[passed]["bound"] = max(seg.row[passed]["bound"], seg.row[passed]["out"])
+        _lower_cap(seg, passed, limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]

@@ -40,7 +40,6 @@ CLOCK_ROW = np.dtype(
         ("mask", np.int64),  # reasons that stop `advance`
         ("raised", np.int64),  # reasons met in its last cycle
         ("axis", np.int64),  # the axis of the last axis reason, -1 none
-        ("low_water", np.int64),  # planned segments at which QUEUE_LOW is raised
         ("main_path", np.int64),  # the path whose block and feed are recorded
     ],
     align=True,
@@ -96,7 +95,6 @@ def make_state(
     clock = np.zeros(1, CLOCK_ROW)
     clock["dt"] = cycle_s
     clock["axis"] = -1
-    clock["low_water"] = 1024
     return KernelState(
         clock=clock,
         owner=np.full(axes, POINT_TO_POINT, np.int64),

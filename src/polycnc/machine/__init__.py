@@ -1,6 +1,6 @@
 """The simulated machine: configuration and presets, kernel state, I/O image, clock, durable memory."""
 
-from polycnc.machine._clock import Advance, Clock, Free, Pacer, Poll, RealTime, Step, Way
+from polycnc.machine._clock import Clock
 from polycnc.machine._config import (
     IoConfig,
     MachineConfig,
@@ -17,24 +17,37 @@ from polycnc.machine._describe import (
     machine_file_reference,
     machine_row,
 )
+from polycnc.machine._device import Device, Timed
+from polycnc.machine._host import Host, HostError
 from polycnc.machine._io import IoBits, IoImage, scan_edges
-from polycnc.machine._machine import Machine, Reason, Snapshot
+from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
+from polycnc.machine._pace import Pace, Pacer, Wall
+from polycnc.machine._polling import Polling
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
+from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
+from polycnc.machine._store_file import StoreError
 from polycnc.machine._toml import StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.machine._toml_locator import KeyPath, Locator
+from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
 
 __all__ = [
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
     "PRESETS",
-    "Advance",
     "Area",
+    "Array",
     "AxisConfig",
+    "AxisState",
     "Clock",
+    "Condition",
+    "Device",
+    "Elapsed",
     "Entry",
     "Free",
     "History",
+    "Host",
+    "HostError",
     "IoBits",
     "IoConfig",
     "IoImage",
@@ -44,21 +57,30 @@ __all__ = [
     "Locator",
     "Machine",
     "MachineConfig",
+    "MachineStatus",
+    "Pace",
     "Pacer",
     "PathConfig",
+    "Plain",
     "Poll",
+    "Polling",
     "RealTime",
     "Reason",
     "RotaryAxis",
     "RotaryServo",
     "Snapshot",
+    "SnapshotError",
     "SpindleConfig",
     "Step",
     "Store",
+    "StoreError",
     "StrictModel",
+    "Timed",
     "TimesConfig",
     "ToolConfig",
+    "Wall",
     "Way",
+    "arrays_of",
     "axis_rows",
     "describe_machine",
     "load_machine",
@@ -70,4 +92,5 @@ __all__ = [
     "problem",
     "scan_edges",
     "validate",
+    "wait",
 ]

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import datetime
 from enum import IntFlag
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
 
 import numpy as np
 import numpy.typing as npt
@@ -14,9 +16,10 @@ import numpy.typing as npt
 from polycnc import kernel
 from polycnc.errors import UsageError
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, PIDF, REFERENCE, KernelState, make_state, place_machine
-from polycnc.machine._clock import Clock, Way
+from polycnc.machine._clock import Clock
 from polycnc.machine._config import MachineConfig
 from polycnc.machine._io import IoImage
+from polycnc.machine._snapshot import Array, Snapshot, arrays_of
 from polycnc.machine._store import Store
 
 Floats = npt.NDArray[np.float64]
@@ -38,11 +41,29 @@ class Reason(IntFlag):
 
 
 @dataclass(frozen=True, slots=True)
-class Snapshot:
-    """The state of a machine at one cycle, to go back to; see `Machine.snapshot`."""
+class AxisState:
+    """One axis at one cycle: positions in mm or degree, machine coordinates; velocity and acceleration per second."""
 
-    cycles: int
-    arrays: tuple[npt.NDArray[Any], ...]
+    setpoint: float
+    actual: float
+    velocity: float
+    acceleration: float
+    following_error: float
+
+
+@dataclass(frozen=True, slots=True)
+class MachineStatus:
+    """A machine at one cycle; `inputs` and `outputs` hold one byte, 0 or 1, for each bit."""
+
+    cycle: int
+    time_s: float
+    now: datetime
+    raised: Reason
+    axes: Mapping[str, AxisState]
+    inputs: bytes
+    outputs: bytes
+    input_words: tuple[int, ...]
+    output_words: tuple[int, ...]
 
 
 class Machine:
@@ -76,6 +97,7 @@ class Machine:
             record_cycles=record_cycles,
             record_actual=servo,
         )
+        self._mask = self.state.clock["mask"]
         for index, axis in enumerate(config.axes):
             self._set_axis(index, axis.vmax, axis.amax, axis.jump, axis.kind == "linear")
             self._set_switches(index)
@@ -93,8 +115,12 @@ class Machine:
         """Time since the machine was switched on."""
         return self.clock.now_s
 
-    def advance(self, cycles: int) -> int:
-        """Run up to `cycles` control cycles; return how many were run until something asked for attention."""
+    def advance(self, cycles: int, *, until: int | None = None) -> int:
+        """Run up to `cycles` control cycles; return how many were run.
+
+        Fewer after a cycle that has `raised` one of the reasons `until` (`Reason`).
+        """
+        self._mask[0] = until or 0
         done = kernel.advance(self.state, cycles)
         self.clock.tick(done)
         return done
@@ -104,14 +130,6 @@ class Machine:
         done = kernel.skip(self.state, path, until)
         self.clock.tick(done)
         return done
-
-    def run(self, way: Way) -> int:
-        """Let the machine run in one of the ways of its clock (`Step`, `Free`, ...); return the cycles done."""
-        return way.run(self.advance)
-
-    def stop_on(self, reasons: Reason) -> None:
-        """Set what `advance` stops for, once the cycle in which it happens is complete."""
-        self.state.clock[0]["mask"] = int(reasons)
 
     @property
     def raised(self) -> Reason:
@@ -171,19 +189,55 @@ class Machine:
             self._memory = Store(self._memory_file)
         return self._memory
 
+    # ------------------------------------------------------------------ state
+
+    def status(self) -> MachineStatus:
+        """Return what the machine is and does in the present cycle."""
+        state, io = self.state, self.io
+        columns = (
+            state.setpoint,
+            state.servo.actual,
+            state.velocity,
+            state.acceleration,
+            state.servo.row["following_error"],
+        )
+        axes = (AxisState(*map(float, row)) for row in zip(*columns, strict=True))
+        return MachineStatus(
+            cycle=self.clock.cycles,
+            time_s=self.clock.now_s,
+            now=self.clock.now,
+            raised=self.raised,
+            axes=MappingProxyType(dict(zip(self.config.axis_names, axes, strict=True))),
+            inputs=io.inputs.now.tobytes(),
+            outputs=io.outputs.now.tobytes(),
+            input_words=tuple(map(int, io.input_words)),
+            output_words=tuple(map(int, io.output_words)),
+        )
+
     def snapshot(self) -> Snapshot:
-        """Return the whole state of motion, inputs and outputs, to go back to with `restore`."""
-        return Snapshot(self.clock.cycles, tuple(array.copy() for array in self._arrays()))
+        """Return the whole state of motion, inputs and outputs, and the clock; the durable memory is not in it."""
+        clock = self.clock
+        beside = {"epoch": clock.epoch.isoformat()}
+        return Snapshot.take("machine", self._made_from, clock.cycles, self._arrays(), beside)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot of this machine; the durable memory stays as it is."""
-        for array, saved in zip(self._arrays(), snapshot.arrays, strict=True):
-            array[...] = saved
-        self.clock.cycles = snapshot.cycles
+        """Go back to a snapshot of this machine, or of one that was made alike; the durable memory stays as it is.
 
-    def _arrays(self) -> list[npt.NDArray[Any]]:
+        Raises:
+            SnapshotError: It is of another machine, or damaged; nothing has changed.
+        """
+        snapshot.check("machine", self._made_from, self._arrays())
+        epoch = snapshot.moment("epoch")
+        snapshot.put_back(self._arrays())
+        self.clock.go_back(snapshot.cycle, epoch)
+
+    @property
+    def _made_from(self) -> str:
+        return self.config.model_dump_json()
+
+    def _arrays(self) -> list[Array]:
         io = self.io
-        return _arrays_of((self.state, io.inputs, io.outputs, io.input_words, io.output_words))
+        return arrays_of((self.state, io.inputs, io.outputs, io.input_words, io.output_words))
 
     # ------------------------------------------------------------------ set-up
 
@@ -224,10 +278,3 @@ class Machine:
                 switch[which]["on_from"], switch[which]["on_to"] = on_from, on_to
         if axis.index_pulse is not None:
             marks["index_origin"] = axis.index_pulse
-
-
-def _arrays_of(value: Any) -> list[npt.NDArray[Any]]:
-    """Return all arrays in nested tuples, in a fixed order."""
-    if isinstance(value, np.ndarray):
-        return [value]
-    return [array for item in value for array in _arrays_of(item)] if isinstance(value, tuple) else []

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 import sqlite3
 import threading
@@ -20,7 +21,15 @@ from types import TracebackType
 from typing import Any, Generic, Self, TypeAlias, TypeVar
 
 from polycnc.errors import UsageError
-from polycnc.machine._store_file import open_file, open_memory, read_snapshot, write_file
+from polycnc.machine._store_file import (
+    StoreError,
+    let_go,
+    open_file,
+    open_memory,
+    read_snapshot,
+    refusal,
+    write_file,
+)
 
 Key: TypeAlias = int | str
 Attributes: TypeAlias = Mapping[str, Any]
@@ -33,10 +42,11 @@ class Store:
     """Hold a machine's durable memory: `area` for values by key, `history` for ordered lists.
 
     Without a path the memory lasts as long as the object. A file belongs to one store at a time. All methods
-    may be called from any thread; a transaction makes the other threads wait.
+    may be called from any thread; a transaction makes the other threads wait. A child that the process forks may not
+    use a file of its parent; it may close the store, or just exit, and the parent loses nothing.
 
     Raises:
-        UsageError: The file is not a store, is from a newer polycnc, or is in use; it is left as it was.
+        StoreError: The file is not a store, is from a newer polycnc, or is in use; it is left as it was.
     """
 
     def __init__(self, path: str | Path | None = None) -> None:
@@ -45,7 +55,8 @@ class Store:
         self._path = None if path is None else Path(path)
         connection = open_memory() if self._path is None else open_file(self._path)
         self._connection: sqlite3.Connection | None = connection
-        self._close_connection = weakref.finalize(self, connection.close)
+        self._owner = os.getpid()
+        self._close_connection = weakref.finalize(self, let_go, connection, self._owner)
 
     def area(self, name: str, of: type[V]) -> Area[V]:
         """Return the area called `name`, whose values are all of the type `of`.
@@ -71,26 +82,42 @@ class Store:
 
         A transaction inside another one is part of it.
         """
+        self._refuse_other_process()
         with self._lock:
             connection = self._open_connection()
             if self._depth == 0:
-                connection.execute("BEGIN IMMEDIATE")
+                self._execute("BEGIN IMMEDIATE")
             self._depth += 1
             try:
                 yield
+                self._refuse_other_process()  # a child may come out of a block that its parent has begun
                 if self._depth == 1:
-                    connection.execute("COMMIT")
+                    self._execute("COMMIT")
             except BaseException:
-                if self._depth == 1 and connection.in_transaction:
+                if self._depth == 1 and connection.in_transaction and not self._is_foreign:
                     connection.execute("ROLLBACK")
                 raise
             finally:
                 self._depth -= 1
 
     def query(self, sql: str, values: tuple[object, ...] = ()) -> list[tuple[Any, ...]]:
-        """Run one SQL statement and return its rows; a write is durable on return, outside a transaction."""
+        """Run one SQL statement and return its rows; a write is durable on return, outside a transaction.
+
+        Raises:
+            StoreError: The store is closed, damaged, full or of another process, or cannot hold these values.
+        """
+        self._refuse_other_process()
         with self._lock:
-            return self._open_connection().execute(sql, values).fetchall()
+            return self._execute(sql, values)
+
+    def _execute(self, sql: str, values: tuple[object, ...] = ()) -> list[tuple[Any, ...]]:
+        connection = self._open_connection()
+        if self._depth and not connection.in_transaction:
+            raise StoreError("an error has undone the transaction", hint="begin it again")
+        try:
+            return connection.execute(sql, values).fetchall()
+        except (sqlite3.Error, OverflowError, UnicodeError) as error:
+            raise refusal(error, self._name) from error
 
     def snapshot(self, path: str | Path) -> None:
         """Write a copy of the whole store to a file, which becomes complete in one step.
@@ -101,7 +128,8 @@ class Store:
             UsageError: `path` is this store's own file or not a store, or a transaction is open.
         """
         if self._path is not None and Path(path).resolve() == self._path.resolve():
-            raise UsageError(f"'{path}' is the store itself", hint="give the snapshot another name")
+            raise StoreError(f"'{path}' is the store itself", hint="give the snapshot another name")
+        self._refuse_other_process()
         with self._lock:
             self._refuse_in_transaction("snapshot")
             write_file(self._open_connection(), Path(path))
@@ -113,12 +141,19 @@ class Store:
             UsageError: The file is missing, in use, not a store or from a newer polycnc, or a transaction is
                 open.
         """
+        self._refuse_other_process()
         with closing(read_snapshot(Path(path))) as copy, self._lock:
             self._refuse_in_transaction("restore")
-            copy.backup(self._open_connection())
+            try:
+                copy.backup(self._open_connection())
+            except sqlite3.Error as error:
+                raise refusal(error, self._name) from error
 
     def close(self) -> None:
         """Close the file; a closed store refuses everything but another `close`."""
+        if os.getpid() != self._owner:
+            self._close_connection()  # leaves the file to the parent; a thread of it may hold the lock
+            return
         with self._lock:
             self._connection = None
             self._close_connection()
@@ -133,12 +168,27 @@ class Store:
 
     def _open_connection(self) -> sqlite3.Connection:
         if self._connection is None:
-            raise UsageError("the store is closed", hint="open a new Store on the same path")
+            raise StoreError("the store is closed", hint="open a new Store on the same path")
         return self._connection
+
+    @property
+    def _name(self) -> str:
+        return "the store in memory" if self._path is None else f"the store '{self._path}'"
+
+    @property
+    def _is_foreign(self) -> bool:
+        return self._path is not None and os.getpid() != self._owner
+
+    def _refuse_other_process(self) -> None:
+        if self._is_foreign:
+            raise StoreError(
+                f"{self._name} belongs to the process that opened it",
+                hint="open it after forking, in one process",
+            )
 
     def _refuse_in_transaction(self, what: str) -> None:
         if self._depth:
-            raise UsageError(f"{what} inside a transaction", hint="end the transaction first")
+            raise StoreError(f"{what} inside a transaction", hint="end the transaction first")
 
 
 class Area(MutableMapping[Key, V], Generic[V]):
@@ -190,8 +240,14 @@ class Area(MutableMapping[Key, V], Generic[V]):
         rows = self._store.query("SELECT attributes FROM item WHERE area = ? AND key = ?", (self._name, key))
         if not rows:
             raise KeyError(key)
-        found: dict[str, Any] = json.loads(rows[0][0])
-        return found
+        return _from_json(rows[0][0])
+
+    def all_attributes(self) -> dict[Key, dict[str, Any]]:
+        """Return the attributes of all keys, with one reading and without the values."""
+        rows = self._store.query(
+            "SELECT key, attributes FROM item WHERE area = ? ORDER BY key", (self._name,)
+        )
+        return {key: json.loads(attributes) for key, attributes in rows}
 
     def __delitem__(self, key: Key) -> None:
         """Forget `key`.
@@ -254,7 +310,7 @@ class Area(MutableMapping[Key, V], Generic[V]):
 
     def _value(self, key: Key, stored: Any) -> V:
         if self._of is dict and isinstance(stored, str):
-            stored = json.loads(stored)
+            stored = _from_json(stored)
         if type(stored) is not self._of:
             raise UsageError(
                 f"{self._name} {key!r} holds {type(stored).__name__}, not {self._of.__name__}",
@@ -296,7 +352,7 @@ class History:
             "SELECT number, content FROM entry WHERE history = ? AND number > ? ORDER BY number LIMIT ?",
             (self._name, after, -1 if count is None else count),
         )
-        return [Entry(number, json.loads(content)) for number, content in rows]
+        return [Entry(number, _from_json(content)) for number, content in rows]
 
     def last(self, count: int) -> list[Entry]:
         """Return the newest `count` entries, oldest first."""
@@ -304,7 +360,7 @@ class History:
             "SELECT number, content FROM entry WHERE history = ? ORDER BY number DESC LIMIT ?",
             (self._name, count),
         )
-        return [Entry(number, json.loads(content)) for number, content in reversed(rows)]
+        return [Entry(number, _from_json(content)) for number, content in reversed(rows)]
 
     def trim(self, keep: int) -> int:
         """Forget all but the newest `keep` entries; return how many are gone."""
@@ -329,8 +385,8 @@ def _checked_name(name: str) -> str:
 
 
 def _checked_key(key: Key) -> Key:
-    if type(key) not in (int, str):
-        raise UsageError(f"{key!r} cannot be a key", hint="use a whole number or text")
+    if type(key) not in (int, str) or (isinstance(key, int) and not -(2**63) <= key < 2**63):
+        raise UsageError(f"{key!r} cannot be a key", hint="use a whole number of 64 bits, or text")
     return key
 
 
@@ -340,7 +396,17 @@ def _as_json(content: Attributes | None) -> str | None:
         return None
     try:
         return json.dumps(content, allow_nan=False, ensure_ascii=False, separators=(",", ":"))
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, RecursionError) as error:
         raise UsageError(
             f"not a JSON object: {error}", hint="use text, finite numbers, lists and dicts"
         ) from error
+
+
+def _from_json(text: str) -> dict[str, Any]:
+    try:
+        found = json.loads(text)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise StoreError(f"the store is damaged: {error}", hint="restore a snapshot of it") from error
+    if not isinstance(found, dict):
+        raise StoreError("the store is damaged: no JSON object", hint="restore a snapshot of it")
+    return found

@@ -6,6 +6,7 @@ are made whole under another name and then renamed: there is never half of one.
 
 from __future__ import annotations
 
+import ctypes
 import os
 import sqlite3
 from contextlib import closing, suppress
@@ -34,6 +35,51 @@ MIGRATIONS: tuple[tuple[str, ...], ...] = (
 )
 
 
+# What keeps SQLite from its file although the file is good.
+_OUTSIDE = {
+    sqlite3.SQLITE_FULL,
+    sqlite3.SQLITE_IOERR,
+    sqlite3.SQLITE_READONLY,
+    sqlite3.SQLITE_CANTOPEN,
+    sqlite3.SQLITE_BUSY,
+    sqlite3.SQLITE_LOCKED,
+    sqlite3.SQLITE_NOMEM,
+    sqlite3.SQLITE_PERM,
+    sqlite3.SQLITE_INTERRUPT,
+}
+
+
+class StoreError(UsageError):
+    """A store that cannot be used: damaged, full, foreign, in use, too large, or of another process."""
+
+
+def refusal(error: sqlite3.Error | OverflowError | UnicodeError, name: str) -> StoreError:
+    """Return what an error of SQLite means for who uses the store called `name`."""
+    if isinstance(error, UnicodeError):
+        return StoreError(f"{name} cannot hold this text: {error}", hint="store it as bytes")
+    if isinstance(error, sqlite3.DataError | OverflowError):
+        return StoreError(
+            f"{name} cannot hold this: {error}", hint="it is too large: store less of it at once"
+        )
+    if isinstance(error, sqlite3.Error) and getattr(error, "sqlite_errorcode", 0) & 0xFF in _OUTSIDE:
+        return StoreError(
+            f"cannot use {name}: {error}",
+            hint="make room and check the access rights; what was acknowledged before is kept",
+        )
+    return StoreError(f"{name} is damaged: {error}", hint="restore a snapshot of it")
+
+
+def let_go(connection: sqlite3.Connection, owner: int) -> None:
+    """Close a connection; in a child of the process `owner` leave it open for ever.
+
+    Closing would there move the parent's writes about and remove its log: they would be lost. Nor may the object die.
+    """
+    if os.getpid() == owner:
+        connection.close()
+    else:
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(connection))
+
+
 def open_memory() -> sqlite3.Connection:
     """Return an empty store in memory."""
     connection = _connect(":memory:")
@@ -45,9 +91,9 @@ def open_file(path: Path) -> sqlite3.Connection:
     """Return the store in a file, which is made if it is not there or empty, and locked for this connection.
 
     Raises:
-        UsageError: The file is not a store, is from a newer polycnc, is damaged or is in use.
+        StoreError: The file is not a store, is from a newer polycnc, is damaged or is in use.
     """
-    if not path.exists() or (path.is_file() and path.stat().st_size == 0):
+    if is_new(path):
         with closing(open_memory()) as empty:
             write_file(empty, path)
     check_header(path)
@@ -59,16 +105,16 @@ def open_file(path: Path) -> sqlite3.Connection:
         _migrate(connection, f"'{path}'")
     except sqlite3.OperationalError as error:
         connection.close()
-        raise UsageError(
+        raise StoreError(
             f"cannot open the store '{path}': {error}",
             hint="a store belongs to one machine at a time: close the other one, and check the access rights",
         ) from error
     except sqlite3.DatabaseError as error:
         connection.close()
-        raise UsageError(
+        raise StoreError(
             f"the store '{path}' is damaged: {error}", hint="restore a snapshot of it"
         ) from error
-    except UsageError:
+    except StoreError:
         connection.close()
         raise
     return connection
@@ -78,10 +124,10 @@ def read_snapshot(path: Path) -> sqlite3.Connection:
     """Return a copy in memory of the store in a file, brought to this version.
 
     Raises:
-        UsageError: The file is missing, is not a store, is from a newer polycnc, is damaged or is in use.
+        StoreError: The file is missing, is not a store, is from a newer polycnc, is damaged or is in use.
     """
-    if not path.is_file():
-        raise UsageError(f"there is no snapshot '{path}'", hint="check the name of the file")
+    if is_new(path) or not path.is_file():
+        raise StoreError(f"there is no snapshot '{path}'", hint="check the name of the file")
     check_header(path)
     _refuse_unclosed(path)
     copy = _connect(":memory:")
@@ -91,8 +137,8 @@ def read_snapshot(path: Path) -> sqlite3.Connection:
         _migrate(copy, f"'{path}'")
     except sqlite3.DatabaseError as error:
         copy.close()
-        raise UsageError(f"the snapshot '{path}' is damaged: {error}", hint="use another snapshot") from error
-    except UsageError:
+        raise StoreError(f"the snapshot '{path}' is damaged: {error}", hint="use another snapshot") from error
+    except StoreError:
         copy.close()
         raise
     return copy
@@ -102,9 +148,9 @@ def write_file(connection: sqlite3.Connection, target: Path) -> None:
     """Write everything in `connection` to a file that appears, or replaces a closed store, in one step.
 
     Raises:
-        UsageError: The target is not a store, is in use, or cannot be written.
+        StoreError: The target is not a store, is in use, or cannot be written.
     """
-    if target.exists() and (target.is_dir() or target.stat().st_size > 0):
+    if not is_new(target):
         check_header(target)
     _refuse_unclosed(target)
     part = target.with_name(f".{target.name}.{os.getpid()}.part")
@@ -115,13 +161,29 @@ def write_file(connection: sqlite3.Connection, target: Path) -> None:
             copy.execute("PRAGMA journal_mode = DELETE")
         os.replace(part, target)
     except (OSError, sqlite3.Error) as error:
-        raise UsageError(
+        raise StoreError(
             f"cannot write '{target}': {error}", hint="check that the folder exists, is writable and has room"
         ) from error
     finally:
         with suppress(OSError):
             part.unlink(missing_ok=True)
     _sync_folder(target.parent)
+
+
+def is_new(path: Path) -> bool:
+    """Tell whether there is nothing at `path`, or an empty file.
+
+    Raises:
+        StoreError: There cannot be a file of this name.
+    """
+    try:
+        if "\0" in str(path):
+            raise ValueError("a file name has no null characters")
+        return not path.exists() or (path.is_file() and path.stat().st_size == 0)
+    except (OSError, ValueError) as error:
+        raise StoreError(
+            f"cannot use '{path}': {error}", hint="check the name and the access rights"
+        ) from error
 
 
 def check_header(path: Path) -> None:
@@ -131,20 +193,20 @@ def check_header(path: Path) -> None:
     lock that a store in this process may hold on the file.
 
     Raises:
-        UsageError: The file is not a store, is from a newer polycnc or cannot be read.
+        StoreError: The file is not a store, is from a newer polycnc or cannot be read.
     """
     try:
         with closing(_connect_unchanged(path)) as connection:
             application = connection.execute("PRAGMA application_id").fetchone()[0]
             version = connection.execute("PRAGMA user_version").fetchone()[0]
     except sqlite3.OperationalError as error:
-        raise UsageError(
+        raise StoreError(
             f"cannot read '{path}': {error}", hint="check the name and the access rights"
         ) from error
     except sqlite3.DatabaseError:
         application, version = 0, 0
     if application != APPLICATION_ID:
-        raise UsageError(f"'{path}' is not a store of polycnc", hint="name a store, or a new file")
+        raise StoreError(f"'{path}' is not a store of polycnc", hint="name a store, or a new file")
     _refuse_newer(version, f"'{path}'")
 
 
@@ -182,7 +244,7 @@ def _migrate(connection: sqlite3.Connection, name: str) -> None:
 
 def _refuse_newer(version: int, name: str) -> None:
     if version > len(MIGRATIONS):
-        raise UsageError(
+        raise StoreError(
             f"{name} has version {version}, and this polycnc knows versions up to {len(MIGRATIONS)}",
             hint="use the polycnc that wrote it, or a newer one",
         )
@@ -193,7 +255,7 @@ def _refuse_unclosed(path: Path) -> None:
     for ending in ("-wal", "-journal"):
         leftover = Path(f"{path}{ending}")
         if leftover.exists():
-            raise UsageError(
+            raise StoreError(
                 f"'{leftover}' shows that the store is in use or was not closed",
                 hint="close the store, or open and close it once; if the store is gone, remove the leftover",
             )

@@ -1,21 +1,65 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
-from polycnc.nc._channel import Channel
+from polycnc.nc._block_records import LINE_MASK, BlockRecord, BlockRecords, Call, ModalWords, line_of
+from polycnc.nc._block_source import (
+    BlockSource,
+    CallProgram,
+    Drain,
+    EndSource,
+    Language,
+    Pause,
+    SourceItem,
+    Statement,
+    TextSpan,
+    WordsBlock,
+)
+from polycnc.nc._channel import Channel, ChannelSnapshot
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
+from polycnc.nc.blocks._calls import Library
+from polycnc.nc.blocks._channel_state import ChannelState, Spindle
 from polycnc.nc.blocks._messages import Message
-from polycnc.nc.text._program import ProgramText
+from polycnc.nc.blocks._moves import Stop
+from polycnc.nc.blocks._queue import Event
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 __all__ = [
     "DEFAULT_DIALECT",
     "DIALECTS",
+    "LINE_MASK",
     "Action",
+    "Block",
+    "BlockRecord",
+    "BlockRecords",
+    "BlockSource",
+    "Call",
+    "CallProgram",
     "Channel",
+    "ChannelSnapshot",
+    "ChannelState",
     "Dialect",
+    "Drain",
+    "EndSource",
+    "Event",
     "Group",
+    "Language",
+    "Library",
     "MAction",
     "Message",
+    "ModalWords",
+    "Pause",
     "ProgramText",
+    "SourceItem",
+    "Spindle",
+    "Statement",
+    "Stop",
+    "TextRules",
+    "TextSpan",
+    "Word",
+    "WordsBlock",
     "dialect_for",
+    "line_of",
     "load_dialect",
+    "scan_block",
 ]

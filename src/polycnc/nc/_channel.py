@@ -1,26 +1,51 @@
 """A channel: prepares a program ahead of its execution and fills the channel queue with it.
 
 Runs of plain blocks go through the compiled kernel (`fast`), every other block, and the first blocks of a
-program, through the ordinary interpreter.
+program, through the ordinary interpreter. Where a language executes a program, its `BlockSource` gives the blocks.
 """
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable
+from typing import NamedTuple
 
-from polycnc.errors import ProgramError
+from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
-from polycnc.machine import Machine
+from polycnc.machine import Machine, MachineConfig
+from polycnc.nc._block_records import BlockRecords, Call
+from polycnc.nc._block_source import (
+    CallProgram,
+    Drain,
+    EndSource,
+    Language,
+    Pause,
+    SourceItem,
+    Statement,
+    TextSpan,
+    WordsBlock,
+)
 from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._calls import Calls, Place
-from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._interpreter import Control, Interpreter, Outcome
-from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._calls import Back, Calls, Library, Place, Running
+from polycnc.nc.blocks._channel_state import ChannelState, SavedState
+from polycnc.nc.blocks._interpreter import Control, Interpreter
+from polycnc.nc.blocks._messages import Message, Messages
 from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
-from polycnc.nc.blocks._queue import ExecutionStoppedError, QueueWriter
-from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, run_plain
+from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._queue import QueueWriter, WriterSnapshot
+from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan import COMMENT, LABEL, PERCENT, WordColumns, scan, scan_rules, word_columns
+from polycnc.nc.text._scan import (
+    COMMENT,
+    LABEL,
+    MESSAGE,
+    PERCENT,
+    PLAIN,
+    WordColumns,
+    scan,
+    scan_rules,
+    word_columns,
+)
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 ORDINARY_BLOCKS = 2000
@@ -31,12 +56,36 @@ _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
 
 
+class ChannelSnapshot(NamedTuple):
+    """Hold where a channel stood, to go back to."""
+
+    state: SavedState
+    calls: tuple[Running, ...]
+    place: Place
+    text_end: int
+    calls_within: tuple[Call, ...]
+    blocks: int
+    errors: tuple[ProgramError, ...]
+    messages: dict[str, Message]
+    flags: tuple[bool, bool]
+    writer: WriterSnapshot
+    records: tuple[dict[int, object], int]
+    interpreter: tuple[int, ProgramText]
+
+
 class Channel:
     """Prepare one program for one path of a machine.
 
-    With `collect_errors` a refused block is noted in `errors` and left out; else preparation ends there with
-    `error`. The ordinary interpreter gives the same queue as the compiled kernel, which takes over after the
-    first `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
+    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is
+    none), and `library` gives sub-programs before files are looked for. `language` executes the programs that
+    are more than words. With `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are
+    events like any other. With `answers` the path waits at auxiliary functions for whoever runs it, not for
+    the machine file's times; with `marks` blocks that leave nothing in the queue are noted (see
+    `QueueWriter`). `records` tells what block a segment belongs to. `before` is the channel that used the
+    path until now: with `keeps_modal` its modal state stays in force. With `collect_errors` a refused block
+    is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
+    gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
+    it, and once compiling it, takes longer than they do.
     """
 
     def __init__(
@@ -46,23 +95,36 @@ class Channel:
         machine: Machine,
         *,
         path: int = 0,
+        config: MachineConfig | None = None,
+        library: Library | None = None,
+        language: Language | None = None,
         skip_levels: frozenset[int] = frozenset(),
+        stands_at_stops: bool = False,
+        answers: bool = False,
+        marks: bool = False,
+        before: Channel | None = None,
+        keeps_modal: bool = True,
         collect_errors: bool = False,
         ordinary_blocks: float = ORDINARY_BLOCKS,
     ) -> None:
         self.dialect = dialect
         self.machine = machine
         self.path = path
-        self.done = False
         self.blocks = 0
+        self._ended = False
         self.errors: list[ProgramError] = []
         self.messages = Messages()
         self._collect_errors = collect_errors
         self._known_errors: set[str] = set()
-        self._skip_levels = skip_levels
+        self.skip_levels = skip_levels
+        self._language = language
         self._ordinary_blocks = ordinary_blocks
-        self._calls = Calls(program, dialect)
+        self._calls = Calls(program, dialect, library)
         self._place = Place(program)
+        self._text_end = len(program)  # what is beyond is not read
+        self._calls_within: tuple[
+            Call, ...
+        ] = ()  # those that the source of the present program made by itself
         self._chunk = word_columns(_CHUNK_BLOCKS)
         self._jump_chunk = word_columns(_JUMP_BLOCKS)
         self._words = self._chunk
@@ -71,10 +133,29 @@ class Channel:
         self._scan_rules = scan_rules(self._text_rules)
         self._tables = dialect.tables()
         kernel = machine.state
-        self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
-        self.state = self._initial_state()
-        self._fast_work = make_fast_work(self.state.modal)
-        self.interpreter = Interpreter(dialect, self.state, self.messages, self.writer, self._calls.trouble)
+        if before is None:
+            self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
+            self.state = self._initial_state(config or machine.config)
+            self.records = BlockRecords(dialect, self._scan_rules, self._tables, _CHUNK_BLOCKS)
+        else:
+            self.writer, self.state, self.records = before.writer, before.state, before.records
+            if not keeps_modal:
+                self.state = self._initial_state(config or machine.config)
+                self.state.tool = before.state.tool
+        self._fast_work = make_fast_work(self.state.modal, _CHUNK_BLOCKS if marks else 0)
+        self.interpreter = Interpreter(
+            dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
+        )
+        self.writer.stands_at_stops = stands_at_stops
+        self.writer.answers = answers
+        self.writer.marks = deque() if marks else None
+        self._begun = False
+        self._seeking = False
+
+    @property
+    def done(self) -> bool:
+        """Whether the program has ended and all of it is in the queue."""
+        return self._ended and not self.writer.backlog
 
     @property
     def error(self) -> ProgramError | None:
@@ -88,18 +169,38 @@ class Channel:
         size = len(here.text)
         return min(here.offset / size, 1.0) if size else 1.0
 
-    def on_full_queue(self, make_room: Callable[[], None]) -> None:
-        """Set what is called when one block needs more room in the queue than there is."""
-        self.writer.make_room = make_room
+    @property
+    def waits(self) -> bool:
+        """Whether preparation waits until the path has come to a stop, and `go_on`."""
+        return self.writer.stops > 0
 
-    def fill(self) -> None:
-        """Prepare blocks until the queue is full or the program has ended."""
+    def go_on(self) -> None:
+        """Go on behind the first stop that preparation waits for; it has been executed."""
+        self.writer.stops -= 1
+
+    def fill(self, blocks: int | None = None, *, compiled: bool = True) -> None:
+        """Prepare blocks until the queue is full, the program has ended or waits; `blocks` more at the most.
+
+        Without `compiled` every block goes through the ordinary interpreter.
+        """
+        if not self._begun:
+            self._begun = True
+            self._begin()
+        if not self.writer.catch_up():
+            return
+        most = None if blocks is None else self.blocks + blocks
         whole = self.state.modal.whole
-        while not self.done and free_slots(self.writer.paths, self.path) > RESERVE:
+        writer = self.writer
+        while not self._ended and not writer.stops and free_slots(writer.paths, self.path) > RESERVE:
+            if writer.backlog:
+                return
+            if most is not None and self.blocks >= most:
+                return
             if self._next_block >= self._words.n_blocks:
-                self._next_chunk()
-            elif self.blocks >= self._ordinary_blocks and not whole[ORDINARY]:
-                reason = self._plain_blocks()
+                if not self._next_chunk():
+                    return
+            elif compiled and self.blocks >= self._ordinary_blocks and not whole[ORDINARY]:
+                reason = self._plain_blocks(most)
                 if reason == QUEUE_FULL:
                     return
                 if reason == NOT_PLAIN:
@@ -107,8 +208,109 @@ class Channel:
             else:
                 self._ordinary_block()
 
-    def _initial_state(self) -> ChannelState:
-        config = self.machine.config
+    def go_to(self, line: int) -> None:
+        """Begin at a line of the main program instead of its first, with the modal state as it is.
+
+        Raises:
+            UsageError: a language executes the program.
+        """
+        place = self._target(line)
+        self._begun = True
+        self._calls.running.begun = True
+        self._jump(place, len(place.text))
+
+    def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
+        """Carry out all blocks before a line of the main program; False if the program ends before.
+
+        `drop` is called to throw away what has come into the queue. Afterwards the program goes on at the line.
+
+        Raises:
+            UsageError: a language executes the program, or radius compensation is active there.
+        """
+        place = self._target(line)
+        self._begun = self._seeking = True
+        self._text_end = place.offset
+        while not self._ended and not self._is_at(place):
+            self.fill()
+            drop()
+            self.writer.clear()
+        self._seeking = False
+        if self._ended:
+            return False
+        if self.state.compensation.active:
+            raise UsageError(
+                f"radius compensation is active at line {line}",
+                hint="Search a block before G41 or G42, or behind G40.",
+            )
+        self._jump(place, len(place.text))
+        return True
+
+    def begin_at(self, position: tuple[float, ...], line: int) -> None:
+        """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
+        modal = self.state.modal
+        start = tuple(modal.position.tolist())
+        tag = self._reference(line)
+        self.writer.put(Line(start, position, Feed(), rapid=True, exact_stop=True, line=line, tag=tag))
+        modal.position[:] = position
+
+    def _target(self, line: int) -> Place:
+        if self._language is not None and self._calls.running.source is not None:
+            raise UsageError("a block of a program with statements cannot be searched", hint="Start it anew.")
+        text = self._calls.running.begin.text
+        return Place(text, text.line_start(line), line)
+
+    def _is_at(self, place: Place) -> bool:
+        return (
+            self._calls.depth == 0
+            and self._next_block >= self._words.n_blocks
+            and self._place.offset >= place.offset
+            and not self.writer.backlog
+        )
+
+    def snapshot(self) -> ChannelSnapshot:
+        """Return where preparation stands and all that it has found, to go back to with `restore`.
+
+        The queue itself belongs to the machine.
+
+        Raises:
+            UsageError: a language executes a program.
+        """
+        return ChannelSnapshot(
+            self.state.save(),
+            self._calls.snapshot(),
+            self._here(),
+            self._text_end,
+            self._calls_within,
+            self.blocks,
+            tuple(self.errors),
+            self.messages.snapshot(),
+            (self._ended, self._begun),
+            self.writer.snapshot(),
+            self.records.snapshot(),
+            self.interpreter.snapshot(),
+        )
+
+    def restore(self, saved: ChannelSnapshot) -> None:
+        """Go back to a snapshot of this channel."""
+        self.state.restore(saved.state)
+        self._calls.restore(saved.calls)
+        self._calls_within = saved.calls_within
+        self.blocks = saved.blocks
+        self.errors[:] = saved.errors
+        self._known_errors = {str(error) for error in saved.errors}
+        self.messages.restore(saved.messages)
+        self._ended, self._begun = saved.flags
+        self.writer.restore(saved.writer)
+        self.records.restore(saved.records)
+        self.interpreter.restore(saved.interpreter)
+        self._jump(saved.place, saved.text_end)
+
+    def close(self) -> None:
+        """Give up the program: what a language holds for it ends."""
+        self._ended = True
+        self._calls.close()
+
+    def _initial_state(self, config: MachineConfig) -> ChannelState:
         limits = [axis.soft_limits for axis in config.axes]
         modal = make_modal(
             config.axis_names,
@@ -132,19 +334,110 @@ class Channel:
         """Scan the blocks that follow the present place; the place moves behind them."""
         place = self._place
         self._words = columns
-        offset = scan(place.text.data, place.offset, place.line, self._scan_rules, columns)
+        data = place.text.data[: self._text_end]
+        offset = scan(data, place.offset, place.line, self._scan_rules, columns)
         self._place = Place(place.text, offset, columns.next_line)
         self._next_block = 0
 
-    def _next_chunk(self) -> None:
-        if self._place.offset < len(self._place.text):
+    def _next_chunk(self) -> bool:
+        """Get more blocks, where the text ends from the language; False if there are none for now."""
+        if self._place.offset < self._text_end:
             self._scan(self._chunk)
-        else:
-            self._leave()
+            return True
+        if self._calls.running.source is not None:
+            return self._from_source()
+        if self._seeking and self._calls.depth == 0:
+            return False
+        self._leave()
+        return True
 
-    def _jump(self, place: Place) -> None:
+    def _stop_reading(self) -> None:
+        """Read no more of the present text: the source says what comes next."""
+        self._jump(Place(self._place.text, self._text_end, self._place.line), self._text_end)
+
+    def _jump(self, place: Place, end: int) -> None:
         self._place = place
+        self._text_end = end
         self._scan(self._jump_chunk)
+
+    def _begin(self) -> None:
+        """Begin the present program, or its next round."""
+        self._calls_within = ()
+        running = self._calls.running
+        begin = running.begin
+        if self._language is not None:
+            try:
+                running.source = self._language.source(
+                    begin.text, begin.offset, begin.line, running.arguments
+                )
+            except ProgramError as error:
+                self._note(error)
+        if running.source is not None:
+            self._jump(begin, begin.offset)  # no text for now
+        elif self._calls.depth or self._language is not None:
+            self._jump(begin, len(begin.text))
+
+    # ------------------------------------------------------------------ from a language
+
+    def _from_source(self) -> bool:
+        """Do what the source of the present program gives; False if that is nothing for now."""
+        running = self._calls.running
+        assert running.source is not None
+        try:
+            item = running.source.next()
+            running.begun = True
+            if item is Pause.PAUSE:
+                return False
+            self._source_item(item)
+        except ProgramError as error:
+            self._note(error)
+        return True
+
+    def _source_item(self, item: SourceItem | None) -> None:
+        text = self._calls.running.begin.text
+        if isinstance(item, WordsBlock | TextSpan | Drain | Statement):
+            text = item.text or text
+            self._calls_within = item.calls
+            self._place = Place(text, self._text_end, item.line)  # the end of what there is to read
+        match item:
+            case WordsBlock():
+                self._words_block(text, item)
+            case TextSpan():
+                self._jump(Place(text, item.offset, item.line), item.end)
+            case Drain():
+                self.interpreter.drain(text, item.line)
+            case Statement():
+                self.interpreter.mark(item.line)
+            case CallProgram():
+                self._call(text, item)
+            case EndSource.END:
+                self._end()
+            case _:
+                self._leave()
+
+    def _words_block(self, text: ProgramText, item: WordsBlock) -> None:
+        self.blocks += 1
+        if item.skip_level in self.skip_levels:
+            return
+        flags = MESSAGE if item.message else PLAIN
+        end = text.next_line(item.offset)
+        block = Block(item.words, flags, item.skip_level, item.offset, end, item.line, message=item.message)
+        self._execute(text, block)
+
+    def _call(self, text: ProgramText, call: CallProgram) -> None:
+        trouble = self._calls.trouble(call.program)
+        if trouble is not None:
+            raise ProgramError(trouble[0], position=text.position(call.offset), hint=trouble[1])
+        back = Back(self._here(), self._text_end, call.line, self._calls_within)
+        if self._calls.enter(call.program, call.repeats, back, call.arguments):
+            self._begin()
+
+    def _reference(self, line: int) -> int:
+        """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
+        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+
+    def _stack(self) -> tuple[Call, ...]:
+        return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
         """Return the place of the next block."""
@@ -158,14 +451,22 @@ class Channel:
 
     # ------------------------------------------------------------------ blocks
 
-    def _plain_blocks(self) -> int:
+    def _plain_blocks(self, most: int | None) -> int:
         """Let the compiled kernel take what it can; return why it stopped."""
         first = self._next_block
         words = self._words
         kernel = self.machine.state
+        self.state.coordinates.take_changes()
+        begin = int(words.offset[first]), int(words.line[first])
+        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
+        after = words.n_blocks
+        if most is not None:
+            after = min(after, first + most - self.blocks)
         self._next_block, reason = run_plain(
             words,
             first,
+            after,
+            base,
             self._tables,
             self.state.modal,
             kernel.seg,
@@ -174,6 +475,8 @@ class Channel:
             kernel.limits,
             self._fast_work,
         )
+        if self.writer.marks is not None:
+            self.writer.marks.extend(marked(self._fast_work))
         if self._next_block > first:
             self.blocks += self._next_block - first
             if words.first_word[self._next_block] > words.first_word[first]:
@@ -189,7 +492,7 @@ class Channel:
             if running.begun:  # the % behind a program ends it, the one before it does not matter
                 self._leave()
             return
-        if int(words.skip_level[index]) in self._skip_levels:
+        if int(words.skip_level[index]) in self.skip_levels:
             self.blocks += 1
             return
         try:
@@ -199,13 +502,11 @@ class Channel:
                 return
             running.begun = running.begun or bool(block.words)
             self.blocks += 1
-            self._go_on(self.interpreter.execute(self._place.text, block))
+            self._execute(self._place.text, block)
         except ProgramError as error:
             self._note(error)
             if error.position is not None and error.position.line != words.line[index]:
                 self.interpreter.leave_compensation()  # the move before is wrong: not every one after it
-        except ExecutionStoppedError:
-            self.done = True
 
     def _block(self, index: int) -> Block:
         """Return a block of the columns; one that is more than words is read again."""
@@ -236,21 +537,27 @@ class Channel:
         if len(self.errors) >= _MOST_ERRORS:
             self.messages.begin(0)
             self.messages.add(f"the program was checked up to its error number {_MOST_ERRORS}")
-            self.done = True
+            self._ended = True
         if not self._collect_errors:
-            self.done = True
+            self._ended = True
 
     # ------------------------------------------------------------------ where it goes on
 
-    def _go_on(self, outcome: Outcome) -> None:
+    def _execute(self, text: ProgramText, block: Block) -> None:
+        """Execute a block and go on where it says."""
+        outcome = self.interpreter.execute(text, block)
         match outcome.control:
             case Control.END:
                 self._end()
             case Control.CALL:
-                begin = self._calls.enter(outcome.program, outcome.repeats, self._here())
-                if begin is not None:
-                    self._jump(begin)
+                back = Back(self._here(), self._text_end, block.line, self._calls_within)
+                if self._calls.enter(outcome.program, outcome.repeats, back):
+                    self._begin()
             case Control.RETURN:
+                source = self._calls.running.source
+                if source is not None and source.leave():
+                    self._stop_reading()
+                    return
                 if self._calls.depth == 0:
                     self.messages.add("a return from the main program ends it")
                 self._leave()
@@ -259,20 +566,22 @@ class Channel:
 
     def _leave(self) -> None:
         """End the present program: go back to the one that called it, or end everything."""
+        if self._calls.depth == 0:
+            self._end()
+            return
         back = self._calls.leave()
         if back is None:
-            self._end()
+            self._begin()
         else:
-            self._jump(back)
+            self._calls_within = back.within
+            self._jump(back.place, back.end)
 
     def _end(self) -> None:
-        self.done = True
+        self.close()
         try:
             self.interpreter.finish()
         except ProgramError as error:
             self._note(error)
-        except ExecutionStoppedError:
-            pass
 
 
 def _is_program_number(block: Block) -> bool:

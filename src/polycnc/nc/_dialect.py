@@ -176,6 +176,10 @@ class Dialect(StrictModel):
     ignored_addresses: tuple[str, ...] = Field(
         default=(), description="Addresses that may stand anywhere without effect."
     )
+    blocks_ahead: Annotated[int, Field(ge=1)] | None = Field(
+        default=None,
+        description="How many blocks are prepared beyond the one that is executed; absent: as many as fit.",
+    )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
-from polycnc.nc import Channel, Dialect, ProgramText, dialect_for
-from polycnc.runner._execution import Execution, Progress, Rows
-from polycnc.runner._result import Alarm, RunMessage, RunResult
+from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
+from polycnc.runner._execution import Floats, Progress, Rows, run_to_end, totals
+from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
 from polycnc.runner._trace import TraceCollector
 
 _RECORD_CYCLES = 1 << 14
@@ -28,6 +29,7 @@ def run(
     servo: bool = False,
     check: bool = True,
     skip_levels: Iterable[int] = (),
+    stop_at_m0: bool = False,
     rows: Rows | None = None,
     progress: Progress | None = None,
 ) -> RunResult:
@@ -37,7 +39,8 @@ def run(
     or a configuration (the 3-axis mill if absent), `dialect` a name (chosen by the file's extension, else
     DIN). With `trace` the result holds one row per control cycle; `rows` gets the same in pieces,
     [cycles, columns], as it is recorded. `servo` simulates the position loops. Blocks with a skip mark `/n`
-    are left out for n in `skip_levels`. `progress` is called now and then with the part that is done, 0 to 1;
+    are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
+    run ends at the first M0. `progress` is called now and then with the part that is done, 0 to 1;
     it goes back where sub-programs repeat.
 
     Raises:
@@ -53,16 +56,17 @@ def run(
     if every_cycle and progress is not None:
         sinks.append(_progress_by_line(text, progress))
     simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if sinks else 0)
-    channel = Channel(text, dialect_for(text.name, dialect), simulated, skip_levels=frozenset(skip_levels))
-    execution = Execution(
+    events: list[RunEvent] = []
+    execution = ProgramRun(
         simulated,
-        channel,
+        text,
+        dialect_for(text.name, dialect),
+        options=RunOptions(block_delete=frozenset(skip_levels), stands_at_stops=stop_at_m0),
         rows=_to_all(sinks) if sinks else None,
-        progress=None if every_cycle else progress,
-        every_cycle=every_cycle,
+        on_event=lambda event: _note(event, events, execution),
     )
-    execution.run()
-    result = _result(text, config, channel, execution, collector)
+    run_to_end(execution, every_cycle=every_cycle, progress=None if every_cycle else progress)
+    result = _result(execution, events, collector)
     if check:
         result.raise_for_alarms()
     return result
@@ -80,9 +84,10 @@ def check(
     """
     text = program_text(program)
     simulated = Machine(load_machine(machine))
-    channel = Channel(text, dialect_for(text.name, dialect), simulated, collect_errors=True)
-    Execution(simulated, channel).run()
-    return channel.errors
+    options = RunOptions(stands_at_stops=False, collect_errors=True)
+    execution = ProgramRun(simulated, text, dialect_for(text.name, dialect), options=options)
+    run_to_end(execution, every_cycle=False)
+    return execution.channel.errors
 
 
 def program_text(program: str | Path | ProgramText) -> ProgramText:
@@ -99,15 +104,20 @@ def program_text(program: str | Path | ProgramText) -> ProgramText:
         raise
 
 
-def _to_all(sinks: list[Rows]) -> Rows:
-    if len(sinks) == 1:
-        return sinks[0]
-
-    def to_all(rows: npt.NDArray[np.float64]) -> None:
+def _to_all(sinks: list[Rows]) -> Callable[[Floats, npt.NDArray[np.int64]], None]:
+    def to_all(rows: Floats, _tags: npt.NDArray[np.int64]) -> None:
         for sink in sinks:
             sink(rows)
 
     return to_all
+
+
+def _note(event: Event, events: list[RunEvent], execution: ProgramRun) -> None:
+    """Keep an event of the run; say what becomes of program stops."""
+    events.append(RunEvent(execution.machine.time_s, event.line, event.word))
+    if event.stop in (Stop.PROGRAM, Stop.OPTIONAL):
+        what = "the run stops here" if execution.stands_at(event.stop) else "passed without stopping"
+        execution.channel.messages.note(f"{event.word}: {event.stop.value}, {what}", event.line)
 
 
 def _progress_by_line(text: ProgramText, progress: Progress) -> Rows:
@@ -131,40 +141,36 @@ def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
     return Alarm("program", error.what, error.code, line, column, time_s, file, error.hint, error)
 
 
-def _result(
-    text: ProgramText,
-    config: MachineConfig,
-    channel: Channel,
-    execution: Execution,
-    collector: TraceCollector | None,
-) -> RunResult:
-    state = execution.machine.state
-    totals = execution.totals()
-    alarms = [_program_alarm(error, execution.machine.time_s) for error in channel.errors]
-    if execution.alarm is not None:
-        alarms.insert(0, execution.alarm)
+def _result(execution: ProgramRun, events: list[RunEvent], collector: TraceCollector | None) -> RunResult:
+    machine, channel = execution.machine, execution.channel
+    config, state = machine.config, machine.state
+    sums = totals(execution)
+    alarms = [_program_alarm(error, machine.time_s) for error in channel.errors]
+    if (alarm := execution.alarm) is not None:
+        alarms.insert(0, Alarm("machine", alarm.text, alarm.code, line_of(alarm.tag), 0, machine.time_s))
     names = config.axis_names
     return RunResult(
-        program=text.name,
+        program=execution.program.name,
         dialect=channel.dialect.name,
         machine=config.name,
         blocks=channel.blocks,
         cycles=int(state.clock[0]["cycle"]),
-        time_s=execution.machine.time_s,
-        cutting_time_s=totals.feed_s,
-        rapid_time_s=totals.rapid_s,
-        waiting_time_s=totals.wait_s,
-        cutting_path_mm=totals.feed_length,
-        rapid_path_mm=totals.rapid_length,
-        top_feed_mm_min=totals.top_speed * 60.0,
+        time_s=machine.time_s,
+        cutting_time_s=sums.feed_s,
+        rapid_time_s=sums.rapid_s,
+        waiting_time_s=sums.wait_s,
+        cutting_path_mm=sums.feed_length,
+        rapid_path_mm=sums.rapid_length,
+        top_feed_mm_min=sums.top_speed * 60.0,
         axis_units={axis.name: axis.unit for axis in config.axes},
         end_position_mm={name: float(value) for name, value in zip(names, state.setpoint, strict=True)},
         extents_mm={
             name: (float(low), float(high))
-            for name, low, high in zip(names, execution.low, execution.high, strict=True)
+            for name, low, high in zip(names, execution.feed.low, execution.feed.high, strict=True)
         },
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
-        events=execution.events,
+        tool_times=execution.tool_times,
+        events=events,
         trace=collector.trace() if collector else None,
     )

@@ -4,6 +4,7 @@
 """
 
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._codes import BootCode, InitCode, Status, Success, TransferCode
 from polycnc.controllers.apci.board._system_file import SystemFile, load_system_file, parse_system_file
 from polycnc.controllers.apci.board._system_text import system_file_text
 from polycnc.controllers.apci.core._registers import Axst, Digi, Digo, ErrorReg, Ifs, ModeReg
@@ -14,13 +15,18 @@ __all__ = [
     "Axst",
     "Board",
     "BoardTasks",
+    "BootCode",
     "Digi",
     "Digo",
     "ErrorReg",
     "Ifs",
+    "InitCode",
     "InstalledBoard",
     "ModeReg",
+    "Status",
+    "Success",
     "SystemFile",
+    "TransferCode",
     "load_system_file",
     "parse_system_file",
     "system_file_text",

@@ -14,7 +14,7 @@ from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import INCH
 from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Wait
+from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord, MWord, code_text
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH
@@ -30,6 +30,7 @@ _BEFORE_MOTION = (
     MAction.AUXILIARY,
 )
 _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
+_STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 LARGEST_NUMBER = 99_999_999
@@ -76,7 +77,11 @@ class Auxiliary:
 
     def after_motion(self, words: BlockWords, line: int) -> list[Wait]:
         """Return the waits of program stops and the program end."""
-        return [Wait(0.0, line, (f"M{m.code}",)) for m in words.m if m.action in _AFTER_MOTION]
+        return [
+            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action))
+            for m in words.m
+            if m.action in _AFTER_MOTION
+        ]
 
     def tool_data(self, tool: int) -> ToolConfig:
         """Return the data of a tool, zeros with a message if there are none; tool 0 is no tool."""

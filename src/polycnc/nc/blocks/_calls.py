@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeAlias
 
 from polycnc.errors import UsageError
+from polycnc.nc._block_records import Call
+from polycnc.nc._block_source import BlockSource
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.text._program import ProgramText
+
+Library: TypeAlias = Callable[[int], ProgramText | None]
+"""Where sub-programs come from that are in no file beside the main program: a program by its number, or None."""
 
 _LABEL = re.compile(rb"(?:\A|(?<=[\r\n]))[ \t]*[Oo:][ \t]*0*([0-9]+)")
 _DIGITS = 4  # how many digits a program number is usually written with
@@ -23,26 +30,45 @@ class Place:
     line: int = 1
 
 
+@dataclass(frozen=True, slots=True)
+class Back:
+    """Say where the reading goes on after a sub-program: `end` is where that text ends; and which line called.
+
+    `within` are calls that the source of the calling program had made by itself.
+    """
+
+    place: Place
+    end: int
+    line: int
+    within: tuple[Call, ...] = ()
+
+
 @dataclass
 class Running:
     """Hold a program that is being executed, and where to go back to.
 
-    `begun` is set with its first word: from there on, % or another program number ends it.
+    `begun` is set with its first word: from there on, % or another program number ends it. `repeats` are still to
+    come, `round` is the present one. `source` gives its blocks where a language executes it.
     """
 
     begin: Place
     repeats: int = 0
-    back: Place | None = None
+    back: Back | None = None
     begun: bool = False
+    round: int = 1
+    arguments: object = None
+    source: BlockSource | None = None
 
 
 class Calls:
     """Keep the stack of running programs, the main program at the bottom."""
 
-    def __init__(self, main: ProgramText, dialect: Dialect) -> None:
+    def __init__(self, main: ProgramText, dialect: Dialect, library: Library | None = None) -> None:
         self._dialect = dialect
+        self._library = library
         self._main = main
         self._stack = [Running(Place(main))]
+        self._calls: tuple[Call, ...] = ()
         self._labels: dict[str, dict[int, Place]] = {}
         self._files: dict[tuple[Path, int], Place | None] = {}
 
@@ -56,7 +82,12 @@ class Calls:
         """How deep the present program is nested; 0 is the main program."""
         return len(self._stack) - 1
 
-    def trouble(self, program: int) -> tuple[str, str] | None:
+    @property
+    def stack(self) -> tuple[Call, ...]:
+        """The calls under way, the outermost first."""
+        return self._calls
+
+    def trouble(self, program: int | ProgramText) -> tuple[str, str] | None:
         """Return what is against calling a sub-program and what to do about it, None if nothing is.
 
         Raises:
@@ -79,34 +110,80 @@ class Calls:
             )
         return None
 
-    def enter(self, program: int, repeats: int, back: Place) -> Place | None:
-        """Begin a sub-program that `trouble` had nothing against; return where, None for no repeats."""
+    def enter(self, program: int | ProgramText, repeats: int, back: Back, arguments: object = None) -> bool:
+        """Begin a sub-program that `trouble` had nothing against; False for no repeats."""
         begin = self._find(program)
         assert begin is not None
         if repeats < 1:
-            return None
-        self._stack.append(Running(begin, repeats - 1, back))
-        return begin
+            return False
+        self._stack.append(Running(begin, repeats - 1, back, arguments=arguments))
+        self._note_calls()
+        return True
 
-    def leave(self) -> Place | None:
-        """End the present program; return where the reading goes on, None if it was the main program."""
+    def leave(self) -> Back | None:
+        """End the present round of the present program.
+
+        Return where the reading goes on, None where the program begins anew (`running.begun` is False then).
+        """
         running = self.running
-        if running.back is None:
-            return None
+        if running.source is not None:
+            running.source.close()
+            running.source = None
+        running.begun = False
         if running.repeats > 0:
             running.repeats -= 1
-            running.begun = False
-            return running.begin
+            running.round += 1
+            self._note_calls()
+            return None
         self._stack.pop()
+        self._note_calls()
         return running.back
 
-    def _find(self, program: int) -> Place | None:
-        """Return where a sub-program begins: in the present file, the main file, or a file of its own."""
+    def snapshot(self) -> tuple[Running, ...]:
+        """Return the programs under way, to go back to.
+
+        Raises:
+            UsageError: a language executes one of them; where it stands cannot be kept.
+        """
+        if any(running.source is not None for running in self._stack):
+            raise UsageError(
+                "a program with statements is under way", hint="Take the snapshot before or after it."
+            )
+        return tuple(replace(running) for running in self._stack)
+
+    def restore(self, stack: tuple[Running, ...]) -> None:
+        """Go back to a snapshot."""
+        self._stack = [replace(running) for running in stack]
+        self._note_calls()
+
+    def close(self) -> None:
+        """End all programs."""
+        for running in reversed(self._stack):
+            if running.source is not None:
+                running.source.close()
+                running.source = None
+
+    def _note_calls(self) -> None:
+        calls: list[Call] = []
+        for running in self._stack[1:]:
+            back = running.back
+            assert back is not None
+            calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
+        self._calls = tuple(calls)
+
+    def _find(self, program: int | ProgramText) -> Place | None:
+        """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
+        if isinstance(program, ProgramText):
+            return Place(program)
         for text in (self.running.begin.text, self._main):
             if text.name not in self._labels:
                 self._labels[text.name] = _labels(text)
             if program in self._labels[text.name]:
                 return self._labels[text.name][program]
+        if self._library is not None:
+            found = self._library(program)
+            if found is not None:
+                return Place(found)
         main = Path(self._main.name)
         if not main.is_file():
             return None  # a text from elsewhere has no folder

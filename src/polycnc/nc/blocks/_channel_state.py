@@ -12,7 +12,7 @@ from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._compensation import RadiusCompensation
 from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc.blocks._cycles import CycleWords
-from polycnc.nc.blocks._modal import Modal, restore_modal, save_modal
+from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +51,27 @@ class Plain(NamedTuple):
     path_tolerance_mm: float
     side: int
     compensation_tool: int | None
+    length_tool: int
+    m_codes: tuple[int, ...]
+
+
+class ModalSnapshot(NamedTuple):
+    """Hold what was in force with one block, to be shown while it is executed; see `ChannelState`."""
+
+    whole: tuple[int, ...]
+    feed: float  # as programmed
+    offset: tuple[float, ...]
+    work: tuple[str, ...]
+    spindle: Spindle
+    cycle: str
+    retract_to_initial: bool
+    tool: int
+    selected_tool: int
+    side: int
+    compensation_tool: int | None
+    length_sign: int
+    length_tool: int
+    m_codes: tuple[int, ...]
 
 
 class SavedState(NamedTuple):
@@ -67,8 +88,9 @@ class ChannelState:
 
     `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
     the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
-    -1 right, 0 off; `compensation_tool` the last D word, None before the first. `path_tolerance_mm` is how
-    far corners may be rounded.
+    -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
+    length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
+    that had any.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -84,10 +106,12 @@ class ChannelState:
         self.path_tolerance_mm = machine.path.path_tolerance_mm
         self.side = 0
         self.compensation_tool: int | None = None
+        self.length_tool = 0
+        self.m_codes: tuple[int, ...] = ()
         self.axis_names: Sequence[str] = machine.axis_names
 
     def save(self) -> SavedState:
-        """Return the state to go back to when the block that comes is refused."""
+        """Return the state to go back to."""
         return SavedState(
             save_modal(self.modal),
             self.coordinates.save(),
@@ -102,7 +126,7 @@ class ChannelState:
         if saved.compensation is None:
             self.compensation.reset()
         else:
-            self.compensation = saved.compensation
+            self.compensation = saved.compensation.copy()
         for name, value in zip(Plain._fields, saved.plain, strict=True):
             setattr(self, name, value)
 
@@ -117,4 +141,26 @@ class ChannelState:
             self.path_tolerance_mm,
             self.side,
             self.compensation_tool,
+            self.length_tool,
+            self.m_codes,
+        )
+
+    def snapshot(self) -> ModalSnapshot:
+        """Return what is in force now."""
+        modal, coordinates = self.modal, self.coordinates
+        return ModalSnapshot(
+            tuple(modal.whole.tolist()),
+            float(modal.real[FEED_NUMBER]),
+            tuple(modal.offset.tolist()),
+            coordinates.work,
+            self.spindle,
+            self.cycle.action,
+            self.cycle.retract_to_initial,
+            self.tool,
+            self.selected_tool,
+            self.side,
+            self.compensation_tool,
+            coordinates.length_sign,
+            self.length_tool,
+            self.m_codes,
         )

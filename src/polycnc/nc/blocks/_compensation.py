@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import copy
 import math
+from dataclasses import replace
 from enum import Enum, IntEnum
 from typing import Literal
 
@@ -341,6 +342,7 @@ class RadiusCompensation:
                 feed=feed,
                 exact_stop=before.exact_stop and after.exact_stop,
                 line=after.line,
+                tag=after.tag,
             )
         )
         self._at = joint.start
@@ -352,16 +354,16 @@ class RadiusCompensation:
         if math.hypot(end[0] - start[0], end[1] - start[1]) <= _ROUNDING_MM:
             return
         first, last = self._point(after.start, start), self._point(after.start, end)
-        out.append(Line(first, last, after.feed, _is_rapid(after), False, after.line))
+        out.append(Line(first, last, after.feed, _is_rapid(after), False, after.line, after.tag))
         self._at = end
 
     def _line(self, item: Move, start: XY, end: XY) -> Line:
         first, last = self._point(item.start, start), self._point(item.end, end)
-        return Line(first, last, item.feed, _is_rapid(item), item.exact_stop, item.line)
+        return Line(first, last, item.feed, _is_rapid(item), item.exact_stop, item.line, item.tag)
 
     def _arc(self, item: Arc, start: XY, end: XY, sweep: float) -> Arc:
         first, last = self._point(item.start, start), self._point(item.end, end)
-        return Arc(first, last, item.center, sweep, item.plane, item.feed, item.exact_stop, item.line)
+        return replace(item, start=first, end=last, sweep_rad=sweep)
 
     def _placed(self, item: QueueItem, at: XY) -> QueueItem:
         """Return an item without plane motion at a compensated place."""

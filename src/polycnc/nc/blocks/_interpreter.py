@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from enum import Enum
 
 from polycnc.errors import ProgramError
+from polycnc.nc._block_records import AGAIN
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
@@ -33,7 +34,7 @@ from polycnc.nc.blocks._modal import (
 )
 from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Arc, Line, QueueItem
+from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._words import BlockWords, code_text, sort_words
@@ -87,6 +88,7 @@ class Outcome:
 
 
 _NEXT = Outcome()
+_JUMPS = (MAction.SUB_CALL, MAction.SUB_RETURN)  # never leave the control
 _OUTCOMES = {
     MAction.PROGRAM_END: Outcome(Control.END),
     MAction.PROGRAM_STOP: Outcome(Control.STOP),
@@ -98,7 +100,8 @@ _OUTCOMES = {
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
-    `call_trouble` says what is against calling a sub-program, None if nothing is.
+    `call_trouble` says what is against calling a sub-program, None if nothing is. `reference` gives the reference of
+    the record of the block on a line, when all that the block changes has been changed.
     """
 
     def __init__(
@@ -108,6 +111,7 @@ class Interpreter:
         messages: Messages,
         queue: QueueWriter,
         call_trouble: Callable[[int], Trouble | None],
+        reference: Callable[[int], int],
     ) -> None:
         self.dialect = dialect
         self.state = state
@@ -115,6 +119,8 @@ class Interpreter:
         self._queue = queue
         queue.set_tolerance(state.path_tolerance_mm)
         self._call_trouble = call_trouble
+        self._reference = reference
+        self._last_tag = 0
         self._text = ProgramText.from_text("")
         self._held_text = self._text  # of the move that radius compensation holds back
         self._block: Block | None = None
@@ -132,6 +138,7 @@ class Interpreter:
         """
         self._text, self._block = text, block
         self.messages.begin(block.line)
+        self.state.coordinates.take_changes()
         saved = self.state.save()
         try:
             outcome, items = self._execute(block)
@@ -143,8 +150,7 @@ class Interpreter:
             raise
         if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
             self._queue.set_tolerance(self.state.path_tolerance_mm)
-        for item in items:
-            self._queue.put(item)
+        self._queue.put_block(items)
         return outcome
 
     def finish(self) -> None:
@@ -154,14 +160,30 @@ class Interpreter:
             ProgramError: the last move cannot be compensated.
         """
         try:
-            items = self.state.compensation.flush()
-            self._check_path(items)
-        except CompensationError as error:
-            raise self._placed(error) from None
+            items = self._flushed()
         finally:
             self.state.compensation.reset()
         for item in items:
             self._queue.put(item)
+
+    def drain(self, text: ProgramText, line: int) -> None:
+        """Let preparation stop behind everything that has been given out; radius compensation holds nothing back.
+
+        Raises:
+            ProgramError: the last move cannot be compensated.
+        """
+        items = self._flushed()
+        self._text, self._block = text, None
+        for item in (*items, *self._tagged([Wait(0.0, line, stop=Stop.DRAIN)], line)):
+            self._queue.put(item)
+
+    def _flushed(self) -> list[QueueItem]:
+        try:
+            items = self.state.compensation.flush()
+            self._check_path(items)
+        except CompensationError as error:
+            raise self._placed(error) from None
+        return items
 
     def fail(self, what: str, hint: str, word: Word | None) -> ProgramError:
         """Return an error about the present block, at `word` if there is one."""
@@ -213,8 +235,49 @@ class Interpreter:
         self._refuse_unused(words)
         if words.m:
             items += self._auxiliary.after_motion(words, line)
+            if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
+                self.state.m_codes = codes
         self._note_position(items)
-        return outcome, self._compensated(items, change_compensation)
+        return outcome, self._compensated(
+            self._tagged(items, line, words_stand=bool(block.words)), change_compensation
+        )
+
+    def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
+        """Return the items with the reference of the block's record, another one than the block just before has.
+
+        A block with words and without items is noted as such.
+        """
+        if not items:
+            if words_stand:
+                self.mark(line)
+            return items
+        tag = self._next_tag(line)
+        return [item.tagged(tag) for item in items]
+
+    def _next_tag(self, line: int) -> int:
+        tag = self._reference(line)
+        if tag == self._last_tag:
+            tag ^= AGAIN
+        self._last_tag = tag
+        return tag
+
+    def snapshot(self) -> tuple[int, ProgramText]:
+        """Return what one block leaves for the next besides the state, to go back to."""
+        return self._last_tag, self._held_text
+
+    def restore(self, saved: tuple[int, ProgramText]) -> None:
+        """Go back to a snapshot."""
+        self._last_tag, self._held_text = saved
+
+    @property
+    def last_tag(self) -> int:
+        """The reference of the last block that was executed."""
+        return self._last_tag
+
+    def mark(self, line: int) -> None:
+        """Note a block that does nothing on the path, to be stepped to."""
+        if self._queue.marks is not None:
+            self._queue.mark(self._next_tag(line))
 
     def _compensated(self, items: list[QueueItem], change: Callable[[], None] | None) -> list[QueueItem]:
         """Return what of the items the queue gets now; radius compensation may hold moves back."""

@@ -35,6 +35,11 @@ class Messages:
             Message(text, self.line) if old is None else Message(text, old.line, old.count + 1)
         )
 
+    def note(self, text: str, line: int) -> None:
+        """Add a message about any line, outside of a block; it cannot be taken back."""
+        old = self._found.get(text)
+        self._found[text] = Message(text, line) if old is None else Message(text, old.line, old.count + 1)
+
     def take_back(self) -> None:
         """Take back what the present block has added, because it is refused."""
         for text, old in reversed(self._undo):
@@ -42,6 +47,15 @@ class Messages:
                 del self._found[text]
             else:
                 self._found[text] = old
+        self._undo.clear()
+
+    def snapshot(self) -> dict[str, Message]:
+        """Return all messages, to go back to."""
+        return dict(self._found)
+
+    def restore(self, found: dict[str, Message]) -> None:
+        """Go back to a snapshot."""
+        self._found = dict(found)
         self._undo.clear()
 
     def all(self) -> list[Message]:

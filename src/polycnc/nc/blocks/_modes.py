@@ -174,9 +174,11 @@ class Modes:
             return
         if sign == 0:
             coordinates.set_length(axis, 0)
+            self.state.length_tool = 0
             return
         tool = self.state.tool if h_word is None else whole_number(h_word, "a tool offset number", self.fail)
         data = self.auxiliary.tool_data(tool)
+        self.state.length_tool = tool
         coordinates.set_length(axis, sign, data.length_mm + data.wear_length_mm)
 
     def set_work_offset(self, words: BlockWords) -> None:

@@ -1,14 +1,24 @@
 """What the interpreter hands to the channel queue, one item per motion or wait.
 
-Coordinates are machine coordinates of all axes (mm for linear, degree for rotary axes) after every offset.
+Coordinates are machine coordinates of all axes (mm for linear, degree for rotary axes) after every offset. `line` is
+the line of the block that an item comes from, `tag` the reference of its record, which the interpreter puts in.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TypeAlias
 
 Point: TypeAlias = tuple[float, ...]
+
+
+class Stop(StrEnum):
+    """Why preparation waits until the path has come to a point."""
+
+    PROGRAM = "program stop"
+    OPTIONAL = "optional stop"
+    DRAIN = "preparation waits for execution"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +39,11 @@ class Line:
     rapid: bool
     exact_stop: bool
     line: int
+    tag: int = 0
+
+    def tagged(self, tag: int) -> Line:
+        """Return the same move as part of another block."""
+        return Line(self.start, self.end, self.feed, self.rapid, self.exact_stop, self.line, tag)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +63,32 @@ class Arc:
     feed: Feed
     exact_stop: bool
     line: int
+    tag: int = 0
+
+    def tagged(self, tag: int) -> Arc:
+        """Return the same move as part of another block."""
+        sweep, plane = self.sweep_rad, self.plane
+        return Arc(
+            self.start, self.end, self.center, sweep, plane, self.feed, self.exact_stop, self.line, tag
+        )
 
 
 @dataclass(frozen=True, slots=True)
 class Wait:
-    """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order."""
+    """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order.
+
+    A `stop` is a point where the program may stand: then preparation goes on when whoever runs the path says so.
+    """
 
     duration_s: float
     line: int
     events: tuple[str, ...] = field(default=())
+    stop: Stop | None = None
+    tag: int = 0
+
+    def tagged(self, tag: int) -> Wait:
+        """Return the same wait as part of another block."""
+        return Wait(self.duration_s, self.line, self.events, self.stop, tag)
 
 
 Move: TypeAlias = Line | Arc

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections import deque
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
-from polycnc.errors import UsageError
 from polycnc.kernel import (
     RAPID,
     STOP,
@@ -20,51 +20,111 @@ from polycnc.kernel import (
     append_wait,
     free_slots,
 )
-from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Wait
+from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Stop, Wait
 
 NO_EVENT = -1
 
 
-class ExecutionStoppedError(Exception):
-    """Nobody goes along the path any more, so the queue stays full and preparation is over."""
-
-
 @dataclass(frozen=True, slots=True)
 class Event:
-    """An auxiliary function that the path has come to: its words and the program line."""
+    """Something that the path has come to: an auxiliary function by its words, or a point where it may stand.
+
+    `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
+    that the function takes, where the queue does not wait for it (`QueueWriter.answers`).
+    """
 
     word: str
     line: int
+    stop: Stop | None = None
+    default_s: float = 0.0
+    tag: int = field(default=0, compare=False)
 
 
-def _nobody_makes_room() -> None:
-    raise UsageError(
-        "the channel queue is full in the middle of a block",
-        hint="Give `on_full_queue` something that runs part of the queue.",
-    )
+class WriterSnapshot(NamedTuple):
+    """What a writer holds, to go back to."""
+
+    events: dict[int, Event]
+    stops: int
+    next_event: int
+    backlog: tuple[QueueItem, ...]
+    marks: tuple[tuple[int, int], ...] | None
 
 
 @dataclass
 class QueueWriter:
-    """Append items to path `path` of the kernel; `make_room` is called when the queue is full."""
+    """Append items to path `path` of the kernel; what finds no room waits in `backlog`.
+
+    `events` holds what the path has yet to come to, by number. `stops` counts those among them behind which
+    preparation waits: drains, and with `stands_at_stops` program stops. With `answers` the path does not wait at
+    auxiliary functions by itself: whoever runs it holds it until they are answered. `marks` takes the blocks that
+    leave nothing in the queue: the segment count that they stand before, and their tag.
+    """
 
     seg: Segments
     paths: Paths
     limits: AxisLimits
     path: int = 0
-    make_room: Callable[[], None] = _nobody_makes_room
-    events: list[Event] = field(default_factory=list)
+    backlog: deque[QueueItem] = field(default_factory=deque)
+    events: dict[int, Event] = field(default_factory=dict)
+    stands_at_stops: bool = False
+    answers: bool = False
+    stops: int = 0
+    marks: deque[tuple[int, int]] | None = None
+    _next_event: int = 0
 
     def set_tolerance(self, tolerance_mm: float) -> None:
         """Set how far the path may leave the corners of lines appended from now on."""
         self.paths.row[self.path]["tolerance"] = tolerance_mm
 
-    def put(self, item: QueueItem) -> None:
-        """Append one line, arc or wait.
+    def put_block(self, items: list[QueueItem]) -> None:
+        """Append what a block gives; one that gives nothing after all, a move without length, is marked."""
+        row = self.paths.row[self.path]
+        before = int(row["tail"])
+        for item in items:
+            self.put(item)
+        if items and row["tail"] == before and not self.backlog:
+            self.mark(items[0].tag)
 
-        Raises:
-            ExecutionStoppedError: the queue stays full.
-        """
+    def put(self, item: QueueItem) -> None:
+        """Append one line, arc or wait, behind what waits for room."""
+        if self.backlog or not self._has_room(item):
+            self.backlog.append(item)
+        else:
+            self._append(item)
+
+    def catch_up(self) -> bool:
+        """Append what waits, as far as there is room; return whether nothing waits any more."""
+        while self.backlog and self._has_room(self.backlog[0]):
+            self._append(self.backlog.popleft())
+        return not self.backlog
+
+    def clear(self) -> None:
+        """Forget what has been put and not been come to."""
+        self.backlog.clear()
+        self.events.clear()
+        self.stops = 0
+        if self.marks is not None:
+            self.marks.clear()
+
+    def snapshot(self) -> WriterSnapshot:
+        """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
+        marks = None if self.marks is None else tuple(self.marks)
+        return WriterSnapshot(dict(self.events), self.stops, self._next_event, tuple(self.backlog), marks)
+
+    def restore(self, saved: WriterSnapshot) -> None:
+        """Go back to a snapshot."""
+        self.events = dict(saved.events)
+        self.stops = saved.stops
+        self._next_event = saved.next_event
+        self.backlog = deque(saved.backlog)
+        self.marks = None if saved.marks is None else deque(saved.marks)
+
+    def mark(self, tag: int) -> None:
+        """Note a block that has been carried out without anything for the queue."""
+        if self.marks is not None:
+            self.marks.append((int(self.paths.row[self.path]["tail"]), tag))
+
+    def _append(self, item: QueueItem) -> None:
         match item:
             case Line():
                 self._put_line(item)
@@ -73,21 +133,17 @@ class QueueWriter:
             case Wait():
                 self._put_wait(item)
 
-    def _ensure_room(self) -> None:
-        """See to the two slots that a line with a rounded corner needs."""
-        if free_slots(self.paths, self.path) < 2:
-            self.make_room()
-            if free_slots(self.paths, self.path) < 2:
-                raise ExecutionStoppedError
+    def _has_room(self, item: QueueItem) -> bool:
+        """Tell whether there is room: a line with a rounded corner takes two slots, a wait one and one per event."""
+        needed = 1 + (len(item.events) if isinstance(item, Wait) else 1)
+        return free_slots(self.paths, self.path) >= needed
 
     def _put_line(self, item: Line) -> None:
-        self._ensure_room()
         speed = math.inf if item.rapid else self._speed(item.feed, self._line_length(item))
         flags = (RAPID if item.rapid else 0) | (STOP if item.exact_stop else 0)
-        append_line(self.seg, self.paths, self.path, self.limits, np.array(item.end), speed, flags, item.line)
+        append_line(self.seg, self.paths, self.path, self.limits, np.array(item.end), speed, flags, item.tag)
 
     def _put_arc(self, item: Arc) -> None:
-        self._ensure_room()
         p, q = item.plane[:2]
         append_arc(
             self.seg,
@@ -102,19 +158,24 @@ class QueueWriter:
             item.sweep_rad,
             self._speed(item.feed, self._arc_length(item)),
             STOP if item.exact_stop else 0,
-            item.line,
+            item.tag,
         )
 
     def _put_wait(self, item: Wait) -> None:
-        for word in item.events:
-            self.events.append(Event(word, item.line))
-            self._append_wait(0.0, len(self.events) - 1, item.line)
-        if item.duration_s > 0.0 or not item.events:
-            self._append_wait(item.duration_s, NO_EVENT, item.line)
+        words = item.events or (("",) if item.stop is not None else ())
+        answered = self.answers and bool(item.events)
+        for word in words:
+            self._append_wait(0.0, self._next_event, item.tag)
+            time_s = item.duration_s if answered and word is words[-1] else 0.0
+            self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag)
+            self._next_event += 1
+        if item.stop is Stop.DRAIN or (item.stop is not None and self.stands_at_stops):
+            self.stops += 1
+        if (item.duration_s > 0.0 or not words) and not answered:
+            self._append_wait(item.duration_s, NO_EVENT, item.tag)
 
-    def _append_wait(self, duration_s: float, event: int, line: int) -> None:
-        self._ensure_room()
-        append_wait(self.seg, self.paths, self.path, duration_s, event, line)
+    def _append_wait(self, duration_s: float, event: int, tag: int) -> None:
+        append_wait(self.seg, self.paths, self.path, duration_s, event, tag)
 
     def _line_length(self, item: Line) -> float:
         """Return the length as the kernel counts it: of the axes that count, else of the others."""

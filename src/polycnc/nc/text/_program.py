@@ -88,9 +88,13 @@ class ProgramText:
 
     def line_position(self, line: int) -> SourcePosition:
         """Return the place of the first character that is no blank in line number `line` (1-based)."""
-        start = int(self._line_starts[line - 1])
+        start = self.line_start(line)
         row = self.content[start : self.line_end(start)]
         return self.position(start + len(row) - len(row.lstrip()))
+
+    def line_start(self, line: int) -> int:
+        """Return the offset of the first byte of line number `line` (1-based)."""
+        return int(self._line_starts[line - 1])
 
     def line_end(self, offset: int) -> int:
         """Return the offset of the newline that ends the line of `offset` (the length for the last line)."""

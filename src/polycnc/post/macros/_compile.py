@@ -9,11 +9,12 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from types import CodeType
+from typing import TypeAlias
 
+from polycnc.language import Emitter, Flaw, Traced
 from polycnc.post.macros._blocks import Piece, by_order, escaped, is_empty_test, joined, text_follows
 from polycnc.post.macros._elements import Assignment, Code, Element, Initialisation, Numbering, Text, Word
-from polycnc.post.macros._expression import Flaw, Formula, Name
+from polycnc.post.macros._expression import Condition, Name, python_condition, python_value
 from polycnc.post.macros._format import NumberFormat
 from polycnc.post.macros._macro import If, Line, Statement, elements_of
 from polycnc.post.macros._symbols import (
@@ -44,13 +45,8 @@ class Style:
     number_highest: int
 
 
-@dataclass(frozen=True, slots=True)
-class Compiled:
-    """A macro as Python, and the place in the macro (line from 1, column from 0) of every line of it."""
-
-    code: CodeType
-    lines: tuple[str, ...]
-    places: tuple[tuple[int, int], ...]
+TracedMacro: TypeAlias = Traced[tuple[int, int]]
+"""A macro as Python; its places are lines of the macro, from 1, and columns, from 0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,75 +66,68 @@ def used_words(macros: Iterable[Sequence[Statement]]) -> Used:
 
 def compile_macro(
     name: str, statements: Sequence[Statement], symbols: Symbols, style: Style, used: Used, *, sound: bool
-) -> tuple[Compiled | None, list[Flaw]]:
+) -> tuple[TracedMacro | None, list[Flaw]]:
     """Return the compiled macro, or None and what is wrong with the names in it.
 
     A macro that is not `sound`, with lines that could not be read, is only checked for names.
     """
     writer = _Writer(symbols, style, used)
-    writer.statements(statements, 2)
+    with writer.out.block(f"def build({', '.join(ARGUMENTS)}):"):
+        with writer.out.block("def macro():"):
+            writer.statements(statements)
+        writer.out.put("return macro")
     if writer.flaws or not sound:
         return None, writer.flaws
-    head = (f"def build({', '.join(ARGUMENTS)}):", "    def macro():")
-    lines = (*head, *(writer.lines or ["        pass"]), "    return macro")
     try:
-        code = compile("\n".join(lines), f"<macro {name}>", "exec")
-    except (RecursionError, MemoryError, SyntaxError):
-        return None, [Flaw(0, "the macro is too long for one expression or IF", "split it", 1)]
-    return Compiled(code, lines, ((1, 0), (1, 0), *writer.places)), []
+        return writer.out.compile(f"<macro {name}>"), []
+    except Flaw:
+        return None, [Flaw(0, "the macro is too long for one expression or IF", "split it", line=1)]
 
 
 class _Writer:
     """Collect the Python lines of a macro, and for each the place it stems from."""
 
     def __init__(self, symbols: Symbols, style: Style, used: Used) -> None:
-        self.lines: list[str] = []
-        self.places: list[tuple[int, int]] = []
+        self.out = Emitter((1, 0))
         self.flaws: list[Flaw] = []
         self._symbols = symbols
         self._style = style
         self._used = used
-        self._indent = ""
-        self._place = (1, 0)
         self._temporaries = 0
 
-    def statements(self, statements: Sequence[Statement], depth: int) -> None:
+    def statements(self, statements: Sequence[Statement]) -> None:
         for statement in statements:
-            self._indent = "    " * depth
             if isinstance(statement, Line):
                 self._line(statement)
             else:
-                self._if(statement, depth)
+                self._if(statement)
 
-    def _if(self, statement: If, depth: int) -> None:
+    def _if(self, statement: If) -> None:
         for index, branch in enumerate(statement.branches):
-            self._indent = "    " * depth
-            if branch.condition is None:
-                self._put("else:")
-            else:
-                self._place = (branch.number, branch.condition.at)
-                try:
-                    condition = self._python(branch.condition)
-                except Flaw as flaw:
-                    self._flaw(flaw)
-                    condition = "0"
-                self._put(f"{'elif' if index else 'if'} {condition}:")
-            before = len(self.lines)
-            self.statements(branch.body, depth + 1)
-            if len(self.lines) == before:
-                self._indent = "    " * (depth + 1)
-                self._put("pass")
+            head = "else:"
+            if branch.condition is not None:
+                self.out.place = (branch.number, branch.condition.at)
+                head = f"{'elif' if index else 'if'} {self._condition(branch.condition)}:"
+            with self.out.block(head):
+                self.statements(branch.body)
+
+    def _condition(self, condition: Condition) -> str:
+        try:
+            return python_condition(condition, self._value)
+        except Flaw as flaw:
+            self._flaw(flaw)
+            return "0"
 
     def _line(self, line: Line) -> None:
         pieces: list[Piece] = []
         self._temporaries = 0
         for element in line.elements:
-            self._place = (line.number, element.at)
+            self.out.place = (line.number, element.at)
             try:
                 pieces += self._element(element)
             except Flaw as flaw:
                 self._flaw(flaw)
-        self._place = (line.number, 0)
+        self.out.place = (line.number, 0)
         if pieces:
             self._block(pieces, self._is_numbered(line))
 
@@ -171,13 +160,13 @@ class _Writer:
         changes = f"modes[{symbol.group}] = {symbol.number}"
         if element.prefix == "-" and symbol.group >= 0:
             name = self._temporary()
-            self._put(f'{name} = ""')
-            self._put(f"if modes[{symbol.group}] != {symbol.number}:")
-            self._put(f"    {changes}")
-            self._put(f"    {name} = {self._style.separator + symbol.text!r}")
+            self.out.put(f'{name} = ""')
+            self.out.put(f"if modes[{symbol.group}] != {symbol.number}:")
+            self.out.put(f"    {changes}")
+            self.out.put(f"    {name} = {self._style.separator + symbol.text!r}")
             return [Piece(symbol.order, variable=name, is_word=True)] if symbol.text else []
         if symbol.group >= 0:
-            self._put(changes)
+            self.out.put(changes)
         if element.prefix == "*" or not symbol.text:
             return []
         return [Piece(symbol.order, constant=symbol.text, is_word=True, sure=True)]
@@ -188,14 +177,14 @@ class _Writer:
             return [self._variable(variable)]
         temporary = self._temporary()
         if symbols.is_text(name):
-            self._put(f"{temporary} = text({name!r}, {symbols.use(name)})")
+            self.out.put(f"{temporary} = text({name!r}, {symbols.use(name)})")
             if name == TOOLCHANGE and "T" in symbols.variables:
                 steps = symbols.variables["T"].format.steps("value", temporary)
-                self._put(f"if not {temporary}:")
+                self.out.put(f"if not {temporary}:")
                 for step in (f"value = {symbols.use('T')}", *steps):
-                    self._put(f"    {step}")
+                    self.out.put(f"    {step}")
         elif symbols.is_number(name):
-            self._put(f"{temporary} = decimal({symbols.use(name)})")
+            self.out.put(f"{temporary} = decimal({symbols.use(name)})")
         elif name in symbols.codes:
             raise Flaw(element.at, f"{name} is a code, not a word", f"write !{name}!")
         else:
@@ -206,11 +195,11 @@ class _Writer:
         name = self._temporary()
         memory = variable.memory
         separator = self._style.separator
-        self._put(f"value = {self._symbols.use(variable.key)}")
+        self.out.put(f"value = {self._symbols.use(variable.key)}")
         steps = ("if value - value: raise OverflowError", *variable.format.steps("value", name, separator))
         if variable.modal:
-            self._put(f'if value == last[{memory}]: {name} = ""')
-            self._put("else:")
+            self.out.put(f'if value == last[{memory}]: {name} = ""')
+            self.out.put("else:")
             steps = (
                 *steps,
                 f"last[{memory}] = value",
@@ -218,7 +207,7 @@ class _Writer:
                 f"else: texts[{memory}] = {name}",
             )
         for step in steps:
-            self._put(f"    {step}" if variable.modal else step)
+            self.out.put(f"    {step}" if variable.modal else step)
         return Piece(variable.order, variable=name, is_word=True, sure=not variable.modal)
 
     def _assign(self, element: Assignment) -> None:
@@ -227,15 +216,15 @@ class _Writer:
             if name not in LINE_TEXTS:
                 only = f"only {' and '.join(LINE_TEXTS)} can be set to one"
                 raise Flaw(element.at, f"{name} does not take a text", only)
-            self._put(f"{symbols.use(name)} = {element.value!r}")
+            self.out.put(f"{symbols.use(name)} = {element.value!r}")
             return
-        self._check_number(Name(name, element.at))
+        self._check_number(Name(element.at, name))
         if name in symbols.codes:
             raise Flaw(element.at, f"{name} is a code and has no value", f"set its mode with !*{name}!")
-        self._place = (self._place[0], element.value.at)
-        self._put(f"value = {self._python(element.value)}")
-        self._put("if value - value: raise OverflowError")
-        self._put(f"{symbols.use(name)} = value")
+        self.out.place = (self.out.place[0], element.value.at)
+        self.out.put(f"value = {python_value(element.value, self._value)}")
+        self.out.put("if value - value: raise OverflowError")
+        self.out.put(f"{symbols.use(name)} = value")
 
     def _initialise(self, element: Initialisation) -> None:
         symbols = self._symbols
@@ -249,22 +238,25 @@ class _Writer:
             known = [*symbols.codes, *symbols.variables]
             raise self._unknown(element.at, "code or function variable", element.key, known)
         if element.value is not None:
-            self._place = (self._place[0], element.value.at)
-            self._put(f"{symbols.use(variable.key)} = {self._python(element.value)}")
+            self.out.place = (self.out.place[0], element.value.at)
+            self.out.put(f"{symbols.use(variable.key)} = {python_value(element.value, self._value)}")
         elif variable.origin is not None:
-            self._put(f"{symbols.use(variable.key)} = {variable.origin!r}")
-        self._put(f"last[{variable.memory}] = texts[{variable.memory}] = None")
+            self.out.put(f"{symbols.use(variable.key)} = {variable.origin!r}")
+        self.out.put(f"last[{variable.memory}] = texts[{variable.memory}] = None")
 
     def _reset(self, code: CodeSymbol) -> None:
         if code.group >= 0:
-            self._put(f"modes[{code.group}] = 0")
+            self.out.put(f"modes[{code.group}] = 0")
 
     def _block(self, pieces: Sequence[Piece], numbered: bool) -> None:
+        if test := is_empty_test(pieces):
+            with self.out.block(f"if {test}:"):
+                self._ordered(pieces, numbered)
+        else:
+            self._ordered(pieces, numbered)
+
+    def _ordered(self, pieces: Sequence[Piece], numbered: bool) -> None:
         style, symbols = self._style, self._symbols
-        test = is_empty_test(pieces)
-        if test:
-            self._put(f"if {test}:")
-            self._indent += "    "
         numbers: list[Piece] = []
         if numbered:
             self._count()
@@ -273,30 +265,27 @@ class _Writer:
         if not self._used.order or ordered == (*numbers, *pieces):
             self._write(pieces, numbered)
             return
-        self._put(f"if {symbols.use(OUTPUTORDER)} == 1.0:")
-        self._indent += "    "
-        if numbered and style.separator:
-            self._put(f"numbered = {style.separator!r} + numbered")
-            if test := text_follows(ordered[ordered.index(numbers[0]) + 1 :]):
-                self._put(f"if {test}: numbered += {style.separator!r}")
-        self._write(ordered)
-        self._indent = self._indent[:-4]
-        self._put("else:")
-        self._indent += "    "
-        self._write(pieces, numbered)
+        with self.out.block(f"if {symbols.use(OUTPUTORDER)} == 1.0:"):
+            if numbered and style.separator:
+                self.out.put(f"numbered = {style.separator!r} + numbered")
+                if test := text_follows(ordered[ordered.index(numbers[0]) + 1 :]):
+                    self.out.put(f"if {test}: numbered += {style.separator!r}")
+            self._write(ordered)
+        with self.out.block("else:"):
+            self._write(pieces, numbered)
 
     def _count(self) -> None:
         style = self._style
-        self._put("count = number[0]")
+        self.out.put("count = number[0]")
         following = f"count + {style.number_step}"
         if style.number_highest:
             following += (
                 f" if count + {style.number_step} <= {style.number_highest} else {style.number_start}"
             )
-        self._put(f"number[0] = {following}")
+        self.out.put(f"number[0] = {following}")
         number = style.number_format
         before, behind = (text.replace("%", "%%") for text in (number.before, number.behind))
-        self._put(f"numbered = {before + number.conversion + behind!r} % count")
+        self.out.put(f"numbered = {before + number.conversion + behind!r} % count")
 
     def _write(self, pieces: Sequence[Piece], numbered: bool = False) -> None:
         separator = self._style.separator
@@ -306,16 +295,13 @@ class _Writer:
         end += escaped("\n")
         block, surplus = joined(pieces, separator)
         if not surplus:
-            self._put(f'write(f"{start}{lead}{block}{end}")')
+            self.out.put(f'write(f"{start}{lead}{block}{end}")')
         elif start or lead:
-            self._put(f'line = f"{block}{end}"')
-            self._put(f'write(f"{start}{lead}{{line[{surplus}:]}}")')
+            self.out.put(f'line = f"{block}{end}"')
+            self.out.put(f'write(f"{start}{lead}{{line[{surplus}:]}}")')
         else:
-            self._put(f'line = f"{block}{end}"')
-            self._put(f"write(line[{surplus}:])")
-
-    def _python(self, formula: Formula) -> str:
-        return "".join(piece if isinstance(piece, str) else self._value(piece) for piece in formula.pieces)
+            self.out.put(f'line = f"{block}{end}"')
+            self.out.put(f"write(line[{surplus}:])")
 
     def _value(self, name: Name) -> str:
         self._check_number(name)
@@ -331,12 +317,8 @@ class _Writer:
         self._temporaries += 1
         return f"t{self._temporaries}"
 
-    def _put(self, line: str) -> None:
-        self.lines.append(self._indent + line)
-        self.places.append(self._place)
-
     def _flaw(self, flaw: Flaw) -> None:
-        flaw.line = self._place[0]
+        flaw.line = self.out.place[0]
         self.flaws.append(flaw)
 
     def _unknown(

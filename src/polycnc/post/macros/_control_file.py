@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from polycnc.errors import ConfigurationError, SourcePosition, UsageError
+from polycnc.language import Flaw
 from polycnc.machine import KeyPath, Locator, parse_toml, validate
-from polycnc.post.macros._compile import Compiled, Style, compile_macro, used_words
+from polycnc.post.macros._compile import Style, TracedMacro, compile_macro, used_words
 from polycnc.post.macros._control_parameters import SECTIONS, ControlTables, Parameters
 from polycnc.post.macros._control_symbols import ControlFlaw, read_symbols
-from polycnc.post.macros._expression import Flaw
 from polycnc.post.macros._format import read_format
 from polycnc.post.macros._macro import read_macro
 from polycnc.post.macros._run import MacroRun, Write
@@ -35,7 +35,7 @@ class ControlFile:
     parameters: Parameters
     variables: frozenset[str]
     """Keys of the function variables."""
-    _macros: Mapping[str, Compiled] = field(repr=False)
+    _macros: Mapping[str, TracedMacro] = field(repr=False)
     _symbols: Symbols = field(repr=False)
     _style: Style = field(repr=False)
     _places: _MacroPlaces = field(repr=False)
@@ -156,11 +156,11 @@ def _style(parameters: Parameters) -> Style:
 
 def _compiled(
     texts: Mapping[str, str], symbols: Symbols, style: Style, places: _MacroPlaces
-) -> dict[str, Compiled]:
+) -> dict[str, TracedMacro]:
     flaws: list[tuple[str, Flaw]] = []
     read = {name: read_macro(text) for name, text in texts.items()}
     used = used_words(statements for statements, _ in read.values())
-    macros: dict[str, Compiled] = {}
+    macros: dict[str, TracedMacro] = {}
     for name, (statements, unread) in read.items():
         compiled, unknown = compile_macro(name, statements, symbols, style, used, sound=not unread)
         flaws += [(name, flaw) for flaw in (*unread, *unknown)]

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from polycnc.post.macros._expression import FUNCTIONS, Flaw, Formula, read_expression
+from polycnc.language import Flaw
+from polycnc.post.macros._expression import FUNCTIONS, Expression, read_value
 from polycnc.post.macros._symbols import LINE_TEXTS
 
 SPECIAL = "!$@&<>"
@@ -54,7 +55,7 @@ class Assignment:
 
     at: int
     name: str
-    value: Formula | str
+    value: Expression | str
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +64,7 @@ class Initialisation:
 
     at: int
     key: str
-    value: Formula | None
+    value: Expression | None
 
 
 Element: TypeAlias = Text | Code | Word | Numbering | Assignment | Initialisation
@@ -174,7 +175,7 @@ def _assignment(line: str, at: int) -> tuple[Element, int]:
     end = line.find(">", target.end())
     if end < 0:
         raise Flaw(at, "the assignment has no end", "write > behind its expression")
-    return Assignment(at, name, read_expression(line, target.end(), end)), end + 1
+    return Assignment(at, name, read_value(line, target.end(), end)), end + 1
 
 
 def _initialisation(line: str, at: int) -> tuple[Element, int]:
@@ -182,7 +183,7 @@ def _initialisation(line: str, at: int) -> tuple[Element, int]:
     key, star, _ = line[at + 1 : end].partition("*")
     if not KEY.fullmatch(key):
         raise Flaw(at, f"'{key}' is not a search key", "write &F&, or &X*0& with a value")
-    value = read_expression(line, at + 1 + len(key) + 1, end) if star else None
+    value = read_value(line, at + 1 + len(key) + 1, end) if star else None
     return Initialisation(at, key.upper(), value), end + 1
 
 

@@ -1,15 +1,27 @@
-"""Expressions and conditions of macros, read once and turned into Python text.
-
-The grammar is a subset of Python's with the same precedence, so what is read becomes a flat row of pieces: Python
-text, and names that the compiler replaces by places of variables (Manual 001, sections 6 and 8).
-"""
+"""Expressions and conditions of macros: read once, then turned into Python (Manual 001, sections 6 and 8)."""
 
 from __future__ import annotations
 
-import math
-import re
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple, TypeAlias
+from typing import TypeAlias
+
+from polycnc.language import (
+    Chain,
+    Flaw,
+    Infix,
+    Lexicon,
+    Operators,
+    Prefix,
+    Python,
+    Tokens,
+    Tree,
+    Unary,
+    infix,
+    prefix,
+    read_expression,
+    real_value,
+)
 
 FUNCTIONS = (
     *("SIN", "COS", "TAN", "ASIN", "ACOS", "ATAN", "DEG", "RAD", "SQRT", "EXP", "LOG10", "LOG", "DABS"),
@@ -19,10 +31,20 @@ LOGICAL_OPERATORS = 5
 """How many logical operators a condition may have (Manual 001, 8)."""
 EQUAL_WITHIN = 0.0001
 """Values count as equal if their difference is smaller (Manual 001, 8)."""
+
 NESTED_PARENTHESES = 50
 
-_TOKEN = re.compile(
-    r"[ \t]*(?:([0-9]+(?:\.[0-9]*)?|\.[0-9]+)|([A-Za-z][A-Za-z0-9_]*)|(==|!=|<=|>=|&&|\|\||[-+*/()<>]))"
+_LEXICON = Lexicon(
+    (
+        ("number", r"[0-9]+(?:\.[0-9]*)?|\.[0-9]+"),
+        ("name", r"[A-Za-z][A-Za-z0-9_]*"),
+        ("mark", r"==|!=|<=|>=|&&|\|\||[-+*/()<>]"),
+    ),
+    folded=("name",),
+)
+_OPERATORS = Operators(
+    infix={"+": Infix(1), "-": Infix(1), "*": Infix(2), "/": Infix(2)},
+    prefix={"+": Prefix(3), "-": Prefix(3)},
 )
 _COMPARISONS = {
     "==": ("abs((", ")-(", f"))<{EQUAL_WITHIN}"),
@@ -35,184 +57,168 @@ _COMPARISONS = {
 _LOGIC = {"&&": " and ", "||": " or "}
 
 
-class Flaw(Exception):  # noqa: N818 (never leaves the package: the loader makes a ConfigurationError of it)
-    """Something wrong in a line of a macro, at a 0-based place of that line."""
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """A number."""
 
-    def __init__(self, at: int, what: str, hint: str = "", line: int = 0) -> None:
-        super().__init__(what)
-        self.at = at
-        self.what = what
-        self.hint = hint
-        self.line = line
+    at: int
+    value: float
 
 
 @dataclass(frozen=True, slots=True)
 class Name:
-    """A variable in an expression, in capitals, and its place in the line."""
+    """A variable, in capitals."""
 
-    text: str
     at: int
+    text: str
 
 
 @dataclass(frozen=True, slots=True)
-class Formula:
-    """An expression or condition: pieces that, joined, are Python."""
+class Call:
+    """A function of one argument."""
 
     at: int
-    pieces: tuple[str | Name, ...]
+    function: str
+    argument: Expression
 
 
-Pieces: TypeAlias = list[str | Name]
+Expression: TypeAlias = Tree[Constant | Name | Call]
 
 
-def read_expression(line: str, start: int, end: int) -> Formula:
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """Two expressions that are compared, behind a logical operator or ""."""
+
+    logic: str
+    left: Expression
+    operator: str
+    right: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Comparisons, joined by logical operators; && binds tighter."""
+
+    at: int
+    comparisons: tuple[Comparison, ...]
+
+
+def read_value(line: str, start: int, end: int) -> Expression:
     """Read `line[start:end]` as one expression.
 
     Raises:
         Flaw: It is none.
     """
-    reader = _Reader(line, start, end)
-    pieces = reader.expression()
-    reader.end("the expression")
-    return Formula(reader.first, tuple(pieces))
+    reader = _Reader(Tokens(_LEXICON, line, start, end, nesting=NESTED_PARENTHESES))
+    tree = reader.expression()
+    reader.tokens.end("the expression")
+    return tree
 
 
-def read_condition(line: str, start: int) -> Formula:
+def read_condition(line: str, start: int) -> Condition:
     """Read the rest of an IF line, which begins at the parenthesis at `start`.
 
     Raises:
         Flaw: It is no condition, or has too many logical operators.
     """
-    reader = _Reader(line, start, len(line))
-    reader.expect("(", "write the condition in parentheses, like IF(T==1)")
-    first = reader.token.at
-    pieces = reader.comparison()
-    operators = 0
-    while reader.token.text in _LOGIC:
-        operators += 1
-        if operators > LOGICAL_OPERATORS:
+    reader = _Reader(Tokens(_LEXICON, line, start, nesting=NESTED_PARENTHESES))
+    tokens = reader.tokens
+    tokens.expect("(", "write the condition in parentheses, like IF(T==1)")
+    first = tokens.token.at
+    found = [reader.comparison("")]
+    while tokens.token.word in _LOGIC:
+        if len(found) > LOGICAL_OPERATORS:
             raise Flaw(
-                reader.token.at,
+                tokens.token.at,
                 f"more than {LOGICAL_OPERATORS} logical operators in one IF",
                 "split the condition into nested IFs",
             )
-        pieces.append(_LOGIC[reader.token.text])
-        reader.step()
-        pieces += reader.comparison()
-    reader.expect(")", "join comparisons with && or ||, and end the condition with )")
-    reader.end("the condition")
-    return Formula(first, tuple(pieces))
+        found.append(reader.comparison(tokens.step().word))
+    tokens.expect(")", "join comparisons with && or ||, and end the condition with )")
+    tokens.end("the condition")
+    return Condition(first, tuple(found))
 
 
-class _Token(NamedTuple):
-    kind: str  # "number", "name", "mark", "end"
-    text: str
-    at: int
+def python_condition(condition: Condition, value: Callable[[Name], str]) -> str:
+    """Return a condition as Python; `value` gives the Python for a variable."""
+    text = ""
+    for each in condition.comparisons:
+        before, between, behind = _COMPARISONS[each.operator]
+        left, right = python_value(each.left, value), python_value(each.right, value)
+        text += f"{_LOGIC.get(each.logic, '')}{before}{left}{between}{right}{behind}"
+    return text
+
+
+def python_value(tree: Expression, value: Callable[[Name], str]) -> str:
+    """Return an expression as Python; `value` gives the Python for a variable."""
+    return _python(tree, value).text
+
+
+def _python(tree: Expression, value: Callable[[Name], str]) -> Python:
+    match tree:
+        case Constant():
+            return Python(repr(tree.value))
+        case Name():
+            return Python(value(tree))
+        case Call():
+            return Python(f"{tree.function}({_python(tree.argument, value).text})")
+        case Unary():
+            return prefix(tree.operator, _python(tree.operand, value))
+        case Chain():
+            python = _python(tree.first, value)
+            for link in tree.links:
+                python = infix(python, link.operator, _python(link.operand, value))
+            return python
 
 
 class _Reader:
-    """Step through the tokens of a line, one token ahead."""
+    """Read operands and what is around them."""
 
-    def __init__(self, line: str, start: int, end: int) -> None:
-        self._line = line
-        self._next = start
-        self._stop = end
-        self._depth = 0
-        self.token = self._read()
-        self.first = self.token.at
+    def __init__(self, tokens: Tokens) -> None:
+        self.tokens = tokens
 
-    def step(self) -> _Token:
-        """Return the token and go to the next one."""
-        token, self.token = self.token, self._read()
-        return token
+    def expression(self) -> Expression:
+        return read_expression(self.tokens, _OPERATORS, self._operand)
 
-    def expect(self, mark: str, hint: str) -> None:
-        """Step over a mark that must come next."""
-        if self.token.text != mark:
-            raise Flaw(self.token.at, f"'{mark}' is missing before {self._shown()}", hint)
-        self.step()
-
-    def end(self, what: str) -> None:
-        """Check that nothing is left."""
-        if self.token.kind != "end":
-            raise Flaw(self.token.at, f"{what} does not go on with {self._shown()}")
-
-    def comparison(self) -> Pieces:
+    def comparison(self, logic: str) -> Comparison:
         left = self.expression()
-        form = _COMPARISONS.get(self.token.text)
-        if form is None:
+        operator = self.tokens.token
+        if operator.word not in _COMPARISONS:
             raise Flaw(
-                self.token.at,
-                f"a comparison is missing before {self._shown()}",
+                operator.at,
+                f"a comparison is missing before {operator}",
                 f"compare two expressions with one of {' '.join(_COMPARISONS)}",
             )
-        self.step()
-        return [form[0], *left, form[1], *self.expression(), form[2]]
+        self.tokens.step()
+        return Comparison(logic, left, operator.word, self.expression())
 
-    def expression(self) -> Pieces:
-        pieces = self._term()
-        while self.token.text in ("+", "-"):
-            pieces.append(self.step().text)
-            pieces += self._term()
-        return pieces
-
-    def _term(self) -> Pieces:
-        pieces = self._factor()
-        while self.token.text in ("*", "/"):
-            pieces.append(self.step().text)
-            pieces += self._factor()
-        return pieces
-
-    def _factor(self) -> Pieces:
-        sign = [self.step().text] if self.token.text in ("+", "-") else []
-        token = self.token
-        if token.text == "(":
-            return [*sign, "(", *self._in_parentheses(), ")"]
+    def _operand(self) -> Expression:
+        token = self.tokens.token
+        if token.word == "(":
+            return self._in_parentheses()
         if token.kind == "number":
-            self.step()
-            return [*sign, _constant(token)]
+            self.tokens.step()
+            return Constant(token.at, real_value(token))
         if token.kind != "name":
-            raise Flaw(token.at, f"a number or a variable is missing before {self._shown()}")
-        self.step()
-        name = token.text.upper()
-        if self.token.text == "(":
-            if name not in FUNCTIONS:
+            raise Flaw(token.at, f"a number or a variable is missing before {token}")
+        self.tokens.step()
+        if self.tokens.token.word == "(":
+            if token.word not in FUNCTIONS:
                 raise Flaw(
                     token.at, f"there is no function {token.text}", f"functions: {', '.join(FUNCTIONS)}"
                 )
-            return [*sign, f"{name}(", *self._in_parentheses(), ")"]
-        if name in FUNCTIONS:
-            raise Flaw(token.at, f"{name} is a function", f"write its argument in parentheses: {name}(V1)")
-        return [*sign, Name(name, token.at)]
+            return Call(token.at, token.word, self._in_parentheses())
+        if token.word in FUNCTIONS:
+            raise Flaw(
+                token.at,
+                f"{token.word} is a function",
+                f"write its argument in parentheses: {token.word}(V1)",
+            )
+        return Name(token.at, token.word)
 
-    def _in_parentheses(self) -> Pieces:
-        opening = self.step()
-        self._depth += 1
-        if self._depth > NESTED_PARENTHESES:
-            raise Flaw(opening.at, f"more than {NESTED_PARENTHESES} parentheses inside each other")
-        pieces = self.expression()
-        self.expect(")", "close the parenthesis")
-        self._depth -= 1
-        return pieces
-
-    def _read(self) -> _Token:
-        found = _TOKEN.match(self._line, self._next, self._stop)
-        if found is None:
-            rest = self._line[self._next : self._stop]
-            at = self._next + len(rest) - len(rest.lstrip(" \t"))
-            if rest.strip(" \t"):
-                raise Flaw(at, f"'{self._line[at]}' has no meaning in an expression")
-            return _Token("end", "", at)
-        self._next = found.end()
-        place = int(found.lastindex or 0)
-        return _Token(("number", "name", "mark")[place - 1], found[place], found.start(place))
-
-    def _shown(self) -> str:
-        return f"'{self.token.text}'" if self.token.text else "the end"
-
-
-def _constant(token: _Token) -> str:
-    value = float(token.text)
-    if math.isinf(value):
-        raise Flaw(token.at, "the number is too large")
-    return repr(value)
+    def _in_parentheses(self) -> Expression:
+        opening = self.tokens.step()
+        with self.tokens.nested(opening.at):
+            tree = self.expression()
+            self.tokens.expect(")", "close the parenthesis")
+        return tree

@@ -7,8 +7,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from polycnc.language import Flaw
 from polycnc.post.macros._elements import Element, read_elements
-from polycnc.post.macros._expression import Flaw, Formula, read_condition
+from polycnc.post.macros._expression import Condition, read_condition
 
 NESTED_IFS = 10
 """How deep IFs may be nested (Manual 001, 8)."""
@@ -27,7 +28,7 @@ class Branch:
     """What runs if a condition holds; ELSE has none."""
 
     number: int
-    condition: Formula | None
+    condition: Condition | None
     body: list[Statement] = field(default_factory=list)
 
 
@@ -40,7 +41,7 @@ class If:
 
 Statement: TypeAlias = Line | If
 
-_UNREAD = Formula(0, ("0",))
+_UNREAD = Condition(0, ())
 _CONTROL = re.compile(r"[ \t]*(IF|ELSE[ \t]*IF|ELSE|ENDIF)(?=[ \t(]|$)", re.IGNORECASE)
 
 
@@ -55,7 +56,7 @@ def read_macro(text: str) -> tuple[list[Statement], list[Flaw]]:
             reader.flaws.append(flaw)
     for opened in reader.open:
         number = opened.branches[0].number
-        reader.flaws.append(Flaw(0, "the IF has no ENDIF", "write ENDIF behind its last line", number))
+        reader.flaws.append(Flaw(0, "the IF has no ENDIF", "write ENDIF behind its last line", line=number))
     return reader.top, reader.flaws
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from types import CodeType
 from typing import Any, NoReturn
 
 from polycnc.errors import ProgramError, SourcePosition, UsageError
-from polycnc.post.macros._compile import Compiled, Style
+from polycnc.language import frame_of
+from polycnc.post.macros._compile import Style, TracedMacro
 from polycnc.post.macros._events import MACROS
 from polycnc.post.macros._format import decimal, plain
 from polycnc.post.macros._symbols import Symbols
@@ -25,14 +25,14 @@ class MacroRun:
     Modes, last outputs, variables and the sequence number last from call to call, over all paths of the program.
     """
 
-    __slots__ = ("_known", "_locate", "_macros", "_places", "_symbols", "_values")
+    __slots__ = ("_known", "_locate", "_macros", "_symbols", "_traced", "_values")
 
     def __init__(
-        self, macros: Mapping[str, Compiled], symbols: Symbols, style: Style, write: Write, locate: Locate
+        self, macros: Mapping[str, TracedMacro], symbols: Symbols, style: Style, write: Write, locate: Locate
     ) -> None:
         self._symbols = symbols
         self._locate = locate
-        self._places = {compiled.code.co_filename: (name, compiled) for name, compiled in macros.items()}
+        self._traced = {each.code.co_filename: (name, each) for name, each in macros.items()}
         self._values: dict[str, Value] = dict(symbols.values)
         self._known = len(self._values)
         state = (
@@ -44,8 +44,8 @@ class MacroRun:
             write,
         )
         self._macros: dict[str, Callable[[], None] | None] = dict.fromkeys(MACROS)
-        for name, compiled in macros.items():
-            self._macros[name] = _built(compiled.code)(*state)
+        for name, traced in macros.items():
+            self._macros[name] = traced.load(_SCOPE)["build"](*state)
 
     def call(self, macro: str, words: Mapping[str, Value] = _NOTHING) -> None:
         """Set the words given, then run a macro; each block goes to `write` with a line feed at its end.
@@ -111,25 +111,12 @@ class MacroRun:
 
     def _place(self, error: Exception) -> tuple[str, int, int] | None:
         """Return macro, line and column that an error stems from; None if it is not the macro's."""
-        found = None
-        trace = error.__traceback__
-        while trace is not None:
-            file = trace.tb_frame.f_code.co_filename
-            if named := self._places.get(file):
-                name, compiled = named
-                writes = compiled.lines[trace.tb_lineno - 1].lstrip().startswith("write(")
-                if writes and not isinstance(error, UnicodeEncodeError):
-                    return None
-                found = (name, *compiled.places[trace.tb_lineno - 1])
-            trace = trace.tb_next
-        return found
-
-
-def _built(code: CodeType) -> Callable[..., Callable[[], None]]:
-    scope = dict(_SCOPE)
-    exec(code, scope)
-    build: Callable[..., Callable[[], None]] = scope["build"]
-    return build
+        frame = frame_of(error, lambda name: self._traced[name][1] if name in self._traced else None)
+        if frame is None:
+            return None
+        if frame.line.lstrip().startswith("write(") and not isinstance(error, UnicodeEncodeError):
+            return None
+        return (self._traced[frame.name][0], *frame.place)
 
 
 def _meaning(error: Exception) -> tuple[str, str]:
@@ -190,6 +177,8 @@ _SCOPE: dict[str, Any] = {
     "LOG10": math.log10,
     "LOG": math.log,
     "DABS": abs,
+    "abs": abs,
+    "OverflowError": OverflowError,
     "DMS": _dms,
     "ADMS": _adms,
     "text": _text,

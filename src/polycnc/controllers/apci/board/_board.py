@@ -8,36 +8,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import reset_system
+from polycnc.controllers.apci.board._board_snapshot import put_back, take_snapshot
 from polycnc.controllers.apci.board._board_variables import COMMON_VARIABLES, Tasks, Variables
+from polycnc.controllers.apci.board._command import Command
 from polycnc.controllers.apci.board._path_units import PathUnits
 from polycnc.controllers.apci.board._setup import load_parameters, set_up_plant
+from polycnc.controllers.apci.board._status import BoardStatus, board_status
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import OUTPUTS, ErrorReg, ModeReg
-from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, run_scans
+from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, WATCHED, run_scans
 from polycnc.controllers.apci.core._state import BoardState, Floats, make_board_state
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
-from polycnc.machine import Clock, Way
+from polycnc.machine import Clock, Snapshot, wait
 
 LATENCY_SCANS = 2  # after which a direct command takes effect (Manual 002, 2.2.8.1)
 _AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own begins
-
-
-@dataclass(slots=True)
-class _Command:
-    """A direct command on its way."""
-
-    due: int  # clock cycles
-    axes: tuple[int, ...]
-    orders: tuple[int, ...]  # of these axes, when it was given
-    begin: Callable[[], None]
 
 
 class Board:
@@ -47,11 +40,21 @@ class Board:
     """
 
     def __init__(self, config: SystemFile | None = None, *, record_scans: int = 0) -> None:
-        self.config = config or SystemFile()
+        self.is_described = config is not None
+        self._record_scans = record_scans
+        self._build(config or SystemFile())
+
+    def rebuild(self, config: SystemFile) -> None:
+        """Be the board of another system file, just booted; what had been got from this one before is void."""
+        self.is_described = True
+        self._build(config)
+
+    def _build(self, config: SystemFile) -> None:
+        self.config = config
         n = len(self.config.axes)
         dt = self.config.sample_time_s
         self.kernel: KernelState = make_state(
-            n, cycle_s=dt, segments=1, record_cycles=record_scans, record_actual=True
+            n, cycle_s=dt, segments=1, record_cycles=self._record_scans, record_actual=True
         )
         self.state: BoardState = make_board_state(n, dt)
         self.clock = Clock(dt)
@@ -63,8 +66,8 @@ class Board:
         self.interrupts: list[Callable[[], None]] = []
         self.units_in_use: dict[tuple[tuple[int, ...], int, int, int], PathUnits | None] = {}
         self.planned = self.config  # the system file that was loaded last
-        self._pending: list[_Command] = []
-        self._orders = [0] * n  # a command is void when its axes have had another since
+        self.pending: list[Command] = []
+        self.orders = [0] * n  # a command is void when its axes have had another since
         set_up_plant(self)
         load_parameters(self, self.config)
 
@@ -101,6 +104,7 @@ class Board:
     @property
     def inputs(self) -> int:
         """Active digital inputs; input 1 is bit 0."""
+        self.look_at_interface()
         return int(self.state.board[0]["inputs"])
 
     def set_input(self, number: int, level: bool) -> None:
@@ -109,10 +113,17 @@ class Board:
         external = int(self.state.board[0]["external"])
         self.state.board[0]["external"] = external | bit if level else external & ~bit
 
+    def look_at_interface(self) -> None:
+        """Take inputs and outputs away where an error in ifs has reset them."""
+        board = self.state.board[0]
+        board["io_down"] = self.variables.interface.is_down
+        if board["io_down"]:
+            board["inputs"] = board["inverted"]
+
     @property
     def outputs(self) -> int:
         """Digital outputs; output 1 is bit 0."""
-        return int(self.state.board[0]["outputs"])
+        return 0 if self.variables.interface.is_down else int(self.state.board[0]["outputs"])
 
     @outputs.setter
     def outputs(self, value: int) -> None:
@@ -188,54 +199,55 @@ class Board:
         """Time since the board was booted."""
         return self.clock.now_s
 
-    def command(self, axes: tuple[int, ...], begin: Callable[[], None]) -> None:
+    def command(self, axes: tuple[int, ...], begin: partial[None]) -> None:
         """Let `axes` have a direct command: no profile end from now on; `begin` is called when it takes effect."""
         for i in axes:
             row = self.state.axis[i]
             row["commanded"] += 1
             row["pe"] = row["saf"] = 0
-        orders = tuple(self._orders[i] for i in axes)
-        self._pending.append(_Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
+        orders = tuple(self.orders[i] for i in axes)
+        self.pending.append(Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
 
     def cancel_commands(self, i: int) -> None:
         """Make void what was commanded to an axis and has not taken effect."""
-        self._orders[i] += 1
+        self.orders[i] += 1
         self.state.axis[i]["commanded"] = 0
 
     def _carry_out(self) -> None:
         """Carry out the direct commands that are due."""
-        while self._pending and self._pending[0].due <= self.clock.cycles:
-            command = self._pending.pop(0)
+        while self.pending and self.pending[0].due <= self.clock.cycles:
+            command = self.pending.pop(0)
             valid = [
-                i for i, order in zip(command.axes, command.orders, strict=True) if order == self._orders[i]
+                i for i, order in zip(command.axes, command.orders, strict=True) if order == self.orders[i]
             ]
             for i in valid:
                 self.state.axis[i]["commanded"] -= 1
             if len(valid) == len(command.axes):
                 command.begin()
 
-    def advance(self, scans: int, *, until: int = 0) -> int:
-        """Run up to `scans` scans; return how many were run.
+    def advance(self, cycles: int, *, until: int | None = None) -> int:
+        """Run up to `cycles` scans; return how many were run.
 
         Fewer after a scan in which one of the attentions `until` happened (`_scan`).
         """
-        done = 0
-        while done < scans:
+        done, wanted = 0, until or 0
+        self.look_at_interface()
+        while done < cycles:
             self._carry_out()
-            mask = INTERRUPT | RESET | until
-            piece = scans - done
+            mask = INTERRUPT | RESET | wanted
+            piece = cycles - done
             if self.tasks is not None:
                 waiting = self.tasks.scans_to_wait()
                 if waiting == 0:
                     self.tasks.run_scan()
                 piece = int(min(piece, max(waiting, 1)))
-                mask |= PROFILE_END  # a task may wait for it
-            if self._pending:
-                piece = min(piece, max(self._pending[0].due - self.clock.cycles, 1))
+                mask |= PROFILE_END | WATCHED  # a task may wait for it
+            if self.pending:
+                piece = min(piece, max(self.pending[0].due - self.clock.cycles, 1))
             ran = int(run_scans(self.state, self.kernel, piece, mask))
             done += ran
             self.clock.tick(ran)
-            if self._attend() & until:
+            if self._attend() & wanted:
                 break
         self._carry_out()
         return done
@@ -258,19 +270,30 @@ class Board:
         for routine in self.interrupts if rises else ():
             routine()
 
-    def run(self, way: Way) -> int:
-        """Let the board run in one of the ways of its clock (`Step`, `Free`, ...); return the scans done."""
-        return way.run(self.advance)
-
     def wait(self, axes: tuple[int, ...] | None = None, limit_s: float = 3600.0) -> None:
         """Run until the profiles of `axes` (all if None) have ended, at most `limit_s`."""
         chosen = [self.axes[i] for i in (range(len(self.axes)) if axes is None else axes)]
-        end = self.clock.cycles + self.clock.cycles_for(limit_s)
-        while any(axis.is_busy for axis in chosen) and self.clock.cycles < end:
-            if self.advance(end - self.clock.cycles, until=PROFILE_END) == 0:
-                break
+        wait(self, lambda: not any(axis.is_busy for axis in chosen), until=PROFILE_END, limit_s=limit_s)
 
     def reset(self) -> None:
         """Reset the whole system, as rs does."""
-        self._pending.clear()
+        self.pending.clear()
         reset_system(self)
+
+    # ------------------------------------------------------------------ state
+
+    def status(self) -> BoardStatus:
+        """Return what the board is and does in the present scan."""
+        return board_status(self)
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state of the board, its drives, its tasks, and commands on their way."""
+        return take_snapshot(self)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this board, or of one with the same system file.
+
+        Raises:
+            SnapshotError: It is of something else, or damaged; nothing has changed.
+        """
+        put_back(self, snapshot)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Any, Protocol
 
 from polycnc.controllers.apci.board._environment import InterfaceStatus
 
@@ -25,6 +26,18 @@ class Tasks(Protocol):
 
     def halt(self) -> None:
         """Halt all tasks."""
+        ...
+
+    def save(self) -> list[dict[str, Any]]:
+        """Return the state of all tasks, with their programs, as plain data."""
+        ...
+
+    def read_saved(self, data: Any) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back.
+
+        Raises:
+            KeyError, TypeError, ValueError: It is damaged.
+        """
         ...
 
 

@@ -17,12 +17,12 @@ if TYPE_CHECKING:
 
 def ja(board: Board, axes: Sequence[int], targets: Sequence[float]) -> None:
     """Jog to absolute positions, each axis by itself (Manual 002, 4.4.19)."""
-    _command(board, axes, targets, "jac", partial(_jog, relative=False))
+    _command(board, axes, targets, "jac", partial(jog, relative=False))
 
 
 def jr(board: Board, axes: Sequence[int], distances: Sequence[float]) -> None:
     """Jog by distances from the instantaneous positions (Manual 002, 4.4.23)."""
-    _command(board, axes, distances, "jac", partial(_jog, relative=True))
+    _command(board, axes, distances, "jac", partial(jog, relative=True))
 
 
 def _command(
@@ -46,7 +46,8 @@ def _command(
         board.command((i,), partial(begin, board, i, value))
 
 
-def _jog(board: Board, i: int, value: float, *, relative: bool) -> None:
+def jog(board: Board, i: int, value: float, *, relative: bool) -> None:
+    """Begin to jog to, or by, `value`."""
     row, base = board.state.axis[i], board.kernel.base
     here = float(base[i])
     target = here + value if relative else value + board.axes[i].origin
@@ -62,10 +63,11 @@ def _jog(board: Board, i: int, value: float, *, relative: bool) -> None:
 
 def jhi(board: Board, axes: Sequence[int], distances: Sequence[float]) -> None:
     """Search the encoder's index over a distance (Manual 002, 4.4.20)."""
-    _command(board, axes, distances, "hac", _search_index)
+    _command(board, axes, distances, "hac", search_index)
 
 
-def _search_index(board: Board, i: int, distance: float) -> None:
+def search_index(board: Board, i: int, distance: float) -> None:
+    """Begin to search the index."""
     row, base = board.state.axis[i], board.kernel.base
     target = float(base[i]) + distance
     row["tp"] = target - board.axes[i].origin
@@ -75,15 +77,16 @@ def _search_index(board: Board, i: int, distance: float) -> None:
 
 def jhl(board: Board, axes: Sequence[int]) -> None:
     """Search the reference switch to the left, without end (Manual 002, 4.4.21)."""
-    _command(board, axes, [-1.0] * len(axes), "hac", _search_reference)
+    _command(board, axes, [-1.0] * len(axes), "hac", search_reference)
 
 
 def jhr(board: Board, axes: Sequence[int]) -> None:
     """Search the reference switch to the right, without end (Manual 002, 4.4.22)."""
-    _command(board, axes, [1.0] * len(axes), "hac", _search_reference)
+    _command(board, axes, [1.0] * len(axes), "hac", search_reference)
 
 
-def _search_reference(board: Board, i: int, direction: float) -> None:
+def search_reference(board: Board, i: int, direction: float) -> None:
+    """Begin to search the reference switch."""
     row = board.state.axis[i]
     hvl, hac = float(row["hvl"]), float(row["hac"])
     begin_jog(board.state, board.kernel.base, i, SEARCH_REFERENCE, True, 0.0, direction * hvl, hvl, hac, hac)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from polycnc.controllers.apci.board._path_units import path_units
 from polycnc.controllers.apci.core._compiled_entries import aim_at_velocity, reject_queue
@@ -35,17 +35,25 @@ RESET_TARGET_VELOCITY = 2001
 
 
 def ssms(board: Board, axes: Sequence[int]) -> None:
-    """Start the spoolers of `axes` together; ends a wait for time or inputs (Manual 002, 4.4.120)."""
+    """Start the spoolers of `axes` together; ends a wait for time or inputs (Manual 002, 4.4.120).
+
+    An axis that still carries out the entry at which sstps will halt it goes on behind that entry.
+    """
     rows = [board.state.axis[i] for i in axes]
     for row in rows:
         if row["motion"] == WAITING:
             row["skip_wait"] = 1
     ready = [row for row in rows if row["closed"] and row["head"] < row["tail"] and not row["running"]]
-    if any(row["motion"] not in (IDLE, WAITING) for row in ready):
+    resumes = board.config.rulings.ssms_undoes_sstps
+    if not all(row["motion"] in (IDLE, WAITING) or (resumes and _works_on_its_queue(row)) for row in ready):
         return  # only from rest
     for row in ready:
         row["running"] = 1
         row["pe"] = 0
+
+
+def _works_on_its_queue(row: Any) -> bool:
+    return bool(row["motion"] in (MOVE, TABLE) and not row["direct"] and not row["stopping"])
 
 
 def sstps(board: Board, axes: Sequence[int]) -> None:

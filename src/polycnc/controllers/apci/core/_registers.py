@@ -27,6 +27,16 @@ class Bits(IntFlag):
         bit.number, bit.meaning, bit.cleared_by = number, meaning, cleared_by
         return bit
 
+    def __str__(self) -> str:
+        """Return the names of the bits, and what has none as a number."""
+        rest = int(self) & ~type(self).assigned()
+        names = [str(bit.name) for bit in type(self) if bit in self]
+        return " | ".join([*names, *([f"{rest:#x}"] if rest else [])]) or "0"
+
+    def __format__(self, spec: str) -> str:
+        """Return the names of the bits, or the number where a format is given."""
+        return format(int(self), spec) if spec else str(self)
+
     @classmethod
     def assigned(cls) -> int:
         """Return the mask of all bits that have a meaning."""

@@ -44,6 +44,7 @@ from polycnc.controllers.apci.core._state import (
     WAITING,
     BoardState,
 )
+from polycnc.controllers.apci.core._watch import has_changed
 from polycnc.kernel import (
     LIMIT_HIGH,
     LIMIT_LOW,
@@ -62,6 +63,7 @@ _FORBID_TARGET_VELOCITY = int(ModeReg.ForbidTargetVel)
 INTERRUPT = 1  # the board interrupts the PC
 PROFILE_END = 2  # an axis came to its profile end
 RESET = 4  # the board demands a reset of itself
+WATCHED = 8  # something that a polling program looks at has another value
 
 
 @compiled
@@ -77,6 +79,8 @@ def _read_inputs(b: BoardState, state: KernelState) -> None:
             inputs |= plan["right_switch"]
         if state.switches.switch[i, REFERENCE]["level"] != 0:
             inputs |= plan["reference_switch"]
+    if board["io_down"] != 0:  # no level reaches the board
+        inputs = 0
     board["inputs"] = inputs ^ board["inverted"]
 
 
@@ -242,6 +246,8 @@ def run_scans(b: BoardState, state: KernelState, scans: int, mask: int) -> int:
     for done in range(scans):
         board["attention"] = 0
         scan(b, state)
+        if board["watched"] != 0 and has_changed(b, state):
+            board["attention"] |= WATCHED
         if board["attention"] & mask:
             return done + 1
     return scans

@@ -38,6 +38,11 @@ class InstalledBoard:
         board.variables.interface = self.interface
 
     @property
+    def is_described(self) -> bool:
+        """Whether somebody has said what the board is, its hardware or in a system file."""
+        return self.hardware is not None or self.board.is_described
+
+    @property
     def board_type(self) -> int:
         """Type number of the board."""
         return int(self.board.config.type_number)
@@ -55,12 +60,17 @@ class InstalledBoard:
     def load_system(self, config: SystemFile) -> None:
         """Take over a system file: the whole board if it has just been booted, else its parameters."""
         if self.hardware is None and self.board.clock.cycles == 0:
-            self._replace(config)
+            self.board.rebuild(config)
+            self._announce()
         else:
             self.board.load_parameters(config)
 
     def _replace(self, config: SystemFile | None) -> None:
         self.take(Board(config, record_scans=self.record_scans))
+        self._announce()
+
+    def _announce(self) -> None:
+        self.board.variables.interface = self.interface
         for announce in self.on_new_board:
             announce(self.board)
 

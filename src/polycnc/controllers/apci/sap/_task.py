@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
 
+from polycnc.controllers.apci.sap._cnc_file import read_cnc, write_cnc
 from polycnc.controllers.apci.sap._faults import REFUSED, VALUE_RANGE, Fault
-from polycnc.controllers.apci.sap._host import Host
-from polycnc.controllers.apci.sap._linker import link
+from polycnc.controllers.apci.sap._linker import Acts, link, only_polling
 from polycnc.controllers.apci.sap._machine import CELL_BYTES, FRAME_CELLS, STACK_CELLS, Pause, Step
+from polycnc.controllers.apci.sap._polling import CELLS_MOST, TURNS_MOST, Circle, Observer, Patience
 from polycnc.controllers.apci.sap._program import Program, cell_values
 from polycnc.errors import PolycncError
 
@@ -23,6 +24,13 @@ HALT_AT_WRITELN = 1 << 26  # in MODEREG
 
 RUNNING, HALTED_BY_WRITELN, WAITING = 0x1, 0x4, 0x8  # 0x2, single step, is declared as not implemented
 INCOMPLETE, COMPLETE = 0x1, 0x2
+
+# What makes up the state of a task beside its program and what it waits for.
+_CELLS = ("stack", "memory", "frames", "_armed")
+_NUMBERS = ("base", "next", "_errnum", "_errline", "_text_bits")
+_FLAGS = ("_by_writeln", "_in_event")
+_TEXTS = ("error", "_text")
+_KINDS: tuple[tuple[tuple[str, ...], type], ...] = ((_NUMBERS, int), (_FLAGS, bool), (_TEXTS, str))
 
 
 class State(Enum):
@@ -54,7 +62,7 @@ class TaskStatus(NamedTuple):
 class Task:
     """Run the program of one task a number of instructions at a time; see `Tasks` for the public calls."""
 
-    def __init__(self, number: int, host: Host, control: Callable[[str, int], None]) -> None:
+    def __init__(self, number: int, host: Observer, control: Callable[[str, int], None]) -> None:
         self.number = number
         self.host = host
         self.control = control
@@ -69,6 +77,10 @@ class Task:
         self.next = 0
         self._errnum = self._errline = 0
         self._steps: list[Step] = []
+        self._polling_steps: list[Step] = []
+        self._circle: Circle | None = None
+        self._turn_had = -1  # scan in which the circle has had its turn
+        self._patience = Patience()
         self._by_writeln = False
         self._in_event = False
         self._waiting_before: Wait | None = None  # of the program that an event handler interrupts
@@ -90,10 +102,13 @@ class Task:
             self.memory.extend(cell_values(self.program.variables))
             self._armed = [True] * len(self.program.events)
             self._steps = link(self, self.program)
+            self._polling_steps = only_polling(self.program, self._steps)
+            self._patience = Patience(self.host.scan + 1)
             self.state = State.RUNNING
 
     def end(self, stop: bool) -> None:
         """End the program: to be continued (`stop`), or for good."""
+        self.leave_circle()
         if self.state is State.RUNNING or not stop:
             self.state = State.STOPPED if stop else State.IDLE
             self._by_writeln = False
@@ -109,6 +124,7 @@ class Task:
         return self.state is not State.RUNNING
 
     def _reset(self) -> None:
+        self._circle = None
         self.state = State.IDLE
         self.waiting = self._waiting_before = None
         self.error = ""
@@ -124,6 +140,11 @@ class Task:
         """Run at most `budget` instructions, as one scan does; return early when the program waits or ends."""
         if self.state is not State.RUNNING:
             return
+        if self._circle is not None:
+            if self.host.is_unchanged(self._circle.reads):
+                self._turn_had = self.host.scan
+                return
+            self.leave_circle()
         at = self.next
         try:
             if self._armed and not self._in_event:
@@ -184,6 +205,83 @@ class Task:
             raise Pause from None
         return bool(self.stack.pop())
 
+    # Polling
+
+    def poll(self, budget: int) -> Circle | None:
+        """Return the circle in which the program polls, so that it needs no turn while its reads stay the same.
+
+        It is looked for now and then, by trying out turns on the board as it stands. The task goes through the circle
+        by itself from then on; whatever asks for the task's state, or runs it, finds it where it has got to.
+        """
+        scan = self.host.scan
+        if self._circle is not None:
+            if self.host.is_unchanged(self._circle.reads):
+                return self._circle
+            self.leave_circle()
+            return None
+        if scan < self._patience.next or len(self.memory) + len(self.stack) > CELLS_MOST:
+            return None
+        self._circle = self._try_out(scan, budget)
+        if self._circle is None:
+            self._patience.failed(scan)
+        return self._circle
+
+    def _try_out(self, scan: int, budget: int) -> Circle | None:
+        before = self._save(scan)
+        states = [before]
+        steps, self._steps = self._steps, self._polling_steps
+        self.host.noted = {}
+        try:
+            for turn in range(1, TURNS_MOST + 1):
+                self.run(budget)
+                if self.state is not State.RUNNING:
+                    return None
+                self.host.ahead = turn
+                now = self._save(scan + turn)
+                if now == before and repr(now) == repr(before):
+                    return Circle(scan, tuple(states), self.host.noted)
+                states.append(now)
+            return None
+        except Acts:
+            return None
+        finally:
+            self._steps = steps
+            self.host.noted, self.host.ahead = None, 0
+            self.state = State.RUNNING
+            self._errnum, self._errline, self.error = 0, 0, ""
+            self._restore(before, scan)
+
+    def leave_circle(self) -> None:
+        """Let the program be where it has got to in the circle in which it polls."""
+        circle = self._circle
+        if circle is not None:
+            self._catch_up()
+            self._circle = None
+            self._patience.ended(self.host.scan, circle)
+
+    def _catch_up(self) -> None:
+        """Take over where the program has got to in its circle, if it is in one."""
+        circle = self._circle
+        if circle is not None:
+            turn = self.host.scan + (1 if self._turn_had == self.host.scan else 0)
+            self._restore(circle.states[(turn - circle.since) % len(circle.states)], turn)
+
+    def _save(self, scan: int) -> tuple[Any, ...]:
+        """Return what the program's further way depends on; waits count from `scan`, the next turn's."""
+        waits = tuple(
+            wait if wait is None or wait.until is None else Wait(wait.until - scan, ())
+            for wait in (self.waiting, self._waiting_before)
+        )
+        cells = tuple(self.stack), tuple(self.memory), tuple(self.frames), tuple(self._armed)
+        return self.next, self.base, self._in_event, waits, *cells
+
+    def _restore(self, saved: tuple[Any, ...], scan: int) -> None:
+        self.next, self.base, self._in_event, waits, stack, memory, frames, armed = saved
+        self.waiting, self._waiting_before = (
+            wait if wait is None or wait.until is None else Wait(wait.until + scan, ()) for wait in waits
+        )
+        self.stack[:], self.memory[:], self.frames[:], self._armed[:] = stack, memory, frames, armed
+
     # Waiting
 
     def wait(self, time_ms: float, axes: tuple[int, ...]) -> bool:
@@ -238,6 +336,7 @@ class Task:
 
     def status(self) -> TaskStatus:
         """Return the record that rdcncts reads."""
+        self._catch_up()
         running = RUNNING * (self.state is State.RUNNING) | HALTED_BY_WRITELN * self._by_writeln
         running |= WAITING * (self.state is State.RUNNING and self.waiting is not None)
         used = len(self.stack) + FRAME_CELLS * len(self.frames)
@@ -246,3 +345,45 @@ class Task:
 
     def _line(self, at: int) -> int:
         return self.program.code[at][2] if self.program is not None else 0
+
+    # State
+
+    def save(self) -> dict[str, Any]:
+        """Return program and state as plain data."""
+        self._catch_up()
+        waits = (self.waiting, self._waiting_before)
+        return {
+            "program": None if self.program is None else write_cnc(self.program),
+            "state": self.state.value,
+            "waits": [None if wait is None else [wait.until, wait.axes] for wait in waits],
+            **{name: getattr(self, name) for name in (*_CELLS, *_NUMBERS, *_FLAGS, *_TEXTS)},
+            "linked": bool(self._steps),
+        }
+
+    def read_saved(self, data: Mapping[str, Any]) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back.
+
+        Raises:
+            KeyError, TypeError, ValueError: It is damaged.
+        """
+        program = None if data["program"] is None else read_cnc(data["program"])
+        if program is None and data["linked"]:
+            raise ValueError("a task runs no program")
+        steps = link(self, program) if program is not None and data["linked"] else []
+        state = State(data["state"])
+        waits = [None if wait is None else Wait(wait[0], tuple(wait[1])) for wait in data["waits"]]
+        cells = {name: list(data[name]) for name in _CELLS}
+        cells["frames"] = [(int(back), int(base)) for back, base in cells["frames"]]
+        rest = {name: kind(data[name]) for names, kind in _KINDS for name in names}
+
+        def put() -> None:
+            self.program, self.state, self._steps = program, state, steps
+            self._polling_steps = only_polling(program, steps) if program is not None and steps else []
+            self._circle, self._patience = None, Patience()
+            self.waiting, self._waiting_before = waits
+            for name, values in cells.items():
+                getattr(self, name)[:] = values  # the steps hold on to these lists
+            for name, value in rest.items():
+                setattr(self, name, value)
+
+        return put

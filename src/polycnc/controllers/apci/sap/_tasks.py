@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 from polycnc.controllers.apci.sap._faults import TASK_NUMBER, Fault
 from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Host
+from polycnc.controllers.apci.sap._polling import Observer, Read
 from polycnc.controllers.apci.sap._program import TASKS, Program
-from polycnc.controllers.apci.sap._task import STRING_BYTES, State, Task, TaskStatus
+from polycnc.controllers.apci.sap._task import STRING_BYTES, State, Task, TaskStatus, Wait
 
 BUDGET = 100
 """Ruling: instructions that every task runs per scan, in the order of their numbers."""
+
+_SHORT_WAIT = 16  # scans: a task that waits no longer than that may be one that polls
 
 NO_SUCH_TASK, TOO_MANY_BYTES, BAD_MEMORY = 0x1, 0x2, 0x4
 """What rdcbcnct and wrcbcnct return, bit by bit."""
@@ -23,11 +28,12 @@ class Sleep:
     """How long the tasks need no turn.
 
     `scans` may pass before the next turn (None: no limit), and a turn is due in the scan in which all axes of
-    one of the `groups` have reached the ends of their profiles.
+    one of the `groups` have reached the ends of their profiles, or in which one of the `reads` gives something else.
     """
 
     scans: int | None
     groups: tuple[tuple[int, ...], ...]
+    reads: frozenset[Read] = frozenset()
 
 
 class Tasks:
@@ -37,8 +43,8 @@ class Tasks:
     """
 
     def __init__(self, host: Host) -> None:
-        self._host = host
-        self._tasks = tuple(Task(number, host, self._control) for number in range(TASKS))
+        self._host = Observer(host)
+        self._tasks = tuple(Task(number, self._host, self._control) for number in range(TASKS))
 
     def load(self, program: Program) -> None:
         """Halt the program's task and overwrite what it had to run."""
@@ -83,6 +89,26 @@ class Tasks:
         """Return the string of a task, at most `size` and at most 512 characters, and clear the tskinfo bits."""
         return self._tasks[task].take_text(size) if 0 <= task < TASKS else ""
 
+    # State
+
+    def save(self) -> list[dict[str, Any]]:
+        """Return the state of all tasks, with their programs, as plain data."""
+        return [task.save() for task in self._tasks]
+
+    def read_saved(self, data: Any) -> Callable[[], None]:
+        """Read what `save` has returned; return what puts it back.
+
+        Raises:
+            KeyError, TypeError, ValueError: It is damaged.
+        """
+        changes = [task.read_saved(each) for task, each in zip(self._tasks, data, strict=True)]
+
+        def put() -> None:
+            for change in changes:
+                change()
+
+        return put
+
     # Common buffers
 
     def rdcbcnct(self, task: int, size: int, memory: bytearray) -> int:
@@ -106,22 +132,36 @@ class Tasks:
         for task in self._tasks:
             task.run(budget)
 
-    def sleep(self) -> Sleep:
-        """Return how long no task needs a turn, so that many scans can be run without asking."""
+    def sleep(self, can_watch: Callable[[Read], bool] | None = None, budget: int = BUDGET) -> Sleep:
+        """Return how long no task needs a turn, so that many scans can be run without asking.
+
+        `can_watch` says which reads whoever runs these scans can watch; without it, a task that polls needs its turns.
+        The answer holds for the present scan and what the board gives in it.
+        """
         scans: int | None = None
-        groups = []
+        groups: list[tuple[int, ...]] = []
+        reads: frozenset[Read] = frozenset()
         for task in self._tasks:
             if task.state is not State.RUNNING:
                 continue
+            left = None if task.has_events else self._left(task.waiting)
+            if can_watch is not None and (left is None or left < _SHORT_WAIT):
+                circle = task.poll(budget)
+                if circle is not None and all(map(can_watch, circle.reads)):
+                    reads |= circle.reads.keys()
+                    continue
             wait = task.waiting
             if wait is None or task.has_events:
                 return Sleep(0, ())
-            if wait.until is None:
+            if left is None:
                 groups.append(wait.axes)
             else:
-                left = max(0, wait.until - self._host.scan - 1)
                 scans = left if scans is None else min(scans, left)
-        return Sleep(scans, tuple(groups))
+        return Sleep(scans, tuple(groups), reads)
+
+    def _left(self, wait: Wait | None) -> int | None:
+        """Return for how many scans a wait for time needs no turn, None if it is none."""
+        return None if wait is None or wait.until is None else max(0, wait.until - self._host.scan - 1)
 
     def _control(self, name: str, number: int) -> None:
         if not 0 <= number < TASKS:

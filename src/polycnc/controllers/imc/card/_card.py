@@ -11,12 +11,14 @@ from enum import IntEnum
 
 from polycnc.controllers.imc.card._config import CardConfig
 from polycnc.controllers.imc.card._power_on import CYCLE_S, make_card, make_machine
+from polycnc.controllers.imc.card._status import CardStatus, card_status
 from polycnc.controllers.imc.core._addresses import COUNTS, EVENTS, GIN, GINLAT, MOVING
 from polycnc.controllers.imc.core._cycle import run_cycles
 from polycnc.controllers.imc.core._event_codes import LOAD_MOST
 from polycnc.controllers.imc.core._instructions import (
     InstallEvents,
     Instruction,
+    Points,
     Segment,
     WaitParam,
     WaitTime,
@@ -35,11 +37,12 @@ from polycnc.controllers.imc.core._state import (
 from polycnc.controllers.imc.core._write_effects import empty_now, write_now
 from polycnc.errors import UsageError
 from polycnc.kernel import KernelState
-from polycnc.machine import Clock, Way
+from polycnc.machine import Array, Clock, Snapshot, arrays_of, wait
 
 INPUTS = 32
 OUTPUTS = 48
 _OUTPUTS = ("gout1", "gout2", "gout3")
+_KIND = "card"
 
 
 class Fifo(IntEnum):
@@ -142,8 +145,10 @@ class Card:
 
         Raises:
             UsageError: The queue does not take such an instruction: waits are not for IFIFO, segments only for
-                PFIFO1 and PFIFO2, nothing but points (`push_points`) for CFIFO. Or a load is not of 1 to 31
-                events, or a segment not of 1 to 16 coordinates.
+                PFIFO1 and PFIFO2, points of a
+                contour too, nothing but displacements (`push_points`) for CFIFO. Or a load is not of 1 to 31
+                events, a segment not of 1 to 16 coordinates, or there are no points. Or the instruction takes more
+                words than the queue ever holds.
         """
         if fifo not in (Fifo.SEL_IFIFO, Fifo.SEL_QFIFO, Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
             raise UsageError(f"queue {fifo} takes no instructions", hint="give SEL_IFIFO to SEL_PFIFO2")
@@ -157,17 +162,31 @@ class Card:
                 raise UsageError(
                     f"a segment of {len(instruction.ends)} axes", hint=f"{least} to {COORDINATES}"
                 )
+        if isinstance(instruction, Points):
+            if fifo not in (Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
+                raise UsageError("these points are for a path space", hint="use SEL_PFIFO1 or SEL_PFIFO2")
+            if not instruction.displacements:
+                raise UsageError("there are no points", hint="give one displacement at least")
         if isinstance(instruction, InstallEvents) and not 1 <= len(instruction.events) <= LOAD_MOST:
             raise UsageError(f"a load of {len(instruction.events)} events", hint=f"1 to {LOAD_MOST}")
         cells = encode(instruction)
         return self._put(fifo, cells, cells[2])
 
     def push_points(self, words: Sequence[int]) -> bool:
-        """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full."""
+        """Put displacements of contour points into CFIFO, all axes of a point one after the other; False if full.
+
+        Raises:
+            UsageError: They are more than the queue ever holds.
+        """
         return self._put(Fifo.SEL_CFIFO, [signed(word, 1) for word in words], len(words))
 
     def _put(self, fifo: int, cells: list[int], words: int) -> bool:
         q, ring = self.state.fifo[fifo], self.state.ring[fifo]
+        if words > q["depth"]:
+            raise UsageError(
+                f"{words} words never fit into {Fifo(fifo).name}",
+                hint=f"it holds {q['depth']}; send less at once",
+            )
         waiting = int(q["words"]) + words
         if waiting > q["depth"]:
             return False
@@ -273,20 +292,16 @@ class Card:
         """Time since the card was switched on."""
         return self.clock.now_s
 
-    def advance(self, cycles: int, *, until: int = 0) -> int:
+    def advance(self, cycles: int, *, until: int | None = None) -> int:
         """Run up to `cycles` control cycles; return how many were run.
 
         Fewer after a cycle in which one of the attentions `until` happened (`_state`: AXIS_RESTED, AXIS_ERROR).
         """
         if cycles <= 0:
             return 0
-        ran = int(run_cycles(self.state, self.kernel, cycles, until))
+        ran = int(run_cycles(self.state, self.kernel, cycles, until or 0))
         self.clock.tick(ran)
         return ran
-
-    def run(self, way: Way) -> int:
-        """Let the card run in one of the ways of its clock (`Step`, `Free`, ...); return the cycles done."""
-        return way.run(self.advance)
 
     def is_moving(self, axis: int) -> bool:
         """Tell whether an axis is planning or smoothing a motion."""
@@ -295,8 +310,35 @@ class Card:
     def wait(self, axes: Sequence[int] | None = None, limit_s: float = 3600.0) -> None:
         """Run until no axis of `axes` (all if None) moves, at least one cycle, at most `limit_s`."""
         chosen = range(self.axes) if axes is None else axes
-        end = self.clock.cycles + self.clock.cycles_for(limit_s)
         self.advance(1)
-        while any(self.is_moving(i) for i in chosen) and self.clock.cycles < end:
-            if self.advance(end - self.clock.cycles, until=AXIS_RESTED) == 0:
-                break
+        wait(self, lambda: not any(map(self.is_moving, chosen)), until=AXIS_RESTED, limit_s=limit_s)
+
+    # ------------------------------------------------------------------ state
+
+    def status(self) -> CardStatus:
+        """Return what the card is and does in the present cycle."""
+        return card_status(self)
+
+    def snapshot(self) -> Snapshot:
+        """Return the whole state of the card and of the drives around it, and the clock."""
+        beside = {"epoch": self.clock.epoch.isoformat()}
+        return Snapshot.take(_KIND, self._made_from, self.clock.cycles, self._arrays(), beside)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this card, or of one with the same card file.
+
+        Raises:
+            SnapshotError: It is of something else, or damaged; nothing has changed.
+        """
+        arrays = self._arrays()
+        snapshot.check(_KIND, self._made_from, arrays)
+        epoch = snapshot.moment("epoch")
+        snapshot.put_back(arrays)
+        self.clock.go_back(snapshot.cycle, epoch)
+
+    @property
+    def _made_from(self) -> str:
+        return self.config.model_dump_json()
+
+    def _arrays(self) -> list[Array]:
+        return arrays_of((self.kernel, self.state))

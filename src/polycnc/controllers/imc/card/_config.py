@@ -94,6 +94,10 @@ class Depths(StrictModel):
     pfifo2: Depth = Field(default=4096, description="Queue of path space 2.")
     cfifo: Depth = Field(default=4096, description="Queue of contour points.")
 
+    def of(self, fifo: int) -> int:
+        """Return the depth of queue `fifo`, numbered as the card's functions number them, in words."""
+        return (self.ififo, self.qfifo, self.pfifo1, self.pfifo2, self.cfifo)[fifo]
+
 
 class CardConfig(StrictModel):
     """A card: its axes, queues and power-on state."""
@@ -108,6 +112,10 @@ class CardConfig(StrictModel):
     overflow: Literal["origin", "wrap"] = Field(
         default="origin",
         description="What a position does that leaves 32 bits: go on from 0, or from the other end.",
+    )
+    scale_factor: Literal["S16.32", "S16.16"] = Field(
+        default="S16.32",
+        description="Format of the factor of the event commands SCA32, SCA48 and their like.",
     )
     delay_unit: Literal["us", "ms"] = Field(default="us", description="What delayus counts.")
     password: Annotated[str, AfterValidator(_password)] = Field(

@@ -119,6 +119,7 @@ ARCDIR = address("arcdir1")
 ASSEGLEN = address("asseglen1")
 PATHVEL = address("pathvel1")
 PATHACC = address("pathacc1")
+PATHAXISNUM = address("pathaxisnum1")
 FEEDRATE = address("feedrate1")
 SEGMAP = address("segmap_x1")
 SEGTGVEL = address("segtgvel1")
@@ -127,13 +128,13 @@ SEGID = address("segID1")
 SEGLEN = address("seglen1")
 RADIUS = address("radius1")
 
-# What a write to a word sets off. Up to DO_STARTSYN it is a command that the axis takes in its next turn.
+# What a write to a word sets off. Up to DO_SYNSRCVAR it is a command that the axis takes in its next turn.
 STORE = 0
 DO_RUN, DO_GO_MCS, DO_GO_PCS, DO_TGVEL_MCS, DO_TGVEL_PCS = 1, 2, 3, 4, 5
-DO_GOHOME, DO_SETHOME, DO_CLEAR, DO_ENGEAR, DO_STARTSYN = 6, 7, 8, 9, 10
-REFUSE = 11
-DO_CLEAR_FIFO, DO_CLEARIMC, DO_EVENTS = 12, 13, 14
-DO_CAPTURE, DO_POPCAP, DO_CLRCAP, DO_ZERO, DO_CLRENCS, DO_CLEAR_BITS = 15, 16, 17, 18, 19, 20
+DO_GOHOME, DO_SETHOME, DO_CLEAR, DO_ENGEAR, DO_STARTSYN, DO_SYNSRCVAR = 6, 7, 8, 9, 10, 11
+REFUSE = 12
+DO_CLEAR_FIFO, DO_CLEARIMC, DO_EVENTS = 13, 14, 15
+DO_CAPTURE, DO_POPCAP, DO_CLRCAP, DO_ZERO, DO_CLRENCS, DO_CLEAR_BITS = 16, 17, 18, 19, 20, 21
 
 _ACTIONS = {
     "run": DO_RUN,
@@ -147,6 +148,7 @@ _ACTIONS = {
     "engear": DO_ENGEAR,
     "startsyn": DO_STARTSYN,
     "enasyn": DO_STARTSYN,
+    "synsrcvar": DO_SYNSRCVAR,
     "clrififo": DO_CLEAR_FIFO,
     "clrqfifo": DO_CLEAR_FIFO,
     "clrPFIFO1": DO_CLEAR_FIFO,

@@ -27,12 +27,10 @@ from polycnc.controllers.imc.core._addresses import (
     SETHOME,
     SHIFTMASTER,
     STARTSYN,
-    SYNSRCVAR,
-    SYNTYPE,
     TGPOS,
     TGVEL,
 )
-from polycnc.controllers.imc.core._errors import drop_couplings, halt_axis, is_blocked
+from polycnc.controllers.imc.core._errors import drop_couplings, halt_axis, is_blocked, take_over
 from polycnc.controllers.imc.core._follow import begin_gear, begin_sync, end_sync, leave_gear
 from polycnc.controllers.imc.core._homing import HOME_NEGATIVE, begin_homing
 from polycnc.controllers.imc.core._origin import clear_axis, set_origin_here
@@ -42,6 +40,7 @@ from polycnc.controllers.imc.core._state import (
     GIVEN,
     IDLE,
     MOVE,
+    RELEASED,
     SPACES,
     SYNC,
     TGPOS_RANGE,
@@ -57,17 +56,23 @@ def _is_given(s: CardState, i: int, layer: int, bit: int) -> bool:
     axis = s.axis[i]
     if layer != 0 or s.system[0, i]["mode"] != GIVEN:
         return False
-    if axis["by"] < SPACES and s.space[axis["by"]]["active"] == 0:
+    by = axis["by"]
+    if by == RELEASED or (by < SPACES and s.space[by]["active"] == 0):
         axis["commands"] |= 1 << bit
     return True
 
 
 @compiled
-def _take_over(s: CardState, i: int, layer: int) -> None:
-    """Let what else moves the main system go, because a new motion takes it over."""
-    axis = s.axis[i]
-    if layer == 0 and (axis["engaged"] != 0 or axis["home"] != 0 or axis["sync_share"] >= 0.0):
-        drop_couplings(s, i)
+def _may_couple(s: CardState, i: int, bit: int) -> bool:
+    """Tell whether a coupled motion may begin; one that may not shows as refused, unless it is kept for later."""
+    m = s.memory
+    if m[i, RUN] != 0 and not is_blocked(s, i, 0):
+        if not _is_given(s, i, 0, bit):
+            return True
+        if s.axis[i]["commands"] >> bit & 1:
+            return False
+    put16(m, i, ENGEAR if bit == DO_ENGEAR else STARTSYN, 0)
+    return False
 
 
 @compiled
@@ -81,7 +86,10 @@ def _refuse(s: CardState, i: int, layer: int) -> None:
 def _go(s: CardState, i: int, layer: int, bit: int) -> None:
     m, o, row = s.memory, layer * PCS, s.system[layer, i]
     if m[i, o + GO] == 0:
-        if row["mode"] == MOVE:
+        synchronous = layer == 0 and s.axis[i]["sync_share"] >= 0.0
+        if synchronous:
+            drop_couplings(s, i)
+        if synchronous or row["mode"] == MOVE:
             start_velocity(s, layer, i, 0)
         return
     if _is_given(s, i, layer, bit):
@@ -93,7 +101,8 @@ def _go(s: CardState, i: int, layer: int, bit: int) -> None:
     if m[i, RUN] == 0 or is_blocked(s, i, 1 if distance > 0 else (-1 if distance < 0 else _way(s, i, layer))):
         _refuse(s, i, layer)
         return
-    _take_over(s, i, layer)
+    if layer == 0:
+        take_over(s, i)
     if not begin_move(s, layer, i):
         put16(m, i, ERROR, get_u16(m, i, ERROR) | TGPOS_RANGE)
         if before in (GEAR, SYNC):
@@ -112,24 +121,16 @@ def _way(s: CardState, i: int, layer: int) -> int:
 
 
 @compiled
-def _is_held_for_sync(s: CardState, i: int) -> bool:
-    """Tell whether mcstgvel is the goal of a synchronous motion that is set up but not complete."""
-    m = s.memory
-    return bool(m[i, SYNTYPE] == 0 and s.axis[i]["engaged"] == 0 and get32(m, i, SYNSRCVAR) != 0)
-
-
-@compiled
 def _target_velocity(s: CardState, i: int, layer: int, bit: int) -> None:
     target = get32(s.memory, i, layer * PCS + TGVEL)
-    if layer == 0 and _is_held_for_sync(s, i):
-        return
     if s.memory[i, RUN] == 0 or _is_given(s, i, layer, bit):
         return
     if is_blocked(s, i, 1 if target > 0 else -1) and target != 0:
         return
     if target == 0 and s.system[layer, i]["mode"] == IDLE:
         return
-    _take_over(s, i, layer)
+    if layer == 0:
+        take_over(s, i)
     start_velocity(s, layer, i, target)
 
 
@@ -146,7 +147,7 @@ def _home(s: CardState, i: int) -> None:
     if m[i, RUN] == 0 or is_blocked(s, i, way) or given or get32(m, i, HIGHVEL) == 0:
         put16(m, i, GOHOME, 0)
         return
-    _take_over(s, i, 0)
+    take_over(s, i)
     put16(m, i, GOHOME, -1)
     begin_homing(s, i)
 
@@ -157,7 +158,7 @@ def _sync(s: CardState, i: int) -> None:
     running = s.axis[i]["sync_share"] >= 0.0
     wanted = m[i, STARTSYN] != 0 and m[i, ENASYN] != 0
     if wanted and not running:
-        if m[i, RUN] != 0 and not is_blocked(s, i, 0) and s.system[0, i]["mode"] != GIVEN:
+        if _may_couple(s, i, DO_STARTSYN):
             begin_sync(s, i)
     elif running and not wanted:
         end_sync(s, i)
@@ -171,6 +172,7 @@ def take_commands(s: CardState, i: int) -> None:
     axis, m = s.axis[i], s.memory
     commands = axis["commands"]
     axis["commands"] = 0
+    axis["armed"] = min(axis["armed"], 1)
     if commands >> DO_CLEAR & 1 and m[i, CLEAR] != 0:
         clear_axis(s, i)
         put16(m, i, CLEAR, 0)
@@ -181,7 +183,7 @@ def take_commands(s: CardState, i: int) -> None:
     if commands >> DO_ENGEAR & 1:
         if m[i, ENGEAR] == 0:
             leave_gear(s, i)
-        elif m[i, RUN] != 0 and not is_blocked(s, i, 0) and s.system[0, i]["mode"] != GIVEN:
+        elif _may_couple(s, i, DO_ENGEAR):
             begin_gear(s, i)
     if commands >> DO_STARTSYN & 1:
         _sync(s, i)

@@ -13,6 +13,7 @@ from polycnc.controllers.imc.core._addresses import (
     RUN,
     STARTGROUP,
 )
+from polycnc.controllers.imc.core._errors import take_over
 from polycnc.controllers.imc.core._state import CFIFO, COORDINATES, GIVEN, IDLE, SPACES, CardState
 from polycnc.controllers.imc.core._words import FLAG, ONE, get_u16, put16
 from polycnc.kernel import compiled
@@ -32,6 +33,12 @@ def end_contour(s: CardState) -> None:
 
 
 @compiled
+def _is_on_a_path(s: CardState, i: int) -> bool:
+    by = s.axis[i]["by"]
+    return bool(s.system[0, i]["mode"] == GIVEN and by < SPACES and s.space[by]["active"] != 0)
+
+
+@compiled
 def _next_point(s: CardState) -> bool:
     """Take the next point out of the queue; False if there is none, or an axis cannot take part."""
     m, n, card, q = s.memory, s.axis.shape[0], s.card[0], s.fifo[CFIFO]
@@ -40,12 +47,13 @@ def _next_point(s: CardState) -> bool:
         return False
     for k in range(count):
         i = get_u16(m, n, GROUP + k)
-        if i >= n or m[i, RUN] == 0:
+        if i >= n or m[i, RUN] == 0 or _is_on_a_path(s, i):
             return False
         s.place[CONTOUR, k, 0] = i
         s.place[CONTOUR, k, 1] = s.ring[CFIFO, (q["head"] + k) & (s.ring.shape[1] - 1)]
     for k in range(count):
         i = s.place[CONTOUR, k, 0]
+        take_over(s, i)
         s.system[0, i]["mode"] = GIVEN
         s.axis[i]["by"] = CONTOUR
         put16(m, i, CONTOURING, FLAG)
@@ -76,5 +84,7 @@ def contour_cycle(s: CardState) -> None:
     j, cycles = card["group_row"], card["group_smooth"]
     card["group_row"] = j + 1
     for k in range(card["group_count"]):
-        way = s.place[CONTOUR, k, 1] * ONE
-        s.axis[s.place[CONTOUR, k, 0]]["given"] += way * (j + 1) // cycles - way * j // cycles
+        i = s.place[CONTOUR, k, 0]
+        if s.system[0, i]["mode"] == GIVEN and s.axis[i]["by"] == CONTOUR:
+            way = s.place[CONTOUR, k, 1] * ONE
+            s.axis[i]["given"] += way * (j + 1) // cycles - way * j // cycles

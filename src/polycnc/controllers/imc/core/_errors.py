@@ -22,6 +22,7 @@ from polycnc.controllers.imc.core._addresses import (
     PSOFTLIM,
     RUN,
     SPACE,
+    STARTGROUP,
     STARTPATH,
     STARTSYN,
     STOPFILT,
@@ -39,6 +40,7 @@ from polycnc.controllers.imc.core._state import (
     PLIM,
     POSERR_LIMIT,
     PSOF,
+    RELEASED,
     SPACES,
     STOP,
     VELOCITY,
@@ -70,6 +72,7 @@ def drop_couplings(s: CardState, i: int) -> None:
     """Leave gear, synchronous motion and homing."""
     axis, m = s.axis[i], s.memory
     axis["engaged"] = 0
+    axis["armed"] = 0
     axis["locked"] = 0
     axis["sync_share"] = -1.0
     put16(m, i, ENGEAR, 0)
@@ -82,11 +85,20 @@ def drop_couplings(s: CardState, i: int) -> None:
 
 
 @compiled
+def take_over(s: CardState, i: int) -> None:
+    """Let what else moves the main system go, because a new motion takes it over."""
+    axis = s.axis[i]
+    if axis["engaged"] != 0 or axis["home"] != 0 or axis["sync_share"] >= 0.0:
+        drop_couplings(s, i)
+
+
+@compiled
 def halt_axis(s: CardState, i: int) -> None:
     """Let axis `i` plan nothing any more, at once: what smoothing holds back is dropped as well."""
     axis = s.axis[i]
-    if s.system[0, i]["mode"] == GIVEN and axis["by"] < SPACES:
-        put16(s.memory, s.axis.shape[0], STARTPATH + axis["by"] * SPACE, 0)
+    if s.system[0, i]["mode"] == GIVEN and axis["by"] != RELEASED:
+        by = axis["by"]
+        put16(s.memory, s.axis.shape[0], STARTPATH + by * SPACE if by < SPACES else STARTGROUP, 0)
     rest_system(s, 0, i)
     rest_system(s, 1, i)
     drop_couplings(s, i)
@@ -111,6 +123,8 @@ def _brake(s: CardState, i: int, at_once: bool) -> None:
             if axis["by"] < SPACES:
                 stop_space(s, axis["by"], at_once)
             else:
+                if axis["by"] != RELEASED:
+                    put16(s.memory, s.axis.shape[0], STARTGROUP, 0)
                 rest_system(s, layer, i)
         elif at_once:
             rest_system(s, layer, i)
@@ -124,6 +138,7 @@ def _emergency_stop(s: CardState) -> None:
     n = s.axis.shape[0]
     for g in range(SPACES):
         put16(s.memory, n, STARTPATH + g * SPACE, 0)
+    put16(s.memory, n, STARTGROUP, 0)
     for i in range(n):
         put16(s.memory, i, RUN, 0)
         put16(s.memory, i, ENA, 0)

@@ -59,6 +59,7 @@ def begin_gear(s: CardState, i: int) -> None:
     """Engage the gear: from now on the slave follows, at once or when its synchronous motion starts."""
     axis, row = s.axis[i], s.system[0, i]
     axis["engaged"] = 1
+    axis["armed"] = 0
     axis["home"] = 0
     axis["locked"] = 0
     axis["rest"] = 0
@@ -74,6 +75,9 @@ def leave_gear(s: CardState, i: int) -> None:
     if axis["engaged"] == 0:
         return
     axis["engaged"] = 0
+    end_sync(s, i)
+    if s.system[0, i]["mode"] != GEAR:  # it waits for its synchronous motion to start
+        return
     velocity = get32(s.memory, i, VEL)
     if s.memory[i, GEAROUTMOD] != 0:
         velocity = get32(s.memory, i, GEAROUTVEL)
@@ -110,7 +114,6 @@ def end_sync(s: CardState, i: int) -> None:
     s.axis[i]["sync_share"] = -1.0
     put16(s.memory, i, STARTSYN, 0)
     put16(s.memory, i, ENASYN, 0)
-    put32(s.memory, i, SYNSRCVAR, 0)
 
 
 @compiled

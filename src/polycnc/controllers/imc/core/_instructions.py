@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from polycnc.controllers.imc.core._event_codes import SHAPES, EventCommand, EventType, constant_words
 
-WRITE, BITS, WAIT, EVENTS, SEGMENT = 1, 2, 3, 4, 5
+WRITE, BITS, WAIT, EVENTS, SEGMENT, POINTS = 1, 2, 3, 4, 5, 6
 HEADER = 3
 LINE, ARC = 0, 1
 EVENT_CELLS = 13
@@ -99,7 +99,16 @@ class Segment:
     end_speed: int = 0
 
 
-Instruction: TypeAlias = Write | WriteMany | ChangeBits | WaitTime | WaitParam | InstallEvents | Segment
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Points of a contour that a path space goes along: displacements, all axes of a point one after the other."""
+
+    displacements: tuple[int, ...]
+
+
+Instruction: TypeAlias = (
+    Write | WriteMany | ChangeBits | WaitTime | WaitParam | InstallEvents | Segment | Points
+)
 
 
 def signed(value: int, words: int) -> int:
@@ -118,6 +127,11 @@ def _writes(writes: Sequence[Write]) -> list[int]:
 
 def _framed(operation: int, cells: list[int], words: int) -> list[int]:
     return [operation, HEADER + len(cells), words, *cells]
+
+
+def words_of(instruction: Instruction) -> int:
+    """Return how many 16-bit words an instruction takes in a queue."""
+    return encode(instruction)[2]
 
 
 def encode(instruction: Instruction) -> list[int]:
@@ -147,3 +161,5 @@ def encode(instruction: Instruction) -> list[int]:
             cells += (speed or 0, end_speed, x, y, 0 if clockwise else 1, *ends)
             words = 2 + 2 * len(ends) + (4 if speed is not None else 0) + (5 if center is not None else 0)
             return _framed(SEGMENT, cells, words)
+        case Points(displacements):
+            return _framed(POINTS, [signed(each, 1) for each in displacements], 1 + len(displacements))

@@ -173,7 +173,7 @@ pathvel{g} {10} S16.16 G ro path speed now
 contourmod{g} {13} F16 G rw non-zero: the queue holds points of a contour
 pathacc{g} {14} S16.16 G rw path acceleration
 feedrate{g} {16} S16.16 G rw feed override, 0 pauses
-pathaxisnum{g} {18} F16 G rw number of axes
+pathaxisnum{g} {18} F16 G rw axes of a contour point, and the most a segment may have; 0: the segments say
 {segmap}
 segtgvel{g} {35} S16.16 G rw speed in the segment
 segendvel{g} {37} S16.16 G rw speed at its end

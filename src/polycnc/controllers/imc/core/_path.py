@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
+
 from polycnc.controllers.imc.core._addresses import (
     FEEDRATE,
     HPAUSE,
     MOVEINPATH,
     PATHACC,
+    PATHAXISNUM,
     PATHMOVING,
     PATHVEL,
     SEGENDVEL,
@@ -14,12 +17,14 @@ from polycnc.controllers.imc.core._addresses import (
     SPACE,
     STARTPATH,
 )
+from polycnc.controllers.imc.core._instructions import HEADER, POINTS
 from polycnc.controllers.imc.core._planner import REST_SLACK, to_units
-from polycnc.controllers.imc.core._state import GIVEN, IDLE, CardState
+from polycnc.controllers.imc.core._state import GIVEN, IDLE, PFIFO1, CardState
 from polycnc.controllers.imc.core._words import (
     FLAG,
     clip32,
     get32,
+    get_u16,
     put16,
     put32,
 )
@@ -46,6 +51,37 @@ def _feed(s: CardState, g: int) -> float:
 
 
 @compiled
+def _point_length(s: CardState, f: int, at: int, count: int) -> float:
+    """Return the length of the point whose displacements stand from place `at` of the ring of queue `f` on."""
+    mask = s.ring.shape[1] - 1
+    counted, riding = 0.0, 0.0
+    for k in range(count):
+        way = float(s.ring[f, (at + k) & mask])
+        if k < _SPEED_COUNTS_ON:
+            counted += way * way
+        else:
+            riding += way * way
+    return math.sqrt(counted) if counted > 0.0 else math.sqrt(riding)
+
+
+@compiled
+def _points_ahead(s: CardState, g: int, enough: float) -> float:
+    """Return the length of the points that wait at the head of the queue, not looking further than `enough`."""
+    f = PFIFO1 + g
+    count = get_u16(s.memory, s.axis.shape[0], g * SPACE + PATHAXISNUM)
+    mask, at, tail = s.ring.shape[1] - 1, s.fifo[f]["head"], s.fifo[f]["tail"]
+    length = 0.0
+    while count > 0 and at < tail and s.ring[f, at & mask] == POINTS:
+        size = s.ring[f, (at + 1) & mask]
+        for k in range(HEADER, size - count + 1, count):
+            length += _point_length(s, f, at + k, count)
+            if length >= enough:
+                return length
+        at += size
+    return length
+
+
+@compiled
 def _plan(s: CardState, g: int) -> None:
     """Plan the rest of the segment from its present place and speed, which were reached `lead` cycles ago."""
     m, n, o, row = s.memory, s.axis.shape[0], g * SPACE, s.space[g]
@@ -56,6 +92,9 @@ def _plan(s: CardState, g: int) -> None:
     accel = get32(m, n, o + PATHACC) / 65536.0 * weight
     top = feed * weight * get32(m, n, o + SEGTGVEL) / 65536.0
     end = min(feed * weight * max(get32(m, n, o + SEGENDVEL), 0) / 65536.0, top)
+    if row["points"] != 0 and end < top and accel > 0.0:
+        ahead = _points_ahead(s, g, (top * top - end * end) / (2.0 * accel))
+        end = min(math.sqrt(end * end + 2.0 * accel * ahead), top)
     count = -1
     if top > 0.0:
         length = s.seg.row[g]["length"]

@@ -25,7 +25,7 @@ from polycnc.controllers.imc.core._addresses import (
     TRACK,
     VEL,
 )
-from polycnc.controllers.imc.core._state import GIVEN, IDLE, MOVE, VELOCITY, CardState
+from polycnc.controllers.imc.core._state import GIVEN, IDLE, MOVE, RELEASED, VELOCITY, CardState
 from polycnc.controllers.imc.core._words import (
     FLAG,
     ONE,
@@ -243,6 +243,8 @@ def system_step(s: CardState, layer: int, i: int) -> int:
     if mode == VELOCITY:
         return _velocity_cycle(s, layer, i)
     if mode == GIVEN:
+        if s.axis[i]["by"] == RELEASED:
+            s.system[0, i]["mode"] = IDLE
         return int(s.axis[i]["given"])
     return 0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from polycnc.controllers.imc.core._addresses import COUNTS, EVENTS, WAIT_TIMES
-from polycnc.controllers.imc.core._instructions import BITS, EVENT_CELLS, HEADER, SEGMENT, WAIT, WRITE
+from polycnc.controllers.imc.core._instructions import BITS, EVENT_CELLS, HEADER, POINTS, SEGMENT, WAIT, WRITE
 from polycnc.controllers.imc.core._instructions import EVENTS as INSTALL
 from polycnc.controllers.imc.core._state import EVENTS_MOST, CardState
 from polycnc.controllers.imc.core._words import get32, get_u16, put16, put32
@@ -29,6 +29,24 @@ def drop_head(s: CardState, f: int) -> None:
     q = s.fifo[f]
     q["words"] -= cell(s, f, 2)
     q["head"] += cell(s, f, 1)
+    put16(s.memory, s.axis.shape[0], COUNTS[f], q["words"])
+
+
+@compiled
+def drop_point(s: CardState, f: int, count: int) -> None:
+    """Take the first point, of `count` displacements, out of the points at the head of queue `f`."""
+    size, words = cell(s, f, 1), cell(s, f, 2)
+    if size - count <= HEADER:
+        drop_head(s, f)
+        return
+    q, ring = s.fifo[f], s.ring
+    mask = ring.shape[1] - 1
+    head = q["head"] + count
+    ring[f, (head + 2) & mask] = words - count
+    ring[f, (head + 1) & mask] = size - count
+    ring[f, head & mask] = POINTS
+    q["head"] = head
+    q["words"] -= count
     put16(s.memory, s.axis.shape[0], COUNTS[f], q["words"])
 
 
@@ -135,7 +153,7 @@ def take_instruction(s: CardState, f: int) -> int:
     if q["head"] == q["tail"]:
         return EMPTY
     operation = cell(s, f, 0)
-    if operation == SEGMENT:
+    if operation in (SEGMENT, POINTS):
         return AT_SEGMENT
     head, size, words = q["head"], cell(s, f, 1), cell(s, f, 2)
     _carry_out(s, f, operation)

@@ -22,6 +22,7 @@ Whole = npt.NDArray[np.int64]
 
 COORDINATES = 16  # of a path space or a contour group
 SPACES = 2
+RELEASED = SPACES + 1  # of `by`
 EVENTS_MOST = 128
 SMOOTH_ROWS = 1 << 16  # cycles of command that smoothing may look back
 CAPTURES = 1024  # captured positions kept for each axis
@@ -55,6 +56,7 @@ CARD_ROW = np.dtype(
         ("wrap_to_origin", np.int64),  # what a position does that leaves 32 bits: 1 restarts at 0, 0 wraps
         ("hold", np.int64),  # what was written has to be done before IFIFO goes on
         ("delay_step", np.int64),  # what delayus counts down by in a cycle
+        ("short_factor", np.int64),  # factors of events have 16 fraction bits, not 32
         ("stopped", np.int64),  # an emergency stop has been carried out
         ("group_row", np.int64),  # of a contour: cycles of the present point done, -1 none
         ("group_count", np.int64),  # axes of the present point
@@ -84,7 +86,7 @@ AXIS_ROW = np.dtype(
     [
         ("commands", np.int64),  # writes to act on, bit by action
         ("given", np.int64),  # what path and contour have for this cycle
-        ("by", np.int64),  # path space (0, 1) or contour (2) that GIVEN comes from
+        ("by", np.int64),  # path space (0, 1) or contour (2) that GIVEN comes from; 3: it was the last of it
         ("machine", np.int64),  # pulses put out, as a position of 2**-16 that never wraps
         ("counts", np.int64),  # encoder reading
         ("counts_per_pulse", np.float64),
@@ -108,6 +110,7 @@ AXIS_ROW = np.dtype(
         ("locked", np.int64),
         ("ratio", np.int64),  # that it is locked to
         ("engaged", np.int64),
+        ("armed", np.int64),  # synsrcvar has been written and mcstgvel not since: 2 in this turn, 1 before
         ("sync_from", np.int64),  # source at the start
         ("sync_share", np.float64),  # done
         ("sync_velocity", np.float64),  # at the start, pulses per cycle
@@ -157,6 +160,7 @@ SPACE_ROW = np.dtype(
         ("weight", np.float64),  # path length for a unit of what the speed counts on
         ("stopping", np.int64),
         ("stale", np.int64),  # the rest of the segment has to be planned
+        ("points", np.int64),  # the segment is a point of a contour
     ],
     align=True,
 )

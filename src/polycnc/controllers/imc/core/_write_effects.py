@@ -21,6 +21,7 @@ from polycnc.controllers.imc.core._addresses import (
     DO_POPCAP,
     DO_SETHOME,
     DO_STARTSYN,
+    DO_SYNSRCVAR,
     DO_TGVEL_MCS,
     DO_TGVEL_PCS,
     DO_ZERO,
@@ -36,12 +37,14 @@ from polycnc.controllers.imc.core._addresses import (
     STORE,
     SYNAXIS,
     SYNSRC,
+    SYNTYPE,
     SYSTEM_MOVING,
+    TGVEL,
     WAIT_TIMES,
 )
 from polycnc.controllers.imc.core._parameters import WORDS
 from polycnc.controllers.imc.core._state import CAPTURES, QUEUES, CardState
-from polycnc.controllers.imc.core._words import FLAG, get32, get48, get_u16, put16, put32, put48
+from polycnc.controllers.imc.core._words import FLAG, get32, get48, get_u16, put16, put32, put48, wrap32
 from polycnc.kernel import compiled, entry
 
 _PCS_MOVING = PCS + SYSTEM_MOVING
@@ -113,6 +116,8 @@ def _command(s: CardState, i: int, action: int, value: int) -> None:
     row["commands"] |= 1 << action
     if action in (DO_CLEAR, DO_SETHOME):
         s.card[0]["hold"] = 1
+    if action == DO_SYNSRCVAR:
+        row["armed"] = 2
     if action == DO_STARTSYN:
         row["sync_from"] = sync_source(s, i)
     if DO_GO_MCS <= action <= DO_GOHOME and value != 0 and s.memory[i, RUN] != 0:
@@ -177,8 +182,28 @@ def write_word(s: CardState, at: int, axis: int, value: int) -> None:
 
 
 @compiled
+def _is_goal(s: CardState, axis: int, value: int) -> bool:
+    """Tell whether mcstgvel is written as the goal of a synchronous motion that is being set up, not as a command.
+
+    It is the first time behind synsrcvar, as the functions of synchronous motion do. A stop that comes later than
+    synsrcvar is a stop all the same.
+    """
+    if not 0 <= axis < s.axis.shape[0]:
+        return False
+    row = s.axis[axis]
+    armed = row["armed"]
+    row["armed"] = 0
+    if armed == 0 or row["engaged"] != 0 or s.memory[axis, SYNTYPE] != 0:
+        return False
+    return bool(armed == 2 or wrap32(value) != 0)
+
+
+@compiled
 def write_words(s: CardState, at: int, axis: int, words: int, value: int) -> None:
     """Write `words` words of a parameter, low word first."""
+    if at == TGVEL and words == 2 and _is_goal(s, axis, value):
+        put32(s.memory, axis, at, value)
+        return
     for k in range(words):
         write_word(s, at + k, axis, (value >> (16 * k)) & 0xFFFF)
 

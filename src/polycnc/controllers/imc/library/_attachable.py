@@ -7,6 +7,7 @@ from typing import Protocol
 
 from polycnc.controllers.imc.card._config import CardConfig
 from polycnc.controllers.imc.core._instructions import Instruction
+from polycnc.machine import Clock
 
 
 class CardLike(Protocol):
@@ -27,7 +28,12 @@ class CardLike(Protocol):
         """Return how many events can still be installed."""
         ...
 
-    def advance(self, cycles: int, *, until: int = 0) -> int:
+    @property
+    def clock(self) -> Clock:
+        """Return the clock that `advance` lets go on."""
+        ...
+
+    def advance(self, cycles: int, *, until: int | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did, fewer after an attention of `until`."""
         ...
 

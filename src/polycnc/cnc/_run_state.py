@@ -1,0 +1,61 @@
+"""What a program run is doing, what is set for it, and what it tells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class RunState(StrEnum):
+    """What a program run is doing."""
+
+    READY = "ready"  # a program is selected and stands at its beginning
+    RESET = "reset"  # broken off; it begins anew with the next start
+    ACTIVE = "active"
+    HOLD = "hold"  # feed hold: the axes brake or stand
+    STOPPED_AT_BLOCK = "stopped at block"  # single block, or a breakpoint
+    PROGRAM_STOP = "program stop"
+    OPTIONAL_STOP = "optional stop"
+    COMPLETED = "completed"
+    ALARM = "alarm"
+
+
+@dataclass(frozen=True, slots=True)
+class RunOptions:
+    """Set how a program is run: what an operator has set before it starts.
+
+    `block_delete` are the numbers of the skip marks whose blocks are left out. `stands_at_stops` lets M0, and with
+    `optional_stop` M1, wait for `resume`; without, they are passed, and single block and steps pass blocks that neither
+    move nor wait. `blocks_ahead` is how many blocks are prepared beyond the executed one, None as the dialect says.
+    `single_block` stops at the end of every block. With `answers` the path waits at an auxiliary function only for the
+    answer of `on_event`, not for the machine file's times. `rapid_f0_mm_s` is the path speed of a rapid override of 0
+    (0: it stands), `dry_run_mm_s` that of a dry run.
+    """
+
+    block_delete: frozenset[int] = frozenset()
+    stands_at_stops: bool = True
+    optional_stop: bool = False
+    blocks_ahead: int | None = None
+    single_block: bool = False
+    answers: bool = False
+    rapid_f0_mm_s: float = 0.0
+    dry_run_mm_s: float = 0.0
+    collect_errors: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class RunAlarm:
+    """Why the machine stopped a run: a text, a stable code, the tag of the block, the cycle."""
+
+    text: str
+    code: str
+    tag: int
+    cycle: int
+
+
+@dataclass(frozen=True, slots=True)
+class ToolTime:
+    """How long a tool has cut, and positioned, in s."""
+
+    cutting_s: float = 0.0
+    rapid_s: float = 0.0

@@ -1,0 +1,65 @@
+"""Direct commands on their way, as plain data: what a snapshot keeps of the two scans before they take effect."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from polycnc.controllers.apci.board._interpolation import Speeds, begin_interpolation
+from polycnc.controllers.apci.board._jog_commands import jog, search_index, search_reference
+from polycnc.controllers.apci.board._path_units import PathUnits
+from polycnc.controllers.apci.board._shapes import Circle, Helix, Line, SpaceCircle
+
+if TYPE_CHECKING:
+    from polycnc.controllers.apci.board._board import Board
+
+# How each command begins, and what shapes its path; the names stand in snapshots.
+_BEGINNINGS: Mapping[str, Callable[..., Any]] = {
+    "jog": jog,
+    "search_index": search_index,
+    "search_reference": search_reference,
+    "interpolation": begin_interpolation,
+}
+_SHAPES: Mapping[str, Callable[..., Any]] = {
+    "line": Line,
+    "circle": Circle,
+    "helix": Helix,
+    "circle_in_space": SpaceCircle,
+}
+
+
+def as_data(begin: partial[None]) -> dict[str, Any]:
+    """Return how a command begins as plain data."""
+    _, *arguments = begin.args  # the board
+    if begin.func is not begin_interpolation:
+        return {"name": _name(_BEGINNINGS, begin.func), "values": arguments, "named": begin.keywords}
+    units, speeds, shape = arguments
+    return {
+        "name": "interpolation",
+        "units": [units.velocity_unit, units.acceleration_unit, units.axes, units.weight, units.distance],
+        "speeds": [speeds.ac, speeds.vl, speeds.tvl],
+        "shape": _name(_SHAPES, type(shape)),
+        "named": {each.name: getattr(shape, each.name) for each in fields(shape)},
+    }
+
+
+def from_data(board: Board, data: Mapping[str, Any]) -> partial[None]:
+    """Return how a command begins on a board.
+
+    Raises:
+        KeyError: It is none that there is.
+    """
+    function = _BEGINNINGS[data["name"]]
+    if function is not begin_interpolation:
+        return partial(function, board, *data["values"], **data["named"])
+    units = PathUnits(*data["units"][:2], *map(np.asarray, data["units"][2:]))
+    shape = _SHAPES[data["shape"]](**data["named"])
+    return partial(begin_interpolation, board, units, Speeds(*data["speeds"]), shape)
+
+
+def _name(table: Mapping[str, Callable[..., Any]], function: Callable[..., Any]) -> str:
+    return next(name for name, each in table.items() if each is function)

@@ -1,0 +1,341 @@
+"""What a segment is part of: block records behind one integer per segment.
+
+The tag of a segment is a block reference: line in the low bits, one bit that tells two executions in a row of
+the same block apart, and above them the number of a context. A context is what many blocks share: the program,
+the calls that led to it and the modal state. Blocks of the ordinary interpreter have the context that they leave
+behind. A run of plain blocks shares the context that stood before it; the modal words that such blocks may change
+(motion, absolute or incremental, F) are read again from the text when somebody asks. So a plain block costs its
+integer and nothing else.
+
+Equal contexts are one context, and those that nothing refers to any more are dropped (`keep`), so a program that
+loops for hours needs no more memory than its first round.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.nc._dialect import Dialect, DialectTables
+from polycnc.nc.blocks._actions import GROUP_OF, Action, Group
+from polycnc.nc.blocks._channel_state import ModalSnapshot
+from polycnc.nc.blocks._modal import (
+    ABSOLUTE,
+    ARC_ABSOLUTE,
+    EXACT_STOP,
+    FEED_INVERSE_TIME,
+    FEED_MODE,
+    FEED_PER_MINUTE,
+    FEED_PER_REVOLUTION,
+    INCH,
+    MOTION,
+    MOTION_ARC_CCW,
+    MOTION_ARC_CW,
+    MOTION_LINEAR,
+    MOTION_RAPID,
+    PLANE,
+    PLANE_XY,
+    PLANE_YZ,
+    PLANE_ZX,
+)
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import ScanRules, scan, word_columns
+
+LINE_MASK = (1 << 31) - 1
+AGAIN = 1 << 31  # told apart from the execution just before
+CONTEXT_SHIFT = 32
+_CONTEXTS = 1 << 20  # numbers of contexts: a reference stays exact as a float64, as the recorder keeps it
+_FEW = 4096  # so many contexts are kept without asking who needs them
+
+_SEQUENCE = re.compile(r"\s*(?:/[1-9]?)?\s*[Nn]\s*([0-9]+)")
+_F, _G = ord("F"), ord("G")
+_MOTIONS = {
+    Action.RAPID: MOTION_RAPID,
+    Action.LINEAR: MOTION_LINEAR,
+    Action.ARC_CW: MOTION_ARC_CW,
+    Action.ARC_CCW: MOTION_ARC_CCW,
+}
+_MOTION_ACTIONS = {motion: action for action, motion in _MOTIONS.items()}
+_PLANES = {PLANE_XY: Action.PLANE_XY, PLANE_ZX: Action.PLANE_ZX, PLANE_YZ: Action.PLANE_YZ}
+_FEED_MODES = {
+    FEED_PER_MINUTE: Action.FEED_PER_MINUTE,
+    FEED_PER_REVOLUTION: Action.FEED_PER_REVOLUTION,
+    FEED_INVERSE_TIME: Action.FEED_INVERSE_TIME,
+}
+_SIDES = {0: Action.COMP_OFF, 1: Action.COMP_LEFT, -1: Action.COMP_RIGHT}
+_LENGTHS = {0: Action.LENGTH_OFF, 1: Action.LENGTH_PLUS, -1: Action.LENGTH_MINUS}
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A call under way: the program and the line that hold it, and which of its repetitions runs (from 1)."""
+
+    program: str
+    line: int
+    repeat: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class ModalWords:
+    """The modal words in force: G codes by their group, and the other addresses as programmed.
+
+    `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
+    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
+    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis.
+    """
+
+    g: dict[Group, str]
+    feed: float
+    speed: float
+    spindle_direction: int
+    tool: int
+    next_tool: int
+    d: int | None
+    h: int
+    m: tuple[int, ...]
+    inch: bool
+    zero: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class BlockRecord:
+    """A block of a program as it is executed: where it stands, what it says, and what holds with it.
+
+    `line` counts from 1, `offset` is the byte where it begins, `sequence` its N word. `stack` holds the calls that led
+    to it, the outermost first; it is empty in the main program.
+    """
+
+    program: str
+    line: int
+    offset: int
+    sequence: int | None
+    text: str
+    stack: tuple[Call, ...]
+    modal: ModalWords
+
+
+class _Replay(NamedTuple):
+    """What the plain blocks of a run say about motion, distance and feed: block numbers and values of each."""
+
+    lines: list[int]
+    motion: tuple[list[int], list[float]]
+    absolute: tuple[list[int], list[float]]
+    feed: tuple[list[int], list[float]]
+
+
+@dataclass(slots=True)
+class _Context:
+    text: ProgramText
+    stack: tuple[Call, ...]
+    modal: ModalSnapshot
+    begin: tuple[int, int] | None  # of a run of plain blocks: byte offset and line
+    replay: _Replay | None = None
+
+    def key(self) -> tuple[object, ...]:
+        return self.text, self.stack, self.modal, self.begin
+
+
+def line_of(tag: int) -> int:
+    """Return the line of the block that a tag refers to."""
+    return tag & LINE_MASK
+
+
+class BlockRecords:
+    """Give out block references for the segments of one channel, and read them back."""
+
+    def __init__(self, dialect: Dialect, rules: ScanRules, tables: DialectTables, columns: int) -> None:
+        self._tables = tables
+        self._rules = rules
+        self._columns = columns  # blocks of one run of plain blocks at the most
+        self._contexts: dict[int, _Context] = {}
+        self._known: dict[tuple[object, ...], int] = {}
+        self._next = 1
+        self._enough = _FEW
+        self._last: tuple[tuple[object, ...], int] | None = None
+        self._codes = _codes(dialect)
+
+    def reference(self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, line: int) -> int:
+        """Return the reference of a block that leaves the modal state `modal` behind."""
+        return self._base(_Context(text, stack, modal, None)) | line
+
+    def run_base(
+        self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, begin: tuple[int, int]
+    ) -> int:
+        """Return what is added to a line for its reference, for a run of plain blocks from `begin` on."""
+        return self._base(_Context(text, stack, modal, begin))
+
+    def block(self, tag: int) -> BlockRecord | None:
+        """Return the record of a block; None for a tag that is no reference, or of a context since dropped."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        if context is None:
+            return None
+        line = tag & LINE_MASK
+        offset = context.text.line_start(line)
+        text = context.text.line(offset)
+        number = _SEQUENCE.match(text)
+        return BlockRecord(
+            program=context.text.name,
+            line=line,
+            offset=offset,
+            sequence=int(number[1]) if number else None,
+            text=text,
+            stack=context.stack,
+            modal=self._words(context, line),
+        )
+
+    def depth(self, tag: int) -> int:
+        """Return how many calls led to the block of a tag."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return 0 if context is None else len(context.stack)
+
+    def tool(self, tag: int) -> int:
+        """Return the tool in the spindle with the block of a tag, 0 where that is not known."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return 0 if context is None else context.modal.tool
+
+    def program(self, tag: int) -> str | None:
+        """Return the name of the program that a tag refers to."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return None if context is None else context.text.name
+
+    def snapshot(self) -> tuple[dict[int, object], int]:
+        """Return all contexts, to go back to."""
+        return dict(self._contexts), self._next
+
+    def restore(self, saved: tuple[dict[int, object], int]) -> None:
+        """Go back to a snapshot."""
+        contexts, self._next = saved
+        self._contexts = {n: each for n, each in contexts.items() if isinstance(each, _Context)}
+        self._known = {context.key(): n for n, context in self._contexts.items()}
+        self._last = None
+
+    # ------------------------------------------------------------------ keeping few of them
+
+    @property
+    def crowded(self) -> bool:
+        """Whether it is time to ask which contexts are still needed."""
+        return len(self._contexts) > self._enough
+
+    def keep(self, tags: Iterable[int]) -> None:
+        """Drop every context that none of these tags refers to."""
+        needed = {tag >> CONTEXT_SHIFT for tag in tags}
+        self._contexts = {n: context for n, context in self._contexts.items() if n in needed}
+        self._known = {key: n for key, n in self._known.items() if n in needed}
+        self._last = None
+        self._enough = max(_FEW, 2 * len(self._contexts))
+
+    def _base(self, context: _Context) -> int:
+        key = context.key()
+        if self._last is not None and self._last[0] == key:
+            return self._last[1] << CONTEXT_SHIFT
+        number = self._known.get(key)
+        if number is None:
+            number = self._next
+            while number in self._contexts:
+                number = number % (_CONTEXTS - 1) + 1
+            self._next = number % (_CONTEXTS - 1) + 1
+            self._contexts[number] = context
+            self._known[key] = number
+        self._last = key, number
+        return number << CONTEXT_SHIFT
+
+    # ------------------------------------------------------------------ modal words
+
+    def _words(self, context: _Context, line: int) -> ModalWords:
+        modal = context.modal
+        whole = list(modal.whole)
+        feed = modal.feed
+        if context.begin is not None:
+            if context.replay is None:
+                context.replay = self._read_run(context.text, context.begin)
+            replay = context.replay
+            block = bisect_right(replay.lines, line) - 1
+            whole[MOTION] = int(_latest(replay.motion, block, whole[MOTION]))
+            whole[ABSOLUTE] = int(_latest(replay.absolute, block, whole[ABSOLUTE]))
+            feed = _latest(replay.feed, block, feed)
+        g = {GROUP_OF[action]: code for action in _actions(modal, whole) if (code := self._codes.get(action))}
+        if name := next((name for name in modal.work if name), ""):
+            g[Group.WORK_OFFSET] = name
+        spindle = modal.spindle
+        return ModalWords(
+            g=g,
+            feed=feed,
+            speed=spindle.speed,
+            spindle_direction=spindle.direction,
+            tool=modal.tool,
+            next_tool=modal.selected_tool,
+            d=modal.compensation_tool,
+            h=modal.length_tool,
+            m=modal.m_codes,
+            inch=bool(whole[INCH]),
+            zero=modal.offset,
+        )
+
+    def _read_run(self, text: ProgramText, begin: tuple[int, int]) -> _Replay:
+        columns = word_columns(self._columns)
+        scan(text.data, begin[0], begin[1], self._rules, columns)
+        words, blocks = columns.n_words, columns.n_blocks
+        letter, value = columns.letter[:words], columns.value[:words]
+        block = np.searchsorted(columns.first_word[: blocks + 1], np.arange(words), side="right") - 1
+        is_g = letter == _G
+        codes = np.rint(value[is_g] * 10.0)
+        inside = (codes >= 0.0) & (codes < len(self._tables.g_action))
+        actions = self._tables.g_action[np.where(inside, codes, 0.0).astype(np.int64)]
+        actions = np.where(inside, actions, 0)
+        g_block = block[is_g]
+        is_f = letter == _F
+        return _Replay(
+            lines=columns.line[:blocks].tolist(),
+            motion=_said(g_block, actions, {int(a): float(m) for a, m in _MOTIONS.items()}),
+            absolute=_said(g_block, actions, {int(Action.ABSOLUTE): 1.0, int(Action.INCREMENTAL): 0.0}),
+            feed=(block[is_f].tolist(), value[is_f].tolist()),
+        )
+
+
+def _said(
+    blocks: npt.NDArray[np.int64], actions: npt.NDArray[np.signedinteger[Any]], values: dict[int, float]
+) -> tuple[list[int], list[float]]:
+    found = np.isin(actions, list(values))
+    return blocks[found].tolist(), [values[action] for action in actions[found].tolist()]
+
+
+def _latest(said: tuple[list[int], list[float]], block: int, before: float) -> float:
+    index = bisect_right(said[0], block)
+    return said[1][index - 1] if index else before
+
+
+def _codes(dialect: Dialect) -> dict[Action, str]:
+    """Return the G code of every action of a dialect; the first that it names."""
+    codes: dict[Action, str] = {}
+    for code, name in dialect.g.items():
+        codes.setdefault(Action[name.upper()], f"G{code}")
+    return codes
+
+
+def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
+    """Return what is in force, one action of every modal group."""
+    found = [
+        _PLANES[whole[PLANE]],
+        Action.INCH if whole[INCH] else Action.METRIC,
+        Action.ABSOLUTE if whole[ABSOLUTE] else Action.INCREMENTAL,
+        Action.ARC_CENTER_ABSOLUTE if whole[ARC_ABSOLUTE] else Action.ARC_CENTER_INCREMENTAL,
+        _FEED_MODES[whole[FEED_MODE]],
+        Action.CONSTANT_SURFACE_SPEED if modal.spindle.surface_speed else Action.SPINDLE_RPM,
+        _SIDES[modal.side],
+        _LENGTHS[modal.length_sign],
+        Action.EXACT_STOP if whole[EXACT_STOP] else Action.CONTINUOUS,
+        Action.RETRACT_INITIAL if modal.retract_to_initial else Action.RETRACT_R,
+    ]
+    if modal.cycle:
+        found.append(Action[modal.cycle.upper()])
+    else:
+        found.append(Action.CYCLE_CANCEL)
+        if whole[MOTION] in _MOTION_ACTIONS:
+            found.append(_MOTION_ACTIONS[whole[MOTION]])
+    return found

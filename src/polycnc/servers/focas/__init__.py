@@ -1,0 +1,41 @@
+"""FOCAS over TCP: frames, commands and sessions as Ethernet clients of FANUC controls speak them."""
+
+from polycnc.servers.focas._blocks import (
+    CNC,
+    PMC,
+    Reply,
+    Request,
+    read_replies,
+    read_requests,
+    write_replies,
+    write_requests,
+)
+from polycnc.servers.focas._frames import Frame, FrameReader, FrameType, read_status, status_body
+from polycnc.servers.focas._numbers import VACANT, Value8, text
+from polycnc.servers.focas._session import TRANSITIONS, Answerer, Ending, Session, State, Status, Transition
+
+__all__ = [
+    "CNC",
+    "PMC",
+    "TRANSITIONS",
+    "VACANT",
+    "Answerer",
+    "Ending",
+    "Frame",
+    "FrameReader",
+    "FrameType",
+    "Reply",
+    "Request",
+    "Session",
+    "State",
+    "Status",
+    "Transition",
+    "Value8",
+    "read_replies",
+    "read_requests",
+    "read_status",
+    "status_body",
+    "text",
+    "write_replies",
+    "write_requests",
+]
