@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import inspect
-from typing import Any, get_type_hints
+from typing import Any
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from polycnc.controllers.imc import imclib as lib
 from polycnc.controllers.imc.card._card import Card
-from polycnc.controllers.imc.library._call import c_type
-from polycnc.controllers.imc.library._types import Pointer
+from polycnc.controllers.library import Pointer
 from support.imc_network import opened
 
 FUNCTIONS = [
@@ -68,17 +67,14 @@ POINTERS: dict[str, st.SearchStrategy[Any]] = {
 
 def arguments(name: str) -> st.SearchStrategy[tuple[Any, ...]]:
     """Return the arguments of a function behind its handle."""
-    hints = get_type_hints(getattr(lib, name), include_extras=True)
     made: list[st.SearchStrategy[Any]] = []
-    for parameter in list(inspect.signature(getattr(lib, name)).parameters)[1:]:
-        ctype = c_type(hints[parameter])
-        assert ctype is not None
-        if isinstance(ctype, Pointer):
-            made.append(st.one_of(st.none(), POINTERS[ctype.c], POINTERS[ctype.c]))
-        elif ctype.c == "IMCFLOAT":
+    for each in lib.FUNCTIONS[name].passed[1:]:
+        if isinstance(each.type, Pointer):
+            made.append(st.one_of(st.none(), POINTERS[each.c], POINTERS[each.c]))
+        elif each.c == "IMCFLOAT":
             made.append(st.floats(width=64))
         else:
-            made.append(numbers if parameter != "fifoSel" else small)
+            made.append(numbers if each.name != "fifoSel" else small)
     return st.tuples(*made)
 
 

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
+import ctypes
 import inspect
 import re
-from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import pytest
 
 from polycnc.conformance import load_conformance
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc.library._call import c_type
+from polycnc.controllers.library import IN, INOUT, OUT, Refused
 
 STATUSES = [
     "IMC_OK",
@@ -110,44 +110,73 @@ def test_other_names_are_the_same_functions() -> None:
     assert imclib.COP48 is imclib.CMD_COP48
 
 
-def prototypes() -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield every function of the manual with its arguments: type and name in C."""
-    for row in load_conformance().rows("imc"):
-        if row.id.startswith("imc.IMC_") and row.kind == "function":
-            name, listed = re.fullmatch(r"IMC_STATUS (?:WINAPI )?(\w+)\((.*)\)", row.signature).groups()  # type: ignore[union-attr]
-            arguments = [re.fullmatch(r"(.*?)(\w+)", each.strip()).groups() for each in listed.split(",")]  # type: ignore[union-attr]
-            yield name, [(kind.strip(), argument) for kind, argument in arguments]
+PROTOTYPES = {
+    row.id.removeprefix("imc."): row.signature.replace("WINAPI ", "")
+    for row in load_conformance().rows("imc")
+    if row.id.startswith("imc.IMC_") and row.kind == "function"
+}
 
 
-def test_all_53_functions_have_the_arguments_of_the_manual() -> None:
-    functions = dict(prototypes())
-    assert len(functions) == 53
-    for name, arguments in functions.items():
+def test_all_53_functions_have_the_prototype_of_the_manual() -> None:
+    assert len(PROTOTYPES) == 53
+    assert {getattr(imclib, name).__name__ for name in PROTOTYPES} == set(imclib.FUNCTIONS)
+    for name, prototype in PROTOTYPES.items():
         function = getattr(imclib, name)
-        expected = [
-            (kind, argument)
-            for kind, argument in arguments
-            if argument not in {"num", "dataNum", "lastNum"}
-            and kind not in {"IMC_HANDLE *", "PVOID"}
-            and (name, argument) != ("IMC_GetCapData", "pdata")
-        ]
-        hints = get_type_hints(function, include_extras=True)
-        made = []
-        for argument in inspect.signature(function).parameters:
-            ctype = c_type(hints[argument])
-            known = {"Handle": "IMC_HANDLE", "password": "char *"}
-            made.append((known.get(argument) if ctype is None else ctype.c, argument))
-        assert made == expected, name
+        row = imclib.FUNCTIONS[function.__name__]
+        assert row.prototype.replace(function.__name__, name) == prototype
+        assert [each.name for each in row.passed] == list(inspect.signature(function).parameters)
         assert "Manual 004" in (function.__doc__ or "")
         assert function.__module__ == "polycnc.controllers.imc.imclib"
 
 
+# What a pointer to numbers is for; a pointer to a structure that the card reads is not among them.
+POINTERS = {
+    "IMC_FindNetCard": {"pinfo": OUT, "num": OUT},
+    "IMC_Open": {"Handle": OUT},
+    "IMC_OpenX": {"Handle": OUT},
+    "IMC_OpenUsePassword": {"Handle": OUT},
+    "IMC_GetParam16": {"pdata": OUT},
+    "IMC_GetParam32": {"pdata": OUT},
+    "IMC_GetParam48": {"pdata": OUT},
+    "IMC_GetParamBit": {"pdata": OUT},
+    "IMC_GetMulParam": {"pdes": INOUT},
+    "IMC_GetCapData": {"pdata": OUT, "dataNum": OUT, "lastNum": OUT},
+}
+
+
+def test_every_argument_has_a_direction_and_pointers_that_read_are_returned_or_filled() -> None:
+    for name, row in imclib.FUNCTIONS.items():
+        going_out = {each.name: each.direction for each in row.arguments if each.direction is not IN}
+        assert going_out == POINTERS.get(name, {}), name
+        filled = {each.name for each in row.arguments if each.direction is not IN and not each.returned}
+        assert filled <= {"pinfo", "pdes"}
+
+
+def test_counts_know_what_they_count() -> None:
+    counted = {
+        each.name: each.length_of
+        for row in imclib.FUNCTIONS.values()
+        for each in row.arguments
+        if each.length_of
+    }
+    assert counted == {
+        "ArrNum": "pdes",
+        "NumofArr": "pdes",
+        "nWords": "pdata",
+        "EventNum": "pEvent",
+        "rdnum": "pdata",
+    }
+
+
 @pytest.mark.covers("imc.type.IMCU16")
 def test_the_number_of_events_is_a_small_unsigned_number() -> None:
-    hints = get_type_hints(imclib.IMC_InstallEvent, include_extras=True)
-    count = c_type(hints["EventNum"])
-    assert count is not None
-    assert (count.c, count.check(31, 4), count.check(65535, 4)) == ("IMCU16", 0, imclib.IMC_OUT_OF_RANGE)
+    (count,) = (each for each in imclib.FUNCTIONS["IMC_InstallEvent"].arguments if each.name == "EventNum")
+    assert count.type is not None
+    assert (count.c, ctypes.sizeof(count.type.ctype), count.take(31, None)) == ("IMCU16", 2, 31)
+    assert count.type.ctype(-1).value == 65535
+    with pytest.raises(Refused) as refused:
+        count.take(65535, None)
+    assert refused.value.code is imclib.IMC_OUT_OF_RANGE
 
 
 def test_everything_listed_is_there() -> None:

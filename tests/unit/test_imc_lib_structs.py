@@ -8,7 +8,8 @@ import struct
 import pytest
 
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc.library._structs import Operand2, Record
+from polycnc.controllers.imc.library._structs import Operand2
+from polycnc.controllers.library import Structure
 from polycnc.errors import UsageError
 
 
@@ -114,7 +115,7 @@ def test_segments_have_80_and_88_bytes() -> None:
         imclib.PFIFOSegInfo,
     ],
 )
-def test_any_memory_comes_back(record: type[Record]) -> None:
+def test_any_memory_comes_back(record: type[Structure]) -> None:
     memory = bytes(k * 37 % 251 for k in range(ctypes.sizeof(record)))
     made = record.unpack(memory)
     assert made.pack() == memory

@@ -1,81 +1,40 @@
-"""What happens around every call: one at a time, a handle that is open, arguments that the card can be given."""
+"""The makers of the library's functions, and what functions that reach a card have in common."""
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable, Sequence
-from copy import copy
-from functools import wraps
-from typing import Any, ParamSpec, TypeVar, cast, get_type_hints
+from collections.abc import Sequence
 
-from polycnc.controllers.imc.core._instructions import Instruction
+from polycnc.controllers.imc.core._instructions import (
+    InstallEvents,
+    Instruction,
+    Points,
+    WriteMany,
+    words_of,
+)
 from polycnc.controllers.imc.core._parameters import PARAMETERS
 from polycnc.controllers.imc.library._codes import (
     IMC_FIFO_FULL,
     IMC_INVALID_AXIS,
     IMC_INVALID_PARAM,
     IMC_OK,
+    IMC_OUT_OF_RANGE,
     IMC_PARAM_READ_ONLY,
     IMC_STATUS,
     SEL_IFIFO,
-    Refused,
 )
-from polycnc.controllers.imc.library._network import IMC_HANDLE, library
-from polycnc.controllers.imc.library._types import CType
+from polycnc.controllers.imc.library._network import IMC_HANDLE, Session
+from polycnc.controllers.imc.library._types import HANDLE
+from polycnc.controllers.library import Facade, Refused
 
-P = ParamSpec("P")
-R = TypeVar("R")
+LIBRARY = Facade("polycnc.controllers.imc.imclib", Session(), code="IMC_STATUS")
+session_call = LIBRARY.on(lambda session: session)
+card_call = LIBRARY.through(Session.find, HANDLE)
 
-MODULE = "polycnc.controllers.imc.imclib"
+_LONG = (WriteMany, InstallEvents, Points)  # the others fit into the smallest queue
 
 _WORDS = {  # by address: the parameter that has this word
     word: each for each in PARAMETERS.values() for word in range(each.address, each.address + each.words)
 }
-
-
-def c_type(hint: Any) -> CType | None:
-    """Return the C type of an annotation, None for a handle."""
-    for each in getattr(hint, "__metadata__", ()):
-        if hasattr(each, "check"):
-            return cast("CType", each)
-    return None
-
-
-def call(*nothing: object, any_handle: bool = False) -> Callable[[Callable[P, R]], Callable[P, R]]:
-    """Make a function of the library: `nothing` is what it returns beside its status when it refuses.
-
-    With `any_handle` it looks at its handle itself.
-    """
-
-    def decorate(body: Callable[P, R]) -> Callable[P, R]:
-        signature = inspect.signature(body)
-        hints = get_type_hints(body, include_extras=True)
-        types = {name: c_type(hints[name]) for name in signature.parameters}
-        checks = [(name, each) for name, each in types.items() if each is not None]
-
-        @wraps(body)
-        def called(*args: P.args, **kwargs: P.kwargs) -> R:
-            bound = signature.bind(*args, **kwargs).arguments
-            present = library()
-            with present.lock:
-                try:
-                    handle = bound.get("Handle")
-                    if "Handle" in types and not any_handle:
-                        present.check(handle)
-                    axes = handle.axis_count if isinstance(handle, IMC_HANDLE) else 0
-                    for name, each in checks:
-                        status = each.check(bound[name], axes)
-                        if status != IMC_OK:
-                            raise Refused(status)
-                    return body(*args, **kwargs)
-                except Refused as refused:
-                    answer = refused.status
-                    return cast("R", (answer, *map(copy, nothing)) if nothing else answer)
-
-        called.__module__ = MODULE
-        return called
-
-    return decorate
 
 
 def check_place(handle: IMC_HANDLE, address: int, axis: int, *, written: bool = False) -> int:
@@ -99,18 +58,26 @@ def check_place(handle: IMC_HANDLE, address: int, axis: int, *, written: bool = 
 
 
 def send(handle: IMC_HANDLE, fifo: int, instruction: Instruction) -> IMC_STATUS:
-    """Put an instruction into a queue of the card; one in IFIFO is carried out before the call is over."""
-    status = taken(handle, handle.reach().push(fifo, instruction))
+    """Put an instruction into a queue of the card; one in IFIFO is carried out before the call is over.
+
+    Raises:
+        Refused: It is longer than the queue ever holds.
+    """
+    card = handle.reach()
+    if isinstance(instruction, _LONG) and words_of(instruction) > card.config.depths.of(fifo):
+        raise Refused(IMC_OUT_OF_RANGE)
+    status = taken(handle, card.push(fifo, instruction))
     if status == IMC_OK and fifo == SEL_IFIFO:
-        handle.let_cycle_pass()
+        handle.session.let_cycle_pass(handle.card)
     return status
 
 
 def taken(handle: IMC_HANDLE, fits: bool) -> IMC_STATUS:
     """Return the status of an instruction; time passes if it does not fit, as a program will try again."""
     if fits:
+        handle.session.note_sent(handle.card)
         return IMC_OK
-    handle.reach_later()
+    handle.session.let_queue_run(handle.reach())
     return IMC_FIFO_FULL
 
 

@@ -6,57 +6,32 @@ from __future__ import annotations
 
 from enum import IntEnum
 
+from polycnc.controllers.library import Code
 
-class IMC_STATUS(IntEnum):
+
+class IMC_STATUS(Code):
     """What every function returns."""
 
-    IMC_OK = 0
-    IMC_SEND_FAIL = 1
-    IMC_READ_FAIL = 2
-    IMC_TIME_OUT = 3
-    IMC_DEVICE_NOT_OPEN = 4
-    IMC_DEVICE_NOT_FOUND = 5
-    IMC_INVALID_HANDLE = 6
-    IMC_INVALID_PARAM = 7
-    IMC_INVALID_AXIS = 8
-    IMC_INVALID_FIFO = 9
-    IMC_FIFO_FULL = 10
-    IMC_FIFO_NULL = 11
-    IMC_PARAM_READ_ONLY = 12
-    IMC_OUT_OF_RANGE = 13
-    IMC_CHECK_ERROR = 14
-    IMC_VERSION_ERROR = 15
-    IMC_OTHER_ERROR = 16
-    IMC_PASSWORD_ERROR = 17
-    IMC_RBFIFO_EMPTY = 18
+    IMC_OK = 0, "done"
+    IMC_SEND_FAIL = 1, "sending to the card failed"
+    IMC_READ_FAIL = 2, "receiving from the card failed"
+    IMC_TIME_OUT = 3, "the card did not answer in time"
+    IMC_DEVICE_NOT_OPEN = 4, "the card is not open"
+    IMC_DEVICE_NOT_FOUND = 5, "there is no such card to open"
+    IMC_INVALID_HANDLE = 6, "this is no handle of a card"
+    IMC_INVALID_PARAM = 7, "there is no such parameter, or no such bit of it"
+    IMC_INVALID_AXIS = 8, "the card has no such axis"
+    IMC_INVALID_FIFO = 9, "the queue does not take this instruction"
+    IMC_FIFO_FULL = 10, "the queue is full; the card has not taken the instruction"
+    IMC_FIFO_NULL = 11, "the queue is empty"
+    IMC_PARAM_READ_ONLY = 12, "the parameter cannot be written"
+    IMC_OUT_OF_RANGE = 13, "an argument is out of range"
+    IMC_CHECK_ERROR = 14, "the data that came back do not check"
+    IMC_VERSION_ERROR = 15, "library and card have different versions"
+    IMC_OTHER_ERROR = 16, "the call cannot be carried out now"
+    IMC_PASSWORD_ERROR = 17, "the password is wrong"
+    IMC_RBFIFO_EMPTY = 18, "there is nothing to read back"
 
-    @property
-    def text(self) -> str:
-        """Return what the status says."""
-        return _TEXTS[self]
-
-
-_TEXTS = {
-    IMC_STATUS.IMC_OK: "done",
-    IMC_STATUS.IMC_SEND_FAIL: "sending to the card failed",
-    IMC_STATUS.IMC_READ_FAIL: "receiving from the card failed",
-    IMC_STATUS.IMC_TIME_OUT: "the card did not answer in time",
-    IMC_STATUS.IMC_DEVICE_NOT_OPEN: "the card is not open",
-    IMC_STATUS.IMC_DEVICE_NOT_FOUND: "there is no such card to open",
-    IMC_STATUS.IMC_INVALID_HANDLE: "this is no handle of a card",
-    IMC_STATUS.IMC_INVALID_PARAM: "there is no such parameter, or no such bit of it",
-    IMC_STATUS.IMC_INVALID_AXIS: "the card has no such axis",
-    IMC_STATUS.IMC_INVALID_FIFO: "the queue does not take this instruction",
-    IMC_STATUS.IMC_FIFO_FULL: "the queue is full; the card has not taken the instruction",
-    IMC_STATUS.IMC_FIFO_NULL: "the queue is empty",
-    IMC_STATUS.IMC_PARAM_READ_ONLY: "the parameter cannot be written",
-    IMC_STATUS.IMC_OUT_OF_RANGE: "an argument is out of range",
-    IMC_STATUS.IMC_CHECK_ERROR: "the data that came back do not check",
-    IMC_STATUS.IMC_VERSION_ERROR: "library and card have different versions",
-    IMC_STATUS.IMC_OTHER_ERROR: "the call cannot be carried out now",
-    IMC_STATUS.IMC_PASSWORD_ERROR: "the password is wrong",
-    IMC_STATUS.IMC_RBFIFO_EMPTY: "there is nothing to read back",
-}
 
 (
     IMC_OK,
@@ -93,10 +68,12 @@ class FIFO_SEL(IntEnum):
 
 SEL_IFIFO, SEL_QFIFO, SEL_PFIFO1, SEL_PFIFO2, SEL_CFIFO = FIFO_SEL
 
-
-class Refused(Exception):  # noqa: N818  no error of the program
-    """A call that the library answers with a status other than IMC_OK; it never leaves the library."""
-
-    def __init__(self, status: IMC_STATUS) -> None:
-        super().__init__(status.text)
-        self.status = status
+# fmt: off
+__all__ = [
+    "FIFO_SEL", "IMC_CHECK_ERROR", "IMC_DEVICE_NOT_FOUND", "IMC_DEVICE_NOT_OPEN", "IMC_FIFO_FULL",
+    "IMC_FIFO_NULL", "IMC_INVALID_AXIS", "IMC_INVALID_FIFO", "IMC_INVALID_HANDLE", "IMC_INVALID_PARAM",
+    "IMC_OK", "IMC_OTHER_ERROR", "IMC_OUT_OF_RANGE", "IMC_PARAM_READ_ONLY", "IMC_PASSWORD_ERROR",
+    "IMC_RBFIFO_EMPTY", "IMC_READ_FAIL", "IMC_SEND_FAIL", "IMC_STATUS", "IMC_TIME_OUT",
+    "IMC_VERSION_ERROR", "SEL_CFIFO", "SEL_IFIFO", "SEL_PFIFO1", "SEL_PFIFO2", "SEL_QFIFO",
+]
+# fmt: on

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 from polycnc.controllers.imc.core._instructions import ChangeBits, WaitParam, WaitTime, Write, WriteMany
-from polycnc.controllers.imc.library._call import call, check_place, send, signed
-from polycnc.controllers.imc.library._codes import IMC_OK, IMC_OUT_OF_RANGE, IMC_STATUS, Refused
+from polycnc.controllers.imc.library._call import LIBRARY, card_call, check_place, send, signed
+from polycnc.controllers.imc.library._codes import IMC_OK, IMC_OUT_OF_RANGE, IMC_STATUS
 from polycnc.controllers.imc.library._network import IMC_HANDLE
 from polycnc.controllers.imc.library._structs import WR_MUL_DES
 from polycnc.controllers.imc.library._types import (
@@ -18,14 +18,20 @@ from polycnc.controllers.imc.library._types import (
     BitValue,
     Count,
     Count32,
+    Data16,
+    Data32,
+    Data48,
+    DataBit,
     Descriptions,
+    Filled,
     Location,
     Queue,
     WaitQueue,
 )
+from polycnc.controllers.library import Refused
 
 
-@call()
+@card_call
 def IMC_SetMulParam(Handle: IMC_HANDLE, pdes: Descriptions, ArrNum: Count, fifoSel: Queue) -> IMC_STATUS:
     """Write the first `ArrNum` parameters of `pdes` in the same control cycle (Manual 004, 3.1.1)."""
     writes = []
@@ -34,7 +40,7 @@ def IMC_SetMulParam(Handle: IMC_HANDLE, pdes: Descriptions, ArrNum: Count, fifoS
     return send(Handle, fifoSel, WriteMany(tuple(writes)))
 
 
-@call()
+@card_call
 def IMC_SetParam16(
     Handle: IMC_HANDLE, paramloc: Location, thedata: IMC16, axis: AxisIfAny, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -42,7 +48,7 @@ def IMC_SetParam16(
     return _write(Handle, paramloc, thedata, axis, fifoSel, 1)
 
 
-@call()
+@card_call
 def IMC_SetParam32(
     Handle: IMC_HANDLE, paramloc: Location, thedata: IMC32, axis: AxisIfAny, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -50,7 +56,7 @@ def IMC_SetParam32(
     return _write(Handle, paramloc, thedata, axis, fifoSel, 2)
 
 
-@call()
+@card_call
 def IMC_SetParam48(
     Handle: IMC_HANDLE, paramloc: Location, thedata: INT48, axis: AxisIfAny, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -58,7 +64,7 @@ def IMC_SetParam48(
     return _write(Handle, paramloc, thedata, axis, fifoSel, 3)
 
 
-@call()
+@card_call
 def IMC_SetParamBit(
     Handle: IMC_HANDLE, paramloc: Location, bit: Bit, val: BitValue, axis: AxisIfAny, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -67,7 +73,7 @@ def IMC_SetParamBit(
     return _change(Handle, paramloc, mask, 0 if val else mask, axis, fifoSel)
 
 
-@call()
+@card_call
 def IMC_ORXORParam(
     Handle: IMC_HANDLE, paramloc: Location, ORdata: IMC16, XORdata: IMC16, axis: AxisIfAny, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -75,7 +81,7 @@ def IMC_ORXORParam(
     return _change(Handle, paramloc, ORdata & 0xFFFF, XORdata & 0xFFFF, axis, fifoSel)
 
 
-@call()
+@card_call
 def IMC_TurnParamBit(
     Handle: IMC_HANDLE, paramloc: Location, bit: Bit, axis: AxisIfAny, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -83,34 +89,34 @@ def IMC_TurnParamBit(
     return _change(Handle, paramloc, 0, 1 << bit, axis, fifoSel)
 
 
-@call(0)
-def IMC_GetParam16(Handle: IMC_HANDLE, paramloc: Location, axis: AxisIfAny) -> tuple[IMC_STATUS, int]:
+@card_call
+def IMC_GetParam16(Handle: IMC_HANDLE, paramloc: Location, axis: AxisIfAny) -> tuple[IMC_STATUS, Data16]:
     """Return a word: of a wider parameter the low one (Manual 004, 3.3.1)."""
     return IMC_OK, _read(Handle, paramloc, axis, 1)
 
 
-@call(0)
-def IMC_GetParam32(Handle: IMC_HANDLE, paramloc: Location, axis: AxisIfAny) -> tuple[IMC_STATUS, int]:
+@card_call
+def IMC_GetParam32(Handle: IMC_HANDLE, paramloc: Location, axis: AxisIfAny) -> tuple[IMC_STATUS, Data32]:
     """Return two words, whatever the second belongs to (Manual 004, 3.3.1)."""
     return IMC_OK, _read(Handle, paramloc, axis, 2)
 
 
-@call(0)
-def IMC_GetParam48(Handle: IMC_HANDLE, paramloc: Location, axis: AxisIfAny) -> tuple[IMC_STATUS, int]:
+@card_call
+def IMC_GetParam48(Handle: IMC_HANDLE, paramloc: Location, axis: AxisIfAny) -> tuple[IMC_STATUS, Data48]:
     """Return three words, whatever the others belong to (Manual 004, 3.3.1)."""
     return IMC_OK, _read(Handle, paramloc, axis, 3)
 
 
-@call(0)
+@card_call
 def IMC_GetParamBit(
     Handle: IMC_HANDLE, paramloc: Location, bit: Bit, axis: AxisIfAny
-) -> tuple[IMC_STATUS, int]:
+) -> tuple[IMC_STATUS, DataBit]:
     """Return a bit of a word (Manual 004, 3.3.2)."""
     return IMC_OK, _read(Handle, paramloc, axis, 1) >> bit & 1
 
 
-@call()
-def IMC_GetMulParam(Handle: IMC_HANDLE, pdes: Descriptions, NumofArr: Count32) -> IMC_STATUS:
+@card_call
+def IMC_GetMulParam(Handle: IMC_HANDLE, pdes: Filled, NumofArr: Count32) -> IMC_STATUS:
     """Read up to 32 parameters at one moment into the `data` of `pdes` (Manual 004, 3.3.3)."""
     elements = _elements(Handle, pdes, NumofArr, written=False)
     card = Handle.reach_later()
@@ -120,13 +126,13 @@ def IMC_GetMulParam(Handle: IMC_HANDLE, pdes: Descriptions, NumofArr: Count32) -
     return IMC_OK
 
 
-@call()
+@card_call
 def IMC_WaitTime(Handle: IMC_HANDLE, time: IMC32, fifoSel: WaitQueue) -> IMC_STATUS:
     """Make a queue wait `time` ms, for ever with 0 or -1 (Manual 004, 3.4.1)."""
     return send(Handle, fifoSel, WaitTime(signed_32(time)))
 
 
-@call()
+@card_call
 def IMC_WaitParamBit(
     Handle: IMC_HANDLE,
     paramloc: Location,
@@ -140,7 +146,7 @@ def IMC_WaitParamBit(
     return _wait(Handle, paramloc, 1 << bit, val << bit, timeout, axis, fifoSel)
 
 
-@call()
+@card_call
 def IMC_WaitParam(
     Handle: IMC_HANDLE, paramloc: Location, data: IMC16, timeout: IMC32, axis: AxisIfAny, fifoSel: WaitQueue
 ) -> IMC_STATUS:
@@ -148,7 +154,7 @@ def IMC_WaitParam(
     return _wait(Handle, paramloc, 0xFFFF, data, timeout, axis, fifoSel)
 
 
-@call()
+@card_call
 def IMC_WaitParamMask(
     Handle: IMC_HANDLE,
     paramloc: Location,
@@ -204,3 +210,16 @@ def _elements(
     if any(not 1 <= each.len <= 3 for each in elements):
         raise Refused(IMC_OUT_OF_RANGE)
     return [(each, check_place(handle, each.addr, each.axis, written=written)) for each in elements]
+
+
+# Other names: as the manual misprints them, and for what its print has lost.
+IMC_GetPatamBit = LIBRARY.alias("IMC_GetPatamBit", IMC_GetParamBit)
+
+# fmt: off
+__all__ = [
+    "IMC_GetMulParam", "IMC_GetParam16", "IMC_GetParam32", "IMC_GetParam48", "IMC_GetParamBit",
+    "IMC_GetPatamBit", "IMC_ORXORParam", "IMC_SetMulParam", "IMC_SetParam16", "IMC_SetParam32",
+    "IMC_SetParam48", "IMC_SetParamBit", "IMC_TurnParamBit", "IMC_WaitParam", "IMC_WaitParamBit",
+    "IMC_WaitParamMask", "IMC_WaitTime",
+]
+# fmt: on

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from polycnc.controllers.imc.library._call import call, send
+from polycnc.controllers.imc.library._call import LIBRARY, card_call, send
 from polycnc.controllers.imc.library._codes import IMC_STATUS
 from polycnc.controllers.imc.library._expansions import expand
 from polycnc.controllers.imc.library._network import IMC_HANDLE
@@ -28,37 +28,37 @@ def _send(function: str, given: Mapping[str, Any]) -> IMC_STATUS:
     return send(given["Handle"], given["fifoSel"], expand(function, given))
 
 
-@call()
+@card_call
 def IMC_MoveAbsolute(Handle: IMC_HANDLE, Pos: IMC32, axis: Axis, fifoSel: Queue) -> IMC_STATUS:
     """Move to a position of the main system (Manual 004, 4.1.1)."""
     return _send("IMC_MoveAbsolute", locals())
 
 
-@call()
+@card_call
 def IMC_MoveRelative(Handle: IMC_HANDLE, dist: IMC32, axis: Axis, fifoSel: Queue) -> IMC_STATUS:
     """Move by a distance from where the axis is when the instruction is carried out (Manual 004, 4.1.2)."""
     return _send("IMC_MoveRelative", locals())
 
 
-@call()
+@card_call
 def IMC_MoveSuperimposed(Handle: IMC_HANDLE, dist: IMC32, axis: Axis, fifoSel: Queue) -> IMC_STATUS:
     """Move by a distance on top of whatever the axis does (Manual 004, 4.1.3)."""
     return _send("IMC_MoveSuperimposed", locals())
 
 
-@call()
+@card_call
 def IMC_Phasing(Handle: IMC_HANDLE, dist: IMC32, axis: Axis, fifoSel: Queue) -> IMC_STATUS:
     """Shift a master, `axis`, against slaves that follow its mcsvel (Manual 004, 4.1.4)."""
     return _send("IMC_Phasing", locals())
 
 
-@call()
+@card_call
 def IMC_MoveVelocity(Handle: IMC_HANDLE, vel: IMC32, axis: Axis, fifoSel: Queue) -> IMC_STATUS:
     """Go to a velocity (S16.16, pulses per ms) and keep it; 0 stops (Manual 004, 4.2.1)."""
     return _send("IMC_MoveVelocity", locals())
 
 
-@call()
+@card_call
 def IMC_HomeSwitch1(
     Handle: IMC_HANDLE, direction: IMC16, RiseEdge: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -66,7 +66,7 @@ def IMC_HomeSwitch1(
     return _send("IMC_HomeSwitch1", locals())
 
 
-@call()
+@card_call
 def IMC_HomeSwitch2(
     Handle: IMC_HANDLE, direction: IMC16, RiseEdge: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -74,7 +74,7 @@ def IMC_HomeSwitch2(
     return _send("IMC_HomeSwitch2", locals())
 
 
-@call()
+@card_call
 def IMC_HomeSwitch3(
     Handle: IMC_HANDLE, direction: IMC16, RiseEdge: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -82,7 +82,7 @@ def IMC_HomeSwitch3(
     return _send("IMC_HomeSwitch3", locals())
 
 
-@call()
+@card_call
 def IMC_HomeSwitchIndex1(
     Handle: IMC_HANDLE, direction: IMC16, RiseEdge: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -90,7 +90,7 @@ def IMC_HomeSwitchIndex1(
     return _send("IMC_HomeSwitchIndex1", locals())
 
 
-@call()
+@card_call
 def IMC_HomeSwitchIndex2(
     Handle: IMC_HANDLE, direction: IMC16, RiseEdge: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -98,7 +98,7 @@ def IMC_HomeSwitchIndex2(
     return _send("IMC_HomeSwitchIndex2", locals())
 
 
-@call()
+@card_call
 def IMC_HomeSwitchIndex3(
     Handle: IMC_HANDLE, direction: IMC16, RiseEdge: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -106,7 +106,7 @@ def IMC_HomeSwitchIndex3(
     return _send("IMC_HomeSwitchIndex3", locals())
 
 
-@call()
+@card_call
 def IMC_HomeIndex(
     Handle: IMC_HANDLE, direction: IMC16, stop: IMC16, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -114,7 +114,7 @@ def IMC_HomeIndex(
     return _send("IMC_HomeIndex", locals())
 
 
-@call()
+@card_call
 def IMC_GearFree(
     Handle: IMC_HANDLE, ratio: Ratio, master: OtherAxis, sourcetype: Source, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -122,7 +122,7 @@ def IMC_GearFree(
     return _send("IMC_GearFree", locals())
 
 
-@call()
+@card_call
 def IMC_GearInDist(
     Handle: IMC_HANDLE,
     ratio: Ratio,
@@ -138,7 +138,7 @@ def IMC_GearInDist(
     return _send("IMC_GearInDist", locals())
 
 
-@call()
+@card_call
 def IMC_GearInTime(
     Handle: IMC_HANDLE,
     ratio: Ratio,
@@ -152,7 +152,7 @@ def IMC_GearInTime(
     return _send("IMC_GearInTime", locals())
 
 
-@call()
+@card_call
 def IMC_HandWheel(
     Handle: IMC_HANDLE, ratio: Ratio, encsaxis: OtherAxis, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -160,7 +160,7 @@ def IMC_HandWheel(
     return _send("IMC_HandWheel", locals())
 
 
-@call()
+@card_call
 def IMC_MoveInTime(
     Handle: IMC_HANDLE, time: Positive, movedist: IMC32, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -168,7 +168,7 @@ def IMC_MoveInTime(
     return _send("IMC_MoveInTime", locals())
 
 
-@call()
+@card_call
 def IMC_MoveInDist(
     Handle: IMC_HANDLE, refdist: Positive, refaxis: OtherAxis, movedist: IMC32, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -176,7 +176,7 @@ def IMC_MoveInDist(
     return _send("IMC_MoveInDist", locals())
 
 
-@call()
+@card_call
 def IMC_TgvelInTime(
     Handle: IMC_HANDLE, time: Positive, tgvel: IMC32, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
@@ -184,9 +184,26 @@ def IMC_TgvelInTime(
     return _send("IMC_TgvelInTime", locals())
 
 
-@call()
+@card_call
 def IMC_TgvelInDist(
     Handle: IMC_HANDLE, refdist: Positive, refaxis: OtherAxis, tgvel: IMC32, axis: Axis, fifoSel: Queue
 ) -> IMC_STATUS:
     """Reach a velocity while `refaxis` goes `refdist`, from enasyn and startsyn on (Manual 004, 4.6.4)."""
     return _send("IMC_TgvelInDist", locals())
+
+
+# Other names: as the manual misprints them, and for what its print has lost.
+IMC_MoveTP = LIBRARY.alias("IMC_MoveTP", IMC_MoveInTime)
+IMC_MovePP = LIBRARY.alias("IMC_MovePP", IMC_MoveInDist)
+IMC_MoveTV = LIBRARY.alias("IMC_MoveTV", IMC_TgvelInTime)
+IMC_MovePV = LIBRARY.alias("IMC_MovePV", IMC_TgvelInDist)
+
+# fmt: off
+__all__ = [
+    "IMC_GearFree", "IMC_GearInDist", "IMC_GearInTime", "IMC_HandWheel", "IMC_HomeIndex",
+    "IMC_HomeSwitch1", "IMC_HomeSwitch2", "IMC_HomeSwitch3", "IMC_HomeSwitchIndex1",
+    "IMC_HomeSwitchIndex2", "IMC_HomeSwitchIndex3", "IMC_MoveAbsolute", "IMC_MoveInDist",
+    "IMC_MoveInTime", "IMC_MovePP", "IMC_MovePV", "IMC_MoveRelative", "IMC_MoveSuperimposed",
+    "IMC_MoveTP", "IMC_MoveTV", "IMC_MoveVelocity", "IMC_Phasing", "IMC_TgvelInDist", "IMC_TgvelInTime",
+]
+# fmt: on

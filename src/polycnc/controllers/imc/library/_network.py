@@ -1,13 +1,12 @@
 """The network that the library works in: adapters of the PC, cards on them, handles, and how time passes.
 
-This holds the only state of the library: `attach` makes it, as loading the library into a program does.
+A session is one program with the library loaded; `attach` loads it anew. The functions of the module share one.
 """
 
 # ruff: noqa: N801  the names are the manual's
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -22,11 +21,12 @@ from polycnc.controllers.imc.library._codes import (
     IMC_STATUS,
     IMC_TIME_OUT,
     IMC_VERSION_ERROR,
-    Refused,
 )
 from polycnc.controllers.imc.library._structs import ADAPTERS_MOST, DESCRIPTION_SIZE
+from polycnc.controllers.library import Refused
+from polycnc.controllers.library import Session as AnySession
 from polycnc.errors import UsageError
-from polycnc.machine import Poll, Step, Way
+from polycnc.machine import Poll, Polling, Step, Way
 
 IDS = 64
 """Ruling: ids that the switch on a card can show, 0 to 63."""
@@ -36,6 +36,7 @@ VERSION = 320
 
 PASSWORD_LEAST, PASSWORD_MOST = 4, 99
 DEFAULT_TIMEOUT_MS = 40
+EVENTS = AXIS_RESTED | AXIS_ERROR
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,10 +67,10 @@ class Port:
 class IMC_HANDLE:
     """An open card; a program only passes it on."""
 
-    __slots__ = ("_closed", "_library", "_port", "_timeout_ms")
+    __slots__ = ("_closed", "_port", "_session", "_timeout_ms")
 
-    def __init__(self, library: Library, port: Port, timeout_ms: int) -> None:
-        self._library = library
+    def __init__(self, session: Session, port: Port, timeout_ms: int) -> None:
+        self._session = session
         self._port = port
         self._timeout_ms = timeout_ms
         self._closed = False
@@ -95,12 +96,18 @@ class IMC_HANDLE:
     def reach_later(self) -> CardLike:
         """Return the card after the time that a status call of a polling program lets pass."""
         card = self.reach()
-        self._library.let_time_pass(card)
+        self._session.let_time_pass(card)
         return card
 
-    def let_cycle_pass(self) -> None:
-        """Let the card carry out what is to be done at once."""
-        self._library.let_cycle_pass()
+    @property
+    def card(self) -> CardLike:
+        """Return the card itself, whatever the network does."""
+        return self._port.card
+
+    @property
+    def session(self) -> Session:
+        """Return whose handle it is."""
+        return self._session
 
 
 def _try_line(port: Port, timeout_ms: float) -> None:
@@ -110,15 +117,60 @@ def _try_line(port: Port, timeout_ms: float) -> None:
         raise Refused(IMC_TIME_OUT)
 
 
-class Library:
-    """The library in one program."""
+class Session(AnySession):
+    """A program that has loaded the library: its network, its handles, its time."""
 
-    def __init__(self, ports: Sequence[Port], adapters: Sequence[NetCard], clock: Way | None) -> None:
-        self.ports = tuple(ports)
-        self.adapters = tuple(adapters)
-        self.clock = clock
-        self.lock = threading.RLock()
+    def __init__(self) -> None:
+        super().__init__()
+        self.ports: tuple[Port, ...] = ()
+        self.adapters: tuple[NetCard, ...] = (NetCard(),)
+        self.polling = Polling(None, self._cards)
+        self._sent: dict[CardLike, int] = {}  # in which cycle
         self.handles: set[IMC_HANDLE] = set()
+
+    def attach(
+        self,
+        *cards: CardLike | Port,
+        clock: Way | None = Poll(1),  # noqa: B008  immutable
+        adapters: Sequence[NetCard | str] = (NetCard(),),
+    ) -> tuple[Port, ...]:
+        """Put cards on the network and load the library anew; return where they are.
+
+        A card without a `Port` gets the first free id on adapter 0. `clock` says what a call that reads the same as
+        another one in this cycle, or is told that a queue is full, does to the time of the cards: `Poll(1)` lets one
+        control cycle pass, `Poll(1000)` the time until something happens on an axis but at most 1000 cycles. An
+        instruction for IFIFO takes one cycle. With `Elapsed` a call lets the time pass that has passed for the program.
+        With `None` no call takes time: only `Card.advance` lets it pass, and IFIFO waits for that too.
+
+        Raises:
+            UsageError: Two cards are in the same place, or one on an adapter that is not there.
+        """
+        nets = [each if isinstance(each, NetCard) else NetCard(each) for each in adapters]
+        if len(nets) > ADAPTERS_MOST or any(len(net.description) >= DESCRIPTION_SIZE for net in nets):
+            raise UsageError(
+                f"{len(nets)} network adapters, or one with a long description",
+                hint=f"the library knows {ADAPTERS_MOST}, with {DESCRIPTION_SIZE - 1} characters each",
+            )
+        ports: list[Port] = [each for each in cards if isinstance(each, Port)]
+        taken = {(port.adapter, port.id) for port in ports}
+        if len(taken) < len(ports):
+            raise UsageError("two cards have the same adapter and id", hint="set another id on one of them")
+        placed: list[Port] = []
+        for each in cards:
+            port = each if isinstance(each, Port) else Port(each, _free_id(taken))
+            taken.add((port.adapter, port.id))
+            _check_place(port, len(nets))
+            placed.append(port)
+        with self.lock:
+            self.ports, self.adapters = tuple(placed), tuple(nets)
+            self.polling = Polling(clock, self._cards)
+            self.handles.clear()
+            self._sent.clear()
+        return tuple(placed)
+
+    def detach(self) -> None:
+        """Take all cards off the network."""
+        self.attach(clock=None)
 
     def open(self, netcardsel: int, imcid: int, timeout_ms: int, *, promiscuous: bool) -> Port:
         """Return the card with this id on this adapter.
@@ -143,6 +195,18 @@ class Library:
         self.handles.add(handle)
         return handle
 
+    def find(self, handle: IMC_HANDLE) -> IMC_HANDLE:
+        """Return a handle of an open card.
+
+        Raises:
+            Refused: It is none.
+        """
+        if isinstance(handle, IMC_HANDLE) and handle in self.handles:
+            self.polling.call(handle.card)
+            return handle
+        closed = isinstance(handle, IMC_HANDLE) and handle._closed
+        raise Refused(IMC_DEVICE_NOT_OPEN if closed else IMC_INVALID_HANDLE)
+
     def close(self, handle: object) -> IMC_STATUS:
         """Let a handle go."""
         if not isinstance(handle, IMC_HANDLE) or handle not in self.handles:
@@ -151,83 +215,32 @@ class Library:
         handle._closed = True
         return IMC_OK
 
-    def check(self, handle: object) -> None:
-        """Make sure that this is the handle of an open card.
-
-        Raises:
-            Refused: It is not.
-        """
-        if isinstance(handle, IMC_HANDLE) and handle in self.handles:
-            return
-        closed = isinstance(handle, IMC_HANDLE) and handle._closed
-        raise Refused(IMC_DEVICE_NOT_OPEN if closed else IMC_INVALID_HANDLE)
-
     def let_time_pass(self, card: CardLike) -> None:
-        """Do what a status call does to the time of a card, and keep the other cards in step with it."""
-        if self.clock is None:
-            return
-        done = self.clock.run(card, until=AXIS_RESTED | AXIS_ERROR)
-        for port in self.ports:
-            if port.card is not card:
-                Step(done).run(port.card)
+        """Do what a call that reads does to the time of a card, and keep the other cards in step with it.
 
-    def let_cycle_pass(self) -> None:
+        What has been sent in this cycle is taken first, or a program that waits for it would not even see it begin.
+        """
+        if self._sent.pop(card, -1) == card.clock.cycles:
+            self.polling.let_pass(card, until=EVENTS)
+        self.polling.read(card, self.asked, until=EVENTS)
+
+    def note_sent(self, card: CardLike) -> None:
+        """Note that an instruction waits for the next cycle of a card."""
+        self._sent[card] = card.clock.cycles
+
+    def let_queue_run(self, card: CardLike) -> None:
+        """Do what finding a queue full does to the time of a card."""
+        self.polling.let_pass(card, until=EVENTS)
+
+    def let_cycle_pass(self, card: CardLike) -> None:
         """Let one control cycle pass, the time of a call that a card answers at once."""
-        if self.clock is not None:
-            for port in self.ports:
-                port.card.advance(1)
+        self.polling.let_pass(card, Step(1))
+
+    def _cards(self) -> list[CardLike]:
+        return [port.card for port in self.ports]
 
 
-_library = Library((), (NetCard(),), None)
-
-
-def library() -> Library:
-    """Return the library as `attach` made it."""
-    return _library
-
-
-def attach(
-    *cards: CardLike | Port,
-    clock: Way | None = Poll(1),  # noqa: B008  immutable
-    adapters: Sequence[NetCard | str] = (NetCard(),),
-) -> tuple[Port, ...]:
-    """Put cards on the network and load the library anew; return where they are.
-
-    A card without a `Port` gets the first free id on adapter 0. `clock` says what a call that reads from a card, or is
-    told that a queue is full, does to the time of the cards: `Poll(1)` lets one control cycle pass, `Poll(1000)` the
-    time until something happens on an axis but at most 1000 cycles. An instruction for IFIFO takes one cycle. With
-    `None` no call takes time: only `Card.advance` lets it pass, and IFIFO waits for that too.
-
-    Raises:
-        UsageError: Two cards are in the same place, or one on an adapter that is not there.
-    """
-    global _library
-    nets = [each if isinstance(each, NetCard) else NetCard(each) for each in adapters]
-    if len(nets) > ADAPTERS_MOST or any(len(net.description) >= DESCRIPTION_SIZE for net in nets):
-        raise UsageError(
-            f"{len(nets)} network adapters, or one with a long description",
-            hint=f"the library knows {ADAPTERS_MOST}, with {DESCRIPTION_SIZE - 1} characters each",
-        )
-    ports: list[Port] = [each for each in cards if isinstance(each, Port)]
-    taken = {(port.adapter, port.id) for port in ports}
-    if len(taken) < len(ports):
-        raise UsageError("two cards have the same adapter and id", hint="set another id on one of them")
-    placed: list[Port] = []
-    for each in cards:
-        port = each if isinstance(each, Port) else Port(each, _free_id(taken))
-        taken.add((port.adapter, port.id))
-        _check_place(port, len(nets))
-        placed.append(port)
-    _library = Library(placed, nets, clock)
-    return tuple(placed)
-
-
-def detach() -> None:
-    """Take all cards off the network."""
-    attach(clock=None)
-
-
-def is_password(text: str) -> bool:
+def is_password(text: str | bytes) -> bool:
     """Tell whether a card can be given this password."""
     return text.isascii() and PASSWORD_LEAST <= len(text) <= PASSWORD_MOST
 

@@ -7,14 +7,17 @@ from __future__ import annotations
 from polycnc.controllers.imc.core._event_codes import SHAPES, EventCommand, EventType, constant_words
 from polycnc.controllers.imc.core._event_codes import TAKE as TAKE_SECOND
 from polycnc.controllers.imc.core._instructions import Event, InstallEvents, Segment
+from polycnc.controllers.imc.core._instructions import Points as Displacements
 from polycnc.controllers.imc.core._parameters import address
-from polycnc.controllers.imc.library._call import call, check_place, send, taken
+from polycnc.controllers.imc.library._call import LIBRARY, card_call, check_place, send, taken
 from polycnc.controllers.imc.library._codes import (
     IMC_INVALID_PARAM,
     IMC_OK,
     IMC_OUT_OF_RANGE,
     IMC_STATUS,
-    Refused,
+    SEL_CFIFO,
+    SEL_PFIFO1,
+    SEL_PFIFO2,
 )
 from polycnc.controllers.imc.library._memory import signed_32
 from polycnc.controllers.imc.library._network import IMC_HANDLE
@@ -25,6 +28,9 @@ from polycnc.controllers.imc.library._types import (
     ArcDirection,
     Axis,
     CaptureCount,
+    Captured,
+    CapturedLeft,
+    CapturedNumber,
     EventCount,
     Events,
     PathQueue,
@@ -35,38 +41,43 @@ from polycnc.controllers.imc.library._types import (
     SegmentData,
     SegmentInfo,
 )
+from polycnc.controllers.library import Refused
 
 CLOCKWISE = 1  # of the functions that take coordinates one by one; in the structure it is 0
-_GROUPNUM = address("groupnum")
+_AXES_OF_POINTS: dict[int, int] = {
+    SEL_CFIFO: address("groupnum"),
+    SEL_PFIFO1: address("pathaxisnum1"),
+    SEL_PFIFO2: address("pathaxisnum2"),
+}
 
 
-@call()
+@card_call
 def IMC_AddLineNWithVel(Handle: IMC_HANDLE, pdata: SegmentInfo, fifoSel: PathQueue) -> IMC_STATUS:
     """Add a line of N axes with its own speeds (Manual 004, 3.5.1)."""
     speeds = pdata.SegTgVel, pdata.SegEndVel
     return send(Handle, fifoSel, _segment(Handle, pdata.data, speeds, arc=False))
 
 
-@call()
+@card_call
 def IMC_AddLineN(Handle: IMC_HANDLE, pdata: SegmentData, fifoSel: PathQueue) -> IMC_STATUS:
     """Add a line of N axes with the speeds of the path space (Manual 004, 3.5.2)."""
     return send(Handle, fifoSel, _segment(Handle, pdata, None, arc=False))
 
 
-@call()
+@card_call
 def IMC_AddArcLineWithVel(Handle: IMC_HANDLE, pdata: SegmentInfo, fifoSel: PathQueue) -> IMC_STATUS:
     """Add an arc of the first two axes, the others going along evenly, with its own speeds (Manual 004, 3.5.3)."""
     speeds = pdata.SegTgVel, pdata.SegEndVel
     return send(Handle, fifoSel, _segment(Handle, pdata.data, speeds, arc=True))
 
 
-@call()
+@card_call
 def IMC_AddArcLine(Handle: IMC_HANDLE, pdata: SegmentData, fifoSel: PathQueue) -> IMC_STATUS:
     """Add an arc of the first two axes, the others going along, with the speeds of the space (Manual 004, 3.5.4)."""
     return send(Handle, fifoSel, _segment(Handle, pdata, None, arc=True))
 
 
-@call()
+@card_call
 def IMC_AddArcWithVel(
     Handle: IMC_HANDLE,
     TgVel: IMC32,
@@ -82,7 +93,7 @@ def IMC_AddArcWithVel(
     return send(Handle, fifoSel, _arc((Endx, Endy), (centerX, centerY), dir, (TgVel, EndVel)))
 
 
-@call()
+@card_call
 def IMC_AddArc(
     Handle: IMC_HANDLE,
     Endx: IMC32,
@@ -96,7 +107,7 @@ def IMC_AddArc(
     return send(Handle, fifoSel, _arc((Endx, Endy), (centerX, centerY), dir, None))
 
 
-@call()
+@card_call
 def IMC_AddSpiralWithVel(
     Handle: IMC_HANDLE,
     TgVel: IMC32,
@@ -113,7 +124,7 @@ def IMC_AddSpiralWithVel(
     return send(Handle, fifoSel, _arc((Endx, Endy, EndLine), (centerX, centerY), dir, (TgVel, EndVel)))
 
 
-@call()
+@card_call
 def IMC_AddSpiral(
     Handle: IMC_HANDLE,
     Endx: IMC32,
@@ -128,25 +139,30 @@ def IMC_AddSpiral(
     return send(Handle, fifoSel, _arc((Endx, Endy, EndLine), (centerX, centerY), dir, None))
 
 
-@call()
+@card_call
 def IMC_PutContourData(
     Handle: IMC_HANDLE, pdata: Points, nWords: PointWords, fifoSel: PointQueue
 ) -> IMC_STATUS:
     """Add points of a contour: displacements of 16 bits, axis after axis, point after point (Manual 004, 3.6).
 
-    Only whole points: `nWords`, at most 126, is a multiple of groupnum if that is set.
+    Only whole points: `nWords`, at most 126, is a multiple of the number of axes if that is set: of groupnum for CFIFO.
+    A path queue takes points too, of pathaxisnum axes; these are gone along with segtgvel and pathacc.
     """
     if nWords > len(pdata):
         raise Refused(IMC_OUT_OF_RANGE)
     values = [int(pdata[k]) for k in range(nWords)]
     card = Handle.reach()
-    axes = int(card.read_words(_GROUPNUM, 0, 1)[0])
+    axes = int(card.read_words(_AXES_OF_POINTS[fifoSel], 0, 1)[0])
     if (axes and nWords % axes) or any(not -0x8000 <= value <= 0x7FFF for value in values):
+        raise Refused(IMC_OUT_OF_RANGE)
+    if fifoSel != SEL_CFIFO:
+        return send(Handle, fifoSel, Displacements(tuple(values)))
+    if nWords > card.config.depths.cfifo:
         raise Refused(IMC_OUT_OF_RANGE)
     return taken(Handle, card.push_points(values))
 
 
-@call()
+@card_call
 def IMC_InstallEvent(Handle: IMC_HANDLE, pEvent: Events, EventNum: EventCount, fifoSel: Queue) -> IMC_STATUS:
     """Add up to 31 events to the card, which holds 128 (Manual 004, 3.7.1)."""
     if EventNum > len(pEvent):
@@ -157,17 +173,17 @@ def IMC_InstallEvent(Handle: IMC_HANDLE, pEvent: Events, EventNum: EventCount, f
     return send(Handle, fifoSel, InstallEvents(events))
 
 
-@call()
+@card_call
 def IMC_ClearFIFO(Handle: IMC_HANDLE, fifoSel: AnyQueue) -> IMC_STATUS:
     """Empty a queue and end the wait that it is in (Manual 004, 3.8)."""
     Handle.reach().clear_fifo(fifoSel)
     return IMC_OK
 
 
-@call([], 0, 0)
+@card_call
 def IMC_GetCapData(
     Handle: IMC_HANDLE, rdnum: CaptureCount, axis: Axis
-) -> tuple[IMC_STATUS, list[int], int, int]:
+) -> tuple[IMC_STATUS, Captured, CapturedNumber, CapturedLeft]:
     """Take up to `rdnum`, at most 120, captured positions: return them, their number and how many are left.
 
     Bit 10 of encpctr lets the probe capture (Manual 004, 3.9).
@@ -237,3 +253,18 @@ def _event(handle: IMC_HANDLE, info: EventInfo) -> Event:
 
 def _operand(handle: IMC_HANDLE, at: int, axis: int) -> tuple[int, int]:
     return at, check_place(handle, at, axis)
+
+
+# Other names: as the manual misprints them, and for what its print has lost.
+IMC_AddApiralWithVel = LIBRARY.alias("IMC_AddApiralWithVel", IMC_AddSpiralWithVel)
+IMC_AddApiralWitchVel = LIBRARY.alias("IMC_AddApiralWitchVel", IMC_AddSpiralWithVel)
+IMC_AddContourData = LIBRARY.alias("IMC_AddContourData", IMC_PutContourData)
+
+# fmt: off
+__all__ = [
+    "IMC_AddApiralWitchVel", "IMC_AddApiralWithVel", "IMC_AddArc", "IMC_AddArcLine",
+    "IMC_AddArcLineWithVel", "IMC_AddArcWithVel", "IMC_AddContourData", "IMC_AddLineN",
+    "IMC_AddLineNWithVel", "IMC_AddSpiral", "IMC_AddSpiralWithVel", "IMC_ClearFIFO", "IMC_GetCapData",
+    "IMC_InstallEvent", "IMC_PutContourData",
+]
+# fmt: on

@@ -1,6 +1,6 @@
 """The structures of the function library, as they lie in the memory of a C program (manual 004, 6).
 
-They are `ctypes` structures, so sizes, gaps, unions and what becomes of a number that is too large are as in C.
+Sizes, gaps, unions and what becomes of a number that is too large are as in C.
 """
 
 # ruff: noqa: N801  the names are the manual's
@@ -8,50 +8,29 @@ They are `ctypes` structures, so sizes, gaps, unions and what becomes of a numbe
 from __future__ import annotations
 
 import ctypes
-from typing import Any, ClassVar, Self
+from typing import Annotated, Self, TypeAlias
 
 from polycnc.controllers.imc.core._event_codes import EventCommand, constant_words
 from polycnc.controllers.imc.core._event_codes import EventType as Trigger
-from polycnc.errors import UsageError
+from polycnc.controllers.library import Number, Structure, Texts, Times, Union, layouts, structure
 
 ADAPTERS_MOST = 16
 DESCRIPTION_SIZE = 256
 SEGMENT_AXES_MOST = 16
 
-
-class Record(ctypes.LittleEndianStructure):
-    """A structure that can be turned into bytes and back."""
-
-    def pack(self) -> bytes:
-        """Return the structure as it lies in memory."""
-        return bytes(self)
-
-    @classmethod
-    def unpack(cls, memory: bytes) -> Self:
-        """Return the structure that lies in `memory`.
-
-        Raises:
-            UsageError: `memory` has another size than the structure.
-        """
-        if len(memory) != ctypes.sizeof(cls):
-            raise UsageError(
-                f"{cls.__name__} has {ctypes.sizeof(cls)} bytes, not {len(memory)}",
-                hint="pass exactly one structure",
-            )
-        return cls.from_buffer_copy(memory)
-
-    def __eq__(self, other: object) -> bool:
-        return bytes(self) == bytes(other) if isinstance(other, type(self)) else NotImplemented
-
-    def __hash__(self) -> int:
-        return hash(bytes(self))
+WORD: TypeAlias = Annotated[int, Number("WORD", ctypes.c_uint16)]
+IMC16: TypeAlias = Annotated[int, Number("IMC16", ctypes.c_int16)]
+IMC32: TypeAlias = Annotated[int, Number("IMC32", ctypes.c_int32)]
+INT64: TypeAlias = Annotated[int, Number("__int64", ctypes.c_int64)]
+Words: TypeAlias = Annotated[ctypes.Array[ctypes.c_uint16], Number("WORD", ctypes.c_uint16)]
+Numbers32: TypeAlias = Annotated[ctypes.Array[ctypes.c_int32], Number("IMC32", ctypes.c_int32)]
 
 
-class NIC_INFO(Record):
+@structure()
+class NIC_INFO(Structure):
     """The network adapters of the PC: up to 16 descriptions; the index of one is the `netcardsel` of a call."""
 
-    description: Any  # of 16 times 256 characters
-    _fields_: ClassVar = [("description", ctypes.c_char * DESCRIPTION_SIZE * ADAPTERS_MOST)]
+    description: Annotated[Texts, Times(ADAPTERS_MOST, DESCRIPTION_SIZE)]
 
     def descriptions(self) -> list[str]:
         """Return the descriptions that are not empty."""
@@ -59,19 +38,14 @@ class NIC_INFO(Record):
         return [text for text in texts if text]
 
 
-class WR_MUL_DES(Record):
+@structure()
+class WR_MUL_DES(Structure):
     """One parameter of several that are read or written together: `len` words, the low one first."""
 
-    addr: int
-    axis: int
-    len: int
-    data: ctypes.Array[ctypes.c_uint16]
-    _fields_: ClassVar = [
-        ("addr", ctypes.c_uint16),
-        ("axis", ctypes.c_uint16),
-        ("len", ctypes.c_uint16),
-        ("data", ctypes.c_uint16 * 4),
-    ]
+    addr: WORD
+    axis: WORD
+    len: WORD
+    data: Annotated[Words, Times(4)]
 
     @classmethod
     def of(cls, addr: int, axis: int = 0, length: int = 1, value: int = 0) -> Self:
@@ -88,76 +62,54 @@ class WR_MUL_DES(Record):
         return int.from_bytes(b"".join(word.to_bytes(2, "little") for word in words), "little", signed=True)
 
 
-class Src2Param(Record):
+@structure()
+class Src2Param(Structure):
     """Second operand of an event: a parameter."""
 
-    Src2_loc: int
-    Src2_axis: int
-    reserve: int
-    _fields_: ClassVar = [
-        ("Src2_loc", ctypes.c_int16),
-        ("Src2_axis", ctypes.c_int16),
-        ("reserve", ctypes.c_int32),
-    ]
+    Src2_loc: IMC16
+    Src2_axis: IMC16
+    reserve: IMC32
 
 
-class Src2Data16(Record):
+@structure()
+class Src2Data16(Structure):
     """Second operand of an event: a constant of 16 bits."""
 
-    data: int
-    reserve1: int
-    reserve2: int
-    _fields_: ClassVar = [
-        ("data", ctypes.c_int16),
-        ("reserve1", ctypes.c_int16),
-        ("reserve2", ctypes.c_int32),
-    ]
+    data: IMC16
+    reserve1: IMC16
+    reserve2: IMC32
 
 
-class Src2Data32(Record):
+@structure()
+class Src2Data32(Structure):
     """Second operand of an event: a constant of 32 bits."""
 
-    data: int
-    reserve: int
-    _fields_: ClassVar = [("data", ctypes.c_int32), ("reserve", ctypes.c_int32)]
+    data: IMC32
+    reserve: IMC32
 
 
-class Operand2(ctypes.LittleEndianUnion):
+@structure()
+class Operand2(Union):
     """Second operand of an event; the command says which member counts."""
 
     param: Src2Param
     data16: Src2Data16
     data32: Src2Data32
-    data48: int
-    _fields_: ClassVar = [
-        ("param", Src2Param),
-        ("data16", Src2Data16),
-        ("data32", Src2Data32),
-        ("data48", ctypes.c_int64),
-    ]
+    data48: INT64
 
 
-class EventInfo(Record):
+@structure()
+class EventInfo(Structure):
     """One event: a command, when it acts, two operands, and where the result goes (0: nowhere)."""
 
-    EventCMD: int
-    EventType: int
-    Src1_loc: int
-    Src1_axis: int
+    EventCMD: IMC16
+    EventType: IMC16
+    Src1_loc: IMC16
+    Src1_axis: IMC16
     Src2: Operand2
-    dest_loc: int
-    dest_axis: int
-    reserve: int
-    _fields_: ClassVar = [
-        ("EventCMD", ctypes.c_int16),
-        ("EventType", ctypes.c_int16),
-        ("Src1_loc", ctypes.c_int16),
-        ("Src1_axis", ctypes.c_int16),
-        ("Src2", Operand2),
-        ("dest_loc", ctypes.c_int16),
-        ("dest_axis", ctypes.c_int16),
-        ("reserve", ctypes.c_int32),
-    ]
+    dest_loc: IMC16
+    dest_axis: IMC16
+    reserve: IMC32
 
     @classmethod
     def of(
@@ -184,21 +136,15 @@ class EventInfo(Record):
         return made
 
 
-class PFIFOSegData(Record):
+@structure()
+class PFIFOSegData(Structure):
     """A segment: where the axes end, and for an arc its centre and direction (0 clockwise, -1 counter-clockwise)."""
 
-    datanum: int
-    SegEndData: ctypes.Array[ctypes.c_int32]
-    CenterX: int
-    CenterY: int
-    dir: int
-    _fields_: ClassVar = [
-        ("datanum", ctypes.c_int32),
-        ("SegEndData", ctypes.c_int32 * SEGMENT_AXES_MOST),
-        ("CenterX", ctypes.c_int32),
-        ("CenterY", ctypes.c_int32),
-        ("dir", ctypes.c_int32),
-    ]
+    datanum: IMC32
+    SegEndData: Annotated[Numbers32, Times(SEGMENT_AXES_MOST)]
+    CenterX: IMC32
+    CenterY: IMC32
+    dir: IMC32
 
     @classmethod
     def of(cls, *ends: int, center: tuple[int, int] = (0, 0), direction: int = 0) -> Self:
@@ -209,19 +155,25 @@ class PFIFOSegData(Record):
         return made
 
 
-class PFIFOSegInfo(Record):
+@structure()
+class PFIFOSegInfo(Structure):
     """A segment with its speed and the speed at its end."""
 
-    SegTgVel: int
-    SegEndVel: int
+    SegTgVel: IMC32
+    SegEndVel: IMC32
     data: PFIFOSegData
-    _fields_: ClassVar = [
-        ("SegTgVel", ctypes.c_int32),
-        ("SegEndVel", ctypes.c_int32),
-        ("data", PFIFOSegData),
-    ]
 
     @classmethod
     def of(cls, speed: int, end_speed: int, data: PFIFOSegData) -> Self:
         """Return a segment with speeds (S16.16, pulses per ms)."""
         return cls(speed, end_speed, data)
+
+
+STRUCTURES = layouts(NIC_INFO, WR_MUL_DES, EventInfo, PFIFOSegData, PFIFOSegInfo)
+"""What lies where, by the structure's name."""
+
+# fmt: off
+__all__ = [
+    "NIC_INFO", "STRUCTURES", "WR_MUL_DES", "EventInfo", "PFIFOSegData", "PFIFOSegInfo",
+]
+# fmt: on
