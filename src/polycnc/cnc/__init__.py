@@ -25,6 +25,7 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
+from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
 from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
@@ -39,6 +40,7 @@ __all__ = [
     "Answer",
     "AxisMotion",
     "AxisStatus",
+    "Breakpoint",
     "ChannelStatus",
     "ClearedBy",
     "Control",
@@ -82,6 +84,7 @@ __all__ = [
     "SpindleMotion",
     "SpindleState",
     "Status",
+    "Step",
     "Switches",
     "Timer",
     "Timers",

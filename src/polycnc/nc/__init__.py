@@ -9,6 +9,7 @@ from polycnc.nc._block_source import (
     Language,
     Pause,
     SourceItem,
+    Statement,
     TextSpan,
     WordsBlock,
 )
@@ -50,6 +51,7 @@ __all__ = [
     "ProgramText",
     "SourceItem",
     "Spindle",
+    "Statement",
     "Stop",
     "TextRules",
     "TextSpan",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 from typing import TypeAlias
 
@@ -33,11 +32,15 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Back:
-    """Say where the reading goes on after a sub-program: `end` is where that text ends; and which line called."""
+    """Say where the reading goes on after a sub-program: `end` is where that text ends; and which line called.
+
+    `within` are calls that the source of the calling program had made by itself.
+    """
 
     place: Place
     end: int
     line: int
+    within: tuple[Call, ...] = ()
 
 
 @dataclass
@@ -144,11 +147,12 @@ class Calls:
                 running.source = None
 
     def _note_calls(self) -> None:
-        self._calls = tuple(
-            Call(outer.begin.text.name, inner.back.line, inner.round)
-            for outer, inner in pairwise(self._stack)
-            if inner.back is not None
-        )
+        calls: list[Call] = []
+        for running in self._stack[1:]:
+            back = running.back
+            assert back is not None
+            calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
+        self._calls = tuple(calls)
 
     def _find(self, program: int | ProgramText) -> Place | None:
         """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
