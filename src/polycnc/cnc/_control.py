@@ -27,11 +27,12 @@ from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import Emergency, Status
 from polycnc.cnc._status_reading import read_status
+from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.kernel import FEED_S
 from polycnc.machine import Machine, MachineConfig, Reason, Snapshot, SnapshotError, load_machine
-from polycnc.nc import Dialect, Event, ProgramText, load_dialect
+from polycnc.nc import Dialect, Event, Group, MAction, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
 _MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
@@ -39,6 +40,11 @@ _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
 _FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
+
+
+_ACTIONS = {action.title: action for action in MAction}
+_STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
+_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
 
 
 class ControlEvent(IntFlag):
@@ -110,6 +116,8 @@ class Control:
         self._relative_zero = [0.0] * len(machine_file.axes)
         self._edits: list[ProgramEdit] = []
         self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
+        surface = [code for code, name in self.dialect.g.items() if name == "constant_surface_speed"]
+        self._surface_speed = f"G{surface[0]}" if surface else ""
         self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
 
@@ -186,17 +194,20 @@ class Control:
         single_block: bool | None = None,
         optional_stop: bool | None = None,
         dry_run: bool | None = None,
+        machine_lock: bool | None = None,
         block_delete: frozenset[int] | None = None,
     ) -> None:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9.
+            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
+                interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
             "optional_stop": optional_stop,
             "dry_run": dry_run,
+            "machine_lock": machine_lock,
             "block_delete": block_delete,
         }
         wanted = replace(self._switches, **{name: each for name, each in given.items() if each is not None})
@@ -206,6 +217,10 @@ class Control:
                 f"{sorted(wanted.block_delete)} are not skip marks",
                 hint="Give numbers from 1 to 9.",
             )
+        if wanted.machine_lock != self._switches.machine_lock:
+            for channel in self.channels:
+                self._check_over(channel)
+                channel.check_rest()
         self._switches = wanted
         for channel in self.channels:
             channel.set_switches(wanted)
@@ -237,8 +252,8 @@ class Control:
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
-    def cycle_start(self, *, channel: int = 0) -> None:
-        """Begin the selected program, the MDI text, or go on where a program is interrupted.
+    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN) -> None:
+        """Begin the selected program, the MDI text, or go on where a program is interrupted, as far as `step` says.
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
@@ -262,9 +277,11 @@ class Control:
                     f"the program that is interrupted was started in {Mode.MDI if chosen.is_mdi else Mode.AUTO}",
                     hint="Go on in that mode, or reset it.",
                 )
-            chosen.go_on(self.data.after_manual)
+            chosen.go_on(self.data.after_manual, step)
         else:
-            chosen.begin(self._to_begin(chosen, is_mdi), self._switches, self._overrides, mdi=is_mdi)
+            chosen.begin(
+                self._to_begin(chosen, is_mdi), self._switches, self._overrides, mdi=is_mdi, step=step
+            )
             self.timers.start_cycle()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE
@@ -509,18 +526,30 @@ class Control:
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
         block = channel.executed
-        serials = []
-        for letter, number in functions_of(event.word):
-            if letter == "S" and block is not None:
-                self.spindle.turn(rpm=block.modal.speed)
-            serials.append(self.plc.strobe(Function(letter), number, default_s=0.0))
-        if block is not None and self.spindle.state().direction != block.modal.spindle_direction:
-            self.spindle.turn(rpm=block.modal.speed, direction=block.modal.spindle_direction)
+        if block is not None:
+            modal = block.modal
+            # Constant surface speed has no speed of its own here: the spindle keeps the last one.
+            rpm = None if modal.g.get(Group.SPINDLE_MODE) == self._surface_speed else modal.speed
+            self.spindle.turn(rpm=rpm, direction=modal.spindle_direction)
+        serials = [
+            self.plc.strobe(Function(letter), number, default_s=self._function_s(letter, number))
+            for letter, number in functions_of(event.word)
+        ]
         self._raised |= ControlEvent.FUNCTION
         waiting = [serial for serial in serials if not self.plc.finished(serial)]
         if waiting:
             self._waiting.setdefault(channel.path, []).extend(waiting)
         return bool(waiting)
+
+    def _function_s(self, letter: str, number: int) -> float:
+        """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
+        times = self.machine.config.times
+        action = _ACTIONS.get(self.dialect.m.get(f"{number}", ""))
+        if letter != "M" or action in _STOPS:
+            return 0.0
+        if action in _SPINDLE:
+            return max(0, self.spindle.reached_cycle() - self.clock.cycles) * self.clock.cycle_s
+        return times.tool_change_s if action is MAction.TOOL_CHANGE else times.auxiliary_s
 
     def waiting_functions(self, path: int) -> tuple[str, ...]:
         """Return the auxiliary functions, like "M8", that a channel waits for."""
