@@ -363,13 +363,13 @@ class ProgramRun:
     @property
     def dry_run(self) -> bool:
         """Whether moves at feed go with the feed of a dry run."""
-        return bool(self._row["dry_feed"] > 0.0)
+        return bool(self._row["dry_feed_mm_s"] > 0.0)
 
     @dry_run.setter
     def dry_run(self, on: bool) -> None:
         if on and not self._options.dry_run_mm_s > 0.0:
             raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
-        self._row["dry_feed"] = self._options.dry_run_mm_s if on else 0.0
+        self._row["dry_feed_mm_s"] = self._options.dry_run_mm_s if on else 0.0
         self.feed.replan()
 
     @property
