@@ -13,7 +13,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from polycnc.cnc._alarms import AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
 from polycnc.cnc._manual import ManualMotion
@@ -28,7 +28,7 @@ from polycnc.cnc._status_reading import read_status
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.kernel import FEED_S
-from polycnc.machine import Machine, MachineConfig, Reason, load_machine
+from polycnc.machine import AnyAxis, Machine, MachineConfig, Reason, Store, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
@@ -52,7 +52,7 @@ class ControlEvent(IntFlag):
 class Control:
     """A numerical control on a machine of its own.
 
-    `memory` is the file of the durable memory: programs, tools, offsets, timers, parts, histories. `script` tells how
+    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories. `script` tells how
     the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
     """
 
@@ -61,7 +61,7 @@ class Control:
         config: MachineConfig | str | Path | None = None,
         *,
         channels: int = 1,
-        memory: str | Path | None = None,
+        memory: str | Path | Store | None = None,
         dialect: Dialect | str | Path | None = None,
         data: ControlData | None = None,
         script: Script | None = None,
@@ -86,14 +86,13 @@ class Control:
         self.manual = ManualMotion(
             self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
         )
-        live = machine_file.model_copy(update={"tools": self.tools, "offsets": self.offsets})
         self.channels = tuple(
             ControlChannel(
                 self.machine,
                 path,
                 self.dialect,
                 self.manual,
-                config=live,
+                config=self._live_config(),
                 library=self._sub_program,
                 dry_run_mm_min=self.data.dry_run_mm_min,
                 on_event=self._meet,
@@ -112,7 +111,38 @@ class Control:
         self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
 
+    def _live_config(self) -> MachineConfig:
+        """Return the machine file with the tables that change while programs run."""
+        return self.machine.config.model_copy(update={"tools": self.tools, "offsets": self.offsets})
+
     # ------------------------------------------------------------------ modes and settings
+
+    def change_axes(self, axes: tuple[AnyAxis, ...]) -> None:
+        """Let the axes have these speeds, accelerations and limits from now on.
+
+        Raises:
+            ControlError: A program is being executed or is interrupted, or axes move.
+        """
+        for channel in self.channels:
+            self._check_over(channel)
+        if self.manual.active:
+            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+        self.machine.change_axes(axes)
+        self.manual.change_axes(axes)
+        for channel in self.channels:
+            channel.change_config(self._live_config(), self.dialect)
+
+    def change_dialect(self, dialect: Dialect) -> None:
+        """Let programs be read in another dialect, or with other settings of it, from now on.
+
+        Raises:
+            ControlError: A program is being executed or is interrupted.
+        """
+        for channel in self.channels:
+            self._check_over(channel)
+        self.dialect = dialect
+        for channel in self.channels:
+            channel.change_config(self._live_config(), dialect)
 
     @property
     def mode(self) -> Mode:
@@ -309,6 +339,17 @@ class Control:
             self.alarms.cause_gone("emergency_stop")
             needed = self.data.emergency_needs_reset
             self._emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
+
+    def put_alarm(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
+        """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
+        if self.alarms.has(name, axis):
+            return self.alarms.put(name, axis=axis)
+        alarm = self.alarms.put(name, axis=axis, detail=detail)
+        self.manual.stop_all()
+        for channel in self.channels:
+            channel.fail()
+        self._raised |= ControlEvent.ALARM
+        return alarm
 
     def _break_off(self) -> None:
         """Let everything brake, and forget what was under way."""

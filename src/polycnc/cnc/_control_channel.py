@@ -52,6 +52,7 @@ class ControlChannel:
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
         self._lent: tuple[float, ...] | None = None
+        self._changed = False  # the machine has other limits than the last run knew
 
     # ------------------------------------------------------------------ what it does
 
@@ -117,8 +118,11 @@ class ControlChannel:
             config=self._config,
             library=self._library,
             on_event=lambda event: self._on_event(self, event),
-            before=last if last is not None and last.state is RunState.COMPLETED else None,
+            before=last
+            if last is not None and last.state is RunState.COMPLETED and not self._changed
+            else None,
         )
+        self._changed = False
         if last is not None and last.modal is not None:
             # What was prepared and never executed is forgotten with a reset; the tool is still in the spindle.
             self.run.channel.state.tool = last.modal.tool
@@ -199,6 +203,11 @@ class ControlChannel:
             self._lent = tuple(map(float, state.base))
 
     # ------------------------------------------------------------------ settings
+
+    def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
+        """Let programs that begin from now on keep other limits, and be read in this dialect."""
+        self._config, self._dialect = config, dialect
+        self._changed = True
 
     def set_switches(self, switches: Switches) -> None:
         """Take over what the operator has switched on."""
