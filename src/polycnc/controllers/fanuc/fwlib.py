@@ -18,12 +18,25 @@ carried out.
 
 from __future__ import annotations
 
-from polycnc.controllers.fanuc.library import _axes, _codes, _handles, _structs_a
+from polycnc.controllers.fanuc.library import (
+    _axes,
+    _codes,
+    _handles,
+    _macros,
+    _offsets,
+    _parameters,
+    _programs,
+    _structs_a,
+)
 from polycnc.controllers.fanuc.library._axes import *  # noqa: F403
 from polycnc.controllers.fanuc.library._call import LIBRARY
 from polycnc.controllers.fanuc.library._codes import *  # noqa: F403
 from polycnc.controllers.fanuc.library._handles import *  # noqa: F403
+from polycnc.controllers.fanuc.library._macros import *  # noqa: F403
 from polycnc.controllers.fanuc.library._network import Node, Session
+from polycnc.controllers.fanuc.library._offsets import *  # noqa: F403
+from polycnc.controllers.fanuc.library._parameters import *  # noqa: F403
+from polycnc.controllers.fanuc.library._programs import *  # noqa: F403
 from polycnc.controllers.fanuc.library._structs_a import *  # noqa: F403
 from polycnc.controllers.library import layouts
 
@@ -39,6 +52,10 @@ __all__ = [
     *_axes.__all__,
     *_codes.__all__,
     *_handles.__all__,
+    *_macros.__all__,
+    *_offsets.__all__,
+    *_parameters.__all__,
+    *_programs.__all__,
     *_structs_a.__all__,
     "FUNCTIONS",
     "STRUCTURES",

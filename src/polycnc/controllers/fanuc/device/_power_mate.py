@@ -5,7 +5,7 @@ It is a control without a vendor (`cnc.Control`) with this one's modes, alarms, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -92,7 +92,9 @@ class PowerMate:
         self.options = options if isinstance(options, bool) else frozenset(options)
         self.store = memory if isinstance(memory, Store) else Store(memory)
         self.protection_keys: frozenset[int] = frozenset()
+        self.parameters_writable = True
         self.transfer: Transfer | None = None
+        self.local_variables: Callable[[], Mapping[int, float | None]] = dict
         self._script = script
         self._servo = servo
         self._sizes = characters, most_programs
@@ -292,6 +294,10 @@ class PowerMate:
             raise UsageError(f"there is no key {key}", hint="Keys are 1 to 4.")
         keys = _ALL_KEYS if key is None else frozenset({key})
         self.protection_keys = self.protection_keys | keys if on else self.protection_keys - keys
+
+    def local_variable(self, number: int) -> float | None:
+        """Return local variable #1 to #33 of the macro that is being executed; None is vacant, as without a macro."""
+        return self.local_variables().get(number)
 
     def start_compare(self) -> None:
         """Begin to compare what `take` of the transfer gets with the registered programs, as on the screen.
