@@ -177,6 +177,23 @@ def test_opening_the_internals_compiles_no_entry_again(tree: Path, cache: Path) 
     assert opened == (BOTH_LOADED, "")
 
 
+def test_what_came_with_the_package_is_loaded_and_not_kept_again(
+    tree: Path, tmp_path: Path, compiled_once: tuple[Path, Path]
+) -> None:
+    package = shutil.copytree(
+        Path(polycnc.__file__).parent / "jit",
+        tmp_path / "site" / "polycnc" / "jit",
+        copy_function=shutil.copyfile,
+    ).parent
+    (package / "__init__.py").touch()
+    site = str(package.parent)
+    generic = {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "PYTHONPATH": site}
+    assert _end(_start(tree, tmp_path / "made", **generic)) == (BOTH_COMPILED, "")
+    shutil.move(tmp_path / "made" / "polycnc" / "compiled", package / "_compiled")
+    assert _end(_start(tree, tmp_path / "kept", PYTHONPATH=site)) == (BOTH_LOADED, "")
+    assert not (tmp_path / "kept").exists()
+
+
 def test_old_versions_are_swept_and_what_was_used_last_stays(tmp_path: Path) -> None:
     files = Files(tmp_path)
     for number in range(24):

@@ -7,7 +7,7 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _machine, _post, _run, _sap
+from polycnc.cli import _check, _conformance, _debug, _machine, _post, _run, _sap, _warmup
 from polycnc.cli._errors import end_on_termination, guarded
 from polycnc.cli._output import print_remarks
 
@@ -39,11 +39,17 @@ def _options(
 
 
 app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
+app.command("debug", short_help="Execute a program block by block and look at it.")(
+    guarded(_debug.debug_command)
+)
 app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
 app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
+)
+app.command("warmup", short_help="Compile beforehand what the first use would wait for.")(
+    guarded(_warmup.warmup_command)
 )
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 

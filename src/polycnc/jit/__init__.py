@@ -6,19 +6,24 @@ checkout, a reinstallation and a copied cache compile nothing, nor does a change
 
 from polycnc.jit._cache import FILES
 from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, versions
-from polycnc.jit._files import CACHE_FOLDER, Files
+from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files
 from polycnc.jit._notice import COMPILING
+from polycnc.jit._pipeline import KNOWN as KNOWN_NUMBA
 from polycnc.jit._reach import Fingerprints, NotKnownError
+from polycnc.jit._warm import compile_entries
 
 __all__ = [
     "CACHE_FOLDER",
     "COMPILING",
     "FILES",
+    "KNOWN_NUMBA",
     "OPEN_INTERNALS",
+    "SHIPPED_FOLDER",
     "Files",
     "Fingerprints",
     "NotKnownError",
     "allocating",
+    "compile_entries",
     "compiled",
     "entry",
     "versions",

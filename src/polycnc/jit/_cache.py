@@ -15,18 +15,20 @@ import numpy as np
 from numba.core import compiler, serialize
 from numba.core.caching import _Cache
 
-from polycnc.jit._files import CACHE_FOLDER, Files, Lock
+from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files, Lock
 from polycnc.jit._notice import announce
 from polycnc.jit._reach import Fingerprints
 from polycnc.jit._reference import described
 
 FILES = Files(CACHE_FOLDER)
+_SHIPPED = Files(SHIPPED_FOLDER) if SHIPPED_FOLDER.is_dir() else None
 FINGERPRINTS = Fingerprints()
 
 # numba's own annotations leave these out.
 _config: Any = numba.config
 _rebuild: Any = compiler.CompileResult._rebuild
 _dumps: Any = serialize.dumps
+ANY_PROCESSOR = ("generic", "")  # name and features by which numba makes code for every processor of a kind
 _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "LLVM_PASS_OPT")
 
 
@@ -79,12 +81,17 @@ class ContentCache(_Cache):
         if not self._enabled:
             announce()
             return None
-        stem = self._stem(sig, target_context.codegen())
-        found = self._read(stem, target_context)
+        processor = target_context.codegen().magic_tuple()
+        if _SHIPPED is not None:
+            found = self._read(_SHIPPED, self._stem(sig, (processor[0], *ANY_PROCESSOR)), target_context)
+            if found is not None:
+                return found
+        stem = self._stem(sig, processor)
+        found = self._read(FILES, stem, target_context)
         if found is None:
             self.release()
             self._lock = FILES.lock(stem)
-            found = self._read(stem, target_context)  # another process may have made it meanwhile
+            found = self._read(FILES, stem, target_context)  # another process may have made it meanwhile
             if found is None:
                 announce()
             else:
@@ -97,7 +104,7 @@ class ContentCache(_Cache):
             self._enabled and not data.library.has_dynamic_globals and all(x.can_cache for x in data.lifted)
         )
         if keeps:
-            FILES.write(self._stem(sig, data.codegen), self.family, _dumps(data._reduce()))
+            FILES.write(self._stem(sig, data.codegen.magic_tuple()), self.family, _dumps(data._reduce()))
         self.release()
 
     def release(self) -> None:
@@ -115,17 +122,17 @@ class ContentCache(_Cache):
     def flush(self) -> None:
         """Do nothing: what is kept is right as long as its key is."""
 
-    def _stem(self, sig: Any, codegen: Any) -> str:
+    def _stem(self, sig: Any, processor: tuple[str, str, str]) -> str:
         arguments = sig if isinstance(sig, tuple) else (*sig.args, sig.return_type)
         texts = (text for argument in arguments for text in described(argument))
-        return f"{self.version()}-{_hexadecimal(repr(codegen.magic_tuple()), *texts)}"
+        return f"{self.version()}-{_hexadecimal(repr(processor), *texts)}"
 
-    def _read(self, stem: str, target_context: Any) -> Any:
-        data = FILES.read(stem)
+    def _read(self, files: Files, stem: str, target_context: Any) -> Any:
+        data = files.read(stem)
         if data is None:
             return None
         try:
             return _rebuild(target_context, *pickle.loads(data))
         except Exception as error:  # whole but strange: whatever it raises, the way out is to compile
-            FILES.remark(f"{stem} cannot be loaded ({type(error).__name__}: {error}); it is compiled anew")
+            files.remark(f"{stem} cannot be loaded ({type(error).__name__}: {error}); it is compiled anew")
             return None

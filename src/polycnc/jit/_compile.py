@@ -76,6 +76,11 @@ class _Internal(CPUDispatcher):
 _entries: dict[str, _Entry] = {}  # by "module.name"
 
 
+def entries() -> list[tuple[str, _Entry]]:
+    """Return "module.name" and dispatcher of the entries of all modules imported so far."""
+    return sorted(_entries.items())
+
+
 def versions() -> list[str]:
     """Return, sorted, name and content of the entries of all modules imported so far."""
     return sorted(each._cache.version() for each in _entries.values())

@@ -53,6 +53,10 @@ CACHE_FOLDER = _cache_folder()
 """The folder where compiled functions are kept; None where there is no home for it."""
 
 
+SHIPPED_FOLDER = Path(__file__).parents[1] / "_compiled"
+"""The folder of the package with functions that came compiled with it, for any processor of a kind; often absent."""
+
+
 class Files:
     """The kept files of one folder, by stem; a file is whole, or as good as not there.
 
@@ -77,8 +81,9 @@ class Files:
         if content[:head] != _MAGIC + hashlib.blake2b(data, digest_size=_DIGEST_BYTES).digest():
             self.remark(f"{path} is damaged; it is compiled anew")
             return None
-        with contextlib.suppress(OSError):
-            os.utime(path)  # what is used is swept last
+        if self._folder != SHIPPED_FOLDER:
+            with contextlib.suppress(OSError):
+                os.utime(path)  # what is used is swept last
         return data
 
     def write(self, stem: str, family: str, data: bytes) -> None:

@@ -1,0 +1,90 @@
+"""``polycnc warmup``: compile beforehand what would be compiled at first use."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Annotated, TypeAlias
+
+import typer
+
+from polycnc.cli._output import say
+from polycnc.errors import UsageError
+
+Progress: TypeAlias = Callable[[str, float], None]
+
+# What a program uses on the way from its text to its motion; long programs go another way (`nc.fast`).
+_MANY = 2_100
+_PROGRAM = """%
+G17 G90 G0 X1 Y2
+G1 X10 Y3 F600
+G2 X20 Y3 I5 J0
+G3 X10 Y3 R5
+G4 F0.1
+G91 G1 X1.5
+X-1.5 Y0.5
+G90 G0 Z1
+"""
+
+
+def _warm_run(progress: Progress) -> None:
+    from polycnc import runner
+    from polycnc.jit import compile_entries
+    from polycnc.kernel import make_state
+
+    compile_entries("polycnc.kernel", [make_state(3)], progress)
+    progress("a program", 0.8)
+    runner.run(_PROGRAM + "G1 X1 F600\nX2\n" * (_MANY // 2), check=False)
+    runner.run(_PROGRAM, check=False, servo=True, rows=lambda _: None)
+    runner.check(_PROGRAM)
+
+
+def _warm_apci(progress: Progress) -> None:
+    from polycnc.controllers.apci import Board, parse_system_file
+    from polycnc.jit import compile_entries
+
+    board = Board(parse_system_file("number_of_axes = 3"))
+    compile_entries("polycnc.controllers.apci", [board.state, board.kernel], progress)
+    compile_entries("polycnc.kernel", [board.kernel], progress)
+
+
+def _warm_imc(progress: Progress) -> None:
+    from polycnc.controllers.imc import Card
+    from polycnc.jit import compile_entries
+
+    card = Card()
+    compile_entries("polycnc.controllers.imc", [card.state, card.kernel], progress)
+
+
+_JOBS = {"run": _warm_run, "apci": _warm_apci, "imc": _warm_imc}
+
+
+@contextmanager
+def _shown(job: str) -> Iterator[Progress]:
+    """Show on a terminal what is being compiled."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield lambda name, part: None
+        return
+    with console.status(f"{job} ...") as status:
+        yield lambda name, part: status.update(f"{job}: {part:.0%}, {name}")
+
+
+def warmup_command(
+    job: Annotated[
+        str, typer.Argument(help="run (part programs), apci, imc or all.", metavar="[JOB]")
+    ] = "all",
+) -> None:
+    """Compile what the job needs, so that its first use does not wait; what is there already is left as it is."""
+    import time
+
+    if job not in (*_JOBS, "all"):
+        raise UsageError(f"unknown job '{job}'", hint=f"Jobs are: {', '.join(_JOBS)}, all.")
+    for name, warm in _JOBS.items():
+        if job in (name, "all"):
+            begin_s = time.monotonic()
+            with _shown(name) as progress:
+                warm(progress)
+            say(f"{name:5} ready after {time.monotonic() - begin_s:.0f} s")
