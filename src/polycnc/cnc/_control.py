@@ -278,8 +278,8 @@ class Control:
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
-    def cycle_start(self, *, channel: int = 0) -> None:
-        """Begin the selected program, the MDI text, or go on where a program is interrupted.
+    def cycle_start(self, *, channel: int = 0, line: int = 1) -> None:
+        """Begin the selected program or the MDI text at a line, or go on where a program is interrupted.
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
@@ -305,7 +305,10 @@ class Control:
                 )
             chosen.go_on(self.data.after_manual)
         else:
-            chosen.begin(self._to_begin(chosen, is_mdi), self._switches, self._overrides, mdi=is_mdi)
+            text = self._to_begin(chosen, is_mdi)
+            if not 1 <= line <= text.content.count(b"\n") + 1:
+                raise ControlError(Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is.")
+            chosen.begin(text, self._switches, self._overrides, mdi=is_mdi, line=line)
             self.timers.start_cycle()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE

@@ -107,9 +107,15 @@ class ControlChannel:
     # ------------------------------------------------------------------ commands
 
     def begin(
-        self, text: ProgramText, switches: Switches, overrides: Overrides, *, mdi: bool = False
+        self,
+        text: ProgramText,
+        switches: Switches,
+        overrides: Overrides,
+        *,
+        mdi: bool = False,
+        line: int = 1,
     ) -> None:
-        """Begin to execute a text from where the axes stand.
+        """Begin to execute a text at a line, from where the axes stand.
 
         Raises:
             ControlError: The axes are still braking.
@@ -137,6 +143,8 @@ class ControlChannel:
         if last is not None and last.modal is not None:
             # What was prepared and never executed is forgotten with a reset; the tool is still in the spindle.
             self.run.channel.state.tool = last.modal.tool
+        if line > 1:
+            self.run.search(line=line)
         self.is_mdi = mdi
         self._lent = None
         self.set_switches(switches)

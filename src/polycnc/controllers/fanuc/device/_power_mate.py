@@ -228,9 +228,8 @@ class PowerMate:
             raise ControlError(
                 Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI."
             )
-        if not channel.active and not channel.interrupted:
-            self.execution.prepare_start()
-        self.control.cycle_start()
+        start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
+        self.control.cycle_start(line=start + 1)
         self._cursor = 0
 
     def feed_hold(self) -> None:
@@ -350,10 +349,11 @@ class PowerMate:
         """Let up to `cycles` control cycles pass; return how many did, see `cnc.Control.advance`."""
         if self._stale:
             self._take_over()
+        channel = self.control.channels[0]
+        active = channel.active
         done = self.control.advance(cycles, until=until)
-        block = self.control.channels[0].executed
-        if block is not None and done and block.modal.inch is not self._inch:
-            self._inch = block.modal.inch
+        block = channel.executed if active else None
+        if block is not None and block.modal.inch is not self._inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
         return done
 
