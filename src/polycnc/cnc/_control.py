@@ -508,7 +508,7 @@ class Control:
             cutting_s=self._cutting_s() - cutting_s,
             tool=self._tool(),
         )
-        self._look(passed)
+        self._look(passed, states)
         if [channel.run_state for channel in self.channels] != states:
             self._raised |= ControlEvent.RUN_STATE
         if any(alarm not in alarms for alarm in self.alarms.active):
@@ -517,15 +517,14 @@ class Control:
             self._raised |= ControlEvent.MANUAL
         return passed
 
-    def _look(self, passed: int) -> None:
-        """Look at what the last cycle has brought."""
+    def _look(self, passed: int, states: list[RunState]) -> None:
+        """Look at what the last cycles have brought since the channels had these states."""
         alarms = self.alarms.active
         self.manual.after()
         for number, channel in enumerate(self.channels):
-            before = channel.run_state
             if channel.run is not None and not channel.returning:
                 channel.run.after_cycles(passed)
-            if before is not channel.run_state:
+            if channel.run_state is not states[number]:
                 self._note_end(channel)
             channel.look()
             self._take_answers(number, channel)
