@@ -27,6 +27,7 @@ from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import Emergency, Status
 from polycnc.cnc._status_reading import read_status
+from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.kernel import FEED_S
@@ -40,7 +41,7 @@ from polycnc.machine import (
     Store,
     load_machine,
 )
-from polycnc.nc import Dialect, Event, ProgramText, load_dialect
+from polycnc.nc import Dialect, Event, Group, MAction, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
 _MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
@@ -48,6 +49,11 @@ _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
 _FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
+
+
+_ACTIONS = {action.title: action for action in MAction}
+_STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
+_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
 
 
 class ControlEvent(IntFlag):
@@ -119,6 +125,8 @@ class Control:
         self._relative_zero = [0.0] * len(machine_file.axes)
         self._edits: list[ProgramEdit] = []
         self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
+        surface = [code for code, name in self.dialect.g.items() if name == "constant_surface_speed"]
+        self._surface_speed = f"G{surface[0]}" if surface else ""
         self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
 
@@ -227,17 +235,20 @@ class Control:
         single_block: bool | None = None,
         optional_stop: bool | None = None,
         dry_run: bool | None = None,
+        machine_lock: bool | None = None,
         block_delete: frozenset[int] | None = None,
     ) -> None:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9.
+            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
+                interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
             "optional_stop": optional_stop,
             "dry_run": dry_run,
+            "machine_lock": machine_lock,
             "block_delete": block_delete,
         }
         wanted = replace(self._switches, **{name: each for name, each in given.items() if each is not None})
@@ -247,6 +258,10 @@ class Control:
                 f"{sorted(wanted.block_delete)} are not skip marks",
                 hint="Give numbers from 1 to 9.",
             )
+        if wanted.machine_lock != self._switches.machine_lock:
+            for channel in self.channels:
+                self._check_over(channel)
+                channel.check_rest()
         self._switches = wanted
         for channel in self.channels:
             channel.set_switches(wanted)
@@ -278,8 +293,10 @@ class Control:
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
-    def cycle_start(self, *, channel: int = 0, line: int = 1) -> None:
+    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
         """Begin the selected program or the MDI text at a line, or go on where a program is interrupted.
+
+        `step` says how far.
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
@@ -303,12 +320,15 @@ class Control:
                     f"the program that is interrupted was started in {Mode.MDI if chosen.is_mdi else Mode.AUTO}",
                     hint="Go on in that mode, or reset it.",
                 )
-            chosen.go_on(self.data.after_manual)
+            chosen.go_on(self.data.after_manual, step)
         else:
             text = self._to_begin(chosen, is_mdi)
             if not 1 <= line <= text.content.count(b"\n") + 1:
-                raise ControlError(Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is.")
-            chosen.begin(text, self._switches, self._overrides, mdi=is_mdi, line=line)
+                raise ControlError(
+                    Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is."
+                )
+            chosen.begin(text, self._switches, self._overrides, mdi=is_mdi, step=step, line=line)
+            self._note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE
@@ -563,18 +583,30 @@ class Control:
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
         block = channel.executed
-        serials = []
-        for letter, number in functions_of(event.word):
-            if letter == "S" and block is not None:
-                self.spindle.turn(rpm=block.modal.speed)
-            serials.append(self.plc.strobe(Function(letter), number, default_s=0.0))
-        if block is not None and self.spindle.state().direction != block.modal.spindle_direction:
-            self.spindle.turn(rpm=block.modal.speed, direction=block.modal.spindle_direction)
+        if block is not None:
+            modal = block.modal
+            # Constant surface speed has no speed of its own here: the spindle keeps the last one.
+            rpm = None if modal.g.get(Group.SPINDLE_MODE) == self._surface_speed else modal.speed
+            self.spindle.turn(rpm=rpm, direction=modal.spindle_direction)
+        serials = [
+            self.plc.strobe(Function(letter), number, default_s=self._function_s(letter, number))
+            for letter, number in functions_of(event.word)
+        ]
         self._raised |= ControlEvent.FUNCTION
         waiting = [serial for serial in serials if not self.plc.finished(serial)]
         if waiting:
             self._waiting.setdefault(channel.path, []).extend(waiting)
         return bool(waiting)
+
+    def _function_s(self, letter: str, number: int) -> float:
+        """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
+        times = self.machine.config.times
+        action = _ACTIONS.get(self.dialect.m.get(f"{number}", ""))
+        if letter != "M" or action in _STOPS:
+            return 0.0
+        if action in _SPINDLE:
+            return max(0, self.spindle.reached_cycle() - self.clock.cycles) * self.clock.cycle_s
+        return times.tool_change_s if action is MAction.TOOL_CHANGE else times.auxiliary_s
 
     def waiting_functions(self, path: int) -> tuple[str, ...]:
         """Return the auxiliary functions, like "M8", that a channel waits for."""

@@ -683,7 +683,10 @@ class ProgramRun:
 
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        hold = self._hold or self._stop is not None or self._unanswered
+        stands = (
+            self._state is RunState.STOPPED_AT_BLOCK
+        )  # before a segment that is in the look-ahead already
+        hold = self._hold or stands or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == RUNNING:
@@ -713,6 +716,7 @@ class ProgramRun:
         depth_of = record if within or following is None else following
         stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
         if not within and self._stand_at_marks():
+            self._set_hold()
             return
         self.feed.look_again()
         self._set_hold()
@@ -768,6 +772,7 @@ class ProgramRun:
 
     def _stop_at_block(self) -> None:
         """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        self.feed.pass_marks()
         while self.feed.at_mark:
             following = self.feed.next_tag()
             if following is None or self.stopper.stops_before(following):
