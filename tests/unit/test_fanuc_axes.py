@@ -59,7 +59,9 @@ def test_nodes_0_to_7_are_controls_of_their_own() -> None:
     for node in (3, 0, 7):
         code, handles[node] = fwlib.cnc_allclibhndl2(node)
         assert code == OK
-    assert [fwlib.cnc_absolute(handles[node], axis, 8)[0] for node, axis in ((3, 1), (0, 2), (7, 4))] == [OK] * 3
+    assert [fwlib.cnc_absolute(handles[node], axis, 8)[0] for node, axis in ((3, 1), (0, 2), (7, 4))] == [
+        OK
+    ] * 3
     assert [fwlib.cnc_absolute(handles[node], axis, 8)[0] for node, axis in ((3, 2), (0, 3), (7, 5))] == [
         EW.EW_ATTRIB
     ] * 3
@@ -80,15 +82,22 @@ def test_the_default_node_can_be_changed_and_nodes_be_listed() -> None:
     _, handle = fwlib.cnc_allclibhndl()
     assert fwlib.cnc_absolute(handle, 3, 8)[0] == EW.EW_ATTRIB
     code, info = fwlib.cnc_rdnodeinfo(5)
-    assert (code, info.node_no, info.status, info.cnc_type, info.node_name) == (0, 5, 1, ord("D"), b"Power Mate-D")
+    assert (code, info.node_no, info.status, info.cnc_type, info.node_name) == (
+        0,
+        5,
+        1,
+        ord("D"),
+        b"Power Mate-D",
+    )
     assert fwlib.cnc_rdnodeinfo(4)[1].status == 0
     assert fwlib.cnc_rdnodeinfo(-1)[0] == EW.EW_NUMBER
     assert fwlib.cnc_rdnodenum() == (OK, 2)
 
 
 def test_a_fault_of_a_node_is_the_answer_of_every_call() -> None:
-    _, handle = attached()
-    node = fwlib.LIBRARY.default.nodes[0] if hasattr(fwlib, "LIBRARY") else fwlib.attach.__self__.nodes[0]
+    control, _ = attached()
+    node = fwlib.attach(0, control)
+    _, handle = fwlib.cnc_allclibhndl()
     node.fault = EW.EW_HSSB
     assert fwlib.cnc_absolute(handle, 1, 8)[0] == EW.EW_HSSB
     assert fwlib.cnc_dwnstart(handle) == EW.EW_HSSB
@@ -150,7 +159,9 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
     assert fwlib.cnc_actf(handle)[1].data == 5550
 
 
-@covers("example.cnc_absolute", "cnc_absolute", "enum.axis.ALL_AXES", "enum.axis.1..m", "concept.decimal_point")
+@covers(
+    "example.cnc_absolute", "cnc_absolute", "enum.axis.ALL_AXES", "enum.axis.1..m", "concept.decimal_point"
+)
 def test_example_absolute() -> None:
     control, handle = attached()
     moved(control, "G0 X120.005 Y-50.119 Z0.08")
@@ -240,7 +251,13 @@ def test_positions_know_work_offsets_tool_length_and_units() -> None:
 
 @pytest.mark.parametrize(
     ("increment", "inch", "counts"),
-    [("IS-A", False, 1235), ("IS-B", False, 12346), ("IS-C", False, 123457), ("IS-A", True, 486), ("IS-B", True, 4861)],
+    [
+        ("IS-A", False, 1235),
+        ("IS-B", False, 12346),
+        ("IS-C", False, 123457),
+        ("IS-A", True, 486),
+        ("IS-B", True, 4861),
+    ],
 )
 def test_increments_scale_positions_of_linear_axes(increment: str, inch: bool, counts: int) -> None:
     control, handle = attached(increment=increment, inch_input=inch, axes=2, rotary=(2,))
@@ -347,7 +364,9 @@ def test_reads_need_no_option() -> None:
 @covers("cnc_rddynamic", "concept.dynamic_snapshot", "example.cnc_rddynamic")
 def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     control, handle = attached(axes=4, rotary=(4,))
-    registered(control, O12="\nN5 G92 X1.\nN10 M98 P34\nM30\n", O34="\nN110 G1 X31. Y-12. Z5. A9. F1500\nM99\n")
+    registered(
+        control, O12="\nN5 G92 X1.\nN10 M98 P34\nM30\n", O34="\nN110 G1 X31. Y-12. Z5. A9. F1500\nM99\n"
+    )
     fwlib.cnc_wrrelpos(handle, 8, IDBWRR(type=2, data=(100,)))
     running(control, 12)
     control.advance(900)
@@ -365,8 +384,14 @@ def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     for axis in (1, 2, 3, 4):
         code, one = fwlib.cnc_rddynamic(handle, axis, 38)
         assert (code, one.axis) == (OK, axis)
-        assert [one.pos.oaxis.absolute, one.pos.oaxis.machine, one.pos.oaxis.relative, one.pos.oaxis.distance] == [
-            getattr(data.pos.faxis, name)[axis - 1] for name in ("absolute", "machine", "relative", "distance")
+        assert [
+            one.pos.oaxis.absolute,
+            one.pos.oaxis.machine,
+            one.pos.oaxis.relative,
+            one.pos.oaxis.distance,
+        ] == [
+            getattr(data.pos.faxis, name)[axis - 1]
+            for name in ("absolute", "machine", "relative", "distance")
         ]
     assert data.pos.faxis.absolute[0] - data.pos.faxis.machine[0] == 1000
 
@@ -400,7 +425,9 @@ def test_bits_of_the_alarm_status(bit: int) -> None:
         control.raise_alarm(ALARMS[bit], "TEST", axis=2 if bit in (4, 6) else None)
         assert status() == 1 << bit
         control.reset()
-        assert status() == (1 << bit if bit in (1, 2) else 0)  # these two stay until the power is switched off
+        assert status() == (
+            1 << bit if bit in (1, 2) else 0
+        )  # these two stay until the power is switched off
         control.power_cycle()
         assert status() == 0
     else:

@@ -95,13 +95,14 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
 
 
 @covers(
-    "cnc_rdtofsr", "cnc_wrtofsr", "example.cnc_rdtofsr", "example.cnc_wrtofsr", "enum.offset_type.all", "cnc_rdtofsinfo",
+    "cnc_rdtofsr", "cnc_wrtofsr", "example.cnc_rdtofsr", "example.cnc_wrtofsr", "enum.offset_type.all",
+    "cnc_rdtofsinfo",
 )  # fmt: skip
 def test_examples_of_tool_offset_ranges() -> None:
     _, handle = attached()
     values = [37 * k - 1500 for k in range(1, 100)]
     data = IODBTO(datano_s=1, datano_e=99, type=-1)
-    data.u.m_ofs_a[:] = values
+    data.u.m_ofs_a[:] = list(values)
     assert fwlib.cnc_wrtofsr(handle, 402, data) == OK
     assert [offset(handle, number) for number in range(1, 100)] == values
     for kind, name in ((0, "m_ofs"), (-1, "m_ofs_a")):
@@ -111,7 +112,7 @@ def test_examples_of_tool_offset_ranges() -> None:
         assert struct.unpack_from("<3l", found.pack(), 6) == tuple(values[:3])
     assert list(fwlib.cnc_rdtofsr(handle, 41, 0, 43, 18)[1].u.m_ofs[:4]) == [*values[40:43], 0]
     few = IODBTO(datano_s=98, datano_e=99)
-    few.u.m_ofs[:2] = 7, -8
+    few.u.m_ofs[0], few.u.m_ofs[1] = 7, -8
     assert fwlib.cnc_wrtofsr(handle, 14, few) == OK
     assert [offset(handle, number) for number in (97, 98, 99)] == [values[96], 7, -8]
     code, info = fwlib.cnc_rdtofsinfo(handle)
@@ -136,11 +137,11 @@ def test_tool_offset_ranges_that_are_refused_change_nothing() -> None:
     ):
         assert fwlib.cnc_rdtofsr(handle, first, kind, last, length)[0] == code
         data = IODBTO(datano_s=first, datano_e=last, type=kind)
-        data.u.m_ofs[:] = range(1, 100)
+        data.u.m_ofs[:] = [*range(1, 100)]
         assert fwlib.cnc_wrtofsr(handle, length, data) == code
         assert not any(fwlib.cnc_rdtofsr(handle, 1, 0, 99, 402)[1].u.m_ofs)
     data = IODBTO(datano_s=1, datano_e=3)
-    data.u.m_ofs[:3] = 5, 6, 1_000_000
+    data.u.m_ofs[:3] = [5, 6, 1_000_000]
     assert fwlib.cnc_wrtofsr(handle, 18, data) == EW.EW_DATA
     assert not any(fwlib.cnc_rdtofsr(handle, 1, 0, 99, 402)[1].u.m_ofs)
 
@@ -202,7 +203,9 @@ def test_parameters_that_have_one_value(kind: str) -> None:
     assert parameter(handle, number) == value
 
 
-@pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES])
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES]
+)
 @covers("enum.param_axis.1..m", "enum.param_axis.ALL_AXES")
 def test_parameters_of_axes(kind: str) -> None:
     _, handle = attached()
@@ -312,7 +315,9 @@ def test_some_parameters_need_the_power_switched_off() -> None:
     registered(control, O12="\nM30\n")
     assert fwlib.cnc_wrparam(handle, 5, psd(1006, 2, cdata=1)) == OK
     assert fwlib.cnc_rddynamic(handle, 1, 38)[1].alarm == 1 << 1
-    assert [fwlib.cnc_dwnstart(handle), fwlib.cnc_upstart(handle, 12), fwlib.cnc_search(handle, 12)] == [EW.EW_BUSY] * 3
+    assert [fwlib.cnc_dwnstart(handle), fwlib.cnc_upstart(handle, 12), fwlib.cnc_search(handle, 12)] == [
+        EW.EW_BUSY
+    ] * 3
     assert fwlib.cnc_delete(handle, 12) == EW.EW_BUSY
     assert not control.is_rotary(2)
     control.reset()
@@ -475,7 +480,8 @@ def test_records_that_are_refused_change_nothing() -> None:
 def test_walking_through_the_parameters() -> None:
     _, handle = attached()
     rows = parameter_rows()
-    found, number = [], 0
+    number = 0
+    found: list[int] = []
     while number != -1:
         code, info = fwlib.cnc_rdparainfo(handle, number, 7)
         assert code == OK
@@ -513,7 +519,9 @@ BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
 }
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS])
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS]
+)
 def test_attribute_bits(name: str) -> None:
     shift, mask, have, have_not = BITS[name]
     for number in have:
@@ -527,7 +535,12 @@ def test_attribute_bits(name: str) -> None:
 
 @covers("ODBPARAIF.prm_type.bit0_1")
 def test_type_attribute() -> None:
-    assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [0, 1, 2, 3] * 2
+    assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [
+        0,
+        1,
+        2,
+        3,
+    ] * 2
 
 
 # ---------------------------------------------------------------------- settings
@@ -562,7 +575,11 @@ def test_settings_that_are_refused() -> None:
     assert fwlib.cnc_rdsetr(handle, 6713, 0, 6711, 100)[0] == EW.EW_NUMBER
     assert fwlib.cnc_rdsetr(handle, 0, 0, 20, 100)[0] == EW.EW_ATTRIB  # 0012 is of axes
     assert fwlib.cnc_rdsetr(handle, 6711, 7, 6713, 100)[0] == EW.EW_ATTRIB
-    for code, data, length in (*REFUSED, (EW.EW_NUMBER, record(6710, 1, 0, 5), 6), (EW.EW_ATTRIB, record(12, 0, 0, 1), 6)):
+    for code, data, length in (
+        *REFUSED,
+        (EW.EW_NUMBER, record(6710, 1, 0, 5), 6),
+        (EW.EW_ATTRIB, record(12, 0, 0, 1), 6),
+    ):
         assert fwlib.cnc_wrsets(handle, length, data) == code
         assert parameter(handle, 6711) == 0
     control.parameters_writable = False
@@ -658,7 +675,13 @@ def test_vacant_is_not_zero() -> None:
         assert (macro(handle, 500), control.macros.get(500)) == ((0, -1), None)
 
 
-@covers("concept.macro_out_of_range", "enum.macro_type.binary", "cnc_wrmacro.err.EW_DATA", "cnc_setmactype", "cnc_getmactype")
+@covers(
+    "concept.macro_out_of_range",
+    "enum.macro_type.binary",
+    "cnc_wrmacro.err.EW_DATA",
+    "cnc_setmactype",
+    "cnc_getmactype",
+)
 def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
     control, handle = attached()
     _, other = fwlib.cnc_allclibhndl()
@@ -696,7 +719,9 @@ def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
     ],
 )
 @covers("cnc_rdmacroinfo", "cnc_rdmacro.err.EW_NUMBER", "cnc_wrmacro.err.EW_NUMBER")
-def test_ranges_of_common_variables(options: Any, code: int, there: tuple[int, ...], missing: tuple[int, ...]) -> None:
+def test_ranges_of_common_variables(
+    options: Any, code: int, there: tuple[int, ...], missing: tuple[int, ...]
+) -> None:
     _, handle = attached(options=options)
     answer, info = fwlib.cnc_rdmacroinfo(handle)
     assert (answer, info.use_no1, info.use_no2) == (OK, 33, code)
@@ -734,12 +759,19 @@ def test_ranges_of_macro_variables() -> None:
     control.macros.set(507, None)
     code, found = fwlib.cnc_rdmacror(handle, 504, 508, 1000)
     assert (code, found.datano_s, found.datano_e) == (OK, 504, 508)
-    assert [(each.mcr_val, each.dec_val) for each in found.data] == [(0, -1), (-50, 0), (-39, 0), (0, -1), (-17, 0)]
+    assert [(each.mcr_val, each.dec_val) for each in found.data] == [
+        (0, -1),
+        (-50, 0),
+        (-39, 0),
+        (0, -1),
+        (-17, 0),
+    ]
     assert struct.unpack_from("<lh", found.pack(), 6 + 6 * 2) == (-39, 0)
 
 
 @covers(
-    "cnc_rdmacro.err.EW_LENGTH", "cnc_wrmacro.err.EW_LENGTH", "cnc_rdmacror.err.EW_LENGTH", "cnc_rdmacror.err.EW_NUMBER",
+    "cnc_rdmacro.err.EW_LENGTH", "cnc_wrmacro.err.EW_LENGTH", "cnc_rdmacror.err.EW_LENGTH",
+    "cnc_rdmacror.err.EW_NUMBER",
     "cnc_wrmacror.err.EW_LENGTH", "cnc_wrmacror.err.EW_NUMBER", "cnc_wrmacror.err.EW_DATA",
 )  # fmt: skip
 def test_macro_requests_that_are_refused_change_nothing() -> None:

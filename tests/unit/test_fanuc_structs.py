@@ -16,14 +16,59 @@ from support.power_mate import attached
 
 CONFORMANCE = Path(__file__).resolve().parents[2] / "conformance"
 ROWS = read_rows(CONFORMANCE)
-PART_A = (
-    "cnc_allclibhndl cnc_allclibhndl2 cnc_freelibhndl cnc_actf cnc_absolute cnc_machine cnc_relative cnc_distance cnc_skip"
-    " cnc_srvdelay cnc_accdecdly cnc_rddynamic cnc_wrrelpos cnc_dwnstart cnc_download cnc_dwnend cnc_upstart cnc_upload"
-    " cnc_upend cnc_search cnc_delall cnc_delete cnc_rdprogdir cnc_rdproginfo cnc_rdprgnum cnc_rdseqnum cnc_rdexecprog"
-    " cnc_wrmdiprog cnc_rdmdipntr cnc_wrmdipntr cnc_seqsrch cnc_rewind cnc_rdtofs cnc_wrtofs cnc_rdtofsr cnc_wrtofsr"
-    " cnc_rdtofsinfo cnc_rdparam cnc_wrparam cnc_rdparar cnc_wrparas cnc_rdparainfo cnc_rdsetr cnc_wrsets cnc_rdmacro"
-    " cnc_wrmacro cnc_rdmacror cnc_wrmacror cnc_rdmacroinfo cnc_getmactype cnc_setmactype"
-).split()
+PART_A = [
+    "cnc_allclibhndl",
+    "cnc_allclibhndl2",
+    "cnc_freelibhndl",
+    "cnc_actf",
+    "cnc_absolute",
+    "cnc_machine",
+    "cnc_relative",
+    "cnc_distance",
+    "cnc_skip",
+    "cnc_srvdelay",
+    "cnc_accdecdly",
+    "cnc_rddynamic",
+    "cnc_wrrelpos",
+    "cnc_dwnstart",
+    "cnc_download",
+    "cnc_dwnend",
+    "cnc_upstart",
+    "cnc_upload",
+    "cnc_upend",
+    "cnc_search",
+    "cnc_delall",
+    "cnc_delete",
+    "cnc_rdprogdir",
+    "cnc_rdproginfo",
+    "cnc_rdprgnum",
+    "cnc_rdseqnum",
+    "cnc_rdexecprog",
+    "cnc_wrmdiprog",
+    "cnc_rdmdipntr",
+    "cnc_wrmdipntr",
+    "cnc_seqsrch",
+    "cnc_rewind",
+    "cnc_rdtofs",
+    "cnc_wrtofs",
+    "cnc_rdtofsr",
+    "cnc_wrtofsr",
+    "cnc_rdtofsinfo",
+    "cnc_rdparam",
+    "cnc_wrparam",
+    "cnc_rdparar",
+    "cnc_wrparas",
+    "cnc_rdparainfo",
+    "cnc_rdsetr",
+    "cnc_wrsets",
+    "cnc_rdmacro",
+    "cnc_wrmacro",
+    "cnc_rdmacror",
+    "cnc_wrmacror",
+    "cnc_rdmacroinfo",
+    "cnc_getmactype",
+    "cnc_setmactype",
+]
 
 
 def covers(*names: str) -> pytest.MarkDecorator:
@@ -49,7 +94,19 @@ CODES = {
     "VERSION": -7, "UNEXP": -6, "PARITY": -4, "MMCSYS": -3, "NOPMC": 1, "RANGE": 3, "TYPE": 4, "DTSRVR": 14,
 }  # fmt: skip
 _ROW = {"ITLOW": "ITHIGHT_m13", "ITHIGHT": "ITHIGHT_m12"}
-_BEYOND = {"NODLL", "INIERR", "HANDLE", "VERSION", "UNEXP", "PARITY", "MMCSYS", "NOPMC", "RANGE", "TYPE", "DTSRVR"}
+_BEYOND = {
+    "NODLL",
+    "INIERR",
+    "HANDLE",
+    "VERSION",
+    "UNEXP",
+    "PARITY",
+    "MMCSYS",
+    "NOPMC",
+    "RANGE",
+    "TYPE",
+    "DTSRVR",
+}
 
 
 @pytest.mark.parametrize(
@@ -142,7 +199,7 @@ def _place(cls: Any, path: str) -> tuple[int, int]:
         field = getattr(cls, name)
         offset += field.offset
         size = field.size
-        cls = dict((each[0], each[1]) for each in cls._fields_)[name]
+        cls = {each[0]: each[1] for each in cls._fields_}[name]
         if issubclass(cls, ctypes.Array) and issubclass(cls._type_, ctypes.Structure):
             cls = cls._type_
     return offset, size
@@ -169,7 +226,8 @@ def test_structures_have_the_manuals_size_and_elements(struct: str) -> None:
     assert layout.size == size == ctypes.sizeof(getattr(fwlib, struct))
     assert {field.name for field in layout.fields} == {path.split(".")[0] for path in paths}
     assert [field.offset for field in layout.fields] == [
-        min(place[0] for path, place in paths.items() if path.split(".")[0] == field.name) for field in layout.fields
+        min(place[0] for path, place in paths.items() if path.split(".")[0] == field.name)
+        for field in layout.fields
     ]
 
 
@@ -191,10 +249,16 @@ def test_c_types_are_little_endian_and_signed() -> None:
                 assert field.size == sizes[field.c] * count
 
 
+def _entry_size() -> int:
+    """Return the size of an entry of IODBMR."""
+    arrays: dict[str, Any] = {each[0]: each[1] for each in fwlib.IODBMR._fields_}
+    return ctypes.sizeof(arrays["data"]._type_)
+
+
 @covers("concept.struct_packing")
 def test_nothing_is_aligned_to_four_bytes_but_lengths_of_that_packing_are_taken() -> None:
     assert _place(fwlib.ODBDY, "seqnum")[0] == 10
-    assert ctypes.sizeof(dict((each[0], each[1]) for each in fwlib.IODBMR._fields_)["data"]._type_) == 6
+    assert _entry_size() == 6
     assert ctypes.sizeof(variant(fwlib.IODBMR, data=2)) == 18
     _, handle = attached()
     assert fwlib.cnc_rddynamic(handle, 1, 40)[0] == 0  # ODBDY packed to 4 has 40 bytes

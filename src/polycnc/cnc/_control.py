@@ -69,8 +69,8 @@ class ControlEvent(IntFlag):
 class Control:
     """A numerical control on a machine of its own.
 
-    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories. `script` tells how
-    the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
+    `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
     """
 
     def __init__(

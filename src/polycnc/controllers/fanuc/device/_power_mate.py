@@ -225,9 +225,7 @@ class PowerMate:
         self._take_over()
         channel = self.control.channels[0]
         if self._mode is PowerMateMode.RMT and not channel.interrupted:
-            raise ControlError(
-                Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI."
-            )
+            raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
         start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
         self.control.cycle_start(line=start + 1)
         self._cursor = 0
@@ -309,7 +307,9 @@ class PowerMate:
         self.transfer = Transfer(self, compare=True)
 
     def raise_alarm(self, number: int, text: str = "", *, axis: int | None = None) -> None:
-        """Put an alarm on: 0 to 255 and 5000 to 5999 P/S, 300 APC, 400 servo, 500 overtravel, 700 overheat, 1000 external.
+        """Put an alarm on by its number.
+
+        From 300 on it is APC, from 400 servo, from 500 overtravel, from 700 overheat, from 1000 external, else P/S.
 
         Raises:
             UsageError: The number is none, or there is no such axis.
@@ -355,6 +355,8 @@ class PowerMate:
         block = channel.executed if active else None
         if block is not None and block.modal.inch is not self._inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
+        if self._stale:
+            self._take_over()
         return done
 
     def status(self) -> Status:

@@ -22,7 +22,7 @@ def _check_numbers(link: Link, *numbers: int) -> None:
         raise Refused(EW.EW_NUMBER)
 
 
-def _check_type(type: int, *allowed: int) -> None:  # noqa: A002
+def _check_type(type: int, *allowed: int) -> None:
     if type not in allowed:
         raise Refused(EW.EW_ATTRIB)
 
@@ -39,7 +39,7 @@ def _write(link: Link, values: dict[int, int]) -> EW:
 def cnc_rdtofs(
     link: Link,
     number: SHORT,
-    type: SHORT,  # noqa: A002
+    type: SHORT,
     length: Annotated[SHORT, LengthOf("tofs")],
 ) -> tuple[EW, Annotated[ODBTOFS, Out("tofs")]]:
     """Read a tool offset, in increments (Manual 000, cnc_rdtofs)."""
@@ -54,7 +54,7 @@ def cnc_rdtofs(
 def cnc_wrtofs(
     link: Link,
     number: SHORT,
-    type: SHORT,  # noqa: A002
+    type: SHORT,
     length: SHORT,
     data: LONG,
 ) -> EW:
@@ -69,7 +69,7 @@ def cnc_wrtofs(
 def cnc_rdtofsr(
     link: Link,
     s_number: SHORT,
-    type: SHORT,  # noqa: A002
+    type: SHORT,
     e_number: SHORT,
     length: Annotated[SHORT, LengthOf("tofsr")],
 ) -> tuple[EW, Annotated[IODBTO, Out("tofsr")]]:
@@ -87,9 +87,7 @@ def cnc_rdtofsr(
 
 
 @call
-def cnc_wrtofsr(
-    link: Link, length: Annotated[SHORT, LengthOf("tofsr")], tofsr: Annotated[IODBTO, IN]
-) -> EW:
+def cnc_wrtofsr(link: Link, length: Annotated[SHORT, LengthOf("tofsr")], tofsr: Annotated[IODBTO, IN]) -> EW:
     """Write a range of tool offsets, all or none (Manual 000, cnc_wrtofsr)."""
     first, last = tofsr.datano_s, tofsr.datano_e
     check_length(length, _HEADER + 4 * max(1, last - first + 1))

@@ -121,9 +121,7 @@ def cnc_rdparam(
 
 
 @call
-def cnc_wrparam(
-    link: Link, length: Annotated[SHORT, LengthOf("param")], param: Annotated[IODBPSD, IN]
-) -> EW:
+def cnc_wrparam(link: Link, length: Annotated[SHORT, LengthOf("param")], param: Annotated[IODBPSD, IN]) -> EW:
     """Write a parameter, of one axis or of all (Manual 000, cnc_wrparam). Ruling: out of range it is EW_DATA."""
     device, axis = link.device, param.type
     check_length(length, _HEADER + 1)
@@ -151,7 +149,13 @@ def _record(device: PowerMate, row: ParameterRow, axis: int) -> bytes:
 
 
 def _read_records(
-    link: Link, what: str, first: int, axis: int, last: int, length: int, wanted: Callable[[ParameterRow], bool]
+    link: Link,
+    what: str,
+    first: int,
+    axis: int,
+    last: int,
+    length: int,
+    wanted: Callable[[ParameterRow], bool],
 ) -> tuple[int, int, bytes]:
     device = link.device
     check_length(length, _HEADER + 2)
@@ -276,7 +280,7 @@ def cnc_rdsetr(
 def cnc_wrsets(
     link: Link,
     length: Annotated[SHORT, LengthOf("set")],
-    set: Annotated[bytes, Bytes("void *")],  # noqa: A002
+    set: Annotated[bytes, Bytes("void *")],
 ) -> EW:
     """Write settings from records of ascending numbers, all or none (Manual 000, cnc_wrsets)."""
     return _write_records(link, length, set, _is_setting, settings=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any, TypeAlias
 
 from polycnc.cnc import ControlError, Refusal
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
@@ -24,6 +24,9 @@ from polycnc.controllers.library import (
     Refused,
     variant,
 )
+
+CHARS: TypeAlias = Annotated[Any, Bytes("char *")]
+"""Characters, which a program may pass as text or as bytes; a function gets bytes."""
 
 PIECE_MOST = 256
 MDI_MOST = 199
@@ -77,9 +80,7 @@ def _transfer(link: Link) -> tuple[PowerMate, Transfer]:
 
 
 @call
-def cnc_download(
-    link: Link, data: Annotated[bytes, Bytes("char *")], number: Annotated[SHORT, LengthOf("data")]
-) -> EW:
+def cnc_download(link: Link, data: CHARS, number: Annotated[SHORT, LengthOf("data")]) -> EW:
     """Send a piece of 1 to 256 characters, cut anywhere (Manual 000, cnc_download)."""
     _, transfer = _transfer(link)
     _refuse_if(not 1 <= number <= PIECE_MOST or len(data) < number, EW.EW_LENGTH)
@@ -209,7 +210,7 @@ def cnc_delete(link: Link, number: SHORT) -> EW:
 @call
 def cnc_rdprogdir(
     link: Link,
-    type: SHORT,  # noqa: A002
+    type: SHORT,
     datano_s: SHORT,
     datano_e: SHORT,
     length: Annotated[SHORT, LengthOf("prgdir")],
@@ -235,7 +236,7 @@ def cnc_rdprogdir(
 @call
 def cnc_rdproginfo(
     link: Link,
-    type: SHORT,  # noqa: A002
+    type: SHORT,
     length: Annotated[SHORT, LengthOf("prginfo")],
 ) -> tuple[EW, Annotated[ODBNC, Out("prginfo")]]:
     """Tell how full the program memory is, in numbers (0) or as text (1) (Manual 000, cnc_rdproginfo)."""
@@ -277,7 +278,7 @@ def cnc_rdexecprog(
 ) -> tuple[
     EW, USHORT, Annotated[SHORT, Out("blknum")], Annotated[bytes, Bytes("char *"), Out("data", c="char *")]
 ]:
-    """Read the program from the block in execution on, and how many blocks are read ahead (Manual 000, cnc_rdexecprog)."""
+    """Read the program from its executed block on, and how many blocks are read ahead (Manual 000, cnc_rdexecprog)."""
     _refuse_if(length == 0, EW.EW_LENGTH)
     execution = link.read("cnc_rdexecprog").execution
     text = execution.text(length)
@@ -285,9 +286,7 @@ def cnc_rdexecprog(
 
 
 @call
-def cnc_wrmdiprog(
-    link: Link, length: Annotated[SHORT, LengthOf("data")], data: Annotated[bytes, Bytes("char *")]
-) -> EW:
+def cnc_wrmdiprog(link: Link, length: Annotated[SHORT, LengthOf("data")], data: CHARS) -> EW:
     """Put in the program of MDI operation, 1 to 199 characters at once (Manual 000, cnc_wrmdiprog)."""
     device = link.command()
     _refuse_if(device.mode is not PowerMateMode.MDI, EW.EW_MODE)
