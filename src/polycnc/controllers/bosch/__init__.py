@@ -1,0 +1,1 @@
+"""Bosch Rexroth Typ3 osa and PNC: what their part programs can ask of the control (Manual 003)."""
