@@ -3,7 +3,7 @@
 from polycnc.controllers.bosch.ncs._clients import Client, ClientError, Clients, Mmc, MmcResult, Sent
 from polycnc.controllers.bosch.ncs._codes import NcsCode, NcsError
 from polycnc.controllers.bosch.ncs._coupling import MAGIC, Control, Coupling, NcsServer
-from polycnc.controllers.bosch.ncs._data_services import DATA_SERVICES, NOT_IN_TELEGRAM, DataService
+from polycnc.controllers.bosch.ncs._data_services import DATA_SERVICES, NOT_IN_TELEGRAM, OVERVIEW, DataService
 from polycnc.controllers.bosch.ncs._image import (
     Axis,
     Channel,
@@ -32,6 +32,7 @@ __all__ = [
     "DATA_SERVICES",
     "MAGIC",
     "NOT_IN_TELEGRAM",
+    "OVERVIEW",
     "PROCESS_SERVICES",
     "WHOLE_SYSTEM",
     "Axis",

@@ -12,7 +12,7 @@ from polycnc.nc.cpl import OMITTED, Box, CharacterField, Fault, Field, text_of
 
 INVALID_PARAMETER = "INVALID PARAMETER"
 INVALID_FIELD_LIMIT = "INVALID FIELD LIMIT"
-_HOLDERS = {"I": "IRD", "R": "RD", "D": "D", "X": "IRD", "S": ""}
+_HOLDERS = {"I": "IRD", "R": "RD", "D": "D", "X": "RD", "S": ""}
 _KINDS = {"I": "INTEGER", "R": "REAL", "D": "DOUBLE"}
 
 
@@ -75,7 +75,8 @@ def check_buffer(service: DataService, values: Values, buffer: object, size: int
             raise Fault(INVALID_PARAMETER, f"MCODS({service.number}) needs a dimensioned string variable")
         capacity = buffer.size
     else:
-        holders = _HOLDERS[service.kind]
+        whole = service.kind == "X" and all(isinstance(each, int) for each in values)
+        holders = _HOLDERS["I" if whole else service.kind]
         kind = buffer.kind if isinstance(buffer, Box | Field) else ""
         if not kind or kind not in holders or (isinstance(buffer, Field) and len(buffer.sizes) != 1):
             names = " or ".join(_KINDS[each] for each in holders)

@@ -292,7 +292,8 @@ def _rows() -> list[DataService]:
     # fmt: off
     return [
         s(1, "commanded positions", "D", "Z", "system", _feed(lambda a: a.setpoint + a.preset)),
-        s(2, "commanded positions in 0.0001", "I", "Z", "system", _feed(lambda a: round((a.setpoint + a.preset) * 1e4))),
+        s(2, "commanded positions in 0.0001", "I", "Z", "system",
+          _feed(lambda a: round((a.setpoint + a.preset) * 1e4))),
         s(3, "path feeds", "R", "Z", "channel", _all_of("feeds")),
         s(4, "lag", "R", "Z", "system", _physical(lambda a: a.lag or 0.0)),
         s(5, "commanded spindle speeds", "R", "Z", "system", _spindles("commanded"), fill=0.0),
@@ -383,3 +384,19 @@ def _rows() -> list[DataService]:
 
 DATA_SERVICES: dict[int, DataService] = {service.number: service for service in _rows()}
 """Every data service by its number; 17, 21, 22, 84 to 86 and 88 are none."""
+
+OVERVIEW: dict[str, tuple[int, ...]] = {
+    "Positions": (1, 2, 35, 38, 4, 37, 16, 23),
+    "Speed and spindle speed": (3, 24, 27, 5, 36, 19, 20, 25),
+    "States": (6, 29, 26, 39, 40, 41, 47, 49, 32),
+    "Potentiometers": (7, 8, 50),
+    "Compensations": (9, 10, 11, 12, 13, 14, 15, 51, 52, 54),
+    "Operation modes": (31, 48),
+    "System structure": (34, 44, 45, 33, 59, 60, 43, 58, 62),
+    "Units of measurement": (61, 53, 18),
+    "Spindles": (63, 64, 65, 66, 67),
+    "Drive": (55, 56, 57),
+    "Coordinates": (71, 72, 73, 74, 75, 76, 77, 78, 79, 80, 81, 82, 83, 89, 90),
+    "Miscellaneous": (28, 46, 42, 68, 69, 70, 30, 87),
+}
+"""The data services by what they are about, as the manual lists them (the coordinates are not in its list)."""

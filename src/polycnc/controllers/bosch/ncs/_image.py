@@ -251,7 +251,7 @@ class Channel:
     skip: tuple[bool, bool] = (False, False)
     optional_stop: tuple[bool, bool] = (False, False)
     reselection: bool = False
-    other_waits: Wait = Wait(0)
+    other_waits: Wait = field(default_factory=lambda: Wait(0))
     coordinates: list[Coordinate] = field(default_factory=list)
 
     @property
