@@ -14,6 +14,7 @@ from polycnc.controllers.bosch.ncs import (
     Mode,
     NcsServer,
     Partner,
+    Sav,
     SpindleMotion,
     ToolCompensation,
     Unit,
@@ -71,11 +72,8 @@ def put(place: str, value: object) -> Change:
 
     def change(image: Image) -> None:
         *rest, name = place.split(".")
-        owner: Any = image
-        if rest:
-            owner = {"channel": image.channels, "axis": image.axes, "spindle": image.spindles}[rest[0]][
-                int(rest[1])
-            ]
+        lists: dict[str, Any] = {"channel": image.channels, "axis": image.axes, "spindle": image.spindles}
+        owner: Any = lists[rest[0]][int(rest[1])] if rest else image
         assert getattr(owner, name) != value
         setattr(owner, name, value)
 
@@ -428,7 +426,7 @@ def test_a_channel_that_waits_in_mcods_shows_it() -> None:
     assert mine.mcods(32, 2, version, buffer, 2) is BLOCKED
     asking.image.axes[2].feed_inhibit = False
     assert asking.values(87, 1, "I", 1) == [8192]
-    asking.image.channels[2].sav = 3  # type: ignore[assignment]
+    asking.image.channels[2].sav = Sav.ACTIVE
     assert mine.mcods(32, 2, version, buffer, 2) == 0
     assert buffer[1] == 3
     assert asking.values(87, 1, "I", 1) == [0]

@@ -12,7 +12,7 @@ from polycnc.controllers.bosch.ncs._data_services import DATA_SERVICES, DataServ
 from polycnc.controllers.bosch.ncs._image import Image, Wait
 from polycnc.controllers.bosch.ncs._process_services import PROCESS_SERVICES, ProcessServices
 from polycnc.controllers.bosch.ncs._versions import Key, Ledger
-from polycnc.nc.cpl import BLOCKED, OMITTED, Box
+from polycnc.nc.cpl import BLOCKED, OMITTED, Box, Fault
 
 MAGIC = 0x4E4353
 
@@ -105,6 +105,8 @@ class Coupling:
         Raises:
             Fault: An argument has the wrong type.
         """
+        if arguments[-1] is OMITTED:
+            raise Fault("INVALID PARAMETER", "no comma stands before the closing bracket")
         if self._under_way is not None and self._under_way[0] == arguments:
             work = self._under_way[1]
         else:
