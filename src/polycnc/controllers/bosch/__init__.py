@@ -1,0 +1,5 @@
+"""Bosch Rexroth Typ3 osa and PNC: what their part programs can ask of the control (Manual 003)."""
+
+from polycnc.controllers.bosch._pnc import Pnc
+
+__all__ = ["Pnc"]
