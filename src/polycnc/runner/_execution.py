@@ -18,7 +18,7 @@ Progress = Callable[[float], None]
 
 _STEP_CYCLES = 1 << 16
 _MOVING_CYCLES = 1 << 8  # what a program asks of the control is seen this often
-_PATIENCE_S = 3600.0
+_PATIENCE_S = 1.0  # nothing changes the inputs of a run: what does not hold then never will
 _GROWTH = 50  # a wait for an input is looked at ever more rarely
 
 

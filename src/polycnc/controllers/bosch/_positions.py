@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from polycnc.cnc import ProgramRun
+from polycnc.kernel import PIDF
 from polycnc.nc.cpl import OMITTED, Fault
 
 _PHYSICAL, _OWN = 0, 1
@@ -33,7 +34,10 @@ class Positions:
 
     def _apos(self, axis: object) -> float:
         index = self._axis(axis, OMITTED, OMITTED)
-        return float(list(self._run().machine.actual.values())[index]) / self._scale(index)
+        machine = self._run().machine
+        simulated = machine.state.servo.row[index]["mode"] == PIDF  # without servos an axis is where it should be
+        positions = machine.actual if simulated else machine.setpoints
+        return float(list(positions.values())[index]) / self._scale(index)
 
     def _wpos(self, axis: object, kind: object = OMITTED, channel: object = OMITTED) -> float:
         index = self._axis(axis, kind, channel)
