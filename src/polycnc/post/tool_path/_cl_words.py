@@ -136,7 +136,7 @@ def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
     elif words & {"CM", "CENTIMETERS"}:
         reading.scale = 10.0
     else:
-        raise statement.fail("UNITS without a unit", "Write UNITS/MM or UNITS/INCHES.")
+        raise statement.fail(f"{statement.major} without a unit", "Write UNITS/MM or UNITS/INCHES.")
     return iter(())
 
 

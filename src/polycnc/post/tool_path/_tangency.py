@@ -36,12 +36,12 @@ class Tangency:
         way = None if start is None or not feed else _direction(start, end)
         if way is not None and self._leaves is not None:
             self._vote += _vote(way, self._leaves)
-        self._settle()
+        self.settle()
         self._way = way
 
     def arc(self, line: int, start: Vector, end: Vector, center: Vector, normal: Vector) -> None:
         """Take an arc that turns about `normal` by the right-hand rule."""
-        self._settle()
+        self.settle()
         self._line = line
         if self._way is not None and (sets_out := _tangent(start, center, normal)) is not None:
             self._vote += _vote(self._way, sets_out)
@@ -51,7 +51,7 @@ class Tangency:
     @property
     def mostly_kinked(self) -> bool:
         """Whether more arcs turn back than go on."""
-        self._settle()
+        self.settle()
         return self.kinked > self.smooth
 
     def text(self) -> str:
@@ -61,7 +61,8 @@ class Tangency:
             f"spot, the first on line {self.first_kink}: their axes seem to be meant the other way (--arc-axis)"
         )
 
-    def _settle(self) -> None:
+    def settle(self) -> None:
+        """Count the last arc, whose neighbours are known."""
         if self._vote > 0:
             self.smooth += 1
         elif self._vote < 0:
