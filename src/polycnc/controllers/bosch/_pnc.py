@@ -14,7 +14,16 @@ from polycnc.controllers.bosch.files import Directory, FileCommands
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock
 from polycnc.nc import ProgramText
-from polycnc.nc.cpl import OMITTED, CplLanguage, CplSource, Fault, Linker, PermanentMemory, text_of, undeclared
+from polycnc.nc.cpl import (
+    OMITTED,
+    CplLanguage,
+    CplSource,
+    Fault,
+    Linker,
+    PermanentMemory,
+    text_of,
+    undeclared,
+)
 
 _WORD = re.compile(
     r"(?P<letter>[A-Za-z]) *(?:(?P<extension>[0-9]{1,2}) *= *)?(?P<value>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
@@ -136,7 +145,10 @@ class Pnc:
 
     def variables(self) -> dict[str, object]:
         """Return permanent and global variables as plain values, by name."""
-        return {**self.kept.values(), **{name: _shown(value) for name, value in self.language.globals.items()}}
+        return {
+            **self.kept.values(),
+            **{name: _shown(value) for name, value in self.language.globals.items()},
+        }
 
     # ------------------------------------------------------------------ within
 
