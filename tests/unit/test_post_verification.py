@@ -226,7 +226,7 @@ def test_the_proof_is_on_the_machine_as_it_stands() -> None:
     assert proof.run.alarms == []
     assert proof.deviation_mm < 1e-4
     assert proof.ok
-    low, high = proof.run.extents_mm["Z"]
+    low, _ = proof.run.extents_mm["Z"]
     assert low == pytest.approx(-300.0 + 120.0 - 2.0)  # the real run: zero, tool length, depth
     assert proof.run.extents_mm["X"][1] == pytest.approx(137.0)
     result = post_file(parse_tool_path(PLATE, "plate.cl"), "fanuc-mill")
