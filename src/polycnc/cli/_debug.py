@@ -31,10 +31,10 @@ def debug_command(
         raise UsageError(
             "the debugger needs textual", hint="Install it: pip install 'polycnc[debug]'."
         ) from None
+    debugger = runner.Debugger(runner.program_text(program), machine, dialect)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise UsageError(
             "the debugger needs a terminal to draw on and to read keys from",
             hint="Run it in a terminal window, without < > or | around it; `polycnc run` needs none.",
         )
-    debugger = runner.Debugger(runner.program_text(program), machine, dialect)
     DebugScreen(debugger, rate=rate).run()

@@ -13,7 +13,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from polycnc.cnc._alarms import AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
 from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot, copied, nested
@@ -31,7 +31,16 @@ from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.kernel import FEED_S
-from polycnc.machine import Machine, MachineConfig, Reason, Snapshot, SnapshotError, load_machine
+from polycnc.machine import (
+    AnyAxis,
+    Machine,
+    MachineConfig,
+    Reason,
+    Snapshot,
+    SnapshotError,
+    Store,
+    load_machine,
+)
 from polycnc.nc import Dialect, Event, Group, MAction, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
@@ -60,8 +69,8 @@ class ControlEvent(IntFlag):
 class Control:
     """A numerical control on a machine of its own.
 
-    `memory` is the file of the durable memory: programs, tools, offsets, timers, parts, histories. `script` tells how
-    the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
+    `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
     """
 
     def __init__(
@@ -69,7 +78,7 @@ class Control:
         config: MachineConfig | str | Path | None = None,
         *,
         channels: int = 1,
-        memory: str | Path | None = None,
+        memory: str | Path | Store | None = None,
         dialect: Dialect | str | Path | None = None,
         data: ControlData | None = None,
         script: Script | None = None,
@@ -94,7 +103,7 @@ class Control:
         self.manual = ManualMotion(
             self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
         )
-        self._live = machine_file.model_copy(update={"tools": self.tools, "offsets": self.offsets})
+        self._live = self._live_config()
         self.channels = tuple(
             ControlChannel(
                 self.machine,
@@ -121,7 +130,39 @@ class Control:
         self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
 
+    def _live_config(self) -> MachineConfig:
+        """Return the machine file with the tables that change while programs run."""
+        return self.machine.config.model_copy(update={"tools": self.tools, "offsets": self.offsets})
+
     # ------------------------------------------------------------------ modes and settings
+
+    def change_axes(self, axes: tuple[AnyAxis, ...]) -> None:
+        """Let the axes have these speeds, accelerations and limits from now on.
+
+        Raises:
+            ControlError: A program is being executed or is interrupted, or axes move.
+        """
+        for channel in self.channels:
+            self._check_over(channel)
+        if self.manual.active:
+            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+        self.machine.change_axes(axes)
+        self.manual.change_axes(axes)
+        self._live = self._live_config()
+        for channel in self.channels:
+            channel.change_config(self._live, self.dialect)
+
+    def change_dialect(self, dialect: Dialect) -> None:
+        """Let programs be read in another dialect, or with other settings of it, from now on.
+
+        Raises:
+            ControlError: A program is being executed or is interrupted.
+        """
+        for channel in self.channels:
+            self._check_over(channel)
+        self.dialect = dialect
+        for channel in self.channels:
+            channel.change_config(self._live, dialect)
 
     @property
     def mode(self) -> Mode:
@@ -252,8 +293,10 @@ class Control:
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
-    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN) -> None:
-        """Begin the selected program, the MDI text, or go on where a program is interrupted, as far as `step` says.
+    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
+        """Begin the selected program or the MDI text at a line, or go on where a program is interrupted.
+
+        `step` says how far.
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
@@ -279,9 +322,13 @@ class Control:
                 )
             chosen.go_on(self.data.after_manual, step)
         else:
-            chosen.begin(
-                self._to_begin(chosen, is_mdi), self._switches, self._overrides, mdi=is_mdi, step=step
-            )
+            text = self._to_begin(chosen, is_mdi)
+            if not 1 <= line <= text.content.count(b"\n") + 1:
+                raise ControlError(
+                    Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is."
+                )
+            chosen.begin(text, self._switches, self._overrides, mdi=is_mdi, step=step, line=line)
+            self._note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE
@@ -327,6 +374,17 @@ class Control:
             self.alarms.cause_gone("emergency_stop")
             needed = self.data.emergency_needs_reset
             self._emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
+
+    def put_alarm(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
+        """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
+        if self.alarms.has(name, axis):
+            return self.alarms.put(name, axis=axis)
+        alarm = self.alarms.put(name, axis=axis, detail=detail)
+        self.manual.stop_all()
+        for channel in self.channels:
+            channel.fail()
+        self._raised |= ControlEvent.ALARM
+        return alarm
 
     def _break_off(self) -> None:
         """Let everything brake, and forget what was under way."""
@@ -470,7 +528,7 @@ class Control:
             cutting_s=self._cutting_s() - cutting_s,
             tool=self._tool(),
         )
-        self._look(passed)
+        self._look(passed, states)
         if [channel.run_state for channel in self.channels] != states:
             self._raised |= ControlEvent.RUN_STATE
         if any(alarm not in alarms for alarm in self.alarms.active):
@@ -479,15 +537,14 @@ class Control:
             self._raised |= ControlEvent.MANUAL
         return passed
 
-    def _look(self, passed: int) -> None:
-        """Look at what the last cycle has brought."""
+    def _look(self, passed: int, states: list[RunState]) -> None:
+        """Look at what the last cycles have brought since the channels had these states."""
         alarms = self.alarms.active
         self.manual.after()
         for number, channel in enumerate(self.channels):
-            before = channel.run_state
             if channel.run is not None and not channel.returning:
                 channel.run.after_cycles(passed)
-            if before is not channel.run_state:
+            if channel.run_state is not states[number]:
                 self._note_end(channel)
             channel.look()
             self._take_answers(number, channel)

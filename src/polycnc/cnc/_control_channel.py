@@ -56,6 +56,7 @@ class ControlChannel:
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
         self._lent: tuple[tuple[int, float], ...] | None = None  # axes and where they were
+        self._changed = False  # the machine has other limits than the run knows
 
     # ------------------------------------------------------------------ what it does
 
@@ -109,15 +110,23 @@ class ControlChannel:
     # ------------------------------------------------------------------ commands
 
     def begin(
-        self, text: ProgramText, switches: Switches, overrides: Overrides, *, mdi: bool, step: Step
+        self,
+        text: ProgramText,
+        switches: Switches,
+        overrides: Overrides,
+        *,
+        mdi: bool,
+        step: Step,
+        line: int = 1,
     ) -> None:
-        """Begin to execute a text from where the axes stand.
+        """Begin to execute a text at a line, from where the axes stand.
 
         Raises:
             ControlError: The axes are still braking.
         """
         self.check_rest()
-        if self.run is None:
+        if self.run is None or self._changed:
+            self._changed = False
             self.run = ProgramRun(
                 self._machine,
                 text,
@@ -130,6 +139,8 @@ class ControlChannel:
             )
         else:
             self.run.load(text, keeps_modal=mdi)
+        if line > 1:
+            self.run.search(line=line)
         self.is_mdi = mdi
         self._lent = None
         self.set_switches(switches)
@@ -216,6 +227,11 @@ class ControlChannel:
         self.breakpoints = breakpoints
         if self.run is not None:
             self.run.breakpoints = breakpoints
+
+    def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
+        """Let programs that begin from now on keep other limits, and be read in this dialect."""
+        self._config, self._dialect = config, dialect
+        self._changed = True
 
     def set_switches(self, switches: Switches) -> None:
         """Take over what the operator has switched on."""

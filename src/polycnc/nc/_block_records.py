@@ -202,6 +202,24 @@ class BlockRecords:
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return 0 if context is None else context.modal.tool
 
+    def motion(self, tag: int) -> Action | None:
+        """Return what the block of a tag moves by: the drilling cycle that is on, or the latest of G0 to G3."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        if context is None:
+            return None
+        if context.modal.cycle:
+            return Action[context.modal.cycle.upper()]
+        motion = float(context.modal.whole[MOTION])
+        if context.begin is not None:
+            replay = self._replay(context, context.begin)
+            motion = _latest(replay.motion, bisect_right(replay.lines, tag & LINE_MASK) - 1, motion)
+        return _MOTION_ACTIONS.get(int(motion))
+
+    def source(self, tag: int) -> ProgramText | None:
+        """Return the text that the block of a tag stands in."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return None if context is None else context.text
+
     def program(self, tag: int) -> str | None:
         """Return the name of the program that a tag refers to."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
@@ -254,9 +272,7 @@ class BlockRecords:
         whole: list[int] = np.frombuffer(modal.whole, np.int64).tolist()
         feed = modal.feed
         if context.begin is not None:
-            if context.replay is None:
-                context.replay = self._read_run(context.text, context.begin)
-            replay = context.replay
+            replay = self._replay(context, context.begin)
             block = bisect_right(replay.lines, line) - 1
             whole[MOTION] = int(_latest(replay.motion, block, whole[MOTION]))
             whole[ABSOLUTE] = int(_latest(replay.absolute, block, whole[ABSOLUTE]))
@@ -278,6 +294,11 @@ class BlockRecords:
             inch=bool(whole[INCH]),
             zero=tuple(np.frombuffer(modal.offset).tolist()),
         )
+
+    def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:
+        if context.replay is None:
+            context.replay = self._read_run(context.text, begin)
+        return context.replay
 
     def _read_run(self, text: ProgramText, begin: tuple[int, int]) -> _Replay:
         columns = word_columns(self._columns)
