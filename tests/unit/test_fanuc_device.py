@@ -228,6 +228,23 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     assert axis.vmax == pytest.approx(15_000 / 60 * 2.54)  # 0.1 inch/min
 
 
+@pytest.mark.parametrize(("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")])
+def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name: str) -> None:
+    control, handle = attached(axes=2)
+    moved(control, "G0 X3. Y-4.")
+    data = fwlib.IODBPSD(datano=1020, type=2)
+    data.u.cdata = code
+    assert fwlib.cnc_wrparam(handle, 5, data) == OK
+    assert control.axis_name(2) == "Y"
+    control.power_cycle()
+    assert [control.axis_name(axis) for axis in (1, 2)] == ["X", name]
+    assert control.machine.actual == {"X": 3.0, name: -4.0}
+    assert bool(control.alarm_bits) is (code != ord("W"))
+    control.reset()
+    moved(control, f"G0 {name}1.5")
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 1500
+
+
 def test_work_offsets_are_parameters() -> None:
     control, handle = attached()
     control.parameters.set(1222, -2_500, 2)
