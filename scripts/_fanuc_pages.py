@@ -54,13 +54,15 @@ def _functions() -> Iterator[str]:
         function = getattr(fwlib, name)
         arguments = ", ".join(inspect.signature(function).parameters)
         yield f"| `{name}({arguments})` | {_first(function)} |\n"
-    yield "\n## The control beside the library\n\nWhat the operator does, and what no function of the library reaches.\n\n"
+    yield "\n## The control beside the library\n\n"
+    yield "What the operator does, and what no function of the library reaches.\n\n"
     yield "| method of `PowerMate` | what it does |\n| --- | --- |\n"
     for name, method in vars(PowerMate).items():
         if inspect.isfunction(method) and not name.startswith("_"):
             arguments = ", ".join(list(inspect.signature(method).parameters)[1:])
             yield f"| `{name}({arguments})` | {_first(method)} |\n"
-    yield "\n## Functions\n\nIn Python the handle comes first, then what goes in; what C takes a pointer for comes back.\n\n"
+    yield "\n## Functions\n\n"
+    yield "In Python the handle comes first, then what goes in; what C takes a pointer for comes back.\n\n"
     yield "| in C | what it does |\n| --- | --- |\n"
     for name, function in fwlib.FUNCTIONS.items():
         yield f"| `{function.prototype}` | {_first(getattr(fwlib, name))} |\n"

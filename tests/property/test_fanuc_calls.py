@@ -18,7 +18,19 @@ NUMBERS = (
     -32768, -2, -1, 0, 1, 2, 3, 5, 7, 8, 12, 24, 28, 31, 33, 38, 100, 118, 149, 200, 256, 300, 500, 501, 1000, 1006,
     1020, 1320, 1420, 6080, 6711, 6750, 8010, 9000, 9999, 32767, 70000,
 )  # fmt: skip
-TEXTS = ("\n", "%", "\nO9\nM30\n%", "\nO9\n", "G1X1.\n", "~", "(", "\nO7\nM30\n%", "\nO9001\nM99\n%", "", "X" * 256)
+TEXTS = (
+    "\n",
+    "%",
+    "\nO9\nM30\n%",
+    "\nO9\n",
+    "G1X1.\n",
+    "~",
+    "(",
+    "\nO7\nM30\n%",
+    "\nO9001\nM99\n%",
+    "",
+    "X" * 256,
+)
 LEFT_OUT = {"cnc_freelibhndl", "cnc_setdefnode", "cnc_delall"}  # the last deletes what is not protected
 BUTTONS = ("cycle_start", "feed_hold", "reset", "power_cycle")
 
@@ -26,7 +38,11 @@ BUTTONS = ("cycle_start", "feed_hold", "reset", "power_cycle")
 def state(control: PowerMate) -> tuple[Any, ...]:
     """Return everything that calls can change, but for positions, which time changes as well."""
     return (
-        {(n, a): control.parameters.value(n, a) for n, a in control.parameters._values if not 6750 <= n <= 6758},
+        {
+            (n, a): control.parameters.value(n, a)
+            for n, a in control.parameters._values
+            if not 6750 <= n <= 6758
+        },
         {number: control.macros.get(number) for block in control.macros.common.blocks for number in block},
         [control.tool_offsets.get(number) for number in range(1, 100)],
         [(each, control.programs.read(each.number)) for each in control.programs.directory()],

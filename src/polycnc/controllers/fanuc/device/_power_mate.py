@@ -26,7 +26,13 @@ from polycnc.controllers.fanuc.data._macro_variables import CommonRange, MacroVa
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
-from polycnc.controllers.fanuc.device._alarms import NAME_ALARM, POWER_MATE_ALARMS, PREFIX, AlarmBit, alarm_bits
+from polycnc.controllers.fanuc.device._alarms import (
+    NAME_ALARM,
+    POWER_MATE_ALARMS,
+    PREFIX,
+    AlarmBit,
+    alarm_bits,
+)
 from polycnc.controllers.fanuc.device._execution import Execution
 from polycnc.controllers.fanuc.device._machine_file import (
     AxisSetting,
@@ -39,6 +45,7 @@ from polycnc.controllers.fanuc.device._mdi import MdiProgram
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
+from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
 from polycnc.machine import AnyAxis, Clock, Machine, Store
@@ -369,6 +376,35 @@ class PowerMate:
         """Return what the control is and does in the present cycle."""
         return self.control.status()
 
+    def snapshot(self) -> PowerMateSnapshot:
+        """Return the state of the present cycle; what is durable is not in it."""
+        return PowerMateSnapshot(
+            control=self.control.snapshot(),
+            mode=self._mode,
+            cursor=self._cursor,
+            mdi=self.mdi.blocks,
+            mdi_start=self.mdi.start,
+            skip=self._skip,
+            skip_positions=self._skip_positions,
+            protection_keys=self.protection_keys,
+            parameters_writable=self.parameters_writable,
+            inch=self._inch,
+        )
+
+    def restore(self, snapshot: PowerMateSnapshot) -> None:
+        """Go back to a snapshot; what is durable stays as it is.
+
+        Raises:
+            SnapshotError: It is of another control, or axes have other limits now; nothing has changed.
+        """
+        self.control.restore(snapshot.control)
+        self._mode, self._cursor = snapshot.mode, snapshot.cursor
+        self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
+        self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
+        self.protection_keys = snapshot.protection_keys
+        self.parameters_writable = snapshot.parameters_writable
+        self._inch = snapshot.inch
+
     def close(self) -> None:
         """Switch off: save the timers and close the memory."""
         self.control.timers.save()
@@ -386,7 +422,11 @@ class PowerMate:
         axes = self._axes()
         characters, most_programs = self._sizes
         names = [axis.name for axis in axes]
-        start = dict.fromkeys(names, 0.0) if before is None else dict(zip(names, before.actual.values(), strict=True))
+        start = (
+            dict.fromkeys(names, 0.0)
+            if before is None
+            else dict(zip(names, before.actual.values(), strict=True))
+        )
         control = Control(
             machine_of(axes, start),
             memory=self.store,
@@ -407,7 +447,9 @@ class PowerMate:
         control.change_axes(axes)
         for axis, name in enumerate(names, 1):
             if self.parameters.value(1020, axis) != ord(name):
-                control.put_alarm(f"{PREFIX}{NAME_ALARM}", axis=name, detail=f"PARAMETER 1020 OF AXIS {axis}: {name}")
+                control.put_alarm(
+                    f"{PREFIX}{NAME_ALARM}", axis=name, detail=f"PARAMETER 1020 OF AXIS {axis}: {name}"
+                )
         return control
 
     def _dialect(self) -> Dialect:
