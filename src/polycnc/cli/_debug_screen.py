@@ -149,7 +149,7 @@ class DebugScreen(App[None]):
             self.set_interval(_TICK_S, self._tick)
 
     def _tick(self) -> None:
-        if self.query(Listing) and (self.debugger.running or self._moves()):
+        if self.is_running and self.query("#state") and (self.debugger.running or self._moves()):
             self.pass_time(self.cycles_per_tick)
 
     def _moves(self) -> bool:

@@ -187,7 +187,9 @@ class Machine:
             UsageError: Other axes than the machine has, or a path moves them.
         """
         if [(axis.name, axis.kind) for axis in axes] != [(axis.name, axis.kind) for axis in self.config.axes]:
-            raise UsageError("these are other axes", hint=f"The axes are {', '.join(self.config.axis_names)}.")
+            raise UsageError(
+                "these are other axes", hint=f"The axes are {', '.join(self.config.axis_names)}."
+            )
         if (self.state.paths.row["state"] == kernel.RUNNING).any():
             raise UsageError("a path moves the axes", hint="Wait until the path has come to rest.")
         self.config = self.config.model_copy(update={"axes": axes})
