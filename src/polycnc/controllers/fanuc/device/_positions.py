@@ -52,11 +52,11 @@ class Positions:
         shift = self._shift(tuple(axes))
         scales = self._scales()
         found = []
-        for name, each in axes.items():
+        for each in axes.values():
             program, machine = scales[each.unit]
             found.append(
                 AxisPositions(
-                    absolute=program.counts(each.work + shift.get(name, 0.0)),
+                    absolute=program.counts(each.work + shift.get(each.name, 0.0)),
                     machine=machine.counts(each.machine),
                     relative=program.counts(each.relative),
                     distance=program.counts(each.to_go),
