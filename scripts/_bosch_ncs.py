@@ -6,10 +6,10 @@ _HEAD = """# NCS coupling of the PNC: MCODS and MCOPS
 
 <!-- Written by scripts/reference. -->
 
-CPL programs read data of channels by `MCODS(number,channel,version,buffer,size[,...])` and have channels do something by
-`MCOPS(number,channel[,...])`. Both return an [answer](#answers). With the version that the last call left in its
-variable, MCODS waits until the data are new: in each cycle (Z), with each block (S), when they change (E); those marked I
-never wait, those marked R never change. The channel is -1 where data are those of the whole system; "either" takes
+CPL programs read data of channels by `MCODS(number,channel,version,buffer,size[,...])` and have channels do something
+by `MCOPS(number,channel[,...])`. Both return an [answer](#answers). With the version that the last call left in its
+variable, MCODS waits until the data are new: in each cycle (Z), with each block (S), when they change (E); those marked
+I never wait, those marked R never change. The channel is -1 where data are those of the whole system; "either" takes
 both. Data go into variables of their type or a wider one (INTEGER, REAL, DOUBLE), texts into dimensioned strings.
 
 """

@@ -3,6 +3,7 @@
 from polycnc.controllers.bosch.system._error_list import ALL_CHANNELS, Category, ErrorList, PresentError
 from polycnc.controllers.bosch.system._interface import Interface, Signals
 from polycnc.controllers.bosch.system._plc_data import PlcData, PlcRange
+from polycnc.controllers.bosch.system._programmed import LastFunctions, Macoda, ProgrammedShifts
 from polycnc.controllers.bosch.system._shift_tables import Column, ShiftTable, ZeroShifts
 from polycnc.controllers.bosch.system._system_data import Area, AxisCoupling, Moment, SystemData
 from polycnc.controllers.bosch.system._time import clock_ms, date_text, time_text
@@ -17,10 +18,13 @@ __all__ = [
     "Column",
     "ErrorList",
     "Interface",
+    "LastFunctions",
+    "Macoda",
     "Moment",
     "PlcData",
     "PlcRange",
     "PresentError",
+    "ProgrammedShifts",
     "ShiftTable",
     "Signals",
     "SystemData",
