@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from polycnc.controllers.bosch.system import LastFunctions, Macoda, ProgrammedShifts
@@ -23,10 +25,14 @@ class Control(RecordingHost):
         self.macoda = Macoda(
             2, 3, {(100300004, -1): [5, 6.5], (100300004, 2): [7, 8.5], (302000012, -1): ["K4.geo"]}
         )
-        super().__init__(
-            {"COF": self.shifts.cof, "DPC": self.shifts.dpc, "SCL": self.shifts.scl}
-            | {"NCF": self.last.ncf, "MCA": self.macoda.mca}
-        )
+        shifts = self.shifts
+        functions: dict[str, Callable[..., object]] = {
+            "COF": shifts.cof,
+            "DPC": shifts.dpc,
+            "SCL": shifts.scl,
+        }
+        functions |= {"NCF": self.last.ncf, "MCA": self.macoda.mca}
+        super().__init__(functions)
 
     def value(self, expression: str) -> float:
         found = Ran(f"10 #V!={expression}\n", self)["#V!"]

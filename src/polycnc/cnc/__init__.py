@@ -28,6 +28,7 @@ from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Moti
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
 from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
+from polycnc.cnc._tool_times import ToolTime
 
 __all__ = [
     "ALARMS",
@@ -91,5 +92,6 @@ __all__ = [
     "TimersState",
     "Tool",
     "ToolTable",
+    "ToolTime",
     "first_comment",
 ]

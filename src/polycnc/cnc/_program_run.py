@@ -7,28 +7,31 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TypeAlias
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._block_search import block_line
-from polycnc.cnc._path_feed import PathFeed
+from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
+from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import (
     BLOCK,
+    FEED_S,
     FOLLOWING_ERROR,
     HELD,
     IDLE,
-    LIMIT_HIGH,
-    LIMIT_LOW,
     NO_LIMIT,
     OTHER_SOURCE,
     PATH_EVENT,
     PATH_RESTED,
     QUEUE_LOW,
+    RAPID_S,
     READY,
     RECORDER_FULL,
     RUNNING,
@@ -43,6 +46,7 @@ from polycnc.nc import (
     BlockRecord,
     Call,
     Channel,
+    ChannelSnapshot,
     Dialect,
     Event,
     Language,
@@ -59,7 +63,6 @@ OnEvent: TypeAlias = Callable[[Event], bool | None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
 _MASK = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
-_LIMIT_SWITCHES = (LIMIT_LOW, LIMIT_HIGH)
 _STANDING = {
     RunState.STOPPED_AT_BLOCK,
     RunState.PROGRAM_STOP,
@@ -68,6 +71,35 @@ _STANDING = {
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 HIGHEST_OVERRIDE = 2.0
+
+
+# Plain values that a run holds besides its channel.
+_SAVED = (
+    "optional_stop",
+    "alarm",
+    "_block_delete",
+    "_single_block",
+    "_state",
+    "_hold",
+    "_stop",
+    "_met",
+    "_dropping",
+    "_locked",
+    "_unanswered",
+    "_approach",
+    "_tool_times",
+)
+
+
+class RunSnapshot(NamedTuple):
+    """Everything that a run holds at one cycle, to go back to."""
+
+    program: ProgramText
+    channel: Channel
+    prepared: ChannelSnapshot
+    feed: FeedSnapshot
+    stopper: Stopper
+    fields: dict[str, Any]
 
 
 class ProgramRun:
@@ -117,6 +149,7 @@ class ProgramRun:
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
         self._locked = False
+        self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
             None  # where a searched block begins, and its line
         )
@@ -444,6 +477,11 @@ class ProgramRun:
         return self._by_axis(self.machine.state.paths.position[self.path])
 
     @property
+    def tool_times(self) -> dict[int, ToolTime]:
+        """How long each tool has cut and positioned so far; tool 0 is an empty spindle."""
+        return self._tool_times.until(self._seconds())
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
         row = self._row
@@ -486,6 +524,7 @@ class ProgramRun:
 
         For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
         """
+        self._tidy()
         self.feed.feed()
         target = self.feed.target()
         done = 0
@@ -510,6 +549,7 @@ class ProgramRun:
             return 0 if self.at_rest else cycles
         if self._state not in (RunState.ACTIVE, RunState.HOLD):
             return 0
+        self._tidy()
         self.feed.feed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
@@ -522,8 +562,8 @@ class ProgramRun:
             self._meet_event()
         if raised & RECORDER_FULL:
             self.drain()
-        if raised & (FOLLOWING_ERROR | SWITCH_EDGE):
-            self._check_alarm(raised)
+        if (found := axis_alarm(self.machine, raised)) is not None:
+            self._stop_by(*found)
         self._look()
 
     def drain(self) -> None:
@@ -537,7 +577,45 @@ class ProgramRun:
             self.rows(rows, tags)
         recorder.filled[0] = 0
 
+    # ------------------------------------------------------------------ going back
+
+    def snapshot(self) -> RunSnapshot:
+        """Return everything that this run holds, to go back to with `restore`.
+
+        The machine has a snapshot of its own: take and restore both together.
+
+        Raises:
+            UsageError: a language executes the program; where that stands cannot be kept.
+        """
+        return RunSnapshot(
+            self.program,
+            self.channel,
+            self.channel.snapshot(),
+            self.feed.snapshot(),
+            replace(self.stopper),
+            {name: getattr(self, name) for name in _SAVED},
+        )
+
+    def restore(self, saved: RunSnapshot) -> None:
+        """Go back to a snapshot of this run."""
+        self.program = saved.program
+        self.channel = self.feed.channel = saved.channel
+        self.channel.restore(saved.prepared)
+        self.feed.restore(saved.feed)
+        self.stopper.records = saved.stopper.records
+        self.stopper.step, self.stopper.depth = saved.stopper.step, saved.stopper.depth
+        self.stopper.breakpoints = saved.stopper.breakpoints
+        for name, value in saved.fields.items():
+            setattr(self, name, value)
+        self.channel.skip_levels = self._block_delete
+
     # ------------------------------------------------------------------ within
+
+    def _tidy(self) -> None:
+        """Forget records that nobody can ask for any more."""
+        if self.channel.records.crowded:
+            self.drain()  # rows refer to records
+            self.feed.forget_records(self.executed_tag)
 
     def _check_over(self) -> None:
         """Refuse what would change the program while it is executed."""
@@ -582,9 +660,16 @@ class ProgramRun:
             if axis >= 0 and state.owner[axis] in (self.path, OTHER_SOURCE):
                 state.owner[axis] = OTHER_SOURCE if self._locked else self.path
 
+    def _seconds(self) -> ToolTime:
+        totals = self.machine.state.paths.totals[self.path]
+        return ToolTime(float(totals[FEED_S]), float(totals[RAPID_S]))
+
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        hold = self._hold or self._stop is not None or self._unanswered
+        stands = (
+            self._state is RunState.STOPPED_AT_BLOCK
+        )  # before a segment that is in the look-ahead already
+        hold = self._hold or stands or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == RUNNING:
@@ -614,6 +699,7 @@ class ProgramRun:
         depth_of = record if within or following is None else following
         stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
         if not within and self._stand_at_marks():
+            self._set_hold()
             return
         self.feed.look_again()
         self._set_hold()
@@ -636,6 +722,7 @@ class ProgramRun:
         number = int(self._row["event"])
         event = self.channel.writer.events.pop(number)
         self._met = int(self._row["head"]), event.tag
+        self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
             self._unanswered = bool(self.on_event(event))
             self._set_hold()
@@ -667,6 +754,7 @@ class ProgramRun:
 
     def _stop_at_block(self) -> None:
         """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        self.feed.pass_marks()
         while self.feed.at_mark:
             following = self.feed.next_tag()
             if following is None or self.stopper.stops_before(following):
@@ -688,25 +776,6 @@ class ProgramRun:
         self._unanswered = False
         self._met = None
         self._set_hold()
-
-    def _check_alarm(self, raised: int) -> None:
-        state, config = self.machine.state, self.machine.config
-        for index, axis in enumerate(config.axes):
-            if raised & FOLLOWING_ERROR and state.servo.error_tripped[index]:
-                error = float(state.servo.row[index]["following_error"])
-                self._stop_by(
-                    f"axis {axis.name}: following error {error:.4f} {axis.unit} is above its limit",
-                    "following_error",
-                )
-                return
-            if raised & SWITCH_EDGE and any(
-                state.switches.switch[index, j]["level"] for j in _LIMIT_SWITCHES
-            ):
-                at = float(state.servo.actual[index])
-                self._stop_by(
-                    f"axis {axis.name} is on a limit switch at {at:.3f} {axis.unit}", "limit_switch"
-                )
-                return
 
     def _stop_by(self, text: str, code: str) -> None:
         self.alarm = RunAlarm(text, code, self.executed_tag, self.machine.clock.cycles)

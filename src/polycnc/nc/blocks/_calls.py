@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -138,6 +138,23 @@ class Calls:
         self._stack.pop()
         self._note_calls()
         return running.back
+
+    def snapshot(self) -> tuple[Running, ...]:
+        """Return the programs under way, to go back to.
+
+        Raises:
+            UsageError: a language executes one of them; where it stands cannot be kept.
+        """
+        if any(running.source is not None for running in self._stack):
+            raise UsageError(
+                "a program with statements is under way", hint="Take the snapshot before or after it."
+            )
+        return tuple(replace(running) for running in self._stack)
+
+    def restore(self, stack: tuple[Running, ...]) -> None:
+        """Go back to a snapshot."""
+        self._stack = [replace(running) for running in stack]
+        self._note_calls()
 
     def close(self) -> None:
         """End all programs."""

@@ -261,6 +261,14 @@ class Interpreter:
         self._last_tag = tag
         return tag
 
+    def snapshot(self) -> tuple[int, ProgramText]:
+        """Return what one block leaves for the next besides the state, to go back to."""
+        return self._last_tag, self._held_text
+
+    def restore(self, saved: tuple[int, ProgramText]) -> None:
+        """Go back to a snapshot."""
+        self._last_tag, self._held_text = saved
+
     @property
     def last_tag(self) -> int:
         """The reference of the last block that was executed."""

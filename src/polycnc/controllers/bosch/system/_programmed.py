@@ -48,7 +48,7 @@ class ProgrammedShifts:
         Raises:
             Fault: The channel has no such coordinate.
         """
-        if axis == 0 and not isinstance(axis, str):
+        if isinstance(axis, int | float) and axis == 0:
             return self.position_angle_deg
         return self._length(self.position, self._coordinate(axis, kind))
 
