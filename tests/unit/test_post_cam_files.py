@@ -123,27 +123,46 @@ BETWEEN = (
 )
 
 
-@pytest.mark.parametrize("cycles", ["macros", "moves"])
+HOLES = """LOADTL/2
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/5,6,40
+CYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3
+GOTO/11,13,0
+{}
+GOTO/29,17,0
+CYCLE/OFF
+RAPID
+GOTO/29,17,40
+"""
+
+
 @pytest.mark.parametrize("statement", BETWEEN)
-def test_a_cycle_holds_whatever_stands_between_its_points(statement: str, cycles: str) -> None:
-    cycle = (
-        "CYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3\nGOTO/11,13,0\n{}GOTO/29,17,0\nCYCLE/OFF\nRAPID\nGOTO/29,17,40\n"
-    )
-    text = "LOADTL/2\nSPINDL/RPM,2000,CLW\nRAPID\nGOTO/5,6,40\n" + cycle.format(f"{statement}\n")
-    used = control({"cycles": cycles})
-    result = post_file(parse_tool_path(text), used, verify=True)
-    assert result.summary.holes == 2
-    assert result.ok
-    proof = result.verification
-    assert proof is not None
-    assert proof.path_feed_mm == pytest.approx(20.0)
-    # The machine never feeds sideways: each feed is a hole.
-    assert proof.run.cutting_path_mm == pytest.approx(20.0)
+def test_a_cycle_holds_whatever_stands_between_its_points(statement: str) -> None:
+    text = HOLES.format(statement)
     feeds = [sweep for sweep in sweep_tool_path(parse_tool_path(text)) if not sweep.rapid]
-    assert [(sweep.start, sweep.end) for sweep in feeds] == [
-        ((11.0, 13.0, 3.0), (11.0, 13.0, -7.0)),
-        ((29.0, 17.0, 3.0), (29.0, 17.0, -7.0)),
+    down = [((11.0, 13.0, 3.0), (11.0, 13.0, -7.0)), ((29.0, 17.0, 3.0), (29.0, 17.0, -7.0))]
+    assert [(sweep.start, sweep.end) for sweep in feeds] == down
+    holes = [words for macro, words in moves_of(text) if macro == "CYCLE_DRILL"]
+    assert [(words["X"], words["Y"], words["Z"], words["R"]) for words in holes] == [
+        (11.0, 13.0, -7.0, 3.0),
+        (29.0, 17.0, -7.0, 3.0),
     ]
+    as_moves = [words for macro, words in moves_of(text, cycles="moves") if macro == "LINEAR"]
+    assert [(words["X"], words["Y"], words["Z"]) for words in as_moves] == [end for _, end in down]
+
+
+@pytest.mark.parametrize(
+    ("statement", "calls"), [("SPINDL/RPM,2500,CLW", 2), ("DELAY/1.5", 2), ("PPRINT next", 1)]
+)
+def test_what_the_control_might_take_for_its_cycle_is_said_outside_of_it(statement: str, calls: int) -> None:
+    result = post_file(parse_tool_path(HOLES.format(statement)), control(), verify=True)
+    assert result.ok
+    assert result.text is not None
+    assert result.text.count("G80") == calls
+    assert result.verification is not None
+    # The machine never feeds sideways: each feed is a hole.
+    assert result.verification.run.cutting_path_mm == pytest.approx(20.0)
 
 
 def test_a_tool_change_ends_a_cycle_and_a_retraction_does_not() -> None:
