@@ -64,8 +64,8 @@ def test_fanuc_mill_goes_home_before_a_tool_change_and_comes_in_x_and_y_first() 
     for place in (first, second, third):
         assert blocks[place - 3 : place] == change
     assert blocks[second + 1 : second + 5] == ["S900 M03", "G00 X7. Y5.", "G43 H05 Z30.", "Z2."]
-    assert blocks[third + 2 : third + 5] == ["G00 X7. Y11.", "G43 H09 Z3.", "G99 G81 Z-6. R3. F90."]
-    assert [block for block in blocks if block.startswith("G00") and "Z" in block] == ["G00 Z40."]
+    assert blocks[third + 2 : third + 5] == ["G00 X7. Y11.", "G43 H09 Z3.", "G99 G81 X7. Y11. Z-6. R3. F90."]
+    assert [block for block in blocks if block.startswith("G00") and "Z" in block] == ["G00 X7. Y11. Z40."]
 
 
 def test_post_prints_the_program_and_tells_the_rest_beside(tmp_path: Path) -> None:

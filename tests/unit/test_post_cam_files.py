@@ -235,6 +235,8 @@ REFUSED = {
     "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0,1,0,0,0,0,1": "MSYS changes the coordinate system",
     "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0.5,1,0,0,0,1,0": "MSYS changes the coordinate system",
     "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,0\n$$-> CSYS / 1,0,0,0, $\n 0,0,1,0, $\n 0,-1,0,0": "CSYS changes",
+    "PAINT/PATH\nFEDRAT/IPM,12": "a feed in inches in a CLSF",
+    "PAINT/PATH\nCYCLE/DRILL,RAPTO,.1,FEDTO,-1,IPR,.002": "a feed in inches in a CLSF",
     "NURBS/3": "NURBS moves the tool",
     "MODE/INCR": "MODE/INCR is not known",
     "CUTCOM/ON\nGOTO/1,2,3": "CUTCOM/ON without a side",

@@ -129,6 +129,7 @@ def _machine(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.units_said = True
     if words & {"MM", "MILLIMETERS"}:
         reading.scale = 1.0
     elif words & {"INCH", "INCHES", "IN"}:
@@ -218,6 +219,7 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.check_units(statement)
     if "RAPID" in words:
         yield Rapid(statement.line)
         return
@@ -246,6 +248,7 @@ def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
     elif "ON" in words:
         yield CycleOff(statement.line, on=True)
     else:
+        reading.check_units(statement)
         reading.cycle_began = reading.moves
         yield read_cycle(statement, reading.scale, _FEED_UNITS)
 
