@@ -396,6 +396,17 @@ def test_spindle_and_coolant_come_back_after_a_tool_change() -> None:
     ]
 
 
+def test_a_highest_speed_is_not_lost() -> None:
+    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\n"
+    assert calls_of(text)[0][2] == ("SPINDLE_CW", {"S": 180.0, "SPINDLEMODE": 96.0, "MAXRPM": 2600.0})
+    found = [remark.text for remark in posted(text, control())[1].remarks]
+    assert found == ["the highest speed is not written: SPINDLE_CW of the control file does not use MAXRPM"]
+    clamped = control(macros={"SPINDLE_CW": "<R=MAXRPM>\nG50$R$"})
+    blocks, summary = posted(text, clamped)
+    assert "G50R2600.000" in blocks
+    assert summary.remarks == ()
+
+
 def test_the_way_of_an_arc_is_as_long_as_it_turns() -> None:
     text = "GOTO/30,-3.5,-2\nCIRCLE/30,0,-2,0,0,-1,3.5\nGOTO/26.5,0,-2\n"
     (quarter,) = [s for s in sweep_tool_path(parse_tool_path(text)) if s.angle]

@@ -41,10 +41,15 @@ class ControlFile:
     _symbols: Symbols = field(repr=False)
     _style: Style = field(repr=False)
     _places: _MacroPlaces = field(repr=False)
+    _texts: Mapping[str, str] = field(repr=False)
 
     def has(self, macro: str) -> bool:
         """Tell whether the file has a macro."""
         return macro in self._macros
+
+    def uses(self, macro: str, word: str) -> bool:
+        """Tell whether the text of a macro names a word."""
+        return re.search(rf"\b{word}\b", self._texts.get(macro, ""), re.IGNORECASE) is not None
 
     def start(self, write: Write) -> MacroRun:
         """Return a run for one output program; every block goes to `write` as a line with a line feed."""
@@ -92,7 +97,16 @@ def parse_control(text: str, file: str = "control file") -> ControlFile:
     places = _MacroPlaces(text, locator, tables.nc_macros)
     style = _style(tables.parameters)
     macros = _compiled(tables.nc_macros, symbols, style, places, tables.parameters.encoding)
-    return ControlFile(file, tables.parameters, frozenset(symbols.variables), macros, symbols, style, places)
+    return ControlFile(
+        file,
+        tables.parameters,
+        frozenset(symbols.variables),
+        macros,
+        symbols,
+        style,
+        places,
+        tables.nc_macros,
+    )
 
 
 def shipped_text(name: str) -> str:

@@ -200,10 +200,13 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
-    speed = next((n for token in statement if (n := token.number) is not None), None)
-    for word in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
-        if word in words and statement.value_of(word, "a number") == speed:
-            raise statement.fail(f"SPINDL names {word} before its speed", "Write the speed first.")
+    highest = statement.value_of("MAXRPM", "a highest speed") or 0.0
+    speed = None
+    for token in statement:
+        if token.text in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
+            statement.numbers()
+        elif speed is None:
+            speed = token.number
     sense: Literal["cw", "ccw", "off", "on"] = "on"
     if "OFF" in words:
         sense = "off"
@@ -214,7 +217,7 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     surface = bool(words & {"SFM", "SMM"})
     if speed is not None and "SFM" in words:
         speed *= 12.0 * MM_PER_INCH / 1000.0
-    yield Spindle(statement.line, sense, speed, surface)
+    yield Spindle(statement.line, sense, speed, surface, highest)
 
 
 def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
