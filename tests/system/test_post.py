@@ -60,7 +60,9 @@ def test_fanuc_mill_goes_home_before_a_tool_change_and_comes_in_x_and_y_first() 
     path = parse_tool_path(text.format(4) + text.format(5) + drill)
     blocks = (post_file(path, "fanuc-mill").text or "").splitlines()
     change = ["M05", "G91 G28 Z0.", "G90 G49"]
-    first, second, third = (blocks.index(f"N{number} T0{tool} M06") for number, tool in ((10, 4), (20, 5), (30, 9)))
+    first, second, third = (
+        blocks.index(f"N{number} T0{tool} M06") for number, tool in ((10, 4), (20, 5), (30, 9))
+    )
     for place in (first, second, third):
         assert blocks[place - 3 : place] == change
     assert blocks[second + 1 : second + 5] == ["S900 M03", "G00 X7. Y5.", "G43 H05 Z30.", "Z2."]
@@ -108,6 +110,8 @@ def test_a_deviation_is_status_1_and_the_program_stays_to_look_at(tmp_path: Path
         (("part.cl", "-c", "din", "--json"), 2, "--json needs --output"),
         (("part.cl", "-c", "din", "-o", "no/such/folder.nc"), 2, "no/such/folder.nc"),
         (("part.cl", "-c", "din", "--verify", "--machine", "none"), 2, "there is no machine 'none'"),
+        (("part.cl", "-c", "din", "--arc-axis", "left"), 2, "'left' is no sense of rotation"),
+        (("part.json", "-c", "din", "--arc-axis", "clockwise"), 2, "is for a file in APT words"),
         (("part.cl", "-c", "bad.toml", "-o", "part.nc"), 2, "bad.toml:2:"),
         (("bad.cl", "-c", "din", "-o", "part.nc"), 1, "bad.cl:2:8: 'X' is no number"),
     ],

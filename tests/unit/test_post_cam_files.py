@@ -206,6 +206,27 @@ def test_the_tool_axis_stays_until_another_one_is_given() -> None:
         moves_of("FEDRAT/9\nGOTO/5,0,0\nTLAXIS/0,3,4\nCIRCLE/0,0,0,0,0,1,5\nGOTO/0,5,0\n", rotary="vector")
 
 
+def test_the_tool_axis_of_a_start_point_is_written_with_the_next_move() -> None:
+    for start in ("TLAXIS/0,3,4\nFROM/0,0,50\n", "FROM/0,0,50,0,3,4\n"):
+        text = f"{start}FEDRAT/100\nGOTO/1,2,3\n"
+        assert moves_of(text, rotary="vector")[0][1]["TOOLJ"] == 0.6
+        with pytest.raises(ProgramError, match="the tool is tilted"):
+            moves_of(text)
+
+
+def test_the_tool_is_upright_again_before_the_cycle_of_the_control() -> None:
+    text = "FEDRAT/90\nGOTO/1,2,30,0,3,4\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,6,0,0,0,1\nGOTO/9,6,0\n"
+    found = [(macro, words.get("TOOLK"), words.get("Z")) for macro, words in moves_of(text, rotary="vector")]
+    assert found[1] == ("RAPID", 1.0, 30.0)
+    assert [(macro, z) for macro, _, z in found[2:4]] == [("CYCLE_DRILL", -7.0), ("CYCLE_DRILL", -7.0)]
+
+
+def test_a_tool_that_is_in_the_spindle_already_ends_a_cycle_too() -> None:
+    text = "LOADTL/4\nRAPID\nGOTO/1,2,40\nFEDRAT/80\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,2,0\nLOADTL/4\nGOTO/9,2,0\n"
+    assert [macro for macro, *_ in points_of(moves_of(text))] == ["RAPID", "CYCLE_DRILL", "LINEAR"]
+    assert sum(macro == "TOOL_CHANGE" for macro, _ in calls_of(text)[0]) == 1
+
+
 def test_a_retraction_goes_up_to_the_clearance_plane() -> None:
     assert records("CLEARP/XYPLAN,27\nRETRCT\nRETRCT/XYPLAN,31\nCLEARP/0,0,1,19\nRETRCT\n") == [
         Retract(2, 27.0),

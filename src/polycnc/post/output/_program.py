@@ -338,7 +338,7 @@ class _Driver:
 
     def _stands(self, record: From) -> None:
         self._take(record)
-        self.motion.set_position(self.course.here, self.course.axis)
+        self.motion.set_position(self.course.here)
 
     def _cycle(self, record: Cycle) -> None:
         self._take(record)

@@ -48,6 +48,7 @@ class Reading:
     """The last CUTCOM with a side, for CUTCOM/ON."""
     resumes: bool = False
     """Whether CUTCOM/ON waits for its side, which comes with the next statement or is the last one."""
+    cycle_on: bool = False
     tool: Tool | None = None
     """The last tool change."""
     cycle_began: int = 0

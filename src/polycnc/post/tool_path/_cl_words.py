@@ -196,6 +196,9 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     if reading.tool is None or change != reading.tool._replace(line=change.line):
         reading.tool = change
         yield change
+    elif reading.cycle_on:
+        yield CycleOff(statement.line)
+    reading.cycle_on = False
 
 
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
@@ -240,6 +243,7 @@ def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.cycle_on = True
     first = statement.peek()
     alone = first is not None and len(words) == 1
     if alone and first is not None and first.text in ("INIT", "CLEAR"):
