@@ -338,7 +338,7 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
     "NX: a turret": ("LOAD/TURRET,7,ADJUST,17", [Tool(1, 7, None, None, 17)]),
     "NX: a dwell in revolutions": ("DELAY/REV,12", [Dwell(1, revolutions=12.0)]),
     "DWELL is DELAY": ("DWELL/2.5", [Dwell(1, seconds=2.5)]),
-    "UNIT is UNITS": ("UNIT/INCH\nGOTO/1,2,3", [Goto(2, 25.4, 50.8, pytest.approx(76.2))]),
+    "UNIT is UNITS": ("UNIT/INCH\nGOTO/1,2,3", [Goto(2, 25.4, 50.8, 3.0 * 25.4)]),
     "Autodesk: texts in quotes": (
         "MODE/MILL\nPARTNO/'plate 3'\nPPRINT/'face (1)'",
         [Text(2, "part", "plate 3"), Text(3, "comment", "face (1)")],
