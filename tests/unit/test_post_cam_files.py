@@ -123,27 +123,46 @@ BETWEEN = (
 )
 
 
-@pytest.mark.parametrize("cycles", ["macros", "moves"])
+HOLES = """LOADTL/2
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/5,6,40
+CYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3
+GOTO/11,13,0
+{}
+GOTO/29,17,0
+CYCLE/OFF
+RAPID
+GOTO/29,17,40
+"""
+
+
 @pytest.mark.parametrize("statement", BETWEEN)
-def test_a_cycle_holds_whatever_stands_between_its_points(statement: str, cycles: str) -> None:
-    cycle = (
-        "CYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3\nGOTO/11,13,0\n{}GOTO/29,17,0\nCYCLE/OFF\nRAPID\nGOTO/29,17,40\n"
-    )
-    text = "LOADTL/2\nSPINDL/RPM,2000,CLW\nRAPID\nGOTO/5,6,40\n" + cycle.format(f"{statement}\n")
-    used = control({"cycles": cycles})
-    result = post_file(parse_tool_path(text), used, verify=True)
-    assert result.summary.holes == 2
-    assert result.ok
-    proof = result.verification
-    assert proof is not None
-    assert proof.path_feed_mm == pytest.approx(20.0)
-    # The machine never feeds sideways: each feed is a hole.
-    assert proof.run.cutting_path_mm == pytest.approx(20.0)
+def test_a_cycle_holds_whatever_stands_between_its_points(statement: str) -> None:
+    text = HOLES.format(statement)
     feeds = [sweep for sweep in sweep_tool_path(parse_tool_path(text)) if not sweep.rapid]
-    assert [(sweep.start, sweep.end) for sweep in feeds] == [
-        ((11.0, 13.0, 3.0), (11.0, 13.0, -7.0)),
-        ((29.0, 17.0, 3.0), (29.0, 17.0, -7.0)),
+    down = [((11.0, 13.0, 3.0), (11.0, 13.0, -7.0)), ((29.0, 17.0, 3.0), (29.0, 17.0, -7.0))]
+    assert [(sweep.start, sweep.end) for sweep in feeds] == down
+    holes = [words for macro, words in moves_of(text) if macro == "CYCLE_DRILL"]
+    assert [(words["X"], words["Y"], words["Z"], words["R"]) for words in holes] == [
+        (11.0, 13.0, -7.0, 3.0),
+        (29.0, 17.0, -7.0, 3.0),
     ]
+    as_moves = [words for macro, words in moves_of(text, cycles="moves") if macro == "LINEAR"]
+    assert [(words["X"], words["Y"], words["Z"]) for words in as_moves] == [end for _, end in down]
+
+
+@pytest.mark.parametrize(
+    ("statement", "calls"), [("SPINDL/RPM,2500,CLW", 2), ("DELAY/1.5", 2), ("PPRINT next", 1)]
+)
+def test_what_the_control_might_take_for_its_cycle_is_said_outside_of_it(statement: str, calls: int) -> None:
+    result = post_file(parse_tool_path(HOLES.format(statement)), control(), verify=True)
+    assert result.ok
+    assert result.text is not None
+    assert result.text.count("G80") == calls
+    assert result.verification is not None
+    # The machine never feeds sideways: each feed is a hole.
+    assert result.verification.run.cutting_path_mm == pytest.approx(20.0)
 
 
 def test_a_tool_change_ends_a_cycle_and_a_retraction_does_not() -> None:
@@ -187,6 +206,27 @@ def test_the_tool_axis_stays_until_another_one_is_given() -> None:
         moves_of("FEDRAT/9\nGOTO/5,0,0\nTLAXIS/0,3,4\nCIRCLE/0,0,0,0,0,1,5\nGOTO/0,5,0\n", rotary="vector")
 
 
+def test_the_tool_axis_of_a_start_point_is_written_with_the_next_move() -> None:
+    for start in ("TLAXIS/0,3,4\nFROM/0,0,50\n", "FROM/0,0,50,0,3,4\n"):
+        text = f"{start}FEDRAT/100\nGOTO/1,2,3\n"
+        assert moves_of(text, rotary="vector")[0][1]["TOOLJ"] == 0.6
+        with pytest.raises(ProgramError, match="the tool is tilted"):
+            moves_of(text)
+
+
+def test_the_tool_is_upright_again_before_the_cycle_of_the_control() -> None:
+    text = "FEDRAT/90\nGOTO/1,2,30,0,3,4\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,6,0,0,0,1\nGOTO/9,6,0\n"
+    found = [(macro, words.get("TOOLK"), words.get("Z")) for macro, words in moves_of(text, rotary="vector")]
+    assert found[1] == ("RAPID", 1.0, 30.0)
+    assert [(macro, z) for macro, _, z in found[2:4]] == [("CYCLE_DRILL", -7.0), ("CYCLE_DRILL", -7.0)]
+
+
+def test_a_tool_that_is_in_the_spindle_already_ends_a_cycle_too() -> None:
+    text = "LOADTL/4\nRAPID\nGOTO/1,2,40\nFEDRAT/80\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,2,0\nLOADTL/4\nGOTO/9,2,0\n"
+    assert [macro for macro, *_ in points_of(moves_of(text))] == ["RAPID", "CYCLE_DRILL", "LINEAR"]
+    assert sum(macro == "TOOL_CHANGE" for macro, _ in calls_of(text)[0]) == 1
+
+
 def test_a_retraction_goes_up_to_the_clearance_plane() -> None:
     assert records("CLEARP/XYPLAN,27\nRETRCT\nRETRCT/XYPLAN,31\nCLEARP/0,0,1,19\nRETRCT\n") == [
         Retract(2, 27.0),
@@ -216,6 +256,8 @@ REFUSED = {
     "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0,1,0,0,0,0,1": "MSYS changes the coordinate system",
     "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0.5,1,0,0,0,1,0": "MSYS changes the coordinate system",
     "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,0\n$$-> CSYS / 1,0,0,0, $\n 0,0,1,0, $\n 0,-1,0,0": "CSYS changes",
+    "PAINT/PATH\nFEDRAT/IPM,12": "a feed in inches in a CLSF",
+    "PAINT/PATH\nCYCLE/DRILL,RAPTO,.1,FEDTO,-1,IPR,.002": "a feed in inches in a CLSF",
     "NURBS/3": "NURBS moves the tool",
     "MODE/INCR": "MODE/INCR is not known",
     "CUTCOM/ON\nGOTO/1,2,3": "CUTCOM/ON without a side",
@@ -296,7 +338,7 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
     "NX: a turret": ("LOAD/TURRET,7,ADJUST,17", [Tool(1, 7, None, None, 17)]),
     "NX: a dwell in revolutions": ("DELAY/REV,12", [Dwell(1, revolutions=12.0)]),
     "DWELL is DELAY": ("DWELL/2.5", [Dwell(1, seconds=2.5)]),
-    "UNIT is UNITS": ("UNIT/INCH\nGOTO/1,2,3", [Goto(2, 25.4, 50.8, pytest.approx(76.2))]),
+    "UNIT is UNITS": ("UNIT/INCH\nGOTO/1,2,3", [Goto(2, 25.4, 50.8, 3.0 * 25.4)]),
     "Autodesk: texts in quotes": (
         "MODE/MILL\nPARTNO/'plate 3'\nPPRINT/'face (1)'",
         [Text(2, "part", "plate 3"), Text(3, "comment", "face (1)")],
@@ -373,6 +415,17 @@ def test_spindle_and_coolant_come_back_after_a_tool_change() -> None:
         ("COOLANT_OFF", None),
         ("RAPID", None),
     ]
+
+
+def test_a_highest_speed_is_not_lost() -> None:
+    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\n"
+    assert calls_of(text)[0][2] == ("SPINDLE_CW", {"S": 180.0, "SPINDLEMODE": 96.0, "MAXRPM": 2600.0})
+    found = [remark.text for remark in posted(text, control())[1].remarks]
+    assert found == ["the highest speed is not written: SPINDLE_CW of the control file does not use MAXRPM"]
+    clamped = control(macros={"SPINDLE_CW": "<R=MAXRPM>\nG50$R$"})
+    blocks, summary = posted(text, clamped)
+    assert "G50R2600.000" in blocks
+    assert summary.remarks == ()
 
 
 def test_the_way_of_an_arc_is_as_long_as_it_turns() -> None:

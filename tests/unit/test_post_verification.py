@@ -206,7 +206,7 @@ def real_machine(**changed: object) -> MachineConfig:
     """Return a mill as it stands in a workshop, with travels that PLATE fits into when it is set up right."""
     mill = load_machine("mill3")
     limits = {"X": (0.0, 500.0), "Y": (0.0, 400.0), "Z": (-200.0, 0.0)}
-    axes = tuple(axis.model_copy(update={"soft_limits": limits[axis.name]}) for axis in mill.axes)
+    axes = tuple(axis.model_copy(update={"soft_limits_mm": limits[axis.name]}) for axis in mill.axes)
     return mill.model_copy(update={"axes": axes, "offsets": OFFSETS, "tools": TOOLS, **changed})
 
 
@@ -226,7 +226,7 @@ def test_the_proof_is_on_the_machine_as_it_stands() -> None:
     assert proof.run.alarms == []
     assert proof.deviation_mm < 1e-4
     assert proof.ok
-    low, _ = proof.run.extents_mm["Z"]
+    low = proof.run.extents_mm["Z"][0]
     assert low == pytest.approx(-300.0 + 120.0 - 2.0)  # the real run: zero, tool length, depth
     assert proof.run.extents_mm["X"][1] == pytest.approx(137.0)
     result = post_file(parse_tool_path(PLATE, "plate.cl"), "fanuc-mill")
@@ -243,7 +243,7 @@ def test_a_part_that_the_machine_cannot_reach_is_no_proof() -> None:
 
 
 def test_a_length_that_is_not_compensated_is_found() -> None:
-    proof = on(real_machine(offsets={"G54": {"X": 100.0, "Y": 50.0, "Z": -100.0}}), "!G43!!-G00!|!-G00!")
+    proof = on(real_machine(offsets={"G54": {"X": 100.0, "Y": 50.0, "Z": -100.0}}), "!G43!$H$$Z$|$Z$")
     assert proof.run.alarms == []
     assert not proof.ok
     assert proof.off_path.mm == pytest.approx(120.0, rel=1e-3)

@@ -54,6 +54,10 @@ class Drilling:
         line, here, point, axis, cycle, levels = act
         x, y, surface = point
         motion = self._motion
+        if axis != motion.axis:  # the tool turns above the hole, before the control's cycle
+            self.close()
+            motion.straight(line, (x, y, surface + levels.travel), axis, True)
+            here = motion.position
         to_initial = levels.out > levels.start + _SAME_LEVEL_MM
         out = surface + levels.out
         other_way = self._hole > 0 and (self._returns_to is None) == to_initial

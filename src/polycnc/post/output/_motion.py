@@ -54,9 +54,9 @@ class Motion:
         self.position = end
         self._must_write = False
 
-    def set_position(self, position: Vector | None, axis: Vector) -> None:
-        """Take where the tool stands, and how."""
-        self.position, self.axis = position, axis
+    def set_position(self, position: Vector | None) -> None:
+        """Take where the tool stands; its axis is written with the next move."""
+        self.position = position
 
     def moved_by_macro(self) -> None:
         """Know that the machine may stand elsewhere: the next move is written, wherever it goes."""

@@ -292,8 +292,14 @@ class _Driver:
         words: dict[str, float | str] = {
             "S": self._spindle_number(speed, surface),
             "SPINDLEMODE": 96.0 if surface else 97.0,
+            "MAXRPM": record.max_rpm,
         }
         macro = "SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW"
+        if record.max_rpm and not self.output.control.uses(macro, "MAXRPM"):
+            self.output.remark(
+                record.line,
+                f"the highest speed is not written: {macro} of the control file does not use MAXRPM",
+            )
         self._spindle_words = (macro, words, self.tools)
         self.output.state(macro, record.line, words)
 
@@ -332,7 +338,7 @@ class _Driver:
 
     def _stands(self, record: From) -> None:
         self._take(record)
-        self.motion.set_position(self.course.here, self.course.axis)
+        self.motion.set_position(self.course.here)
 
     def _cycle(self, record: Cycle) -> None:
         self._take(record)

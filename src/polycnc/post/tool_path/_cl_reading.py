@@ -48,10 +48,12 @@ class Reading:
     """The last CUTCOM with a side, for CUTCOM/ON."""
     resumes: bool = False
     """Whether CUTCOM/ON waits for its side, which comes with the next statement or is the last one."""
+    cycle_on: bool = False
     tool: Tool | None = None
     """The last tool change."""
     cycle_began: int = 0
     """How many moves came before the last CYCLE."""
+    units_said: bool = False
     known: int = 0
     unknown: int = 0
     moves: int = 0
@@ -68,6 +70,18 @@ class Reading:
                 "CUTCOM/ON without a side before or behind it", "Write CUTCOM/LEFT or CUTCOM/RIGHT."
             )
         return self.side._replace(line=statement.line)
+
+    def check_units(self, statement: Statement) -> None:
+        """Refuse a feed in inches in a CLSF that does not say the unit of its lengths, which would be read as mm.
+
+        Raises:
+            ProgramError: it is so.
+        """
+        if self.clsf_word and not self.units_said and statement.words() & {"IPM", "IPR"}:
+            raise statement.fail(
+                "a feed in inches in a CLSF that does not say the unit of its lengths",
+                "Write UNITS/INCHES or UNITS/MM as its first line.",
+            )
 
     def turns_clockwise(self, statement: Statement) -> bool:
         """Return whether the axis of this CIRCLE/ or MOVARC/ is for a clockwise direction."""

@@ -129,6 +129,7 @@ def _machine(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.units_said = True
     if words & {"MM", "MILLIMETERS"}:
         reading.scale = 1.0
     elif words & {"INCH", "INCHES", "IN"}:
@@ -195,14 +196,20 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     if reading.tool is None or change != reading.tool._replace(line=change.line):
         reading.tool = change
         yield change
+    elif reading.cycle_on:
+        yield CycleOff(statement.line)
+    reading.cycle_on = False
 
 
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
-    speed = next((n for token in statement if (n := token.number) is not None), None)
-    for word in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
-        if word in words and statement.value_of(word, "a number") == speed:
-            raise statement.fail(f"SPINDL names {word} before its speed", "Write the speed first.")
+    highest = statement.value_of("MAXRPM", "a highest speed") or 0.0
+    speed = None
+    for token in statement:
+        if token.text in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
+            statement.numbers()
+        elif speed is None:
+            speed = token.number
     sense: Literal["cw", "ccw", "off", "on"] = "on"
     if "OFF" in words:
         sense = "off"
@@ -213,11 +220,12 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     surface = bool(words & {"SFM", "SMM"})
     if speed is not None and "SFM" in words:
         speed *= 12.0 * MM_PER_INCH / 1000.0
-    yield Spindle(statement.line, sense, speed, surface)
+    yield Spindle(statement.line, sense, speed, surface, highest)
 
 
 def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.check_units(statement)
     if "RAPID" in words:
         yield Rapid(statement.line)
         return
@@ -235,6 +243,7 @@ def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.cycle_on = True
     first = statement.peek()
     alone = first is not None and len(words) == 1
     if alone and first is not None and first.text in ("INIT", "CLEAR"):
@@ -246,6 +255,7 @@ def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
     elif "ON" in words:
         yield CycleOff(statement.line, on=True)
     else:
+        reading.check_units(statement)
         reading.cycle_began = reading.moves
         yield read_cycle(statement, reading.scale, _FEED_UNITS)
 

@@ -86,6 +86,7 @@ class Course:
         self.cycle: Cycle | None = None
         self._home: Vector | None = None
         self._rapid = False
+        self._changed = False  # behind a tool change nobody knows where the machine stands
         self._last: Cycle | None = None
         self._initial: Vector | None = None
 
@@ -113,13 +114,16 @@ class Course:
                 return self._up(record)
             case From():
                 self.here = self._home = (record.x, record.y, record.z)
+                self._changed = False
                 self.axis = record.axis or self.axis
             case Axis():
                 self.axis = record.axis
             case Cycle():
                 self._begin(record)
-            case CycleOff(on=False) | Tool():
+            case CycleOff(on=False):
                 self.cycle = None
+            case Tool():
+                self.cycle, self._changed = None, True
             case CycleOff(on=True):
                 if self._last is None:
                     raise CourseError(
@@ -136,7 +140,7 @@ class Course:
 
     def _point(self, line: int, point: Vector) -> Act:
         rapid, self._rapid = self._rapid, False
-        start = self.here
+        start = self._start()
         if self.cycle is None:
             self.here = point
             return Straight(line, start, point, self.axis, rapid)
@@ -146,9 +150,14 @@ class Course:
         self.here = (point[0] + levels.out * i, point[1] + levels.out * j, point[2] + levels.out * k)
         return Hole(line, start, point, self.axis, self.cycle, levels)
 
+    def _start(self) -> Vector | None:
+        """Return where a move begins, None where that is not known."""
+        changed, self._changed = self._changed, False
+        return None if changed else self.here
+
     def _straight(self, line: int, end: Vector) -> Straight:
         """Return a rapid that is no hole, whether a cycle holds or not."""
-        start, self.here, self._rapid = self.here, end, False
+        start, self.here, self._rapid = self._start(), end, False
         return Straight(line, start, end, self.axis, True)
 
     def _go_home(self, record: Home) -> Straight:
@@ -172,7 +181,7 @@ class Course:
     def _turn(self, record: Circle) -> Turn:
         if self.cycle is not None:
             raise CourseError(record.line, "an arc within a drilling cycle", "Write CYCLE/OFF before it.")
-        start, self._rapid = self.here, False
+        start, self._rapid, self._changed = self.here, False, False
         if start is None:
             raise CourseError(record.line, "an arc without a start point", "Write FROM or GOTO before it.")
         end = (record.x, record.y, record.z)

@@ -57,12 +57,16 @@ class Tool(NamedTuple):
 
 
 class Spindle(NamedTuple):
-    """Speed and sense of the spindle; None where it stays as it is. `surface`: the speed is m/min."""
+    """Speed and sense of the spindle; None where it stays as it is. `surface`: the speed is m/min.
+
+    `max_rpm` is the highest speed that is allowed with it, 0 if none is given.
+    """
 
     line: int
     sense: Literal["cw", "ccw", "off", "on"]
     speed: float | None = None
     surface: bool = False
+    max_rpm: float = 0.0
 
 
 class Feed(NamedTuple):
