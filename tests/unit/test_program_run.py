@@ -7,11 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import UsageError
-from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Call, Group, ProgramText, load_dialect
-from support.programs import FIVE, MILL
+from polycnc.nc import Call, Group, ProgramText
+from support.programs import FIVE
+from support.runs import program_run, stands, to_the_end, undisturbed
 
 CONTOUR = """\
 N10 G0 X12.5 Y-7.25 Z3
@@ -19,30 +18,6 @@ N20 G1 X31 Y4.5 F1450
 N30 Y17.75
 N40 X-8.125 F900
 """
-
-
-def program_run(
-    program: str | ProgramText, config: MachineConfig = MILL, dialect: str = "din", **options: object
-) -> ProgramRun:
-    text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
-    return ProgramRun(Machine(config), text, load_dialect(dialect), options=RunOptions(**options))  # type: ignore[arg-type]
-
-
-def stands(run: ProgramRun) -> str:
-    return run.state.name
-
-
-def to_the_end(run: ProgramRun) -> int:
-    cycles = 0
-    while run.active:
-        cycles += run.advance(100_000)
-    return cycles
-
-
-def undisturbed(program: str | ProgramText, config: MachineConfig = MILL) -> tuple[int, dict[str, float]]:
-    run = program_run(program, config, stands_at_stops=False)
-    run.start()
-    return to_the_end(run), run.machine.setpoints
 
 
 # --- from start to end

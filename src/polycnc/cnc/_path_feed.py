@@ -143,14 +143,20 @@ class PathFeed:
     def next_tag(self) -> int | None:
         """Return the tag of the block that comes next, None if it has not been prepared."""
         marks, head = self.channel.writer.marks, int(self.row["head"])
-        if marks and marks[0][0] <= head:
+        if marks and self.at_mark:
             return marks[0][1]
         return self.tags(head, head + 1)[0] if head < self.row["tail"] else None
 
     def take_mark(self) -> int | None:
         """Take the block without segments that comes next; return its tag, None if a segment comes next."""
         marks = self.channel.writer.marks
-        return marks.popleft()[1] if marks and marks[0][0] <= self.row["head"] else None
+        return marks.popleft()[1] if marks and self.at_mark else None
+
+    @property
+    def at_mark(self) -> bool:
+        """Whether a block without segments comes next."""
+        marks = self.channel.writer.marks
+        return bool(marks and marks[0][0] <= self.row["head"])
 
     def _forget_marks(self) -> None:
         """Forget the blocks without segments that the path has passed."""
@@ -161,11 +167,15 @@ class PathFeed:
 
     # ------------------------------------------------------------------ stops
 
+    def go_on(self) -> None:
+        """Go on from a stop."""
+        self._met_at = None
+        self.look_again()
+
     def look_again(self) -> None:
-        """Look for stops anew: the stopper has changed, or the path goes on from one."""
+        """Look for stops anew: the stopper has changed."""
         row = self.row
         self._seen = 0
-        self._met_at = None
         if row["limit"] != NO_LIMIT:
             row["limit"] = NO_LIMIT
             self.prepare()

@@ -606,7 +606,7 @@ class ProgramRun:
         self._state = RunState.ACTIVE
         stopper = self.stopper
         stopper.step = Step.RUN
-        self.feed.look_again()
+        self.feed.go_on()
         self.feed.feed()
         following = self.feed.next_tag()
         depth_of = record if within or following is None else following
@@ -659,9 +659,20 @@ class ProgramRun:
                 self._drop()
         elif self._state is RunState.ACTIVE and row["state"] == READY and not self._unanswered:
             if row["head"] >= row["limit"]:
-                self._state = RunState.STOPPED_AT_BLOCK
+                self._stop_at_block()
             elif row["head"] >= row["tail"] and self.channel.done:
                 self._state = RunState.COMPLETED if self.channel.error is None else RunState.ALARM
+
+    def _stop_at_block(self) -> None:
+        """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        while self.feed.at_mark:
+            following = self.feed.next_tag()
+            if following is None or self.stopper.stops_before(following):
+                break
+            tag = self.feed.take_mark()
+            assert tag is not None
+            self._met = int(self._row["head"]), tag
+        self._state = RunState.STOPPED_AT_BLOCK
 
     def _drop(self) -> None:
         """Drop what is still queued; the path stands."""
