@@ -6,14 +6,16 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc._block_search import block_line
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import (
     BLOCK,
@@ -23,6 +25,7 @@ from polycnc.kernel import (
     LIMIT_HIGH,
     LIMIT_LOW,
     NO_LIMIT,
+    OTHER_SOURCE,
     PATH_EVENT,
     PATH_RESTED,
     QUEUE_LOW,
@@ -34,7 +37,7 @@ from polycnc.kernel import (
     give_to_path,
     start_path,
 )
-from polycnc.machine import Machine, Reason
+from polycnc.machine import Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
@@ -43,6 +46,7 @@ from polycnc.nc import (
     Dialect,
     Event,
     Language,
+    Library,
     ModalWords,
     ProgramText,
     Stop,
@@ -51,7 +55,7 @@ from polycnc.nc import (
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Rows: TypeAlias = Callable[[Floats, npt.NDArray[np.int64]], None]
-OnEvent: TypeAlias = Callable[[Event], None]
+OnEvent: TypeAlias = Callable[[Event], bool | None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
 _MASK = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
@@ -70,7 +74,8 @@ class ProgramRun:
     """Run `program` on path `path` of `machine`.
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
-    `on_event` is told each auxiliary function in the cycle in which the path comes to it.
+    `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
+    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -84,9 +89,12 @@ class ProgramRun:
         *,
         path: int = 0,
         options: RunOptions | None = None,
+        config: MachineConfig | None = None,
+        library: Library | None = None,
         language: Language | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
+        before: ProgramRun | None = None,
     ) -> None:
         options = options or RunOptions()
         self.machine = machine
@@ -99,6 +107,8 @@ class ProgramRun:
         self.alarm: RunAlarm | None = None
         self._options = options
         self._language = language
+        self._config = config
+        self._library = library
         self._block_delete = options.block_delete
         self._single_block = options.single_block
         self._state = RunState.READY
@@ -106,20 +116,33 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
+        self._locked = False
+        self._approach: tuple[tuple[float, ...], int] | None = (
+            None  # where a searched block begins, and its line
+        )
+        self._unanswered = False  # an auxiliary function at which the path stands
         self._row = machine.state.paths.row[path]
-        self.channel = self._new_channel(program, None)
-        self.feed = PathFeed(machine, self.channel, self._ahead)
+        self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
+        self.stopper = Stopper(self.channel.records, Step.INTO if self._single_block else Step.RUN)
+        self.feed = PathFeed(machine, self.channel, self._ahead, self.stopper)
 
-    def _new_channel(self, program: ProgramText, before: Channel | None) -> Channel:
+    def _new_channel(
+        self, program: ProgramText, before: Channel | None, *, keeps_modal: bool = True
+    ) -> Channel:
         return Channel(
             program,
             self.dialect,
             self.machine,
             path=self.path,
+            config=self._config,
+            library=self._library,
             language=self._language,
             skip_levels=self._block_delete,
             stands_at_stops=self._options.stands_at_stops,
+            answers=self._options.answers,
+            marks=self._options.stands_at_stops,
             before=before,
+            keeps_modal=keeps_modal,
             collect_errors=self._options.collect_errors,
         )
 
@@ -136,12 +159,9 @@ class ProgramRun:
         Raises:
             UsageError: the axes are still moving, or there is an alarm.
         """
-        if self._state is RunState.ALARM:
-            raise UsageError("there is an alarm", hint="Reset it first.")
-        if self._dropping:
-            raise UsageError("the axes are still braking", hint="Let time pass until `at_rest`.")
+        self._check_start()
         if self._state in _OVER:
-            self._begin()
+            self._begin(Step.INTO if self._single_block else Step.RUN)
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
@@ -162,13 +182,100 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._state.value}", hint="Start it."
             )
-        if self._state is RunState.STOPPED_AT_BLOCK:
-            self.feed.go_on()
-        self._pass_stop()
-        self._hold = False
-        self._state = RunState.ACTIVE
+        self._go(Step.INTO if self._single_block else Step.RUN)
+
+    def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
+        """Select another program; with `keeps_modal` it begins with the modal state that is in force.
+
+        Raises:
+            UsageError: a program is being executed, or there is an alarm.
+        """
+        self._check_over()
+        keeps = keeps_modal and self._state is not RunState.RESET
+        self._replace_channel(program, keeps_modal=keeps)
+        self.program = program
+        self._state = RunState.READY
+
+    def mdi(self, text: str) -> None:
+        """Execute blocks that are typed in; modal words stay in force for the next (manual data input).
+
+        Raises:
+            UsageError: a program is being executed, or there is an alarm.
+        """
+        self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
+        self.start()
+
+    def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
+        """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
+
+        With `calculate` everything before is carried out without moving, and with the start the axes go straight at
+        rapid to where that block begins; else modal state and position are what they are. Return the line.
+
+        Raises:
+            UsageError: there is no such block, or the program cannot begin there; it stands at its beginning then.
+        """
+        self._check_over()
+        target = block_line(self.program, line, sequence)
+        self._replace_channel(self.program, keeps_modal=False)
+        self._state = RunState.READY
+        self._approach = None
+        if not calculate:
+            self.channel.go_to(target)
+            return target
+        state = self.machine.state
+        give_to_path(state, self.path)
+        self.channel.state.modal.position[:] = state.paths.position[self.path]
+        try:
+            found = self.channel.calculate_to(target, self._skip_queue)
+            problem = (
+                None
+                if found
+                else UsageError(
+                    f"the program ends before line {target}",
+                    hint="Search a block that is executed." if self.error is None else str(self.error),
+                )
+            )
+        except UsageError as error:
+            problem = error
+        drop_queue(state.seg, state.paths, self.path)
+        if problem is not None:
+            self._replace_channel(self.program, keeps_modal=False)
+            raise problem
+        self._approach = (tuple(self.channel.state.modal.position.tolist()), target)
+        return target
+
+    def _skip_queue(self) -> None:
+        for name in ("head", "prepared", "planned"):
+            self._row[name] = self._row["tail"]
+
+    def step_into(self) -> None:
+        """Go on to the end of the next block, into a sub-program if it calls one.
+
+        Raises:
+            UsageError: the program does not stand, and is not at its beginning.
+        """
+        self._step(Step.INTO)
+
+    def step_over(self) -> None:
+        """Go on to the end of the next block; a sub-program that it calls is run as a whole.
+
+        Raises:
+            UsageError: the program does not stand, and is not at its beginning.
+        """
+        self._step(Step.OVER)
+
+    def step_out(self) -> None:
+        """Go on to the end of the present sub-program, or of the program.
+
+        Raises:
+            UsageError: the program does not stand, and is not at its beginning.
+        """
+        self._step(Step.OUT)
+
+    def answered(self) -> None:
+        """Let the path go on from the auxiliary function at which it stands."""
+        self._unanswered = False
         self._set_hold()
-        self._set_limit(next_block=True)
 
     def reset(self) -> None:
         """Break the program off: the axes brake on the path, then the rest of it is dropped.
@@ -193,13 +300,81 @@ class ProgramRun:
 
     @single_block.setter
     def single_block(self, on: bool) -> None:
+        if on == self._single_block:
+            return
         self._single_block = on
+        self.stopper.step = Step.INTO if on else Step.RUN
         if self._state in (RunState.ACTIVE, RunState.HOLD):
-            if on:
-                self._set_limit(next_block=False)
-            else:
-                self.feed.go_on()
-                self.feed.prepare()
+            self.feed.look_again()
+
+    @property
+    def breakpoints(self) -> frozenset[Breakpoint]:
+        """Where the program stops besides."""
+        return self.stopper.breakpoints
+
+    @breakpoints.setter
+    def breakpoints(self, breakpoints: Iterable[Breakpoint]) -> None:
+        self.stopper.breakpoints = frozenset(breakpoints)
+        if self._state in (RunState.ACTIVE, RunState.HOLD):
+            self.feed.look_again()
+
+    @property
+    def block_delete(self) -> frozenset[int]:
+        """The numbers of the skip marks whose blocks are left out, among the blocks prepared from now on."""
+        return self._block_delete
+
+    @block_delete.setter
+    def block_delete(self, levels: Iterable[int]) -> None:
+        self._block_delete = self.channel.skip_levels = frozenset(levels)
+
+    @property
+    def dry_run(self) -> bool:
+        """Whether moves at feed go with the feed of a dry run."""
+        return bool(self._row["dry_feed"] > 0.0)
+
+    @dry_run.setter
+    def dry_run(self, on: bool) -> None:
+        if on and not self._options.dry_run_mm_s > 0.0:
+            raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
+        self._row["dry_feed"] = self._options.dry_run_mm_s if on else 0.0
+        self.feed.replan()
+
+    @property
+    def machine_lock(self) -> bool:
+        """Whether the path is executed without its axes.
+
+        Raises:
+            UsageError: on a change while the axes move.
+        """
+        return self._locked
+
+    @machine_lock.setter
+    def machine_lock(self, on: bool) -> None:
+        if on == self._locked:
+            return
+        if not self.at_rest:
+            raise UsageError("the machine lock cannot change while the axes move", hint="Hold first.")
+        if not on and self._state not in _OVER:
+            raise UsageError(
+                "the machine lock cannot be taken off within a program",
+                hint="End or reset the program first.",
+            )
+        self._locked = on
+        self._give_axes()
+
+    @property
+    def rapid_override(self) -> float:
+        """Factor of positioning speeds, 0 to 1; 0 is the lowest speed of the options (F0)."""
+        return 0.0 if self._row["rapid_top"] < np.inf else float(self._row["rapid_override"])
+
+    @rapid_override.setter
+    def rapid_override(self, factor: float) -> None:
+        _check_factor(factor, 1.0, "the rapid override")
+        lowest = self._options.rapid_f0_mm_s
+        slow = factor == 0.0 and lowest > 0.0
+        self._row["rapid_override"] = 1.0 if slow else factor
+        self._row["rapid_top"] = lowest if slow else np.inf
+        self.feed.replan()
 
     @property
     def feed_override(self) -> float:
@@ -362,43 +537,106 @@ class ProgramRun:
 
     # ------------------------------------------------------------------ within
 
-    def _begin(self) -> None:
+    def _check_over(self) -> None:
+        """Refuse what would change the program while it is executed."""
+        if self._state not in _OVER:
+            raise UsageError(f"the program is {self._state.value}", hint="Reset it, or let it end.")
+        self._check_start()
+
+    def _check_start(self) -> None:
+        if self._state is RunState.ALARM:
+            raise UsageError("there is an alarm", hint="Reset it first.")
+        if self._dropping:
+            raise UsageError("the axes are still braking", hint="Let time pass until `at_rest`.")
+
+    def _begin(self, step: Step) -> None:
         """Begin the program from where the axes stand."""
         state, path = self.machine.state, self.path
         if self._state is not RunState.READY:
-            self.channel = self.feed.channel = self._new_channel(self.program, self.channel)
+            self._replace_channel(self.program, keeps_modal=False)
         give_to_path(state, path)
+        self._give_axes()
         self.channel.state.modal.position[:] = state.paths.position[path]
         start_path(state.paths, path)
         self._hold = False
         self._row["limit"] = NO_LIMIT
-        self._state = RunState.ACTIVE
-        self._set_hold()
-        self._set_limit(next_block=True)
+        self._row["tag"] = 0
+        if self._approach is not None:
+            self.channel.begin_at(*self._approach)
+            self._approach = None
+        self._go(step)
+
+    def _replace_channel(self, program: ProgramText, *, keeps_modal: bool) -> None:
+        tool = self.channel.state.tool if self.modal is None else self.modal.tool  # prepared is not changed
+        self.channel = self.feed.channel = self._new_channel(program, self.channel, keeps_modal=keeps_modal)
+        self.channel.state.tool = tool
+        self.stopper.records = self.channel.records
+        self.feed.clear()
+
+    def _give_axes(self) -> None:
+        """Let the axes follow the path, or nothing while the machine is locked."""
+        state = self.machine.state
+        for axis in state.paths.axis[self.path]:
+            if axis >= 0 and state.owner[axis] in (self.path, OTHER_SOURCE):
+                state.owner[axis] = OTHER_SOURCE if self._locked else self.path
 
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        hold = self._hold or self._stop is not None
+        hold = self._hold or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == RUNNING:
                 self.feed.replan()
 
-    def _set_limit(self, *, next_block: bool) -> None:
-        """In single block, let the path rest behind the block that runs, or comes next."""
-        if not self._single_block:
+    def _step(self, step: Step) -> None:
+        if self._state in _OVER:
+            self._check_start()
+            self._begin(step)
+        elif self._state in _STANDING or self._state is RunState.HOLD:
+            self._go(step)
+        else:
+            raise UsageError("the program is running", hint="Hold it, or let it stop at a breakpoint.")
+
+    def _go(self, step: Step) -> None:
+        """Go on from where the program stands, as far as `step` says."""
+        within = self._state is RunState.HOLD and self._row["state"] in (RUNNING, HELD)
+        record = self.executed_tag
+        self._pass_stop()
+        self._hold = False
+        self._state = RunState.ACTIVE
+        stopper = self.stopper
+        stopper.step = Step.RUN
+        self.feed.go_on()
+        self.feed.feed()
+        following = self.feed.next_tag()
+        depth_of = record if within or following is None else following
+        stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
+        if not within and self._stand_at_marks():
             return
-        if next_block:
-            self.feed.feed()
-        self.feed.stop_behind(int(self._row["head"]))
-        self.feed.prepare()
+        self.feed.look_again()
+        self._set_hold()
+        self._look()
+
+    def _stand_at_marks(self) -> bool:
+        """Carry out the blocks without segments that come next; return whether the program stops behind one."""
+        while (tag := self.feed.take_mark()) is not None:
+            self._met = int(self._row["head"]), tag
+            following = self.feed.next_tag()
+            if following is None:
+                self.feed.feed()
+                following = self.feed.next_tag()
+            if following is not None and self.stopper.stops_before(following):
+                self._state = RunState.STOPPED_AT_BLOCK
+                return True
+        return False
 
     def _meet_event(self) -> None:
         number = int(self._row["event"])
         event = self.channel.writer.events.pop(number)
         self._met = int(self._row["head"]), event.tag
         if event.word and self.on_event is not None:
-            self.on_event(event)
+            self._unanswered = bool(self.on_event(event))
+            self._set_hold()
         if event.stop is Stop.DRAIN:
             self.channel.go_on()
         elif event.stop is not None and self.stands_at(event.stop):
@@ -419,11 +657,22 @@ class ProgramRun:
         if self._dropping:
             if self.at_rest:
                 self._drop()
-        elif self._state is RunState.ACTIVE and row["state"] == READY:
-            if row["head"] >= row["tail"] and self.channel.done:
+        elif self._state is RunState.ACTIVE and row["state"] == READY and not self._unanswered:
+            if row["head"] >= row["limit"]:
+                self._stop_at_block()
+            elif row["head"] >= row["tail"] and self.channel.done:
                 self._state = RunState.COMPLETED if self.channel.error is None else RunState.ALARM
-            elif row["head"] >= row["limit"]:
-                self._state = RunState.STOPPED_AT_BLOCK
+
+    def _stop_at_block(self) -> None:
+        """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        while self.feed.at_mark:
+            following = self.feed.next_tag()
+            if following is None or self.stopper.stops_before(following):
+                break
+            tag = self.feed.take_mark()
+            assert tag is not None
+            self._met = int(self._row["head"]), tag
+        self._state = RunState.STOPPED_AT_BLOCK
 
     def _drop(self) -> None:
         """Drop what is still queued; the path stands."""
@@ -434,6 +683,7 @@ class ProgramRun:
         self._dropping = False
         self._hold = False
         self._stop = None
+        self._unanswered = False
         self._met = None
         self._set_hold()
 

@@ -189,6 +189,11 @@ class BlockRecords:
             modal=self._words(context, line),
         )
 
+    def depth(self, tag: int) -> int:
+        """Return how many calls led to the block of a tag."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return 0 if context is None else len(context.stack)
+
     def program(self, tag: int) -> str | None:
         """Return the name of the program that a tag refers to."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
