@@ -55,7 +55,7 @@ def stations() -> dict[str, str]:
     state.paths.row[0]["closed"] = True  # nothing follows
     prepare_path(state.seg, state.paths, 0, state.limits, config.cycle_s, state.work)
     found["limits and junction"] = _segments(
-        state.seg, ("cap", "full_accel", "junction", "share", "accel", "out")
+        state.seg, ("cap", "full_accel", "accel", "junction", "yield_before", "gain", "out")
     )
     found["by hand"] = _by_hand(state, config.cycle_s)
     advance(state, 1)
@@ -143,17 +143,27 @@ def _by_hand(state, cycle_s: float) -> str:  # type: ignore[no-untyped-def]
     length = math.hypot(20.0, 5.0)
     part = 20.0 / length
     full = 5000.0 / part
-    share = 0.5
-    corner = share / 1.125 * 5000.0 * cycle_s / part
-    accel = full * (1.0 - share)
-    for name, value in (("length", length), ("full_accel", full), ("junction", corner), ("accel", accel)):
+    corner = 0.5 * 5000.0 * cycle_s / part
+    share = 0.5**2
+    beside = (corner + 0.5 * full * (1.0 - share) * cycle_s) * cycle_s
+    gain = 2.0 * full * (length - share * beside)
+    for name, value in (
+        ("length", length),
+        ("full_accel", full),
+        ("junction", corner),
+        ("yield_before", share / corner),
+        ("gain", gain),
+    ):
         assert math.isclose(row[name], value, rel_tol=1e-12), name
     return "\n".join(
         (
             f"length      sqrt(20² + 5²) mm               = {length:.6f} mm",
             f"full_accel  5000 mm/s² · length / 20 mm     = {full:.3f} mm/s²    X needs most of it",
-            f"junction    0.5 / 1.125 · 5000 mm/s² · 0.001 s / ({part:.6f}) = {corner:.6f} mm/s",
-            f"accel       (1 - 0.5) · full_accel          = {accel:.3f} mm/s²",
+            f"junction    0.5 · 5000 mm/s² · 0.001 s / {part:.6f} = {corner:.6f} mm/s",
+            f"given away  0.5²                            = {share}",
+            f"over        ({corner:.3f} mm/s + (1 - 0.25) / 2 · {full:.0f} mm/s² · 0.001 s) · 0.001 s"
+            f" = {beside:.6f} mm",
+            f"gain        2 · full_accel · (length - 0.25 · {beside:.6f} mm) = {gain:.3f} mm²/s²",
         )
     )
 

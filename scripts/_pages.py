@@ -27,6 +27,12 @@ def apci_functions_page() -> str:
     return page()
 
 
+def apci_system_file_page() -> str:
+    """Return the page of the keys of an APCI system file."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_apci_system_file.py"))["page"]
+    return page()
+
+
 def imc_page(name: str) -> str:
     """Return one of the pages of the iMC card."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_imc_pages.py"))[name]
@@ -42,6 +48,7 @@ def post_events_page() -> str:
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
     "docs/reference/apci-functions.md": apci_functions_page,
+    "docs/reference/apci-system-file.md": apci_system_file_page,
     "docs/reference/conformance.md": conformance_page,
     "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),

@@ -18,12 +18,13 @@ from polycnc.kernel import (
     append_spline,
     give_to_path,
     make_state,
+    skip,
     start_path,
 )
 from polycnc.kernel._segments import CIRCLE3D, SPLINE
 from polycnc.kernel._spline import Splines, make_splines
 from polycnc.kernel._spline_build import CUBIC_NATURAL, add_bezier, add_cubic
-from support.random_paths import CYCLE_S, is_done, overload, prepare, run_recorded
+from support.random_paths import CYCLE_S, is_done, overload, prepare, run_recorded, stop_everywhere
 
 Floats = npt.NDArray[np.float64]
 
@@ -95,6 +96,26 @@ def test_every_axis_keeps_its_limits_and_the_end_is_exact(ride_along: bool) -> N
         assert acceleration <= ROUNDING, f"seed {seed}"
         if is_done(state):
             assert np.array_equal(state.setpoint, state.paths.queued[0])
+
+
+@pytest.mark.parametrize("ride_along", [False, True])
+def test_going_on_is_never_slower_than_stopping_at_every_block(ride_along: bool) -> None:
+    saved = 0
+    for seed in range(200, 260):
+        cycles = []
+        for stops in (False, True):
+            rng = np.random.default_rng(seed)
+            state, store = curve_machine(rng, ride_along)
+            for tag in range(1, int(rng.integers(3, 40))):
+                assert append_random(state, store, rng, ride_along, tag), f"seed {seed}"
+            if stops:
+                stop_everywhere(state)
+            prepare(state)
+            start_path(state.paths, 0)
+            cycles.append(skip(state, 0, int(state.paths.row[0]["tail"])))
+        assert cycles[0] <= cycles[1], f"seed {seed}"
+        saved += cycles[1] - cycles[0]
+    assert saved > 0
 
 
 def recorded(state: KernelState, tag: int) -> Floats:

@@ -127,6 +127,60 @@ def test_override_and_hold_on_the_way_keep_the_limits_and_the_end(jerkrel: float
         assert max(overload(state)) <= ROUNDING, f"seed {seed}"
 
 
+@pytest.mark.parametrize("depth", [0, 3])
+def test_any_override_and_blocks_that_come_late_keep_the_limits_and_the_end(depth: int) -> None:
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        settings = PathSettings(jerkrel=float(rng.choice((0.0, 0.0, 0.3, 1.0))), depth=depth)
+        state = machine(rng, settings)
+        maker = PathMaker(state, rng, None if rng.random() < 0.3 else 10.0 ** rng.uniform(-4.0, 1.0))
+        left = int(rng.integers(2, 200))
+        row = state.paths.row[0]
+        state.clock[0]["mask"] = RECORDER_FULL
+        start_path(state.paths, 0)
+        for _ in range(60):
+            piece = min(left, int(rng.integers(0, 20)))
+            maker.append(piece)
+            left -= piece
+            prepare(state, closed=left == 0)
+            if rng.random() < 0.7:
+                row["override"] = rng.choice((0.0, 0.05, 0.5, 1.0, 1.3, 2.0))
+                row["hold"] = rng.choice((0, 0, 1))
+                replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
+            advance(state, int(rng.integers(1, rng.choice((5, 50, 300)))))
+        maker.append(left)
+        prepare(state)
+        row["hold"], row["override"] = 0, 1.0
+        replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
+        run_recorded(state)
+        assert max(overload(state)) <= ROUNDING, f"seed {seed}"
+        if is_done(state):
+            assert np.array_equal(state.setpoint, state.paths.queued[0])
+
+
+# Seeds with which a plan was once changed within the last cycle before a corner.
+@pytest.mark.parametrize(
+    ("overrides", "length"), [((2.0, 0.05), 0.157), ((0.0, 1.3), 0.3), ((0.05, 0.0, 2.0), 0.05)]
+)
+def test_overrides_in_every_cycle_around_a_corner_keep_the_limits(
+    overrides: tuple[float, ...], length: float
+) -> None:
+    for cycle in range(1, 40):
+        rng = np.random.default_rng(289)
+        state = machine(rng, PathSettings())
+        PathMaker(state, rng, length).append(30)
+        prepare(state)
+        start_path(state.paths, 0)
+        state.clock[0]["mask"] = RECORDER_FULL
+        advance(state, 3 * cycle)
+        for override in (*overrides, 1.0):
+            state.paths.row[0]["override"] = override
+            replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
+            advance(state, 2)
+        run_recorded(state)
+        assert max(overload(state)) <= ROUNDING, f"cycle {cycle}"
+
+
 def collinear(depth: int) -> float:
     """Return the time of 1000 blocks of 0.2 mm at 200 mm/s and 1 m/s2 with a look-ahead of `depth` blocks."""
     state = machine(np.random.default_rng(0), PathSettings(depth=depth))

@@ -110,11 +110,31 @@ def prepare(state: KernelState, *, closed: bool = True) -> None:
     prepare_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
 
 
-def random_path(seed: int, settings: PathSettings, length: float | None = None) -> KernelState:
-    """Return a machine with a complete random path, planned and ready to start."""
+def stop_everywhere(state: KernelState) -> None:
+    """Let path 0 come to rest at the end of every block that was appended, as G61 does."""
+    tail = int(state.paths.row[0]["tail"])
+    tags = state.seg.row["tag"][:tail]
+    ends = np.append(tags[1:] != tags[:-1], True)  # a spline is several segments
+    state.seg.row["flags"][:tail][ends] |= STOP
+
+
+def random_path(
+    seed: int,
+    settings: PathSettings,
+    length: float | None = None,
+    *,
+    stops: bool = False,
+    most: int = 300,
+) -> KernelState:
+    """Return a machine with a complete random path of up to `most` blocks, planned and ready to start.
+
+    With `stops` it comes to rest at every block.
+    """
     rng = np.random.default_rng(seed)
     state = machine(rng, settings)
-    PathMaker(state, rng, length).append(int(rng.integers(2, 300)))
+    PathMaker(state, rng, length).append(int(rng.integers(2, most)))
+    if stops:
+        stop_everywhere(state)
     prepare(state)
     start_path(state.paths, 0)
     return state

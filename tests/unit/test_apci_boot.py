@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.controllers.apci.board._codes import BootCode, Code, InitCode, Status, TransferCode, status_text
+from polycnc.controllers.apci.board._codes import BootCode, InitCode, Status, TransferCode, status_text
 from polycnc.controllers.apci.board._environment import (
     LED_PLACES,
     EnvironmentStrings,
@@ -20,6 +20,7 @@ from polycnc.controllers.apci.board._system_file import SystemFile, parse_system
 from polycnc.controllers.apci.core._registers import Ifs, assigned_inputs, board_name
 from polycnc.controllers.apci.pc._boot import Application
 from polycnc.controllers.apci.pc._slots import FAULTS, Pc, Slot, revision_numbers
+from polycnc.controllers.library import Code
 from polycnc.errors import UsageError
 
 
@@ -32,6 +33,7 @@ class Board:
         self.done: list[str] = []
         self.jac = 0.0
         self.answer = 0
+        self.is_described = True
 
     def reset(self) -> None:
         self.done.append("reset")

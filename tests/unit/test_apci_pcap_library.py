@@ -1,22 +1,26 @@
 """The library in a program: attaching, booting, selecting, time, codes of a board that does not answer, its table."""
 
-import csv
 import inspect
 import logging
+import re
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from polycnc.conformance import load_conformance
 from polycnc.controllers.apci import pcap
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import InitCode
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.pc._installed import InstalledBoard
-from polycnc.machine import Poll
-from support.apci_pc import LATENCY, Pc
+from polycnc.controllers.library import IN
+from polycnc.errors import UsageError
+from polycnc.machine import Elapsed, Poll
+from support.apci_pc import LATENCY, SCAN_S, Pc, near
+from support.time_sources import FakeWall
 
-ROWS = Path(__file__).resolve().parents[2] / "conformance" / "apci.tsv"
 NUMBERED = ("an", "axis")
 
 
@@ -144,7 +148,7 @@ def test_messages_go_where_the_program_wants(caplog: pytest.LogCaptureFixture) -
 # ---------------------------------------------------------------------- time
 
 
-def test_a_status_call_lets_one_scan_pass_and_others_none() -> None:
+def test_reading_the_same_again_lets_one_scan_pass_and_other_calls_none() -> None:
     pc = Pc(clock=Poll(1))
     start = pc.board.clock.cycles
     axes = pc.close(0)
@@ -153,13 +157,39 @@ def test_a_status_call_lets_one_scan_pass_and_others_none() -> None:
     pc.tsrp[0].tp = 1.0
     pcap.jr(axes, pc.tsrp)
     pcap.rdEffRadius(0)
-    assert pc.board.clock.cycles == start
-    pcap.rdrp(pc.tsrp[0])
-    pcap.rdaxst(pc.tsrp[0])
+    pcap.rdEffRadius(0)
+    for axis in (0, 1):  # all of one scan
+        pcap.rdrp(pc.tsrp[axis])
+        pcap.rdaxst(pc.tsrp[axis])
+        pcap.rdaxstb(axis, 13)
+        pcap.rdaxstb(axis, 14)
     pcap.rdErrorReg()
+    assert pc.board.clock.cycles == start
+    pcap.rdrp(pc.tsrp[1])
+    assert pc.board.clock.cycles == start + 1
+    pcap.rdaxstb(1, 14)
+    pcap.rdErrorReg()
+    assert pc.board.clock.cycles == start + 1
+    pcap.rdErrorReg()
+    pcap.rdaxstb(1, 14)
+    pcap.rdaxstb(1, 14)
     assert pc.board.clock.cycles == start + 3
     pcap.rdrp(pcap.TSRP(an=9))
+    pcap.rdrp(pcap.TSRP(an=9))
     assert pc.board.clock.cycles == start + 3
+
+
+def test_a_program_that_sleeps_between_its_polls_sees_a_board_in_real_time() -> None:
+    wall = FakeWall()
+    pc = Pc("[[axis]]\njac = 100.0\njvl = 10.0\n", clock=Elapsed(wall))
+    axes = pc.close(0)
+    pc.tsrp[0].tp = 14.0  # 0.1 s to 10 units/s, 1.3 s at it, 0.1 s to rest
+    start_s = wall.time_s
+    pcap.ja(axes, pc.tsrp)
+    while not pcap.rdaxstb(0, 13):
+        wall.time_s += 0.01
+    assert wall.time_s - start_s == near(1.5, abs=0.02)
+    assert pc.board.clock.now_s == near(wall.time_s - start_s, abs=2 * SCAN_S)
 
 
 def test_polling_to_the_next_event_ends_at_once_and_gives_the_same_motion() -> None:
@@ -263,22 +293,141 @@ def test_functions_without_a_status_do_nothing_when_the_board_does_not_answer() 
 # ---------------------------------------------------------------------- the table
 
 
-def manual_functions() -> list[str]:
-    with ROWS.open(encoding="utf-8") as file:
-        rows = list(csv.DictReader(file, delimiter="\t", quoting=csv.QUOTE_NONE))
-    return [row["id"].removeprefix("apci.") for row in rows if row["kind"] == "function"]
+ROW_OF = {
+    row.id.removeprefix("apci."): row.signature
+    for row in load_conformance().rows("apci")
+    if row.kind == "function"
+}
+# Part 1 names these functions, but prints no prototype of them.
+WITHOUT_PROTOTYPE = {
+    *("rdSysVarInt", "rdSysVarDbl", "wrSysVarInt", "wrSysVarDbl"),
+    *("rdAxVarInt", "rdAxVarDbl", "wrAxVarInt", "wrAxVarDbl"),
+    *("txbf", "rdjovr", "smlai", "smlri", "ssfi", "ssfni"),
+}
 
 
-@pytest.mark.parametrize("name", manual_functions())
+def printed(signature: str) -> str:
+    """Return the C prototype of a row, without what says nothing: far, struct, blanks around stars."""
+    found = re.match(r"C: (.*?\))", signature)
+    assert found, signature
+    plain = re.sub(r"\b(far|struct) ?", "", found[1])
+    return re.sub(r" ?\* ?", " *", plain)
+
+
+@pytest.mark.parametrize("name", ROW_OF)
 @pytest.mark.covers("apci.pcap", "apci.lib.dll")
-def test_every_function_of_the_manual_is_there_with_a_name_a_description_and_types(name: str) -> None:
-    function = getattr(pcap, name)
+def test_every_function_of_the_manual_is_there_with_its_prototype_and_a_description(name: str) -> None:
+    function, row = getattr(pcap, name), pcap.FUNCTIONS[name]
     assert name in pcap.__all__
     assert function.__name__ == name
     assert "Manual 002" in inspect.getdoc(function)  # type: ignore[operator]
-    signature = inspect.signature(function)
-    assert signature.return_annotation is not inspect.Signature.empty
-    assert all(each.annotation is not inspect.Parameter.empty for each in signature.parameters.values())
+    assert [each.name.replace("as", "asel") if each.name == "as" else each.name for each in row.passed] == [
+        each.rstrip("_") for each in inspect.signature(function).parameters
+    ]
+    assert (name in WITHOUT_PROTOTYPE) == (not ROW_OF[name].startswith("C: "))
+    if name not in WITHOUT_PROTOTYPE:
+        assert row.prototype == printed(ROW_OF[name])
+
+
+def test_the_table_has_the_functions_of_the_manual_and_no_others() -> None:
+    assert set(pcap.FUNCTIONS) == set(ROW_OF)
+    assert (len(ROW_OF), len(WITHOUT_PROTOTYPE)) == (197, 14)
+
+
+RECORDS_READ_AND_FILLED = {
+    *(
+        "InitMcuSystem",
+        "InitMcuSystem2",
+        "InitMcuSystem3",
+        "rdap",
+        "rdaux",
+        "rdaxst",
+        "rddigi",
+        "rddigo",
+        "rddp",
+        "rddpd",
+    ),
+    *(
+        "rddv",
+        "rdepc",
+        "rdf",
+        "rdgf",
+        "rdhac",
+        "rdhvl",
+        "rdifs",
+        "rdipw",
+        "rdjac",
+        "rdjovr",
+        "rdjtvl",
+        "rdjvl",
+        "rdlp",
+    ),
+    *("rdlpndx", "rdlsm", "rdmcp", "rdmpe", "rdrp", "rdrpd", "rdsdec", "rdsll", "rdslr", "rdtp", "rdtpd"),
+}
+
+
+def test_every_argument_has_a_direction() -> None:
+    filled = {
+        (name, each.name)
+        for name, row in pcap.FUNCTIONS.items()
+        for each in row.arguments
+        if each.direction is not IN and not each.returned
+    }
+    assert filled == {(name, "tsrp") for name in RECORDS_READ_AND_FILLED} | {
+        ("InitMcuSystem3", "rosi"),
+        ("mcuinit", "rosi"),
+        ("rdcncts", "cncts"),
+        ("rdcd", "cdbuf"),
+        ("rdci", "cibuf"),
+        ("rdcbcnct", "cbcnct"),
+    }
+    returned = {
+        name: [each.name for each in row.arguments if each.returned] for name, row in pcap.FUNCTIONS.items()
+    }
+    assert {name for name, names in returned.items() if names == ["value"]} == {
+        name
+        for name, signature in ROW_OF.items()
+        if name.startswith("rd") and re.search(r"(long|double) ?\* ?value\)", signature)
+    }
+    assert {name: names for name, names in returned.items() if names not in ([], ["value"])} == {
+        "getEnvStr": ["EnvStr"],
+        "gettskinfo": ["tskinfo"],
+        "gettskstr": ["buffer"],
+        "InitMcuSystem3": ["BoardType"],
+        "rdErrorReg": ["ErrorReg"],
+        "rdPcapIndex": ["PcapIndex"],
+    }
+    assert {
+        name for name, row in pcap.FUNCTIONS.items() if any(each.length_of for each in row.arguments)
+    } == {
+        *("gettskstr", "spd", "spda", "spdr"),
+    }
+
+
+def test_two_programs_have_their_own_boards_and_time() -> None:
+    here, there = pcap.Session(), pcap.Session()
+    mine, theirs = Board(), Board()
+    here.attach(mine, clock=Poll(3))
+    there.attach(theirs, clock=Poll(5))
+    tsrp = pcap.tsrp_array()
+    assert here.InitMcuSystem3(tsrp, pcap.ROSI(), 0, "system.dat")[0] == 0
+    assert there.rdrv(0) == 0.0  # it has not initialised
+    assert (mine.clock.cycles, theirs.clock.cycles) == (0, 0)
+    here.rdrp(tsrp[0])
+    here.rdrp(tsrp[0])
+    assert (mine.clock.cycles, theirs.clock.cycles) == (3, 0)
+    assert pcap.CardSelect(0) == -1
+    assert here.CardSelect(0) == 0
+    assert (here.board(), there.board()) == (mine, theirs)
+
+
+def test_what_no_c_compiler_takes_is_told_with_the_prototype() -> None:
+    Pc()
+    calls: list[tuple[Any, ...]] = [(pcap.cl, None), (pcap.cl, pcap.LMP()), (pcap.rdrv, "x")]
+    for call, *given in [*calls, (pcap.mla, pcap.AS.of(0), pcap.CMP())]:
+        with pytest.raises(UsageError, match="cannot be") as told:
+            call(*given)
+        assert call.__name__ in str(told.value.hint)
 
 
 def test_the_library_keeps_no_state_but_what_is_attached() -> None:

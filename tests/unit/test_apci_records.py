@@ -8,7 +8,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from polycnc.controllers.apci.board import _records as records
-from polycnc.controllers.apci.board._layout import Record, pack_all
 from polycnc.controllers.apci.board._records import (
     AS,
     CDBUF,
@@ -20,7 +19,9 @@ from polycnc.controllers.apci.board._records import (
     ROSI,
     SPDBUF,
     TSRP,
+    pack_all,
 )
+from polycnc.controllers.library import Structure, layout
 from polycnc.errors import UsageError
 
 INT, DOUBLE = ctypes.c_int32, ctypes.c_double
@@ -74,12 +75,14 @@ def c_struct(name: str) -> type[ctypes.Structure]:
 def test_a_record_has_the_elements_and_the_memory_of_its_table(name: str) -> None:
     size, table = TABLES[name]
     record, compiled = getattr(records, name), c_struct(name)
-    assert record.SIZE == size == ctypes.sizeof(compiled)
-    assert [each.name for each in record.ELEMENTS] == [
+    stated = layout(record)
+    assert records.STRUCTURES[name] == stated
+    assert stated.size == size == ctypes.sizeof(compiled) == ctypes.sizeof(record)
+    assert [each.name for each in stated.fields] == [
         each if isinstance(each, str) else each[0] for each in table
     ]
-    assert [each.offset for each in record.ELEMENTS] == [
-        getattr(compiled, each.name).offset for each in record.ELEMENTS
+    assert [each.offset for each in stated.fields] == [
+        getattr(compiled, each.name).offset for each in stated.fields
     ]
     assert record().pack() == bytes(size)
     assert record.unpack(record().pack()) == record()
@@ -97,7 +100,7 @@ def test_the_tsrp_of_all_axes_lie_directly_behind_each_other() -> None:
             -axis,
             axis << 16,
         )
-        record.scratch = [axis, 2, 3, -4]
+        record.scratch[:] = [axis, 2, 3, -4]
     memory = (c_struct("TSRP") * 18).from_buffer_copy(pack_all(array))
     for axis, seen in enumerate(memory):
         assert (seen.an, seen.kp, seen.gf, seen.mcp, seen.ifs) == (
@@ -107,15 +110,15 @@ def test_the_tsrp_of_all_axes_lie_directly_behind_each_other() -> None:
             -axis,
             axis << 16,
         )
-        assert list(seen.scratch) == [axis, 2, 3, -4]
+        assert list(seen.scratch) == [axis, 2, 3, -4] == list(array[axis].scratch)
     assert TSRP.unpack(bytes(memory)[17 * 208 :]) == array[17]
-    assert ctypes.sizeof(ctypes.c_int) * 4 == 208 - TSRP.ELEMENTS[-1].offset  # scratch ends the record
+    assert ctypes.sizeof(ctypes.c_int) * 4 == 208 - layout(TSRP).fields[-1].offset  # scratch ends the record
 
 
 def test_what_stands_in_no_table_is_not_in_the_memory() -> None:
     assert TSRP(aux=1.0, lp=2.0, dv=3.0, sdec=4.0).pack() == bytes(208)
     with pytest.raises(AttributeError):
-        TSRP().jvll = 1.0  # type: ignore[attr-defined]
+        TSRP().jvll = 1.0
 
 
 @pytest.mark.covers("apci.LONGINT")
@@ -194,17 +197,38 @@ def test_there_are_1000_common_variables_of_each_kind() -> None:
     assert CDBUF.unpack(doubles.pack()).cd[999] == 0.1
 
 
-def test_an_array_of_the_wrong_length_or_a_long_text_does_not_fit() -> None:
-    for record, what in (
-        (CDBUF([1.0]), r"CDBUF\.cd .*\n.*double\[1000\]"),
-        (ROSI("x" * 80), r"ROSI\.revision .*79 characters"),
-        (CTRLPARAMS([[1.0]]), r"double\[15\]\[15\]"),
-        (TSRP(kp="high"), r"TSRP\.kp"),  # type: ignore[arg-type]
+def test_a_long_array_or_text_and_a_large_number_do_not_fit() -> None:
+    for record, value, what in (
+        (CDBUF, [1.0] * 1001, r"CDBUF\.cd .*\n.*double\[1000\]"),
+        (ROSI, "x" * 80, r"ROSI\.revision .*79 characters"),
+        (CTRLPARAMS, [[1.0]] * 16, r"double\[15\]\[15\]"),
+        (CTRLPARAMS, [[1.0] * 15] * 14 + [[1.0] * 16], r"double\[15\]\[15\]"),
+        (AS, "high", r"AS\.unoa"),
+        (CIBUF, [2**31] + [0] * 999, r"CIBUF\.ci .*too large"),
     ):
         with pytest.raises(UsageError, match=what):
-            record.pack()
+            record(value)
+    assert list(LMP(dtm=[2.5, -1.0]).dtm) == [2.5, -1.0, *[0.0] * 16]  # as C fills up
+    axis = TSRP(kp=5.5)
+    with pytest.raises(UsageError, match=r"TSRP\.kp"):
+        axis.kp = "high"  # type: ignore[assignment]
+    assert axis == TSRP(kp=5.5)
     with pytest.raises(UsageError, match="TRU has 8 bytes, not 7"):
         records.TRU.unpack(bytes(7))
+
+
+def test_a_record_is_its_memory() -> None:
+    memory = bytearray(208 * 18)
+    array = (TSRP * 18).from_buffer(memory)
+    array[17].jac = 2.5
+    array[17].aux = 3.5  # beside the memory
+    assert memory[208 * 17 + 52 : 208 * 17 + 60] == array[17].pack()[52:60] == b"\0\0\0\0\0\0\x04@"
+    memory[208 * 17 : 208 * 17 + 4] = (5).to_bytes(4, "little")
+    assert (array[17].an, TSRP().aux) == (5, 0.0)
+    transfer = records.CBCNCT(1, 3, bytearray(b"abc"))
+    transfer.buffer[1:2] = b"x"
+    assert (bytes(transfer.buffer), transfer.pack()) == (b"axc", b"\1\0\0\0\3\0\0\0\0\0\0\0")
+    assert transfer != records.CBCNCT(1, 3)
 
 
 def test_text_and_tables_come_back() -> None:
@@ -215,13 +239,11 @@ def test_text_and_tables_come_back() -> None:
 
 @given(st.data())
 def test_any_numbers_come_back_from_memory(data: st.DataObject) -> None:
-    def fill(record: Record) -> None:
-        for each in record.ELEMENTS:
-            number = (
-                st.integers(-(2**31), 2**31 - 1) if each.cell.letter == "i" else st.floats(allow_nan=False)
-            )
-            if each.cell.shape:
-                length = each.cell.shape[0]
+    def fill(record: Structure) -> None:
+        for each in layout(type(record)).fields:
+            number = st.integers(-(2**31), 2**31 - 1) if each.c == "LONGINT" else st.floats(allow_nan=False)
+            if each.counts:
+                length = each.counts[0]
                 setattr(record, each.name, data.draw(st.lists(number, min_size=length, max_size=length)))
             else:
                 setattr(record, each.name, data.draw(number))
@@ -230,6 +252,6 @@ def test_any_numbers_come_back_from_memory(data: st.DataObject) -> None:
     fill(record)
     assert type(record).unpack(record.pack()) == record
     seen = c_struct(type(record).__name__).from_buffer_copy(record.pack())
-    for each in record.ELEMENTS:
-        value = getattr(seen, each.name)
-        assert (list(value) if each.cell.shape else value) == getattr(record, each.name)
+    for each in layout(type(record)).fields:
+        value, mine = getattr(seen, each.name), getattr(record, each.name)
+        assert list(value) == list(mine) if each.counts else value == mine

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Callable
+from dataclasses import dataclass
 
 import pytest
 
@@ -26,24 +26,52 @@ name = "A2"
 
 PROGRAMS = {
     "a common variable": "BEGIN REPEAT UNTIL CI7 = 3; CI8 := CI8 + 5 END.",
-    "again and again": "BEGIN WHILE TRUE DO BEGIN WHILE CI7 < 2 DO; CI8 := CI8 + CI7; WHILE CI7 >= 2 DO; END END.",
-    "a position": "BEGIN REPEAT UNTIL A1.rp > 2.5; CD4 := A1.rp; REPEAT UNTIL A1.rp <= 1.25; CD5 := A1.dp END.",
-    "a status": "BEGIN WHILE A1.axst AND 1024 <> 0 DO; CI9 := A1.axst; WHILE A1.axst AND 1024 = 0 DO; CD6 := A1.rp END.",
+    "again and again": (
+        "BEGIN WHILE TRUE DO BEGIN WHILE CI7 < 2 DO; CI8 := CI8 + CI7; WHILE CI7 >= 2 DO; END END."
+    ),
+    "a position": (
+        "BEGIN REPEAT UNTIL A1.rp > 2.5; CD4 := A1.rp; REPEAT UNTIL A1.rp <= 1.25; CD5 := A1.dp END."
+    ),
+    "a status": (
+        "BEGIN WHILE A1.axst AND 1024 <> 0 DO; CI9 := A1.axst; WHILE A1.axst AND 1024 = 0 DO; "
+        "CD6 := A1.rp END."
+    ),
     "an input": "BEGIN REPEAT UNTIL A2.digi AND 4 <> 0; CI10 := A2.digi END.",
     "an event": "EVENT e ON CI7 = 4; BEGIN CI11 := CI11 + 1 END; BEGIN WHILE TRUE DO; END.",
-    "an event in a wait": "EVENT e ON A1.rp > 1.5; BEGIN CI11 := CI11 + 1; CD7 := A1.rp END; BEGIN wt (2700.0); CI12 := 1 END.",
-    "short waits": "BEGIN REPEAT wt (3.3); UNTIL CI7 = 5; CI13 := 17; REPEAT wt (1.3); wt (5.2) UNTIL CI7 = 1; CI13 := 19 END.",
-    "waits for axes": "BEGIN WHILE TRUE DO BEGIN wt (A1); IF CI7 = 6 THEN CI14 := CI14 + 1; wt (4.0) END END.",
-    "memory": "VAR i: INTEGER; x: DOUBLE; BEGIN REPEAT x := A2.rp * 2.0; FOR i := 1 TO 3 DO x := x + 0.25; UNTIL CI7 = 2; CD8 := x END.",
-    "a function": "FUNCTION f (a: INTEGER): INTEGER; BEGIN f := a * 3 - CI7 END; BEGIN REPEAT UNTIL f (2) = 1; CI15 := f (7) END.",
-    "a long loop": "VAR i: INTEGER; BEGIN REPEAT FOR i := 1 TO 37 DO; UNTIL CI7 = 4; CI16 := i END.",
+    "an event in a wait": (
+        "EVENT e ON A1.rp > 1.5; BEGIN CI11 := CI11 + 1; CD7 := A1.rp END; BEGIN wt (2700.0); CI12 := 1 END."
+    ),
+    "short waits": (
+        "BEGIN REPEAT wt (3.3); UNTIL CI7 = 5; CI13 := 17; REPEAT wt (1.3); wt (5.2) UNTIL CI7 = "
+        "1; CI13 := 19 END."
+    ),
+    "waits for axes": (
+        "BEGIN WHILE TRUE DO BEGIN wt (A1); IF CI7 = 6 THEN CI14 := CI14 + 1; wt (4.0) END END."
+    ),
+    "memory": (
+        "VAR i: INTEGER; x: DOUBLE; BEGIN REPEAT x := A2.rp * 2.0; FOR i := 1 TO 3 DO x := x + "
+        "0.25; UNTIL CI7 = 2; CD8 := x END."
+    ),
+    "a function": (
+        "FUNCTION f (a: INTEGER): INTEGER; BEGIN f := a * 3 - CI7 END; BEGIN REPEAT UNTIL f (2) "
+        "= 1; CI15 := f (7) END."
+    ),
+    "a long loop": ("VAR i: INTEGER; BEGIN REPEAT FOR i := 1 TO 37 DO; UNTIL CI7 = 4; CI16 := i END."),
     "a count": "VAR i: INTEGER; BEGIN REPEAT i := i + 1 UNTIL CI7 = 3; CI17 := i END.",
-    "a heartbeat": "BEGIN WHILE TRUE DO BEGIN CI20 := CI20 + 1; IF CI7 = 5 THEN stopcnct (0); IF CI7 = 6 THEN contcnct (0) END END.",
+    "a heartbeat": (
+        "BEGIN WHILE TRUE DO BEGIN CI20 := CI20 + 1; IF CI7 = 5 THEN stopcnct (0); IF CI7 = 6 "
+        "THEN contcnct (0) END END."
+    ),
     "a buffer": "BEGIN REPEAT UNTIL RDCBI (8) = 77; CI18 := RDCBI (12) END.",
-    "moves": "BEGIN cl (A2); A2.jac := 100; A2.jvl := 20; WHILE TRUE DO BEGIN REPEAT UNTIL CI7 = 1; jr (A2 := 0.5); wt (A2); REPEAT UNTIL CI7 <> 1 END END.",
+    "moves": (
+        "BEGIN cl (A2); A2.jac := 100; A2.jvl := 20; WHILE TRUE DO BEGIN REPEAT UNTIL CI7 = 1; "
+        "jr (A2 := 0.5); wt (A2); REPEAT UNTIL CI7 <> 1 END END."
+    ),
     "latches": "BEGIN WHILE A2.lp = 0.0 DO; CD9 := A2.lp END.",
     "the queue": "BEGIN WHILE A1.MCiS = 0 DO; CI19 := A1.lsm END.",
 }
+
+BUFFER = bytes([9] * 8 + [77, 0, 0, 0, 5, 6, 7, 0])
 
 
 def rig(fast: bool, monkeypatch: pytest.MonkeyPatch) -> tuple[Board, BoardTasks]:
@@ -67,26 +95,40 @@ def picture(board: Board, tasks: BoardTasks) -> tuple[object, ...]:
     return tuple(seen)
 
 
-def _script(seed: int) -> list[tuple[int, Callable[[Board, BoardTasks], None]]]:
-    """Return what happens from outside: after how many scans, what."""
+@dataclass(frozen=True)
+class Outside:
+    """Something that happens between two calls of the board: what, and with what."""
+
+    after_scans: int
+    what: str
+    value: int
+    way: float
+
+    def act(self, board: Board, tasks: BoardTasks) -> None:
+        """Let it happen."""
+        if self.what == "variable":
+            board.state.ci[7] = self.value
+        elif self.what == "input":
+            board.set_input(3, self.value > 3)
+        elif self.what == "jog":
+            jr(board, (0,), (self.way,))
+        elif self.what == "buffer":
+            tasks.tasks.wrcbcnct(self.value % 4, 16, BUFFER)
+        else:
+            control = tasks.tasks.stopcnct if self.value % 2 else tasks.tasks.contcnct
+            control(self.value // 2)
+
+
+def _script(seed: int) -> list[Outside]:
+    """Return what happens from outside."""
     rng = random.Random(seed)
-    steps: list[tuple[int, Callable[[Board, BoardTasks], None]]] = []
-    for _ in range(30):
-        value, level, way = rng.randrange(8), rng.random() < 0.5, rng.uniform(-3.0, 5.0)
-        choices: list[Callable[[Board, BoardTasks], None]] = [
-            lambda board, tasks, value=value: board.state.ci.__setitem__(7, value),
-            lambda board, tasks, value=value: board.state.ci.__setitem__(7, value),
-            lambda board, tasks, level=level: board.set_input(3, level),
-            lambda board, tasks, way=way: jr(board, (0,), (way,)),
-            lambda board, tasks, value=value: tasks.tasks.wrcbcnct(
-                value % 4, 16, bytes([value] * 8 + [77, 0, 0, 0, 5, 6, 7, 0])
-            ),
-            lambda board, tasks, value=value: (tasks.tasks.stopcnct, tasks.tasks.contcnct)[value % 2](
-                value // 2
-            ),
-        ]
-        steps.append((rng.choice((1, 2, 3, 40, 170, 330)), rng.choice(choices)))
-    return steps
+    kinds = ("variable", "variable", "input", "jog", "buffer", "task")
+    return [
+        Outside(
+            rng.choice((1, 2, 3, 40, 170, 330)), rng.choice(kinds), rng.randrange(8), rng.uniform(-3.0, 5.0)
+        )
+        for _ in range(30)
+    ]
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -103,10 +145,10 @@ def test_polling_tasks_do_bit_for_bit_what_every_turn_would_do(
             tasks.load(sap.compile_program(PROGRAMS[name], task=number))
             tasks.tasks.startcnct(number)
         seen = []
-        for scans, act in _script(seed):
-            board.advance(scans)
+        for each in _script(seed):
+            board.advance(each.after_scans)
             seen.append(picture(board, tasks))
-            act(board, tasks)
+            each.act(board, tasks)
         pictures.append(seen)
     for k, (quick, slow) in enumerate(zip(*pictures, strict=True)):
         assert quick == slow, (names, k)
@@ -120,7 +162,12 @@ def test_a_task_that_polls_needs_no_turns_while_nothing_changes(
 ) -> None:
     turns = []
     run = Task.run
-    monkeypatch.setattr(Task, "run", lambda self, budget: (turns.append(1), run(self, budget))[1])
+
+    def counted(self: Task, budget: int) -> None:
+        turns.append(1)
+        run(self, budget)
+
+    monkeypatch.setattr(Task, "run", counted)
     board, tasks = rig(True, monkeypatch)
     for number in range(4):
         tasks.load(sap.compile_program(PROGRAMS[name], task=number))
@@ -162,3 +209,40 @@ def test_a_task_stopped_by_another_one_stands_where_its_last_turn_has_left_it(
         assert board.state.ci[1] == 1
         seen.append(picture(board, tasks))
     assert seen[0] == seen[1]
+
+
+@pytest.mark.parametrize("name", ["a common variable", "short waits", "an event", "a function"])
+def test_a_snapshot_of_a_polling_board_goes_on_as_the_board_does(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = []
+    for fast in (True, False):
+        board, tasks = rig(fast, monkeypatch)
+        tasks.load(sap.compile_program(PROGRAMS[name]))
+        tasks.tasks.startcnct(0)
+        board.advance(137)
+        kept = board.snapshot()
+        board.advance(61)
+        seen.append(picture(board, tasks))
+        board.state.ci[7] = 3
+        board.advance(40)
+        board.restore(kept)
+        assert board.snapshot() == kept
+        board.advance(61)
+        seen.append(picture(board, tasks))
+        board.state.ci[7] = 4
+        board.advance(50)
+        seen.append(picture(board, tasks))
+    assert seen[0] == seen[1] == seen[3] == seen[4]
+    assert seen[2] == seen[5]
+
+
+@pytest.mark.parametrize("instructions", [7, 100, 333])
+def test_a_board_may_run_other_numbers_of_instructions_in_a_scan(instructions: int) -> None:
+    board = Board(parse_system_file(f"[rulings]\ninstructions_per_scan = {instructions}\n"))
+    tasks = BoardTasks(board)
+    tasks.load(sap.compile_program("BEGIN WHILE TRUE DO CI3 := CI3 + 1 END."))
+    tasks.tasks.startcnct(0)
+    board.advance(60)
+    # a pass: the condition, the jump out, three and a store, the jump back
+    assert int(board.state.ci[3]) == pytest.approx(60 * instructions / 7, abs=1)

@@ -447,3 +447,76 @@ def test_a_stop_takes_a_command_back_that_is_on_its_way() -> None:
     rig.board.advance(10)
     assert [axis.rp for axis in rig.board.axes] == [0.0, 5.0, 0.0]
     assert all(rig.bits(i) & Axst.pe for i in rig.all)
+
+
+@pytest.mark.covers("apci.ssms")
+@pytest.mark.parametrize("scans", [1, 20, 200])
+def test_a_start_while_the_last_entry_before_a_pause_still_runs_undoes_the_pause(scans: int) -> None:
+    rig = Rig()
+    for way in (11.0, 7.0, -3.0):
+        mlr(rig.board, (0, 2), (way, 2.0 * way), SLOW, spool=True)
+    ssms(rig.board, (0, 2))
+    rig.board.advance(scans)
+    sstps(rig.board, (0, 2))
+    rig.board.advance(5)
+    ssms(rig.board, (0, 2))
+    rig.scans_until_end()
+    assert (rig.board.axes[0].rp, rig.board.axes[2].rp) == (15.0, 30.0)
+    assert (moves_queued(rig.board, 0), rig.board.errorreg) == (0, 0)
+    assert not rig.bits() & Axst.saf
+
+
+def test_a_start_behind_a_pause_takes_axes_at_rest_along_and_no_jogging_one() -> None:
+    rig = Rig()
+    mlr(rig.board, (0,), (11.0,), SLOW, spool=True)
+    mlr(rig.board, (0,), (-2.0,), SLOW, spool=True)
+    mlr(rig.board, (1,), (5.0,), SLOW, spool=True)
+    ssms(rig.board, (0,))
+    rig.board.advance(30)
+    sstps(rig.board, (0,))
+    rig.set_jog(2)
+    jr(rig.board, (2,), (3.0,))
+    rig.board.advance(LATENCY + 2)
+    mlr(rig.board, (2,), (1.0,), SLOW, spool=True)
+    ssms(rig.board, (0, 1, 2))  # axis 2 jogs: nothing is started
+    rig.board.advance(3)
+    assert rig.board.axes[1].dp == 0.0
+    ssms(rig.board, (0, 1))
+    rig.scans_until_end((0, 1))
+    assert (rig.board.axes[0].rp, rig.board.axes[1].rp) == (9.0, 5.0)
+
+
+@pytest.mark.covers("apci.rule.spool_reload")
+def test_a_contour_longer_than_the_spooler_runs_without_a_break_while_it_is_refilled() -> None:
+    rig = Rig(axes=1)
+    total, sent, step = 1200, 0, 0.125
+    rates: list[float] = []
+    while sent < total:
+        while sent < total and free_bytes(rig.board, 0) > 130_000:
+            last = sent == total - 1
+            mlr(rig.board, (0,), (step,), SLOW if last else GOES_ON, spool=True)
+            sent += 1
+        if not rates:
+            ssms(rig.board, (0,))
+        before = rig.board.axes[0].dp
+        rig.board.advance(20)
+        rates.append((rig.board.axes[0].dp - before) / (20 * SCAN_S))
+    assert rates[25:] == pytest.approx([50.0] * len(rates[25:]), rel=1e-6)
+    rig.scans_until_end()
+    assert rig.board.axes[0].rp == pytest.approx(total * step, abs=1e-9)
+    assert rig.board.errorreg == 0
+
+
+def test_a_board_may_take_a_start_at_rest_only() -> None:
+    rig = Rig("[rulings]\nssms_undoes_sstps = false\n")
+    for way in (11.0, 7.0):
+        mlr(rig.board, (0,), (way,), SLOW, spool=True)
+    ssms(rig.board, (0,))
+    rig.board.advance(20)
+    sstps(rig.board, (0,))
+    ssms(rig.board, (0,))
+    rig.scans_until_end()
+    assert rig.board.axes[0].rp == 11.0
+    ssms(rig.board, (0,))
+    rig.scans_until_end()
+    assert rig.board.axes[0].rp == 18.0

@@ -38,7 +38,9 @@ def line_start(line: int) -> int:
 
 def block(line: int, *words: tuple[str, float]) -> WordsBlock:
     offset = line_start(line)
-    return WordsBlock(tuple(Word(letter, value, offset, True) for letter, value in words), line, offset)
+    return WordsBlock(
+        tuple(Word(letter, float(value), offset, True) for letter, value in words), line, offset
+    )
 
 
 def span(first: int, after: int) -> TextSpan:

@@ -13,6 +13,7 @@ from polycnc.cnc import (
     ControlData,
     ControlError,
     ControlEvent,
+    ControlSnapshot,
     Emergency,
     Function,
     Mode,
@@ -23,6 +24,7 @@ from polycnc.cnc import (
     RunState,
     Timer,
 )
+from polycnc.machine import SnapshotError
 from support.cnc_machine import cnc_machine
 
 # 30 mm at 3000 mm/min are 0.6 s, and the way back as long.
@@ -591,3 +593,83 @@ def test_positions_machine_work_and_relative() -> None:
     made.advance(2000)
     axis = made.status().axes["X"]
     assert (axis.machine, axis.work) == (22.5, 20.0)
+
+
+# ---------------------------------------------------------------------- snapshots
+
+
+def test_a_snapshot_in_the_middle_of_a_program_goes_on_as_the_undisturbed_one() -> None:
+    script = {(Function.M, 8): Answer(0.7)}
+    made = started(program="SLOT", script=script)
+    made.set_overrides(feed=0.9)
+    made.advance(600)
+    saved = made.snapshot()
+    assert made.snapshot() == saved
+    ends = []
+    for _ in range(2):
+        made.advance(77)
+        made.set_overrides(feed=1.7)
+        passed = made.advance(100_000, until=ControlEvent.RUN_STATE)
+        ends.append((passed, made.status()))
+        made.select_mode(Mode.JOG)
+        made.jog("Y", 1)
+        made.advance(100)
+        made.emergency_stop()
+        made.restore(saved)
+        assert made.clock.cycles == 600
+        assert made.snapshot() == saved
+    assert ends[0][0] == ends[1][0]
+    first, second = (end.axes for _, end in ends)
+    assert first == second
+    assert made.status().emergency is Emergency.OFF
+    with pytest.raises(SnapshotError, match="under way"):
+        saved.to_bytes()
+    made.advance(100_000, until=ControlEvent.RUN_STATE)
+    ended, status = made.snapshot(), made.status()
+    made.reset()
+    made.restore(ended)
+    assert made.status() == status
+    other = control(script=script)
+    other.restore(ControlSnapshot.from_bytes(ended.to_bytes()))
+    assert other.status().axes["X"].machine == 30.0
+
+
+def test_a_snapshot_at_rest_is_a_file_for_another_control_made_alike() -> None:
+    made = control(ControlData(referenced_at_start=False))
+    made.select_mode(Mode.REF)
+    made.reference("Z")
+    made.advance(40)
+    made.messages.show(7, "clean the table")
+    made.set_switches(block_delete=frozenset({2, 5}))
+    made.spindle.turn(rpm=900.0, direction=1)
+    made.plc.strobe(Function.M, 30)
+    saved = made.snapshot()
+    made.advance(3000)
+    other = control(ControlData(referenced_at_start=False))
+    other.restore(ControlSnapshot.from_bytes(saved.to_bytes()))
+    assert other.snapshot() == saved
+    other.advance(3000)
+    assert other.status() == made.status()
+    assert other.status().axes["Z"].referenced
+
+
+def test_the_snapshot_of_another_thing_is_refused_before_anything_changes() -> None:
+    made = started()
+    made.advance(300)
+    others = (
+        Control(cnc_machine(), channels=2).snapshot(),
+        Control("mill3").snapshot(),
+        Control(cnc_machine(cycle_s=0.002)).snapshot(),
+        Control(cnc_machine(), dialect="fanuc").snapshot(),
+        started().snapshot(),  # alike, but its program is under way elsewhere
+        made.machine.snapshot(),
+    )
+    before = made.status()
+    for other in others:
+        with pytest.raises(SnapshotError):
+            made.restore(other)
+        assert made.status() == before
+    made.advance(100_000, until=ControlEvent.RUN_STATE)
+    assert made.status().channel.run_state is RunState.COMPLETED
+    with pytest.raises(SnapshotError):
+        ControlSnapshot.from_bytes(Control("mill3").machine.snapshot().to_bytes())

@@ -306,3 +306,11 @@ def test_an_event_on_an_axis_that_is_not_there_does_nothing() -> None:
     assert card.push(IFIFO, InstallEvents((bad,)))
     card.advance(3)
     assert (card.state.memory[:2] == before[:2]).all()
+
+
+@pytest.mark.parametrize(("command", "bits"), [("SCA32i", 32), ("SCA48i", 48)])
+def test_a_card_may_take_factors_with_16_fraction_bits(command: str, bits: int) -> None:
+    for value, factor in ((1_000_003, 65_536), (-77_777, 163_841), (1_234_567, -98_305), (-3, 1)):
+        for text, fraction in (("S16.32", 32), ("S16.16", 16)):
+            card = ready_card(f'number_of_axes = 1\nscale_factor = "{text}"\n')
+            assert _result(card, command, True, value, factor)[0] == value * factor >> fraction

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 
 import pytest
 
+from polycnc.controllers.imc import Card
 from polycnc.controllers.imc.core._instructions import WriteMany
 from polycnc.controllers.imc.core._parameters import address
 from support.imc_card import (
@@ -358,7 +360,7 @@ def _event_stop(card) -> None:  # type: ignore[no-untyped-def]
     set_now(card, ("user32b3", 9))
 
 
-STOPS = {
+STOPS: dict[str, Callable[[Card], None]] = {
     "velocity 0": lambda card: send(card, IFIFO, ("mcstgvel", 0, 1)),
     "event": _event_stop,
     "go 0": lambda card: send(card, IFIFO, ("mcsgo", 0, 1)),

@@ -7,7 +7,10 @@ from typing import Any
 
 import pytest
 
+from polycnc.controllers.imc import Card, parse_card
 from polycnc.controllers.imc import imclib as lib
+from polycnc.controllers.imc.core._instructions import Points as Displacements
+from polycnc.controllers.imc.core._instructions import Write, WriteMany
 from polycnc.controllers.imc.core._parameters import PARAMETERS
 from support.imc_network import ToldCard, opened
 
@@ -107,8 +110,8 @@ def test_queues_that_take_an_instruction(
     assert len(SENDERS) + len(WAITERS) + len(PATHS) == 40
 
 
-def test_contour_points_go_to_their_queue_only(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
-    for fifo in (-1, I, Q, P1, P2, 5):
+def test_contour_points_go_to_queues_of_points_only(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    for fifo in (-1, I, Q, 5):
         assert lib.IMC_PutContourData(handle, [1, 2], 2, fifo) == lib.IMC_INVALID_FIFO
         assert card.points == []
     assert lib.IMC_PutContourData(handle, [1, 2], 2, C) == lib.IMC_OK
@@ -304,3 +307,53 @@ def test_a_refused_read_leaves_its_structures_alone(handle: lib.IMC_HANDLE) -> N
     elements[0].data[0] = 77
     assert lib.IMC_GetMulParam(handle, elements, 2) == lib.IMC_INVALID_PARAM
     assert elements[0].data[0] == 77
+
+
+def test_points_for_a_path_queue_are_an_instruction_of_whole_points(
+    card: ToldCard, handle: lib.IMC_HANDLE
+) -> None:
+    card.memory[lib.groupnumLoc, 0] = 3
+    card.memory[lib.pathaxisnum1Loc, 0] = 2
+    card.memory[lib.pathaxisnum2Loc, 0] = 5
+    values: list[Any] = [1.9, -2.9, 3, 4]
+    assert lib.IMC_PutContourData(handle, values, 4, P1) == lib.IMC_OK
+    assert lib.IMC_PutContourData(handle, [1, 2, 3, 4, 5], 5, P1) == lib.IMC_OUT_OF_RANGE
+    assert lib.IMC_PutContourData(handle, [1, 2, 3, 4, 5], 5, P2) == lib.IMC_OK
+    assert card.told == [(P1, Displacements((1, -2, 3, 4))), (P2, Displacements((1, 2, 3, 4, 5)))]
+    assert card.points == []
+
+
+def test_what_a_queue_never_holds_is_out_of_range_and_not_a_full_queue() -> None:
+    card = Card(parse_card("ready = true\n[depths]\nififo = 64\nqfifo = 64\npfifo1 = 64\ncfifo = 100\n"))
+    handle = opened(card)
+    writes = many(*((lib.user32b0Loc, 0, 2),) * 17)
+    for fifo in (I, Q, P1):
+        assert lib.IMC_SetMulParam(handle, writes, 17, fifo) == lib.IMC_OUT_OF_RANGE
+        assert lib.IMC_SetMulParam(handle, writes, 16, fifo) == lib.IMC_OK
+    assert lib.IMC_SetMulParam(handle, writes, 17, P2) == lib.IMC_OK
+    events = [lib.EventInfo() for _ in range(31)]
+    for each in events:
+        each.EventCMD, each.Src1_loc = 5, lib.curposLoc  # CMP32i
+    assert lib.IMC_InstallEvent(handle, events, 31, I) == lib.IMC_OUT_OF_RANGE
+    assert lib.IMC_PutContourData(handle, [5] * 101, 101, C) == lib.IMC_OUT_OF_RANGE
+    assert lib.IMC_PutContourData(handle, [5] * 64, 64, P1) == lib.IMC_OUT_OF_RANGE
+    assert card.waiting_words(4) == 0
+    lib.detach()
+
+
+def test_a_star_import_brings_functions_codes_and_addresses() -> None:
+    names: dict[str, Any] = {}
+    exec("from polycnc.controllers.imc.imclib import *", names)
+    assert names["mcstgposLoc"] == 12
+    assert names["gohomeLoc"] == 152
+    assert names["startgroup"] == 256
+    assert names["IMC_MoveAbsolute"] is lib.IMC_MoveAbsolute
+    assert {name for name in dir(lib) if name.endswith("Loc")} <= set(names)
+
+
+def test_floats_are_converted_where_c_converts_them(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
+    position: Any = -1234.9
+    velocity: Any = 2.5 * 65536
+    assert lib.IMC_SetParam32(handle, lib.mcstgposLoc, position, 2, Q) == lib.IMC_OK
+    assert lib.IMC_MoveVelocity(handle, velocity, 1, Q) == lib.IMC_OK
+    assert card.told == [(Q, Write(12, -1234, 2, 2)), (Q, WriteMany((Write(6, 163840, 1, 2),)))]

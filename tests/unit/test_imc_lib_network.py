@@ -10,8 +10,9 @@ import pytest
 
 from polycnc.controllers.imc import imclib as lib
 from polycnc.errors import UsageError
-from polycnc.machine import Poll
+from polycnc.machine import Elapsed, Poll
 from support.imc_network import ToldCard, opened
+from support.time_sources import FakeWall
 
 
 @pytest.fixture(autouse=True)
@@ -155,20 +156,29 @@ def test_time_passes_when_a_program_reads_or_finds_a_queue_full() -> None:
     assert handle is not opening
     lib.IMC_MoveVelocity(opening, 1, 0, lib.SEL_QFIFO)
     assert here.cycles == 0
-    lib.IMC_GetParam16(opening, lib.movingLoc, 0)
-    assert (here.cycles, there.cycles) == (7, 7)  # cards keep in step
+    for cycles, axes in (
+        (7, (0, 1)),
+        (14, (0, 1)),
+    ):  # what was sent is taken first; then the second time, not the first
+        for axis in axes:
+            lib.IMC_GetParam16(opening, lib.movingLoc, axis)
+            lib.IMC_GetParamBit(opening, lib.movingLoc, axis, 0)
+            assert (here.cycles, there.cycles) == (
+                cycles,
+                cycles,
+            )  # both axes of one cycle; cards keep in step
     here.full = True
     assert lib.IMC_MoveVelocity(opening, 1, 0, lib.SEL_IFIFO) == lib.IMC_FIFO_FULL
-    assert here.cycles == 14
+    assert here.cycles == 21
     here.full = False
     lib.IMC_MoveVelocity(opening, 1, 0, lib.SEL_IFIFO)
-    assert (here.cycles, there.cycles) == (15, 15)  # carried out at once
+    assert (here.cycles, there.cycles) == (22, 22)  # carried out at once
     lib.attach(here, clock=None)
     _, frozen = lib.IMC_Open(0, 0)
     assert frozen is not None
     lib.IMC_GetParam16(frozen, lib.movingLoc, 0)
     lib.IMC_MoveVelocity(frozen, 1, 0, lib.SEL_IFIFO)
-    assert here.cycles == 15
+    assert here.cycles == 22
 
 
 @pytest.mark.parametrize(
@@ -224,9 +234,23 @@ def test_two_programs_have_their_own_network_handles_and_time() -> None:
     assert lib.IMC_Open(0, 0) == (lib.IMC_DEVICE_NOT_FOUND, None)  # nothing is attached to the module's own
     (_, first), (_, second) = here.IMC_Open(0, 0), there.IMC_Open(0, 0)
     assert here.IMC_GetParam16(second, lib.movingLoc, 0) == (lib.IMC_INVALID_HANDLE, 0)
-    assert here.IMC_GetParam16(first, lib.movingLoc, 0) == (lib.IMC_OK, 0)
+    for _ in range(2):
+        assert here.IMC_GetParam16(first, lib.movingLoc, 0) == (lib.IMC_OK, 0)
     assert (mine.cycles, theirs.cycles) == (7, 0)
-    assert there.IMC_GetPatamBit(second, lib.movingLoc, 0, 0) == (lib.IMC_OK, 0)
-    assert (mine.cycles, theirs.cycles) == (7, 4)
+    for _ in range(3):
+        assert there.IMC_GetPatamBit(second, lib.movingLoc, 0, 0) == (lib.IMC_OK, 0)
+    assert (mine.cycles, theirs.cycles) == (7, 8)
     assert here.IMC_Close(first) == lib.IMC_OK
     assert here.IMC_Close(first) == lib.IMC_INVALID_HANDLE
+
+
+def test_a_program_that_sleeps_sees_a_card_in_real_time() -> None:
+    wall, card = FakeWall(), ToldCard()
+    handle = opened(card, clock=Elapsed(wall))
+    wall.time_s += 0.0105
+    assert lib.IMC_MoveVelocity(handle, 5, 0, lib.SEL_QFIFO) == lib.IMC_OK
+    assert card.cycles == 10
+    wall.time_s += 0.0205
+    for _ in range(9):
+        lib.IMC_GetParam16(handle, lib.movingLoc, 0)
+    assert card.cycles == 31

@@ -297,12 +297,10 @@ def test_settings_of_an_axis_that_the_simulation_does_not_use_are_kept_for_each_
     "imc.param.eventbase",
     "imc.param.out1",
     "imc.param.out2",
-    "imc.param.pathaxisnum1",
-    "imc.param.pathaxisnum2",
 )
 @pytest.mark.parametrize(
     "name",
-    ["waitfilt", "waitequ", "giod", "eventid", "eventbase", "out1", "out2", "pathaxisnum1", "pathaxisnum2"],
+    ["waitfilt", "waitequ", "giod", "eventid", "eventbase", "out1", "out2"],
 )
 def test_settings_of_the_card_without_a_known_meaning_are_kept(name: str) -> None:
     card = ready_card()

@@ -7,6 +7,7 @@ import pytest
 from polycnc.controllers.imc.card._card import Fifo
 from polycnc.controllers.imc.core._event_codes import EventCommand, EventType
 from polycnc.controllers.imc.core._instructions import (
+    ChangeBits,
     Event,
     InstallEvents,
     Points,
@@ -287,3 +288,22 @@ def test_what_never_fits_into_a_queue_is_refused_and_not_put_off() -> None:
             card.push(queue, Points((1, 2)))
     with pytest.raises(UsageError, match="no points"):
         card.push(PFIFO1, Points(()))
+
+
+@pytest.mark.covers("imc.concept.instruction_fifos")
+@pytest.mark.parametrize(("queue", "cycles"), [(IFIFO, 1), (QFIFO, 3), (PFIFO1, 1), (PFIFO2, 1)])
+def test_every_queue_takes_the_same_instructions_and_carries_them_out_in_order(
+    queue: Fifo, cycles: int
+) -> None:
+    card = ready_card()
+    set_now(card, ("startpath1", FLAG), ("startpath2", FLAG))
+    assert card.push(queue, setting("user16b0", 11))
+    assert card.push(queue, ChangeBits(address("user16b0"), 0x4, 0x1))
+    assert card.push(queue, WriteMany((setting("user16b1", 23), setting("user16b0", 37))))
+    assert _cells(card) == [0, 0, 0]
+    assert card.waiting_words(queue) == 3 + 4 + 6
+    card.advance(cycles - 1)
+    assert _cells(card)[:2] == ([14, 0] if cycles == 3 else [0, 0])
+    card.advance(1)
+    assert _cells(card)[:2] == [37, 23]
+    assert card.waiting_words(queue) == 0

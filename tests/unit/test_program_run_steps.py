@@ -385,3 +385,79 @@ def test_a_work_offset_changed_while_it_runs_acts_on_blocks_prepared_afterwards(
     assert run.position["X"] == 110.0
     assert run.modal is not None
     assert run.modal.zero[0] == 100.0
+
+
+# --- going back
+
+
+@pytest.mark.parametrize("cycle", [3, 61, 200, 777])
+def test_a_run_goes_back_to_a_snapshot_and_ends_the_same(cycle: int, nested: ProgramText) -> None:
+    run = program_run(nested)
+    run.start()
+    run.advance(cycle)
+    saved, machine = run.snapshot(), run.machine.snapshot()
+    record = run.executed
+
+    def to_the_end() -> list[object]:
+        went: list[object] = []
+        while run.active:
+            run.advance(1)
+            went.append((run.position, run.executed))
+        return went
+
+    first = to_the_end()
+    run.restore(saved)
+    run.machine.restore(machine)
+    assert run.executed == record
+    run.hold()
+    run.advance(50)
+    run.restore(saved)
+    run.machine.restore(machine)
+    assert to_the_end() == first
+    assert len(first) > 20
+
+
+def test_restoring_goes_back_before_a_program_that_was_loaded_since(nested: ProgramText) -> None:
+    run = program_run(nested)
+    run.start()
+    run.advance(40)
+    saved, machine = run.snapshot(), run.machine.snapshot()
+    run.reset()
+    run.advance(400)
+    run.mdi("G1 X3 F300\n")
+    run.advance(9)
+    run.restore(saved)
+    run.machine.restore(machine)
+    to_the_end(run)
+    assert run.machine.setpoints == undisturbed(nested)[1]
+
+
+# --- long programs and tools
+
+
+def test_contexts_that_nothing_refers_to_are_forgotten() -> None:
+    # Every block has a modal state of its own: S changes in each.
+    program = "".join(f"G1 X{n % 3} S{n} F9000\n" for n in range(1, 14_000))
+    run = program_run(program, segments=512)
+    run.start()
+    most = 0
+    while run.active:
+        run.skip()
+        most = max(most, len(run.channel.records.snapshot()[0]))
+    assert most < 7000
+    assert run.executed is not None
+    assert run.executed.line == 13_999
+
+
+def test_time_is_accounted_to_the_tool_in_the_spindle() -> None:
+    program = "G1 X5 F600\nT1 M6\nG1 X25 F1200\nG0 X0\nT2\nG1 X3\nM6\nX9 F300\nM30\n"
+    run = program_run(program, FIVE)
+    run.start()
+    to_the_end(run)
+    times = run.tool_times
+    assert list(times) == [0, 1, 2]
+    assert times[0].cutting_s == pytest.approx(5 / 10 + 10 / 5000, abs=2e-3)
+    assert times[1].cutting_s == pytest.approx(20 / 20 + 20 / 5000 + 3 / 20 + 20 / 5000, abs=4e-3)
+    assert times[1].rapid_s == pytest.approx(2 * math.sqrt(25 / 5000), abs=2e-3)
+    assert times[2].cutting_s == pytest.approx(6 / 5 + 5 / 5000, abs=2e-3)
+    assert times[2].rapid_s == 0.0

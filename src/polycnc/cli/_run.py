@@ -60,6 +60,9 @@ def run_command(
             max=9,
         ),
     ] = None,
+    stop_at_m0: Annotated[
+        bool, typer.Option("--stop-at-m0", help="End the run at the first M0 instead of passing it.")
+    ] = False,
 ) -> None:
     """Run a part program on a simulated machine and say how long it takes and where it goes."""
     from polycnc import runner
@@ -91,6 +94,7 @@ def run_command(
                 servo=servo,
                 check=False,
                 skip_levels=skip or (),
+                stop_at_m0=stop_at_m0,
                 rows=rows if sinks else None,
                 progress=bar,
             )

@@ -15,13 +15,14 @@ from polycnc.cnc._alarms import (
 from polycnc.cnc._control import Control, ControlEvent
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import AfterManual, ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
 from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
-from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState, ToolTime
 from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
 from polycnc.cnc._stops import Breakpoint, Step
@@ -47,6 +48,7 @@ __all__ = [
     "ControlData",
     "ControlError",
     "ControlEvent",
+    "ControlSnapshot",
     "Emergency",
     "Feed",
     "Found",
@@ -89,5 +91,6 @@ __all__ = [
     "TimersState",
     "Tool",
     "ToolTable",
+    "ToolTime",
     "first_comment",
 ]

@@ -16,10 +16,12 @@ from typing import Any, TypeAlias
 from polycnc.cnc._alarms import AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot, copied, nested
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import Function, PlcModel, Script
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import ProgramMemory
+from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
@@ -28,7 +30,7 @@ from polycnc.cnc._status_reading import read_status
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.kernel import FEED_S
-from polycnc.machine import Machine, MachineConfig, Reason, load_machine
+from polycnc.machine import Machine, MachineConfig, Reason, Snapshot, SnapshotError, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
@@ -86,14 +88,14 @@ class Control:
         self.manual = ManualMotion(
             self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
         )
-        live = machine_file.model_copy(update={"tools": self.tools, "offsets": self.offsets})
+        self._live = machine_file.model_copy(update={"tools": self.tools, "offsets": self.offsets})
         self.channels = tuple(
             ControlChannel(
                 self.machine,
                 path,
                 self.dialect,
                 self.manual,
-                config=live,
+                config=self._live,
                 library=self._sub_program,
                 dry_run_mm_min=self.data.dry_run_mm_min,
                 on_event=self._meet,
@@ -105,7 +107,6 @@ class Control:
         self._emergency = Emergency.OFF
         self._overrides = Overrides()
         self._switches = Switches()
-        self._mdi: dict[int, ProgramText] = {}
         self._relative_zero = [0.0] * len(machine_file.axes)
         self._edits: list[ProgramEdit] = []
         self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
@@ -234,7 +235,7 @@ class Control:
         self._check_over(chosen)
         if not text.strip():
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
-        self._mdi[channel] = ProgramText.from_text(text, _MDI_NAME)
+        chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
     def cycle_start(self, *, channel: int = 0) -> None:
         """Begin the selected program, the MDI text, or go on where a program is interrupted.
@@ -263,7 +264,7 @@ class Control:
                 )
             chosen.go_on(self.data.after_manual)
         else:
-            chosen.begin(self._to_begin(chosen, channel, is_mdi), self._switches, self._overrides, mdi=is_mdi)
+            chosen.begin(self._to_begin(chosen, is_mdi), self._switches, self._overrides, mdi=is_mdi)
             self.timers.start_cycle()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE
@@ -541,6 +542,91 @@ class Control:
         """Return what the control is and does in the present cycle."""
         return read_status(self)
 
+    def snapshot(self) -> ControlSnapshot:
+        """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.
+
+        Raises:
+            SnapshotError: A program is under way whose language cannot be copied.
+        """
+        under_way = any(channel.programs or not channel.at_rest for channel in self.channels)
+        runs = tuple(copied(channel.run, self._shared()) for channel in self.channels)
+        return ControlSnapshot.of(self._made_from, self.machine.snapshot(), self._moment(), runs, under_way)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this control, or without a program under way of one made alike.
+
+        Raises:
+            SnapshotError: It is of something else, or damaged; nothing has changed.
+        """
+        if not isinstance(snapshot, ControlSnapshot):
+            raise SnapshotError(
+                f"this is a snapshot of {snapshot.device}, not of a control",
+                hint="restore it where it was taken",
+            )
+        snapshot.check("control", self._made_from, ())
+        moment: ControlMoment = snapshot.moment()
+        if any(run is not None and run.machine is not self.machine for run in snapshot.runs):
+            raise SnapshotError(
+                "a program under way was part of another control", hint="restore it where it was taken"
+            )
+        runs = tuple(copied(run, self._shared()) for run in snapshot.runs) or (None,) * len(self.channels)
+        self.machine.restore(snapshot.machine)
+        for edit in self._edits:
+            edit.close()
+        self._put_back(moment, runs)
+
+    @property
+    def _made_from(self) -> str:
+        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {len(self.channels)} {self.data!r}"
+
+    def _shared(self) -> list[object]:
+        """Return what the copy of a run shares with it."""
+        return [
+            self,
+            self.machine,
+            self.dialect,
+            self.machine.config,
+            self._live,
+            *nested(self.machine.state),
+        ]
+
+    def _moment(self) -> ControlMoment:
+        return ControlMoment(
+            mode=self._mode,
+            emergency=self._emergency,
+            overrides=self._overrides,
+            switches=self._switches,
+            relative_zero=self.relative_zero,
+            raised=int(self._raised),
+            channels=tuple(channel.moment(self._waiting.get(channel.path, ())) for channel in self.channels),
+            manual=self.manual.snapshot(),
+            spindle=self.spindle.snapshot(),
+            plc=self.plc.snapshot(),
+            alarms=self.alarms.snapshot(),
+            messages=self.messages.snapshot(),
+            timers=self.timers.snapshot(),
+        )
+
+    def _put_back(self, moment: ControlMoment, runs: tuple[ProgramRun | None, ...]) -> None:
+        self._mode = moment.mode
+        self._emergency = moment.emergency
+        self._overrides = moment.overrides
+        self._switches = moment.switches
+        self._relative_zero = list(moment.relative_zero)
+        self._raised = ControlEvent(moment.raised)
+        self._waiting = {}
+        for channel, kept, run in zip(self.channels, moment.channels, runs, strict=True):
+            channel.put_back(kept, run)
+            if kept.waiting:
+                self._waiting[channel.path] = list(kept.waiting)
+        self.manual.restore(moment.manual)
+        self.spindle.restore(moment.spindle)
+        self.plc.restore(moment.plc)
+        self.alarms.restore(moment.alarms)
+        self.messages.restore(moment.messages)
+        self.timers.restore(moment.timers)
+        self._note_running()
+
     # ------------------------------------------------------------------ within
 
     def _channel(self, number: int) -> ControlChannel:
@@ -573,9 +659,9 @@ class Control:
                 Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset."
             )
 
-    def _to_begin(self, channel: ControlChannel, number: int, is_mdi: bool) -> ProgramText:
+    def _to_begin(self, channel: ControlChannel, is_mdi: bool) -> ProgramText:
         """Return the text that a start executes now."""
-        text = self._mdi.get(number) if is_mdi else channel.program
+        text = channel.mdi if is_mdi else channel.program
         if text is None:
             raise ControlError(
                 Refusal.NOT_FOUND,

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from polycnc.cnc._control_data import AfterManual, Overrides, Switches
+from polycnc.cnc._control_snapshot import ChannelMoment, KeptText
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunOptions, RunState
-from polycnc.kernel import give_to_point_to_point
+from polycnc.kernel import READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
 
@@ -40,6 +41,7 @@ class ControlChannel:
     ) -> None:
         self.path = path
         self.program: ProgramText | None = None
+        self.mdi: ProgramText | None = None
         self.run: ProgramRun | None = None
         self.is_mdi = False
         self.broken = False  # an alarm has stopped the program: only a reset helps
@@ -81,6 +83,15 @@ class ControlChannel:
     def executed(self) -> BlockRecord | None:
         """The block that is executed, or was last."""
         return None if self.run is None else self.run.executed
+
+    @property
+    def next_block(self) -> BlockRecord | None:
+        """The block that comes next where the path stands between two blocks; None where none is known."""
+        run = self.run
+        row = self._machine.state.paths.row[self.path]
+        if run is None or row["state"] != READY or row["head"] >= row["tail"]:
+            return None
+        return run.channel.records.block(run.feed.tags(int(row["head"]), int(row["head"]) + 1)[0])
 
     @property
     def programs(self) -> frozenset[str]:
@@ -216,6 +227,30 @@ class ControlChannel:
             self._machine.state.paths.row[self.path]["rapid_override"] = overrides.rapid
             self.run.feed_override = overrides.feed
 
+    # ------------------------------------------------------------------ state
+
+    def moment(self, waiting: Sequence[int]) -> ChannelMoment:
+        """Return what the channel holds beside its run."""
+        return ChannelMoment(
+            program=_kept(self.program),
+            mdi=_kept(self.mdi),
+            is_mdi=self.is_mdi,
+            broken=self.broken,
+            returning=self.returning,
+            lent=self._lent,
+            waiting=tuple(waiting),
+        )
+
+    def put_back(self, moment: ChannelMoment, run: ProgramRun | None) -> None:
+        """Go back to a moment, with a run that nobody else has."""
+        self.program = _text(moment.program)
+        self.mdi = _text(moment.mdi)
+        self.is_mdi = moment.is_mdi
+        self.broken = moment.broken
+        self.returning = moment.returning
+        self._lent = moment.lent
+        self.run = run
+
     # ------------------------------------------------------------------ lent axes
 
     def _check_rest(self) -> None:
@@ -239,3 +274,11 @@ class ControlChannel:
             self._lent = None
         assert self.run is not None
         self.run.resume()
+
+
+def _kept(text: ProgramText | None) -> KeptText | None:
+    return None if text is None else KeptText(text.name, text.content.decode("latin-1"))
+
+
+def _text(kept: KeptText | None) -> ProgramText | None:
+    return None if kept is None else ProgramText(kept.name, kept.content.encode("latin-1"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -27,6 +28,16 @@ Floats = npt.NDArray[np.float64]
 _LOW_WATER = 1024  # final segments that stay queued: more than one cycle can pass
 _NEVER = -1
 _PIECE = 256  # segments looked at together for the end of a block
+
+
+class FeedSnapshot(NamedTuple):
+    """What a feed holds, to go back to."""
+
+    ends: tuple[int, ...]
+    seen: int
+    met_at: int | None
+    low: Floats
+    high: Floats
 
 
 class PathFeed:
@@ -140,6 +151,18 @@ class PathFeed:
                 count += 1
         return count
 
+    def forget_records(self, executed: int) -> None:
+        """Let the records go that neither the queue nor the executed block needs; now and then is enough."""
+        channel, row = self.channel, self.row
+        if not channel.records.crowded:
+            return
+        tags = self.tags(int(row["head"]), int(row["tail"]))
+        tags += [executed, channel.interpreter.last_tag, int(row["tag"])]
+        tags += [event.tag for event in channel.writer.events.values()]
+        tags += [tag for _, tag in channel.writer.marks or ()]
+        tags += [item.tag for item in channel.writer.backlog]
+        channel.records.keep(tags)
+
     def next_tag(self) -> int | None:
         """Return the tag of the block that comes next, None if it has not been prepared."""
         marks, head = self.channel.writer.marks, int(self.row["head"])
@@ -214,6 +237,16 @@ class PathFeed:
         if count < row["prepared"]:
             row["prepared"] = count
             self.replan()
+
+    def snapshot(self) -> FeedSnapshot:
+        """Return what is known of the path besides its queue, to go back to."""
+        return FeedSnapshot(tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy())
+
+    def restore(self, saved: FeedSnapshot) -> None:
+        """Go back to a snapshot."""
+        self._ends = deque(saved.ends)
+        self._seen, self._met_at = saved.seen, saved.met_at
+        self.low[:], self.high[:] = saved.low, saved.high
 
     def clear(self) -> None:
         """Forget what was prepared; the queue has been dropped."""

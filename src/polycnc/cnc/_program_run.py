@@ -7,18 +7,20 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from typing import TypeAlias
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc.cnc._block_search import block_line
-from polycnc.cnc._path_feed import PathFeed
-from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
+from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState, ToolTime
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import (
     BLOCK,
+    FEED_S,
     FOLLOWING_ERROR,
     HELD,
     IDLE,
@@ -29,6 +31,7 @@ from polycnc.kernel import (
     PATH_EVENT,
     PATH_RESTED,
     QUEUE_LOW,
+    RAPID_S,
     READY,
     RECORDER_FULL,
     RUNNING,
@@ -43,6 +46,7 @@ from polycnc.nc import (
     BlockRecord,
     Call,
     Channel,
+    ChannelSnapshot,
     Dialect,
     Event,
     Language,
@@ -68,6 +72,37 @@ _STANDING = {
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 HIGHEST_OVERRIDE = 2.0
+
+
+# Plain values that a run holds besides its channel.
+_SAVED = (
+    "optional_stop",
+    "alarm",
+    "_block_delete",
+    "_single_block",
+    "_state",
+    "_hold",
+    "_stop",
+    "_met",
+    "_dropping",
+    "_locked",
+    "_unanswered",
+    "_approach",
+    "_tool",
+    "_counted",
+)
+
+
+class RunSnapshot(NamedTuple):
+    """Everything that a run holds at one cycle, to go back to."""
+
+    program: ProgramText
+    channel: Channel
+    prepared: ChannelSnapshot
+    feed: FeedSnapshot
+    stopper: Stopper
+    fields: dict[str, Any]
+    tool_times: dict[int, ToolTime]
 
 
 class ProgramRun:
@@ -117,6 +152,9 @@ class ProgramRun:
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
         self._locked = False
+        self._tool = 0
+        self._tool_times: dict[int, ToolTime] = {}
+        self._counted = 0.0, 0.0  # feed and rapid time that have been accounted to tools
         self._approach: tuple[tuple[float, ...], int] | None = (
             None  # where a searched block begins, and its line
         )
@@ -444,6 +482,12 @@ class ProgramRun:
         return self._by_axis(self.machine.state.paths.position[self.path])
 
     @property
+    def tool_times(self) -> dict[int, ToolTime]:
+        """How long each tool has cut and positioned so far; tool 0 is an empty spindle."""
+        self._note_tool(self._tool)
+        return dict(sorted(self._tool_times.items()))
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
         row = self._row
@@ -486,6 +530,7 @@ class ProgramRun:
 
         For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
         """
+        self._tidy()
         self.feed.feed()
         target = self.feed.target()
         done = 0
@@ -496,6 +541,8 @@ class ProgramRun:
                 self._meet_event()
             elif cycles == 0:
                 break
+        if done == 0 and self._row["head"] >= self._row["tail"] and not self.channel.done:
+            done = self.advance(1)  # the program itself waits for something
         self._look()
         return done
 
@@ -508,6 +555,7 @@ class ProgramRun:
             return 0 if self.at_rest else cycles
         if self._state not in (RunState.ACTIVE, RunState.HOLD):
             return 0
+        self._tidy()
         self.feed.feed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
@@ -535,7 +583,60 @@ class ProgramRun:
             self.rows(rows, tags)
         recorder.filled[0] = 0
 
+    # ------------------------------------------------------------------ going back
+
+    def snapshot(self) -> RunSnapshot:
+        """Return everything that this run holds, to go back to with `restore`.
+
+        The machine has a snapshot of its own: take and restore both together.
+
+        Raises:
+            UsageError: a language executes the program; where that stands cannot be kept.
+        """
+        return RunSnapshot(
+            self.program,
+            self.channel,
+            self.channel.snapshot(),
+            self.feed.snapshot(),
+            replace(self.stopper),
+            {name: getattr(self, name) for name in _SAVED},
+            dict(self._tool_times),
+        )
+
+    def restore(self, saved: RunSnapshot) -> None:
+        """Go back to a snapshot of this run."""
+        self.program = saved.program
+        self.channel = self.feed.channel = saved.channel
+        self.channel.restore(saved.prepared)
+        self.feed.restore(saved.feed)
+        self.stopper.records = saved.stopper.records
+        self.stopper.step, self.stopper.depth = saved.stopper.step, saved.stopper.depth
+        self.stopper.breakpoints = saved.stopper.breakpoints
+        for name, value in saved.fields.items():
+            setattr(self, name, value)
+        self._tool_times = dict(saved.tool_times)
+        self.channel.skip_levels = self._block_delete
+
     # ------------------------------------------------------------------ within
+
+    def _tidy(self) -> None:
+        """Forget records that nobody can ask for any more."""
+        if self.channel.records.crowded:
+            self.drain()  # rows refer to records
+            self.feed.forget_records(self.executed_tag)
+
+    def _note_tool(self, tool: int) -> None:
+        """Account the time since the last tool change to the tool before."""
+        totals = self.machine.state.paths.totals[self.path]
+        now = float(totals[FEED_S]), float(totals[RAPID_S])
+        before = self._tool_times.get(self._tool, ToolTime())
+        spent = ToolTime(
+            before.cutting_s + now[0] - self._counted[0], before.rapid_s + now[1] - self._counted[1]
+        )
+        if spent != before:
+            self._tool_times[self._tool] = spent
+        self._counted = now
+        self._tool = tool
 
     def _check_over(self) -> None:
         """Refuse what would change the program while it is executed."""
@@ -634,6 +735,8 @@ class ProgramRun:
         number = int(self._row["event"])
         event = self.channel.writer.events.pop(number)
         self._met = int(self._row["head"]), event.tag
+        if (tool := self.channel.records.tool(event.tag)) != self._tool:
+            self._note_tool(tool)
         if event.word and self.on_event is not None:
             self._unanswered = bool(self.on_event(event))
             self._set_hold()

@@ -111,7 +111,7 @@ def _enter(seg: Segments, paths: Paths, g: int, speed: float, share: float, dt: 
     row = seg.row[slot(paths, g, path["head"])]
     path["entry_share"] = share
     if share > 0.0:
-        path["entry_zone"] = beside_corner(speed, row["accel"], dt, row["length"])
+        path["entry_zone"] = beside_corner(speed, row["accel"], share, dt, row["length"])
 
 
 @compiled

@@ -30,9 +30,13 @@ MOST_SHARE = 0.75  # of its acceleration is all that a segment gives up
 
 
 @compiled
-def beside_corner(speed: float, accel: float, dt: float, length: float) -> float:
-    """Return how far the path can be from a corner passed with `speed` within `dt`, at most `length`."""
-    return min(length, (speed + 0.5 * accel * dt) * dt)
+def beside_corner(speed: float, accel: float, share: float, dt: float, length: float) -> float:
+    """Return how far, at most `length`, the path may be from a corner passed with `speed` within `dt`.
+
+    It has given up `share` of `accel` till then. A greater share than a half counts as a half, so that what is lost by
+    it never falls with the speed.
+    """
+    return min(length, (speed + 0.5 * accel * (1.0 - min(share, 0.5)) * dt) * dt)
 
 
 @compiled
@@ -49,14 +53,14 @@ def set_pieces(
 ) -> None:
     """Set the pieces of `length` more of a segment, for `plan_ramps`.
 
-    `share` of `accel` is given up for `zone` more, and `yield_out` of it per speed beside the end. Where the pieces overlap
-    the greater part counts.
+    `share` of `accel` is given up for `zone` more, and `yield_out` of it per speed beside the end. Where the pieces
+    overlap the greater part counts.
     """
     top = math.sqrt(speed_in * speed_in + 2.0 * accel * length)
     speed = min(speed_out, top)
     last = min(MOST_SHARE, yield_out * speed)
     from_start = min(zone, length) if share > 0.0 and zone > 0.0 else 0.0
-    to_end = beside_corner(speed, accel, dt, length) if last > 0.0 else 0.0
+    to_end = beside_corner(speed, accel, last, dt, length) if last > 0.0 else 0.0
     both = max(0.0, from_start + to_end - length)
     ramps[PIECES] = from_start - both
     ramps[PIECES + 1] = accel * (1.0 - share)
@@ -78,8 +82,8 @@ def plan_ramps(
 ) -> None:
     """Fill `ramps[REGISTERS]` for `length` more of a segment that has been gone along up to `s`.
 
-    Its pieces are set (`set_pieces`), `accel` is the greatest of theirs. The end speed is lowered to what can be reached,
-    or raised to what cannot be braked away.
+    Its pieces are set (`set_pieces`), `accel` is the greatest of theirs. The end speed is lowered to what can be
+    reached, or raised to what cannot be braked away.
     """
     square = speed_in * speed_in
     first = 2.0 * ramps[PIECES + 1] * ramps[PIECES]

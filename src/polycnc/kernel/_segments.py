@@ -54,10 +54,7 @@ SEGMENT_ROW = np.dtype(
         ("yield_after", np.float64),  # the same of the following segment near its start
         ("gain", np.float64),  # by how much its ramps can change the squared speed, at the least
         ("out", np.float64),  # planned speed at the end
-        (
-            "bound",
-            np.float64,
-        ),  # earlier planned speed there, if the path may be too close to reach a lower one
+        ("bound", np.float64),  # earlier planned speed there, if too close to reach a lower one
         ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
         ("kind", np.int8),
         ("flags", np.int8),

@@ -37,7 +37,6 @@ class Reason(IntFlag):
     FOLLOWING_ERROR = kernel.FOLLOWING_ERROR
     RECORDER_FULL = kernel.RECORDER_FULL
     PATH_EVENT = kernel.PATH_EVENT
-    TABLE_EMPTY = kernel.TABLE_EMPTY
 
 
 @dataclass(frozen=True, slots=True)

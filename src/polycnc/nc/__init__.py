@@ -13,7 +13,7 @@ from polycnc.nc._block_source import (
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel import Channel
+from polycnc.nc._channel import Channel, ChannelSnapshot
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._calls import Library
@@ -36,6 +36,7 @@ __all__ = [
     "Call",
     "CallProgram",
     "Channel",
+    "ChannelSnapshot",
     "ChannelState",
     "Dialect",
     "Drain",

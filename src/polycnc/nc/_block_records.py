@@ -194,10 +194,26 @@ class BlockRecords:
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return 0 if context is None else len(context.stack)
 
+    def tool(self, tag: int) -> int:
+        """Return the tool in the spindle with the block of a tag, 0 where that is not known."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return 0 if context is None else context.modal.tool
+
     def program(self, tag: int) -> str | None:
         """Return the name of the program that a tag refers to."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return None if context is None else context.text.name
+
+    def snapshot(self) -> tuple[dict[int, object], int]:
+        """Return all contexts, to go back to."""
+        return dict(self._contexts), self._next
+
+    def restore(self, saved: tuple[dict[int, object], int]) -> None:
+        """Go back to a snapshot."""
+        contexts, self._next = saved
+        self._contexts = {n: each for n, each in contexts.items() if isinstance(each, _Context)}
+        self._known = {context.key(): n for n, context in self._contexts.items()}
+        self._last = None
 
     # ------------------------------------------------------------------ keeping few of them
 

@@ -89,9 +89,12 @@ class Statement:
 
 @dataclass(frozen=True, slots=True)
 class CallProgram:
-    """Call sub-program `program` `repeats` times from line `line`; `arguments` are handed to its source."""
+    """Call sub-program `program` `repeats` times from line `line`; `arguments` are handed to its source.
 
-    program: int
+    A language that finds its sub-programs itself gives the text instead of a number.
+    """
+
+    program: int | ProgramText
     line: int
     offset: int
     repeats: int = 1

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from typing import NamedTuple
 
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
@@ -25,13 +26,13 @@ from polycnc.nc._block_source import (
     WordsBlock,
 )
 from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._calls import Back, Calls, Library, Place
-from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._calls import Back, Calls, Library, Place, Running
+from polycnc.nc.blocks._channel_state import ChannelState, SavedState
 from polycnc.nc.blocks._interpreter import Control, Interpreter
-from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._messages import Message, Messages
 from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
 from polycnc.nc.blocks._moves import Feed, Line
-from polycnc.nc.blocks._queue import QueueWriter
+from polycnc.nc.blocks._queue import QueueWriter, WriterSnapshot
 from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import (
@@ -55,18 +56,36 @@ _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
 
 
+class ChannelSnapshot(NamedTuple):
+    """Hold where a channel stood, to go back to."""
+
+    state: SavedState
+    calls: tuple[Running, ...]
+    place: Place
+    text_end: int
+    calls_within: tuple[Call, ...]
+    blocks: int
+    errors: tuple[ProgramError, ...]
+    messages: dict[str, Message]
+    flags: tuple[bool, bool]
+    writer: WriterSnapshot
+    records: tuple[dict[int, object], int]
+    interpreter: tuple[int, ProgramText]
+
+
 class Channel:
     """Prepare one program for one path of a machine.
 
-    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is none), and
-    `library` gives sub-programs that are in no file. `language` executes the programs that are more than words. With
-    `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are events like any other. With `answers`
-    the path waits at auxiliary functions for whoever runs it, not for the machine file's times; with `marks` blocks
-    that leave nothing in the queue are noted (see `QueueWriter`). `records` tells what block a segment belongs to.
-    `before` is the channel that used the path until now: with `keeps_modal` its modal state stays in force. With
-    `collect_errors` a refused block is noted in `errors` and left out; else preparation ends there with `error`. The
-    ordinary interpreter gives the same queue as the compiled kernel, which takes over after the first
-    `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
+    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is
+    none), and `library` gives sub-programs before files are looked for. `language` executes the programs that
+    are more than words. With `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are
+    events like any other. With `answers` the path waits at auxiliary functions for whoever runs it, not for
+    the machine file's times; with `marks` blocks that leave nothing in the queue are noted (see
+    `QueueWriter`). `records` tells what block a segment belongs to. `before` is the channel that used the
+    path until now: with `keeps_modal` its modal state stays in force. With `collect_errors` a refused block
+    is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
+    gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
+    it, and once compiling it, takes longer than they do.
     """
 
     def __init__(
@@ -247,6 +266,44 @@ class Channel:
             and self._place.offset >= place.offset
             and not self.writer.backlog
         )
+
+    def snapshot(self) -> ChannelSnapshot:
+        """Return where preparation stands and all that it has found, to go back to with `restore`.
+
+        The queue itself belongs to the machine.
+
+        Raises:
+            UsageError: a language executes a program.
+        """
+        return ChannelSnapshot(
+            self.state.save(),
+            self._calls.snapshot(),
+            self._here(),
+            self._text_end,
+            self._calls_within,
+            self.blocks,
+            tuple(self.errors),
+            self.messages.snapshot(),
+            (self._ended, self._begun),
+            self.writer.snapshot(),
+            self.records.snapshot(),
+            self.interpreter.snapshot(),
+        )
+
+    def restore(self, saved: ChannelSnapshot) -> None:
+        """Go back to a snapshot of this channel."""
+        self.state.restore(saved.state)
+        self._calls.restore(saved.calls)
+        self._calls_within = saved.calls_within
+        self.blocks = saved.blocks
+        self.errors[:] = saved.errors
+        self._known_errors = {str(error) for error in saved.errors}
+        self.messages.restore(saved.messages)
+        self._ended, self._begun = saved.flags
+        self.writer.restore(saved.writer)
+        self.records.restore(saved.records)
+        self.interpreter.restore(saved.interpreter)
+        self._jump(saved.place, saved.text_end)
 
     def close(self) -> None:
         """Give up the program: what a language holds for it ends."""

@@ -1,6 +1,6 @@
 """Run part programs: from a program and a machine to a typed result, a trace, a plot; post tool paths and prove them.
 
-What posting needs is loaded when it is first used.
+What posting and debugging need is loaded when it is first used.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -13,11 +13,14 @@ from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
+    from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
 
 _LATER = {
+    "Debugger": "_debugger",
     "Deviation": "_verify_post",
+    "Place": "_debugger",
     "PostResult": "_post",
     "PostVerification": "_verify_post",
     "post_file": "_post",
@@ -28,7 +31,9 @@ __all__ = [
     "PLOT_FORMATS",
     "TRACE_FORMATS",
     "Alarm",
+    "Debugger",
     "Deviation",
+    "Place",
     "PlotCollector",
     "PostResult",
     "PostVerification",

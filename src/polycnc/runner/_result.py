@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc import ToolTime
 from polycnc.errors import AlarmError, PolycncError, ProgramError
 
 Floats = npt.NDArray[np.float64]
@@ -101,6 +102,7 @@ class RunResult:
     extents_mm: dict[str, tuple[float, float]]
     alarms: list[Alarm]
     messages: list[RunMessage]
+    tool_times: dict[int, ToolTime]
     events: list[RunEvent] = field(repr=False)
     trace: Trace | None = field(default=None, repr=False)
 
@@ -166,6 +168,10 @@ class RunResult:
                 }
                 for alarm in self.alarms
             ],
+            "tool_times": {
+                str(tool): {"cutting_time_s": time.cutting_s, "rapid_time_s": time.rapid_s}
+                for tool, time in self.tool_times.items()
+            },
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
         }

@@ -170,6 +170,7 @@ def _result(execution: ProgramRun, events: list[RunEvent], collector: TraceColle
         },
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
+        tool_times=execution.tool_times,
         events=events,
         trace=collector.trace() if collector else None,
     )

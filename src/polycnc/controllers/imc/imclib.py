@@ -16,9 +16,12 @@
 Arguments are the manual's, in its order. Structures are passed and filled in place, as in C. Pointers to single numbers
 are no arguments: a function returns its status, and behind it what it reads (`status, value = IMC_GetParam16(...)`).
 A call that is refused changes nothing. Addresses are the macros of the parameter header: the parameter's name and
-`Loc`. Calls may come from several threads; one at a time is carried out.
+`Loc`. Calls may come from several threads; one at a time is carried out. A program of its own, with its own network,
+handles and time, is a `Session()`, which has all functions as attributes. `FUNCTIONS` is the table of all calls,
+`STRUCTURES` that of all structures.
 
-An instruction for IFIFO takes one control cycle; all other time passes when a program reads: see `attach`.
+An instruction for IFIFO takes one control cycle; all other time passes when a program reads again what it has read in
+this cycle already: see `attach`.
 """
 
 from __future__ import annotations
@@ -52,7 +55,7 @@ def __getattr__(name: str) -> int:
 
 
 def __dir__() -> list[str]:
-    return sorted([*__all__, *_ADDRESSES])
+    return sorted(__all__)
 
 
 __all__ = [
@@ -63,6 +66,7 @@ __all__ = [
     *_motion.__all__,
     *_path.__all__,
     *_structs.__all__,
+    *_ADDRESSES,
     "FUNCTIONS",
     "IMC_HANDLE",
     "NetCard",

@@ -171,3 +171,10 @@ ULONG: TypeAlias = Annotated[int, Number("unsigned long", ctypes.c_uint32)]
 DOUBLE: TypeAlias = Annotated[float, Real()]
 TEXT: TypeAlias = Annotated[str, Text()]
 """`long` has 32 bits."""
+
+# fmt: off
+__all__ = [
+    "CHAR", "DOUBLE", "INT", "LONG", "SHORT", "TEXT", "UCHAR", "ULONG", "USHORT", "Bytes", "CType",
+    "Elements", "Number", "Pointer", "Real", "Text", "Whole", "whole",
+]
+# fmt: on

@@ -25,3 +25,10 @@ class Refused(Exception):  # noqa: N818  no error of the program
     def __init__(self, code: int) -> None:
         super().__init__(code)
         self.code = code
+
+
+# fmt: off
+__all__ = [
+    "Code", "Refused",
+]
+# fmt: on

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import inspect
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from functools import partial
 from typing import Any, ClassVar, Concatenate, Generic, ParamSpec, TypeVar, get_type_hints
 
 from polycnc.controllers.library._codes import Refused
 from polycnc.controllers.library._functions import Argument, BadArgument, Function, function_of, passed
 from polycnc.errors import UsageError
+
+_PLAIN = (int, float, str)
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -34,6 +36,9 @@ class Session:
 
     def __init__(self) -> None:
         self.lock = threading.RLock()
+        self.asked: Hashable = (
+            ""  # the call that is being carried out, with its plain arguments: see `Polling`
+        )
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         """Return a function of the library for this session."""
@@ -174,6 +179,7 @@ class Facade(Generic[S]):
                 given = bound.args
             values = list(given)
             with session.lock:
+                session.asked = (name, *[each for each in given if isinstance(each, _PLAIN)])
                 try:
                     for place, take in before:
                         values[place] = take(values[place], session)
@@ -215,3 +221,10 @@ def _public(body: Callable[..., Any], first: Argument | None, hint: Any) -> insp
     else:
         parameters[0] = parameters[0].replace(annotation=hint)
     return signature.replace(parameters=parameters, return_annotation=hints.get("return"))
+
+
+# fmt: off
+__all__ = [
+    "Facade", "Handles", "Session",
+]
+# fmt: on

@@ -179,9 +179,8 @@ def passed(name: str, hint: Any) -> Argument:
         raise TypeError(f"{name} has no C type: {hint}")
     direction = _told(hint, Direction) or Direction.IN
     length = _told(hint, LengthOf)
-    number = not isinstance(told, Pointer) and not told.c.endswith("*")
-    returned = number and direction is not Direction.IN
-    c = f"{told.c} *" if returned else told.c
+    returned = not isinstance(told, Pointer) and direction is not Direction.IN
+    c = f"{told.c} *" if returned and not told.c.endswith("*") else told.c
     return Argument(
         name.rstrip("_"), c, told, direction, returned=returned, length_of=length.name if length else ""
     )
@@ -225,3 +224,10 @@ def _all_told(hint: Any) -> Iterator[Any]:
     for each in getattr(hint, "__metadata__", ()):
         yield each
         yield from _all_told(each)
+
+
+# fmt: off
+__all__ = [
+    "IN", "INOUT", "OUT", "Argument", "Coded", "Direction", "Function", "LengthOf", "Out",
+]
+# fmt: on

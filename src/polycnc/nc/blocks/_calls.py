@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -87,7 +87,7 @@ class Calls:
         """The calls under way, the outermost first."""
         return self._calls
 
-    def trouble(self, program: int) -> tuple[str, str] | None:
+    def trouble(self, program: int | ProgramText) -> tuple[str, str] | None:
         """Return what is against calling a sub-program and what to do about it, None if nothing is.
 
         Raises:
@@ -110,7 +110,7 @@ class Calls:
             )
         return None
 
-    def enter(self, program: int, repeats: int, back: Back, arguments: object = None) -> bool:
+    def enter(self, program: int | ProgramText, repeats: int, back: Back, arguments: object = None) -> bool:
         """Begin a sub-program that `trouble` had nothing against; False for no repeats."""
         begin = self._find(program)
         assert begin is not None
@@ -139,6 +139,23 @@ class Calls:
         self._note_calls()
         return running.back
 
+    def snapshot(self) -> tuple[Running, ...]:
+        """Return the programs under way, to go back to.
+
+        Raises:
+            UsageError: a language executes one of them; where it stands cannot be kept.
+        """
+        if any(running.source is not None for running in self._stack):
+            raise UsageError(
+                "a program with statements is under way", hint="Take the snapshot before or after it."
+            )
+        return tuple(replace(running) for running in self._stack)
+
+    def restore(self, stack: tuple[Running, ...]) -> None:
+        """Go back to a snapshot."""
+        self._stack = [replace(running) for running in stack]
+        self._note_calls()
+
     def close(self) -> None:
         """End all programs."""
         for running in reversed(self._stack):
@@ -154,8 +171,10 @@ class Calls:
             calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
         self._calls = tuple(calls)
 
-    def _find(self, program: int) -> Place | None:
+    def _find(self, program: int | ProgramText) -> Place | None:
         """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
+        if isinstance(program, ProgramText):
+            return Place(program)
         for text in (self.running.begin.text, self._main):
             if text.name not in self._labels:
                 self._labels[text.name] = _labels(text)
@@ -163,7 +182,8 @@ class Calls:
                 return self._labels[text.name][program]
         if self._library is not None:
             found = self._library(program)
-            return None if found is None else Place(found)
+            if found is not None:
+                return Place(found)
         main = Path(self._main.name)
         if not main.is_file():
             return None  # a text from elsewhere has no folder

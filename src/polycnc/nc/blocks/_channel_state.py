@@ -111,7 +111,7 @@ class ChannelState:
         self.axis_names: Sequence[str] = machine.axis_names
 
     def save(self) -> SavedState:
-        """Return the state to go back to when the block that comes is refused."""
+        """Return the state to go back to."""
         return SavedState(
             save_modal(self.modal),
             self.coordinates.save(),
@@ -126,7 +126,7 @@ class ChannelState:
         if saved.compensation is None:
             self.compensation.reset()
         else:
-            self.compensation = saved.compensation
+            self.compensation = saved.compensation.copy()
         for name, value in zip(Plain._fields, saved.plain, strict=True):
             setattr(self, name, value)
 

@@ -150,8 +150,7 @@ class Interpreter:
             raise
         if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
             self._queue.set_tolerance(self.state.path_tolerance_mm)
-        for item in items:
-            self._queue.put(item)
+        self._queue.put_block(items)
         return outcome
 
     def finish(self) -> None:
@@ -261,6 +260,14 @@ class Interpreter:
             tag ^= AGAIN
         self._last_tag = tag
         return tag
+
+    def snapshot(self) -> tuple[int, ProgramText]:
+        """Return what one block leaves for the next besides the state, to go back to."""
+        return self._last_tag, self._held_text
+
+    def restore(self, saved: tuple[int, ProgramText]) -> None:
+        """Go back to a snapshot."""
+        self._last_tag, self._held_text = saved
 
     @property
     def last_tag(self) -> int:

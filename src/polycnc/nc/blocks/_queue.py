@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -39,6 +40,16 @@ class Event:
     tag: int = field(default=0, compare=False)
 
 
+class WriterSnapshot(NamedTuple):
+    """What a writer holds, to go back to."""
+
+    events: dict[int, Event]
+    stops: int
+    next_event: int
+    backlog: tuple[QueueItem, ...]
+    marks: tuple[tuple[int, int], ...] | None
+
+
 @dataclass
 class QueueWriter:
     """Append items to path `path` of the kernel; what finds no room waits in `backlog`.
@@ -65,6 +76,15 @@ class QueueWriter:
         """Set how far the path may leave the corners of lines appended from now on."""
         self.paths.row[self.path]["tolerance"] = tolerance_mm
 
+    def put_block(self, items: list[QueueItem]) -> None:
+        """Append what a block gives; one that gives nothing after all, a move without length, is marked."""
+        row = self.paths.row[self.path]
+        before = int(row["tail"])
+        for item in items:
+            self.put(item)
+        if items and row["tail"] == before and not self.backlog:
+            self.mark(items[0].tag)
+
     def put(self, item: QueueItem) -> None:
         """Append one line, arc or wait, behind what waits for room."""
         if self.backlog or not self._has_room(item):
@@ -85,6 +105,19 @@ class QueueWriter:
         self.stops = 0
         if self.marks is not None:
             self.marks.clear()
+
+    def snapshot(self) -> WriterSnapshot:
+        """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
+        marks = None if self.marks is None else tuple(self.marks)
+        return WriterSnapshot(dict(self.events), self.stops, self._next_event, tuple(self.backlog), marks)
+
+    def restore(self, saved: WriterSnapshot) -> None:
+        """Go back to a snapshot."""
+        self.events = dict(saved.events)
+        self.stops = saved.stops
+        self._next_event = saved.next_event
+        self.backlog = deque(saved.backlog)
+        self.marks = None if saved.marks is None else deque(saved.marks)
 
     def mark(self, tag: int) -> None:
         """Note a block that has been carried out without anything for the queue."""

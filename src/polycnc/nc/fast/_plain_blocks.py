@@ -198,6 +198,8 @@ def _run(
             feed = feed_number * inch
             if whole[FEED_MODE] != FEED_PER_MINUTE or feed <= 0.0:
                 return block, NOT_PLAIN
+        tag = base + int(words.line[block])
+        moves = False
         circular = seen & (said[_CENTERS] | said[_RADIUS])
         if (seen & said[_AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
@@ -225,14 +227,14 @@ def _run(
                 and _only_rotary(modal.rotary, modal.position, work.target)
             ):
                 speed = feed_number / 60.0
-            tag = base + int(words.line[block])
+            moves = True
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
                     return block, NOT_PLAIN
             elif path[g]["tolerance"] > 0.0:
-                append_line(seg, paths, g, limits, work.target, speed, flags, tag)
+                moves = append_line(seg, paths, g, limits, work.target, speed, flags, tag)
             else:
-                add_line(
+                moves = add_line(
                     seg.row,
                     seg.start,
                     seg.end,
@@ -247,9 +249,9 @@ def _run(
                 )
             for i in range(work.target.shape[0]):
                 modal.position[i] = work.target[i]
-        elif work.marks.shape[0] > 0 and first < after:
+        if not moves and work.marks.shape[0] > 0 and first < after:
             work.marks[said[_MARKED], 0] = path[g]["tail"]
-            work.marks[said[_MARKED], 1] = base + int(words.line[block])
+            work.marks[said[_MARKED], 1] = tag
             said[_MARKED] += 1
         whole[MOTION] = motion
         whole[ABSOLUTE] = said[_ABSOLUTE]

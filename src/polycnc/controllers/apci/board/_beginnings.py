@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import fields
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +12,7 @@ import numpy as np
 from polycnc.controllers.apci.board._interpolation import Speeds, begin_interpolation
 from polycnc.controllers.apci.board._jog_commands import jog, search_index, search_reference
 from polycnc.controllers.apci.board._path_units import PathUnits
-from polycnc.controllers.apci.board._shapes import arc, circle_in_space, line
+from polycnc.controllers.apci.board._shapes import Circle, Helix, Line, SpaceCircle
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci.board._board import Board
@@ -23,7 +24,12 @@ _BEGINNINGS: Mapping[str, Callable[..., Any]] = {
     "search_reference": search_reference,
     "interpolation": begin_interpolation,
 }
-_SHAPES: Mapping[str, Callable[..., Any]] = {"line": line, "arc": arc, "circle_in_space": circle_in_space}
+_SHAPES: Mapping[str, Callable[..., Any]] = {
+    "line": Line,
+    "circle": Circle,
+    "helix": Helix,
+    "circle_in_space": SpaceCircle,
+}
 
 
 def as_data(begin: partial[None]) -> dict[str, Any]:
@@ -36,8 +42,8 @@ def as_data(begin: partial[None]) -> dict[str, Any]:
         "name": "interpolation",
         "units": [units.velocity_unit, units.acceleration_unit, units.axes, units.weight, units.distance],
         "speeds": [speeds.ac, speeds.vl, speeds.tvl],
-        "shape": _name(_SHAPES, shape.func),
-        "named": shape.keywords,
+        "shape": _name(_SHAPES, type(shape)),
+        "named": {each.name: getattr(shape, each.name) for each in fields(shape)},
     }
 
 
@@ -51,7 +57,7 @@ def from_data(board: Board, data: Mapping[str, Any]) -> partial[None]:
     if function is not begin_interpolation:
         return partial(function, board, *data["values"], **data["named"])
     units = PathUnits(*data["units"][:2], *map(np.asarray, data["units"][2:]))
-    shape = partial(_SHAPES[data["shape"]], **data["named"])
+    shape = _SHAPES[data["shape"]](**data["named"])
     return partial(begin_interpolation, board, units, Speeds(*data["speeds"]), shape)
 
 

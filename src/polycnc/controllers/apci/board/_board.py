@@ -104,6 +104,7 @@ class Board:
     @property
     def inputs(self) -> int:
         """Active digital inputs; input 1 is bit 0."""
+        self.look_at_interface()
         return int(self.state.board[0]["inputs"])
 
     def set_input(self, number: int, level: bool) -> None:
@@ -112,10 +113,17 @@ class Board:
         external = int(self.state.board[0]["external"])
         self.state.board[0]["external"] = external | bit if level else external & ~bit
 
+    def look_at_interface(self) -> None:
+        """Take inputs and outputs away where an error in ifs has reset them."""
+        board = self.state.board[0]
+        board["io_down"] = self.variables.interface.is_down
+        if board["io_down"]:
+            board["inputs"] = board["inverted"]
+
     @property
     def outputs(self) -> int:
         """Digital outputs; output 1 is bit 0."""
-        return int(self.state.board[0]["outputs"])
+        return 0 if self.variables.interface.is_down else int(self.state.board[0]["outputs"])
 
     @outputs.setter
     def outputs(self, value: int) -> None:
@@ -223,6 +231,7 @@ class Board:
         Fewer after a scan in which one of the attentions `until` happened (`_scan`).
         """
         done, wanted = 0, until or 0
+        self.look_at_interface()
         while done < cycles:
             self._carry_out()
             mask = INTERRUPT | RESET | wanted

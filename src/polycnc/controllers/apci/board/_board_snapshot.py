@@ -55,6 +55,8 @@ def _made_from(board: Board) -> str:
 
 
 def _arrays(board: Board) -> list[Array]:
+    board.state.board[0]["watched"] = 0  # noted anew before every run
+    board.state.watch[:] = board.state.watched[:] = 0
     axes = tuple((axis.varint, axis.vardbl, axis.ctrlparams) for axis in board.axes)
     return arrays_of((board.kernel, board.state, board.sysvarint, board.sysvardbl, axes))
 
@@ -83,7 +85,7 @@ def _changes(board: Board, data: Mapping[str, Any]) -> list[Callable[[], None]]:
     variables = {name: data["variables"][name] for name in _BOARD_VALUES}
     buffers = [bytes(each) for each in data["buffers"]]
     sizes = [len(each) for each in board.variables.buffers]
-    hardware, word = map(int, data["interface"])
+    hardware, word, down = map(int, data["interface"])
     axes = [({name: int(each[name]) for name in _AXIS_VALUES}, each["zero_offsets"]) for each in data["axes"]]
     orders = [int(each) for each in data["orders"]]
     pending = [
@@ -100,7 +102,7 @@ def _changes(board: Board, data: Mapping[str, Any]) -> list[Callable[[], None]]:
             setattr(board.variables, name, value)
         for buffer, content in zip(board.variables.buffers, buffers, strict=True):
             buffer[:] = content
-        board.variables.interface.bits = (hardware, word)
+        board.variables.interface.bits = (hardware, word, down)
         for axis, (values, offsets) in zip(board.axes, axes, strict=True):
             _put_axis(axis, values, offsets)
         board.orders[:] = orders

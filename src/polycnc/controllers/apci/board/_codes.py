@@ -2,23 +2,8 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
-from typing import Self
-
 from polycnc.controllers.apci.core._registers import Bits
-
-
-class Code(IntEnum):
-    """Base of the tables: a code is its number and has a `text`."""
-
-    text: str
-
-    def __new__(cls, number: int, text: str = "") -> Self:
-        """Make the code with this number."""
-        code = int.__new__(cls, number)
-        code._value_ = number
-        code.text = text
-        return code
+from polycnc.controllers.library import Code
 
 
 class Status(Code):

@@ -19,6 +19,7 @@ LED_PLACES = {  # on the board: green, yellow, red
     BoardType.APCI_8008: ("D53", "D55", "D56"),
 }
 _POWER_UP = int(Ifs.pfe | Ifs.scpfe)
+_NO_ERRORS = int(Ifs.edv | Ifs.cncrdy)
 
 
 SERIAL_NUMBER = "80010001"
@@ -69,25 +70,30 @@ class InterfaceStatus:
 
     def __init__(self) -> None:
         self.word = 0
+        self.is_down = False  # an error has reset the inputs and outputs; only a boot brings them back
         self._hardware = _POWER_UP
 
     @property
-    def bits(self) -> tuple[int, int]:
-        """What the hardware has collected, and the register."""
-        return int(self._hardware), int(self.word)
+    def bits(self) -> tuple[int, int, int]:
+        """What the hardware has collected, the register, and whether inputs and outputs are down."""
+        return int(self._hardware), int(self.word), int(self.is_down)
 
     @bits.setter
-    def bits(self, bits: tuple[int, int]) -> None:
-        self._hardware, self.word = bits
+    def bits(self, bits: tuple[int, int, int]) -> None:
+        self._hardware, self.word, down = bits
+        self.is_down = bool(down)
 
     def start_firmware(self) -> None:
         """Take over what the hardware has collected and erase it there, as BootFile does."""
         self.word = Ifs.edv | Ifs.cncrdy | self._hardware
         self._hardware = 0
+        self.is_down = False
 
     def report(self, bits: int) -> None:
-        """Set bits of a fault, which stay."""
+        """Set bits of a fault, which stay; it resets inputs and outputs until the next boot (Manual 002, 4.4.70.1)."""
         self.word |= bits & Ifs.assigned()
+        if bits & Ifs.assigned() & ~_NO_ERRORS:
+            self.is_down = True
 
     def report_to_hardware(self, bits: int) -> None:
         """Keep bits of a fault that shows only after the next start of the firmware, such as a watchdog's."""

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from polycnc.controllers.apci.board._path_units import PathUnits, path_units
+from polycnc.controllers.apci.board._shapes import Line, Shape
 from polycnc.controllers.apci.core._compiled_entries import begin_move
 from polycnc.controllers.apci.core._registers import ErrorReg, ModeReg
 from polycnc.controllers.apci.core._spool_entries import (
@@ -20,7 +21,6 @@ from polycnc.controllers.apci.core._spool_entries import (
     spool_line,
     spool_move,
 )
-from polycnc.controllers.apci.core._state import Floats
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci.board._board import Board
@@ -35,58 +35,29 @@ class Speeds:
     tvl: float = 0.0
 
 
-# Make entry `e` the path from `start`, [n] path units; False, with the reason in ErrorReg, if there is none.
-Shape: TypeAlias = Callable[["Board", int, PathUnits, Floats], bool]
-
-
-def queue_line(
-    board: Board, axes: Sequence[int], values: Sequence[float], speeds: Speeds, relative: bool, index: int
-) -> None:
-    """Put a straight line into the spoolers."""
-    units = _checked(board, axes, speeds, values)
-    if units is None:
-        return
-    ends = units.distance * values
-    spool_line(
-        board.state,
-        board.kernel.base,
-        units.axes,
-        units.weight,
-        ends,
-        relative,
-        units.acceleration(speeds.ac),
-        units.velocity(speeds.vl),
-        units.velocity(speeds.tvl),
-        units.velocity_unit,
-        units.acceleration_unit,
-        index,
-    )
-
-
-def interpolate(
-    board: Board, axes: Sequence[int], speeds: Speeds, shape: Shape, numbers: Sequence[float], spool: bool
-) -> None:
-    """Check an interpolation, and begin it or put it into the spoolers."""
-    units = _checked(board, axes, speeds, numbers)
-    if units is None:
-        return
-    if spool:
-        start = [queued_position(board.state, board.kernel.base, i) for i in axes]
-        e = _path(board, units, shape, start)
-        if e >= 0:
-            spool_move(
-                board.state,
-                e,
-                units.axes,
-                units.weight,
-                units.acceleration(speeds.ac),
-                units.velocity(speeds.vl),
-                units.velocity(speeds.tvl),
-                units.velocity_unit,
-                units.acceleration_unit,
-            )
-    else:
+def go(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds) -> None:
+    """Begin an interpolation at once, if nothing is wrong with it."""
+    units = _checked(board, axes, speeds, shape.numbers)
+    if units is not None:
         board.command(tuple(axes), partial(begin_interpolation, board, units, speeds, shape))
+
+
+def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index: int = -1) -> None:
+    """Put an interpolation into the spoolers, if nothing is wrong with it; a line may have an `index` (PcapIndex)."""
+    units = _checked(board, axes, speeds, shape.numbers)
+    if units is None:
+        return
+    ac, vl, tvl = units.acceleration(speeds.ac), units.velocity(speeds.vl), units.velocity(speeds.tvl)
+    bases = units.velocity_unit, units.acceleration_unit
+    if isinstance(shape, Line):
+        ends, state = units.distance * shape.values, board.state
+        base = board.kernel.base
+        spool_line(state, base, units.axes, units.weight, ends, shape.relative, ac, vl, tvl, *bases, index)
+        return
+    start = [queued_position(board.state, board.kernel.base, i) for i in axes]
+    e = _path(board, units, shape, start)
+    if e >= 0:
+        spool_move(board.state, e, units.axes, units.weight, ac, vl, tvl, *bases)
 
 
 def _checked(board: Board, axes: Sequence[int], speeds: Speeds, numbers: Sequence[float]) -> PathUnits | None:
@@ -127,7 +98,7 @@ def _path(board: Board, units: PathUnits, shape: Shape, start: Sequence[float]) 
         return -1
     begin = np.zeros(len(board.axes))
     begin[units.axes] = units.weight * start
-    if not shape(board, e, units, begin):
+    if not shape.path(board, e, units, begin):
         give_back(board.state, e)
         return -1
     return e

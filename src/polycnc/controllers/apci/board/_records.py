@@ -1,17 +1,26 @@
 """The records that programs exchange with the board, tables 2 to 11: the manual's names, in the manual's order.
 
-The dataclasses are the tables: `pack` and `unpack` follow their annotations (see `_layout`). A new record is
-zero throughout.
+The annotations are the tables; elements are aligned to at most 4 bytes. A new record is zero throughout.
 """
 
 from __future__ import annotations
 
+import ctypes
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Annotated, Any, TypeAlias
+from collections.abc import Iterable
+from typing import Annotated, TypeAlias
 
-from polycnc.controllers.apci.board._layout import Cell, Double, Longint, Pointer, Record
+from polycnc.controllers.library import (
+    DOUBLE,
+    Address,
+    Doubles,
+    Latin,
+    Number,
+    Structure,
+    Times,
+    layouts,
+    structure,
+)
 from polycnc.errors import UsageError
 
 MAXAXIS = 18
@@ -24,14 +33,12 @@ SIZE_STRREV = 80  # ruling: the manual names the constant without its value
 ENVIRONMENT_STRING_BYTES = 1024  # the manual's example
 TARGET_POINT_PHI = 1e-100  # an angle not larger than this: the circle ends at a target point
 
-AxisDoubles: TypeAlias = Annotated[list[float], Cell("double", "d", (MAXAXIS,))]
-AxisLongints: TypeAlias = Annotated[list[int], Cell("LONGINT", "i", (MAXAXIS,))]
-CommonDoubles: TypeAlias = Annotated[list[float], Cell("double", "d", (COMMON_VARIABLES,))]
-CommonLongints: TypeAlias = Annotated[list[int], Cell("LONGINT", "i", (COMMON_VARIABLES,))]
-
-
-def _zeros(length: int, zero: Any = 0.0) -> Callable[[], Any]:
-    return lambda: [zero] * length
+LONGINT: TypeAlias = Annotated[int, Number("LONGINT", ctypes.c_int32)]
+Longints: TypeAlias = Annotated[ctypes.Array[ctypes.c_int32], Number("LONGINT", ctypes.c_int32)]
+AxisDoubles: TypeAlias = Annotated[Doubles, Times(MAXAXIS)]
+AxisLongints: TypeAlias = Annotated[Longints, Times(MAXAXIS)]
+CommonDoubles: TypeAlias = Annotated[Doubles, Times(COMMON_VARIABLES)]
+CommonLongints: TypeAlias = Annotated[Longints, Times(COMMON_VARIABLES)]
 
 
 def axis_number(number: int, axes: int = MAXAXIS) -> int:
@@ -45,12 +52,12 @@ def axis_number(number: int, axes: int = MAXAXIS) -> int:
     return number
 
 
-@dataclass(slots=True)
-class AS(Record):
+@structure(pack=4, checked=True)
+class AS(Structure):
     """Axis selection, table 2: `unoa` axes, whose numbers from 0 stand at the front of `san`."""
 
-    unoa: Longint = 0
-    san: AxisLongints = field(default_factory=_zeros(MAXAXIS, 0))
+    unoa: LONGINT
+    san: AxisLongints
 
     @classmethod
     def of(cls, *axes: int) -> AS:
@@ -80,46 +87,51 @@ class AS(Record):
         return len(set(chosen)) < len(chosen)
 
 
-@dataclass(slots=True)
-class TSRP(Record):
+@structure(pack=4, checked=True)
+class TSRP(Structure):
     """What is exchanged about one axis, table 3.
 
     The last four are used by functions but stand in no table, so they are not part of the memory.
     """
 
-    an: Longint = 0
-    kp: Double = 0.0
-    ki: Double = 0.0
-    kd: Double = 0.0
-    kpl: Double = 0.0
-    kfca: Double = 0.0
-    kfcv: Double = 0.0
-    jac: Double = 0.0
-    jvl: Double = 0.0
-    jtv: Double = 0.0
-    jovr: Double = 0.0
-    hac: Double = 0.0
-    hvl: Double = 0.0
-    rp: Double = 0.0
-    dp: Double = 0.0
-    tp: Double = 0.0
-    sll: Double = 0.0
-    slr: Double = 0.0
-    ipw: Double = 0.0
-    mpe: Double = 0.0
-    gf: Double = 0.0
-    mcp: Longint = 0
-    axst: Longint = 0
-    lsm: Longint = 0
-    epc: Longint = 0
-    digi: Longint = 0
-    digo: Longint = 0
-    ifs: Longint = 0
-    scratch: Annotated[list[int], Cell("LONGINT", "i", (4,))] = field(default_factory=_zeros(4, 0))
-    aux: float = 0.0
-    lp: float = 0.0
-    dv: float = 0.0
-    sdec: float = 0.0
+    an: LONGINT
+    kp: DOUBLE
+    ki: DOUBLE
+    kd: DOUBLE
+    kpl: DOUBLE
+    kfca: DOUBLE
+    kfcv: DOUBLE
+    jac: DOUBLE
+    jvl: DOUBLE
+    jtv: DOUBLE
+    jovr: DOUBLE
+    hac: DOUBLE
+    hvl: DOUBLE
+    rp: DOUBLE
+    dp: DOUBLE
+    tp: DOUBLE
+    sll: DOUBLE
+    slr: DOUBLE
+    ipw: DOUBLE
+    mpe: DOUBLE
+    gf: DOUBLE
+    mcp: LONGINT
+    axst: LONGINT
+    lsm: LONGINT
+    epc: LONGINT
+    digi: LONGINT
+    digo: LONGINT
+    ifs: LONGINT
+    scratch: Annotated[Longints, Times(4)]
+    aux: float
+    lp: float
+    dv: float
+    sdec: float
+
+
+def pack_all(records: Iterable[Structure]) -> bytes:
+    """Return records that lie directly behind each other, as the library wants its TSRP."""
+    return b"".join(record.pack() for record in records)
 
 
 def tsrp_array() -> list[TSRP]:
@@ -127,51 +139,51 @@ def tsrp_array() -> list[TSRP]:
     return [TSRP() for _ in range(MAXAXIS)]
 
 
-@dataclass(slots=True)
-class TRU(Record):
+@structure(pack=4, checked=True)
+class TRU(Structure):
     """Units of interpolation, table 4: indices of the position and the time unit."""
 
-    pu: Longint = 0
-    tu: Longint = 0
+    pu: LONGINT
+    tu: LONGINT
 
 
-@dataclass(slots=True)
-class LMP(Record):
+@structure(pack=4, checked=True)
+class LMP(Structure):
     """Parameters of a linear interpolation, table 5; `dtm` is indexed by axis number."""
 
-    ac: Double = 0.0
-    vl: Double = 0.0
-    tvl: Double = 0.0
-    dtm: AxisDoubles = field(default_factory=_zeros(MAXAXIS))
+    ac: DOUBLE
+    vl: DOUBLE
+    tvl: DOUBLE
+    dtm: AxisDoubles
 
     def distances(self, selection: AS) -> tuple[float, ...]:
         """Return the distances or targets of the selected axes, in the order of the selection."""
         return tuple(self.dtm[axis] for axis in selection.axes())
 
 
-@dataclass(slots=True)
-class CMP(Record):
+@structure(pack=4, checked=True)
+class CMP(Structure):
     """Parameters of a circular interpolation, table 6; `phi` in degrees, positive anti-clockwise."""
 
-    ac: Double = 0.0
-    vl: Double = 0.0
-    tvl: Double = 0.0
-    phi: Double = 0.0
-    dtca1: Double = 0.0
-    dtca2: Double = 0.0
+    ac: DOUBLE
+    vl: DOUBLE
+    tvl: DOUBLE
+    phi: DOUBLE
+    dtca1: DOUBLE
+    dtca2: DOUBLE
 
 
-@dataclass(slots=True)
-class HMP(Record):
+@structure(pack=4, checked=True)
+class HMP(Structure):
     """Parameters of a helical interpolation, table 7."""
 
-    ac: Double = 0.0
-    vl: Double = 0.0
-    tvl: Double = 0.0
-    phi: Double = 0.0
-    dtca1: Double = 0.0
-    dtca2: Double = 0.0
-    dtm: AxisDoubles = field(default_factory=_zeros(MAXAXIS))
+    ac: DOUBLE
+    vl: DOUBLE
+    tvl: DOUBLE
+    phi: DOUBLE
+    dtca1: DOUBLE
+    dtca2: DOUBLE
+    dtm: AxisDoubles
 
     @property
     def ends_at_target(self) -> bool:
@@ -184,78 +196,78 @@ class HMP(Record):
         return math.copysign(1.0, self.phi) < 0.0
 
 
-@dataclass(slots=True)
-class HMP3D(Record):
+@structure(pack=4, checked=True)
+class HMP3D(Structure):
     """Parameters of a circle in space, table 8; `pn1` to `pn3` are normal to its plane, `dtm` is not used."""
 
-    ac: Double = 0.0
-    vl: Double = 0.0
-    tvl: Double = 0.0
-    phi: Double = 0.0
-    dtca1: Double = 0.0
-    dtca2: Double = 0.0
-    dtca3: Double = 0.0
-    pn1: Double = 0.0
-    pn2: Double = 0.0
-    pn3: Double = 0.0
-    dtm: AxisDoubles = field(default_factory=_zeros(MAXAXIS))
+    ac: DOUBLE
+    vl: DOUBLE
+    tvl: DOUBLE
+    phi: DOUBLE
+    dtca1: DOUBLE
+    dtca2: DOUBLE
+    dtca3: DOUBLE
+    pn1: DOUBLE
+    pn2: DOUBLE
+    pn3: DOUBLE
+    dtm: AxisDoubles
 
 
-@dataclass(slots=True)
-class ROSI(Record):
+@structure(pack=4, checked=True)
+class ROSI(Structure):
     """What the board says about its operating system, table 9; all zero if it does not answer."""
 
-    revision: Annotated[str, Cell("char", "s", (SIZE_STRREV,))] = ""
-    number_axis: Longint = 0
-    sysfile_loaded: Longint = 0
+    revision: Annotated[Latin, Times(SIZE_STRREV)]
+    number_axis: LONGINT
+    sysfile_loaded: LONGINT
 
 
-@dataclass(slots=True)
-class CBCNCT(Record):
+@structure(pack=4, checked=True)
+class CBCNCT(Structure):
     """A transfer of a CNC task's common buffer, table 10."""
 
-    task_number: Longint = 0
-    size: Longint = 0
-    buffer: Pointer = field(default_factory=bytearray)
+    task_number: LONGINT
+    size: LONGINT
+    buffer: Annotated[bytearray, Address()]
 
 
-@dataclass(slots=True)
-class CNCTS(Record):
+@structure(pack=4, checked=True)
+class CNCTS(Structure):
     """State of a CNC task, table 11; for the bits of `running` see `Running`."""
 
-    errnum: Longint = 0
-    errline: Longint = 0
-    stackfree: Longint = 0
-    running: Longint = 0
-    csrcline: Longint = 0
+    errnum: LONGINT
+    errline: LONGINT
+    stackfree: LONGINT
+    running: LONGINT
+    csrcline: LONGINT
 
 
-@dataclass(slots=True)
-class LATCH_INFOS(Record):  # noqa: N801
+@structure(pack=4, checked=True)
+class LATCH_INFOS(Structure):  # noqa: N801
     """What lpr and lprs record. Only the element `san`, the axis of lpr, is known."""
 
-    san: Longint = 0
+    san: LONGINT
 
 
-@dataclass(slots=True)
-class CDBUF(Record):
+@structure(pack=4, checked=True)
+class CDBUF(Structure):
     """The common double variables CD0 to CD999."""
 
-    cd: CommonDoubles = field(default_factory=_zeros(COMMON_VARIABLES))
+    cd: CommonDoubles
 
 
-@dataclass(slots=True)
-class CIBUF(Record):
+@structure(pack=4, checked=True)
+class CIBUF(Structure):
     """The common integer variables CI0 to CI999."""
 
-    ci: CommonLongints = field(default_factory=_zeros(COMMON_VARIABLES, 0))
+    ci: CommonLongints
 
 
-@dataclass(slots=True)
-class SPDBUF(Record):
+@structure(pack=4, checked=True)
+class SPDBUF(Structure):
     """Setpoints for spd, spda and spdr."""
 
-    position: CommonDoubles = field(default_factory=_zeros(COMMON_VARIABLES))
+    position: CommonDoubles
 
     def points(self, size: int) -> tuple[float, ...]:
         """Return the first `size` positions.
@@ -268,17 +280,43 @@ class SPDBUF(Record):
         return tuple(self.position[:size])
 
 
-@dataclass(slots=True)
-class CTRLPARAMS(Record):
+@structure(pack=4, checked=True)
+class CTRLPARAMS(Structure):
     """The parameter field of scp, 15 rows of 15."""
 
-    parameters: Annotated[list[list[float]], Cell("double", "d", (15, 15))] = field(
-        default_factory=lambda: [[0.0] * 15 for _ in range(15)]
-    )
+    parameters: Annotated[Doubles, Times(15, 15)]
 
 
-@dataclass(slots=True)
-class CppString(Record):
+@structure(pack=4, checked=True)
+class CppString(Structure):
     """The in and out text of getEnvStr: a name goes in, its value comes out."""
 
-    text: Annotated[str, Cell("char", "s", (ENVIRONMENT_STRING_BYTES,))] = ""
+    text: Annotated[Latin, Times(ENVIRONMENT_STRING_BYTES)]
+
+
+STRUCTURES = layouts(
+    AS,
+    TSRP,
+    TRU,
+    LMP,
+    CMP,
+    HMP,
+    HMP3D,
+    ROSI,
+    CBCNCT,
+    CNCTS,
+    LATCH_INFOS,
+    CDBUF,
+    CIBUF,
+    SPDBUF,
+    CTRLPARAMS,
+    CppString,
+)
+"""What lies where, by the record's name."""
+
+# fmt: off
+__all__ = [
+    "AS", "CBCNCT", "CDBUF", "CIBUF", "CMP", "CNCTS", "CTRLPARAMS", "HMP", "HMP3D", "LATCH_INFOS", "LMP",
+    "MAXAXIS", "ROSI", "SPDBUF", "STRUCTURES", "TRU", "TSRP", "tsrp_array",
+]
+# fmt: on

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -52,20 +53,110 @@ def _refuse_radius(board: Board, units: PathUnits) -> bool:
     return False
 
 
-def line(
-    board: Board, e: int, units: PathUnits, begin: Floats, *, values: Sequence[float], relative: bool
-) -> bool:
-    """Make entry `e` a straight line."""
-    end = _ends(board, units, begin, values, relative, len(units.axes))
-    return _is_path(board, units, fill_line(board.state.seg, e, board.state.feed_axis, begin, end))
+class Shape(Protocol):
+    """What a motion of interpolation describes; a path when it is known where it begins."""
+
+    @property
+    def numbers(self) -> Sequence[float]:
+        """Return all its numbers, which must be finite."""
+        ...
+
+    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+        """Make entry `e` the path from `begin`, path units; False, with the reason in ErrorReg, if there is none."""
+        ...
 
 
-def arc(
+@dataclass(frozen=True, slots=True)
+class Line:
+    """A straight line to `values`, one per axis, or by them."""
+
+    values: Sequence[float]
+    relative: bool = False
+
+    @property
+    def numbers(self) -> Sequence[float]:
+        """Return all its numbers."""
+        return self.values
+
+    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+        """Make entry `e` the line."""
+        end = _ends(board, units, begin, self.values, self.relative, len(units.axes))
+        return _is_path(board, units, fill_line(board.state.seg, e, board.state.feed_axis, begin, end))
+
+
+@dataclass(frozen=True, slots=True)
+class Circle:
+    """A circle of the first two axes about `center`, through `phi_deg`, positive from the first to the second axis."""
+
+    center: Sequence[float]
+    phi_deg: float
+    relative: bool = False
+
+    @property
+    def numbers(self) -> Sequence[float]:
+        """Return all its numbers."""
+        return (*self.center, self.phi_deg)
+
+    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+        """Make entry `e` the circle."""
+        return _arc(board, e, units, begin, self.center, self.phi_deg, (), self.relative)
+
+
+@dataclass(frozen=True, slots=True)
+class Helix:
+    """A circle of the first two axes, all others linear to their `ends` (one per axis).
+
+    With hardly any angle the circle ends at the target point; the sign of `phi_deg` is its sense.
+    """
+
+    center: Sequence[float]
+    phi_deg: float
+    ends: Sequence[float]
+    relative: bool = False
+
+    @property
+    def numbers(self) -> Sequence[float]:
+        """Return all its numbers."""
+        return (*self.center, self.phi_deg, *self.ends)
+
+    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+        """Make entry `e` the helix."""
+        return _arc(board, e, units, begin, self.center, self.phi_deg, self.ends, self.relative)
+
+
+@dataclass(frozen=True, slots=True)
+class SpaceCircle:
+    """A circle of the first three axes about a line through `center`, by the right hand about `normal`."""
+
+    center: Sequence[float]
+    normal: Sequence[float]
+    phi_deg: float
+    relative: bool = False
+
+    @property
+    def numbers(self) -> Sequence[float]:
+        """Return all its numbers."""
+        return (*self.center, *self.normal, self.phi_deg)
+
+    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+        """Make entry `e` the circle."""
+        if len(units.axes) < 3:
+            _refuse(board, units)
+            return False
+        p, q, r = (int(i) for i in units.axes[:3])
+        middle = _ends(board, units, begin, self.center, self.relative, 3)[[p, q, r]]
+        facing = np.array(self.normal, np.float64)
+        length = float(fill_circle3d(board.state.seg, e, begin, p, q, r, middle, facing, self.phi_deg))
+        if length < HARDLY_ANY and self.phi_deg != 0.0:
+            return _refuse_radius(board, units)
+        return _is_path(board, units, length)
+
+
+def _arc(
     board: Board,
     e: int,
     units: PathUnits,
     begin: Floats,
-    *,
     center: Sequence[float],
     phi_deg: float,
     ends: Sequence[float],
@@ -93,27 +184,3 @@ def arc(
     end[q] = middle[q] + radius * math.sin(angle + sweep)
     seg, feed_axis = board.state.seg, board.state.feed_axis
     return _is_path(board, units, fill_arc(seg, e, feed_axis, begin, end, p, q, middle[p], middle[q], sweep))
-
-
-def circle_in_space(
-    board: Board,
-    e: int,
-    units: PathUnits,
-    begin: Floats,
-    *,
-    center: Sequence[float],
-    normal: Sequence[float],
-    phi_deg: float,
-    relative: bool,
-) -> bool:
-    """Make entry `e` a circle of the first three axes about a line through `center`."""
-    if len(units.axes) < 3:
-        _refuse(board, units)
-        return False
-    p, q, r = (int(i) for i in units.axes[:3])
-    middle = _ends(board, units, begin, center, relative, 3)[[p, q, r]]
-    facing = np.array(normal, np.float64)
-    length = float(fill_circle3d(board.state.seg, e, begin, p, q, r, middle, facing, phi_deg))
-    if length < HARDLY_ANY and phi_deg != 0.0:
-        return _refuse_radius(board, units)
-    return _is_path(board, units, length)

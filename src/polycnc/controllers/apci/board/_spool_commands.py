@@ -44,7 +44,8 @@ def ssms(board: Board, axes: Sequence[int]) -> None:
         if row["motion"] == WAITING:
             row["skip_wait"] = 1
     ready = [row for row in rows if row["closed"] and row["head"] < row["tail"] and not row["running"]]
-    if not all(row["motion"] in (IDLE, WAITING) or _works_on_its_queue(row) for row in ready):
+    resumes = board.config.rulings.ssms_undoes_sstps
+    if not all(row["motion"] in (IDLE, WAITING) or (resumes and _works_on_its_queue(row)) for row in ready):
         return  # only from rest
     for row in ready:
         row["running"] = 1

@@ -72,6 +72,18 @@ class BoardVariables(StrictModel):
     nfrax: tuple[str, ...] = Field(default=(), description="Names of axes that do not count for the path.")
 
 
+class Rulings(StrictModel):
+    """What the manual leaves open and a board may do otherwise."""
+
+    instructions_per_scan: Annotated[int, Field(gt=0, le=100_000)] = Field(
+        default=100, description="Instructions that each SAP task runs in a scan."
+    )
+    ssms_undoes_sstps: bool = Field(
+        default=True,
+        description="true: ssms takes a pause back while the last entry before it runs; false: it does nothing then.",
+    )
+
+
 class SystemFile(StrictModel):
     """A board: its type, axes, terminals and variables."""
 
@@ -90,6 +102,7 @@ class SystemFile(StrictModel):
     outputs: dict[Annotated[int, _terminal(OUTPUTS)], OutputPlan] = Field(
         default={}, description="Use of the outputs, like `1 = { functions = ['PAE'] }`."
     )
+    rulings: Rulings = Field(default=Rulings(), description="What the manual leaves open, see `[rulings]`.")
     environment: dict[str, str] = Field(
         default={}, description="Environment strings; the board has them from when it is switched on."
     )

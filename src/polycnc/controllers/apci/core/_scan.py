@@ -79,6 +79,8 @@ def _read_inputs(b: BoardState, state: KernelState) -> None:
             inputs |= plan["right_switch"]
         if state.switches.switch[i, REFERENCE]["level"] != 0:
             inputs |= plan["reference_switch"]
+    if board["io_down"] != 0:  # no level reaches the board
+        inputs = 0
     board["inputs"] = inputs ^ board["inverted"]
 
 

@@ -179,6 +179,7 @@ BOARD_ROW = np.dtype(
         ("stop_all", np.int64),  # axes out of step: all are to brake
         ("attention", np.int64),  # something happened that Python waits for
         ("nfrax", np.int64),
+        ("io_down", np.int64),  # inputs and outputs have been reset by an error
         ("watched", np.int64),  # rows of `watch` in use
         # Recording for the graphical system analysis.
         ("record_axes", np.int64),  # bit by index

@@ -5,82 +5,96 @@
 from __future__ import annotations
 
 from polycnc.controllers.apci.board import _axis_commands as commands
-from polycnc.controllers.apci.board._records import AS, TSRP
-from polycnc.controllers.apci.library._library import (
-    RPTODP_SINCE,
+from polycnc.controllers.apci.board._axis import Axis
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._records import AS
+from polycnc.controllers.apci.library._call import (
+    DOUBLE,
+    INT,
+    LIBRARY,
+    axes_call,
+    axis_call,
+    board_call,
     is_number,
-    on_axes,
-    revision,
-    usable_axis,
-    usable_board,
+    record_call,
 )
-from polycnc.controllers.apci.pc._slots import revision_numbers
+from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Selection, Session
+from polycnc.controllers.library import Refused
 
 
-def cl(asel: AS) -> None:
+@axes_call
+def cl(asel: Selection) -> None:
     """Close the position loops of the selected axes; each stays where it is (Manual 002, 4.4.8)."""
-    on_axes(commands.cl, asel)
+    asel.order(commands.cl)
 
 
-def clv(asel: AS) -> None:
+@axes_call
+def clv(asel: Selection) -> None:
     """Close the position loops; each selected axis goes on with its actual velocity (Manual 002, 4.4.9)."""
-    on_axes(commands.clv, asel)
+    asel.order(commands.clv)
 
 
-def ol(asel: AS) -> None:
+@axes_call
+def ol(asel: Selection) -> None:
     """Open the position loops of the selected axes: 0 V or 0 Hz, PAE outputs off (Manual 002, 4.4.41)."""
-    on_axes(commands.ol, asel)
+    asel.order(commands.ol)
 
 
-def ra(asel: AS) -> None:
+@axes_call
+def ra(asel: Selection) -> None:
     """Reset the selected axes; parameters stay (Manual 002, 4.4.42)."""
-    on_axes(commands.ra, asel)
+    asel.order(commands.ra)
 
 
-def rs() -> None:
+@board_call
+def rs(board: Board) -> None:
     """Reset the whole board; parameters, common variables and ifs stay (Manual 002, 4.4.113)."""
-    board = usable_board()
-    if board is not None:
-        commands.rs(board)
+    commands.rs(board)
 
 
-def RPtoDP(asel: AS) -> None:
+@LIBRARY.through(Session.selected_by_new, AS, name="as")
+def RPtoDP(asel: Selection) -> None:
     """Make the actual positions the setpoints where no profile runs (Manual 002, 4.4.112).
 
     Older operating systems than V2.5.3.100 do not know it.
     """
-    if revision_numbers(revision()) >= revision_numbers(RPTODP_SINCE):
-        on_axes(commands.RPtoDP, asel)
+    asel.order(commands.RPtoDP)
 
 
-def shp(tsrp: TSRP) -> None:
+@record_call
+def shp(tsrp: Exchange) -> None:
     """Make `tsrp.tp` the actual position of axis `tsrp.an`: the machine zero (Manual 002, 4.4.116)."""
-    axis = usable_axis(tsrp.an)
-    if axis is not None and is_number(tsrp.tp):
-        commands.shp(axis.board, axis.index, tsrp.tp)
+    if not is_number(tsrp.record.tp):
+        raise Refused(UNKNOWN_ERROR)
+    commands.shp(tsrp.axis.board, tsrp.axis.index, tsrp.record.tp)
 
 
-def azo(set_: int) -> None:
+@board_call
+def azo(board: Board, set_: INT) -> None:
     """Put zero offsets 0 to 4 in force for all axes; a higher number ends them (Manual 002, 4.4.3)."""
-    board = usable_board()
-    if board is not None:
-        commands.azo(board, int(set_))
+    commands.azo(board, set_)
 
 
-def szpa(an: int, Position: float) -> None:  # noqa: N803
+@axis_call
+def szpa(an: Axis, Position: DOUBLE) -> None:  # noqa: N803
     """Set the virtual zero of an axis to `Position`, from the machine zero (Manual 002, 4.4.127)."""
-    axis = usable_axis(an)
-    if axis is not None and is_number(Position):
-        commands.szpa(axis.board, axis.index, Position)
+    commands.szpa(an.board, an.index, Position)
 
 
-def szpr(an: int, Position: float) -> None:  # noqa: N803
+@axis_call
+def szpr(an: Axis, Position: DOUBLE) -> None:  # noqa: N803
     """Move the virtual zero of an axis by `Position` (Manual 002, 4.4.128)."""
-    axis = usable_axis(an)
-    if axis is not None and is_number(Position):
-        commands.szpr(axis.board, axis.index, Position)
+    commands.szpr(an.board, an.index, Position)
 
 
-def utrovr(asel: AS) -> None:
+@axes_call
+def utrovr(asel: Selection) -> None:
     """Put the trajectory override in force for the selected axes, together (Manual 002, 4.4.132)."""
-    on_axes(commands.utrovr, asel)
+    asel.order(commands.utrovr)
+
+
+# fmt: off
+__all__ = [
+    "RPtoDP", "azo", "cl", "clv", "ol", "ra", "rs", "shp", "szpa", "szpr", "utrovr",
+]
+# fmt: on

@@ -5,34 +5,42 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.controllers.apci.board._records import AS, LATCH_INFOS
-from polycnc.controllers.apci.library._library import selected, usable_axis, usable_board
+from polycnc.controllers.apci.board._axis import Axis
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._records import LATCH_INFOS
+from polycnc.controllers.apci.library._call import INT, LIBRARY, axes_call, axis_call, session_call
+from polycnc.controllers.apci.library._session import Selection, Session
+from polycnc.controllers.library import Refused
 
 
-def lps(an: int, mst: int) -> None:
+@axis_call
+def lps(an: Axis, mst: INT) -> None:
     """Latch the actual position of an axis every `mst` scans, until `mst` is 0 (Manual 002, 4.4.27)."""
-    axis = usable_axis(an)
-    if axis is not None and mst >= 0:
-        axis.row["latch_scans"], axis.row["latch_count"] = int(mst), 0
+    if mst >= 0:
+        an.row["latch_scans"], an.row["latch_count"] = mst, 0
 
 
-def lpr(latch_infos: LATCH_INFOS) -> None:
+@session_call
+def lpr(session: Session, latch_infos: LATCH_INFOS) -> None:
     """Start recording axis `latch_infos.san`; `recording` returns what was recorded (Manual 002, 4.4.25)."""
-    lprs(AS(1, [latch_infos.san]), latch_infos)
+    axis = session.axis(latch_infos.san)
+    _record(axis.board, (axis.index,))
 
 
-def lprs(asel: AS, latch_infos: LATCH_INFOS) -> None:
+@axes_call
+def lprs(asel: Selection, latch_infos: LATCH_INFOS) -> None:
     """Start recording the selected axes together; `latch_infos.san` is ignored (Manual 002, 4.4.26).
 
     Ruling: every scan is recorded, until the board's memory for it is full; a new call begins anew.
     """
-    found = selected(asel)
-    if found is not None:
-        board, axes = found
-        row = board.state.board[0]
-        row["record_axes"] = sum(1 << axis for axis in set(axes))
-        row["record_every"] = 1
-        row["record_count"] = row["recorded"] = 0
+    _record(asel.board, asel.axes)
+
+
+def _record(board: Board, axes: tuple[int, ...]) -> None:
+    row = board.state.board[0]
+    row["record_axes"] = sum(1 << axis for axis in set(axes))
+    row["record_every"] = 1
+    row["record_count"] = row["recorded"] = 0
 
 
 def recording(an: int) -> npt.NDArray[np.float64]:
@@ -41,9 +49,17 @@ def recording(an: int) -> npt.NDArray[np.float64]:
     A row per scan: setpoint and actual machine position in axis units, commanded velocity in axis units/s. No rows for
     an axis that is not recorded.
     """
-    board = usable_board()
-    if board is None or not 0 <= an < len(board.axes):
+    try:
+        board = LIBRARY.default.axis(an).board
+    except Refused:
         return np.zeros((0, 3))
     row = board.state.board[0]
     rows = int(row["recorded"]) if int(row["record_axes"]) >> an & 1 else 0
     return np.array(board.state.analysis[:rows, an])
+
+
+# fmt: off
+__all__ = [
+    "lpr", "lprs", "lps", "recording",
+]
+# fmt: on

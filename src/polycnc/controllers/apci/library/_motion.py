@@ -1,4 +1,4 @@
-"""Motion at once: jogs, searches, stops, lines, circles, helices (Manual 002, 4.4.19 to 4.4.39).
+"""Motion, at once and into the spoolers: jogs, searches, stops, lines, circles, helices (Manual 002, 4.4.19 to 4.4.39).
 
 Speeds and distances of interpolation are in the units of ctru; a jog takes those of its axis.
 """
@@ -6,22 +6,23 @@ Speeds and distances of interpolation are in the units of ctru; a jog takes thos
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 from polycnc.controllers.apci.board import _jog_commands as jogs
-from polycnc.controllers.apci.board import _move_commands as moves
-from polycnc.controllers.apci.board._move_commands import Speeds
+from polycnc.controllers.apci.board._move_commands import MOVES, Kind, Speeds, go, queue
 from polycnc.controllers.apci.board._path_units import path_units
 from polycnc.controllers.apci.board._records import AS, CMP, HMP, HMP3D, LMP, TSRP
-from polycnc.controllers.apci.library._library import on_axes, selected
+from polycnc.controllers.apci.library._call import LONG, Records, axes_call
+from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection
+from polycnc.controllers.apci.library._table import named
+from polycnc.controllers.library import Refused
 from polycnc.errors import UsageError
-
-Command: TypeAlias = Callable[..., None]
 
 # ---------------------------------------------------------------------- single axes
 
 
-def ja(asel: AS, tsrp: Sequence[TSRP]) -> None:
+@axes_call
+def ja(asel: Selection, tsrp: Records) -> None:
     """Jog the selected axes to `tsrp[axis].tp`, each by itself (Manual 002, 4.4.19).
 
     `tsrp` is the whole sequence of records, indexed by axis number; accelerations and velocities are those that
@@ -30,150 +31,153 @@ def ja(asel: AS, tsrp: Sequence[TSRP]) -> None:
     Raises:
         UsageError: `tsrp` has no record for a selected axis.
     """
-    _jog(jogs.ja, asel, tsrp)
+    asel.order(jogs.ja, _targets(asel, tsrp))
 
 
-def jr(asel: AS, tsrp: Sequence[TSRP]) -> None:
+@axes_call
+def jr(asel: Selection, tsrp: Records) -> None:
     """Jog the selected axes by `tsrp[axis].tp`, each by itself (Manual 002, 4.4.23).
 
     Raises:
         UsageError: `tsrp` has no record for a selected axis.
     """
-    _jog(jogs.jr, asel, tsrp)
+    asel.order(jogs.jr, _targets(asel, tsrp))
 
 
-def jhi(asel: AS, tsrp: Sequence[TSRP]) -> None:
+@axes_call
+def jhi(asel: Selection, tsrp: Records) -> None:
     """Search the encoder's index over the distance `tsrp[axis].tp` (Manual 002, 4.4.20).
 
     Raises:
         UsageError: `tsrp` has no record for a selected axis.
     """
-    _jog(jogs.jhi, asel, tsrp)
+    asel.order(jogs.jhi, _targets(asel, tsrp))
 
 
-def _jog(command: Command, asel: AS, tsrp: Sequence[TSRP]) -> None:
-    found = selected(asel)
-    if found is None:
-        return
-    board, axes = found
-    if isinstance(tsrp, TSRP) or max(axes) >= len(tsrp):
+def _targets(asel: Selection, tsrp: Records) -> list[float]:
+    if isinstance(tsrp, TSRP) or max(asel.axes) >= len(tsrp):
         raise UsageError(
             "there is no TSRP record for every selected axis", hint="pass all records: tsrp_array()"
         )
-    command(board, axes, [tsrp[axis].tp for axis in axes])
+    return [tsrp[axis].tp for axis in asel.axes]
 
 
-def jhl(asel: AS) -> None:
+@axes_call
+def jhl(asel: Selection) -> None:
     """Search the reference switches to the left (Manual 002, 4.4.21)."""
-    on_axes(jogs.jhl, asel)
+    asel.order(jogs.jhl)
 
 
-def jhr(asel: AS) -> None:
+@axes_call
+def jhr(asel: Selection) -> None:
     """Search the reference switches to the right (Manual 002, 4.4.22)."""
-    on_axes(jogs.jhr, asel)
+    asel.order(jogs.jhr)
 
 
-def js(asel: AS) -> None:
+@axes_call
+def js(asel: Selection) -> None:
     """Stop each selected axis by itself with its stop deceleration; queues are rejected (Manual 002, 4.4.24)."""
-    on_axes(jogs.js, asel)
+    asel.order(jogs.js)
 
 
-def ms(asel: AS) -> None:
+@axes_call
+def ms(asel: Selection) -> None:
     """Stop the selected axes along their path; queues are rejected (Manual 002, 4.4.39).
 
     With MODEREG bit MS_DECEL the deceleration is TRAC.
     """
-    found = selected(asel)
-    if found is not None:
-        board, axes = found
-        units = path_units(board, axes)
-        trac = board.variables.trac
-        jogs.ms_of_pc(board, axes, trac if units is None else units.acceleration(trac))
+    units = path_units(asel.board, asel.axes)
+    trac = asel.board.variables.trac
+    asel.order(jogs.ms_of_pc, trac if units is None else units.acceleration(trac))
 
 
 # ---------------------------------------------------------------------- interpolation
 
-
-def mla(asel: AS, lmp: LMP) -> None:
-    """Move on a straight line to the targets `lmp.dtm[axis]` (Manual 002, 4.4.37)."""
-    line(moves.mla, asel, lmp)
+M = TypeVar("M", LMP, CMP, HMP, HMP3D)
+Move: TypeAlias = Callable[[AS, M], None]
 
 
-def mlr(asel: AS, lmp: LMP) -> None:
-    """Move on a straight line by the distances `lmp.dtm[axis]` (Manual 002, 4.4.38)."""
-    line(moves.mlr, asel, lmp)
+def _of_line(lmp: LMP, axes: Sequence[int]) -> tuple[Any, ...]:
+    return ([lmp.dtm[axis] for axis in axes],)
 
 
-def mca(asel: AS, cmp: CMP) -> None:
-    """Move on a circle of the first two selected axes about an absolute centre (Manual 002, 4.4.28)."""
-    circle(moves.mca, asel, cmp)
+def _of_circle(cmp: CMP, axes: Sequence[int]) -> tuple[Any, ...]:
+    return (cmp.dtca1, cmp.dtca2), cmp.phi
 
 
-def mcr(asel: AS, cmp: CMP) -> None:
-    """Move on a circle of the first two selected axes about a centre from the present position (Manual 002, 4.4.29)."""
-    circle(moves.mcr, asel, cmp)
+def _of_helix(hmp: HMP, axes: Sequence[int]) -> tuple[Any, ...]:
+    return (hmp.dtca1, hmp.dtca2), hmp.phi, [hmp.dtm[axis] for axis in axes]
 
 
-def mha(asel: AS, hmp: HMP) -> None:
-    """Move on a helix, centre and targets absolute (Manual 002, 4.4.35).
-
-    Targets are `hmp.dtm[axis]`; those of the circle count if `hmp.phi` is no angle, and its sign is the sense.
-    """
-    helix(moves.mha, asel, hmp)
+def _of_space(hmp3d: HMP3D, axes: Sequence[int]) -> tuple[Any, ...]:
+    return (hmp3d.dtca1, hmp3d.dtca2, hmp3d.dtca3), (hmp3d.pn1, hmp3d.pn2, hmp3d.pn3), hmp3d.phi
 
 
-def mhr(asel: AS, hmp: HMP) -> None:
-    """Move on a helix, centre and distances from the present position (Manual 002, 4.4.36)."""
-    helix(moves.mhr, asel, hmp)
+_RECORDS: dict[type, tuple[Callable[..., tuple[Any, ...]], int, int | None]] = {
+    LMP: (_of_line, 1, None),
+    CMP: (_of_circle, 2, 2),
+    HMP: (_of_helix, 2, None),
+    HMP3D: (_of_space, 3, 3),
+}
+"""What a record gives to its shape, the fewest axes that it takes, and how many of them."""
 
 
-def mca3d(asel: AS, hmp3d: HMP3D) -> None:
-    """Move on a circle in space about an absolute centre (Manual 002, 4.4.30)."""
-    circle_in_space(moves.mca3d, asel, hmp3d)
+def _order(
+    asel: Selection, record: Any, kind: Kind, relative: bool, verb: Callable[..., None], *index: int
+) -> None:
+    numbers_of, fewest, most = _RECORDS[type(record)]
+    if len(asel.axes) < fewest:
+        raise Refused(UNKNOWN_ERROR)
+    axes = asel.axes[:most]
+    shape = kind(*numbers_of(record, axes), relative=relative)
+    verb(asel.board, axes, shape, Speeds(record.ac, record.vl, record.tvl), *index)
 
 
-def mcr3d(asel: AS, hmp3d: HMP3D) -> None:
-    """Move on a circle in space about a centre from the present position (Manual 002, 4.4.31)."""
-    circle_in_space(moves.mcr3d, asel, hmp3d)
+def _moves(stem: str, record: type[M], what: str, section: int) -> tuple[Move[M], Move[M]]:
+    """Make the function that moves at once, and the one that queues the same."""
+
+    def at_once(asel: Selection, moved: Any) -> None:
+        _order(asel, moved, *MOVES[stem], go)
+
+    def queued(asel: Selection, moved: Any) -> None:
+        _order(asel, moved, *MOVES[stem], queue)
+
+    argument = {"asel": Selection, record.__name__.lower(): record}
+    source = f"(Manual 002, 4.4.{section})."
+    return (
+        axes_call(named(at_once, stem, f"Move {what} {source}", argument)),
+        axes_call(named(queued, f"s{stem}", f"Queue a move {what} {source}", argument)),
+    )
 
 
-# ---------------------------------------------------------------------- from records to commands
+# fmt: off
+#                       stem    record  what                                                                 section
+mla, smla     = _moves("mla",   LMP,   "on a straight line to the targets `lmp.dtm[axis]`",                       37)
+mlr, smlr     = _moves("mlr",   LMP,   "on a straight line by the distances `lmp.dtm[axis]`",                     38)
+mca, smca     = _moves("mca",   CMP,   "on a circle of the first two selected axes about an absolute centre",     28)
+mcr, smcr     = _moves("mcr",   CMP,   "on a circle of the first two selected axes, centre from where it begins", 29)
+mha, smha     = _moves("mha",   HMP,   "on a helix to `hmp.dtm[axis]`, or by `hmp.phi` if it is an angle",        35)
+mhr, smhr     = _moves("mhr",   HMP,   "on a helix, centre and distances from where it begins",                   36)
+mca3d, smca3d = _moves("mca3d", HMP3D, "on a circle in space about an absolute centre",                           30)
+mcr3d, smcr3d = _moves("mcr3d", HMP3D, "on a circle in space, centre from where it begins",                       31)
+# fmt: on
 
 
-def line(command: Command, asel: AS, lmp: LMP, *, spool: bool = False) -> None:
-    """Give the command for a straight line."""
-    found = selected(asel)
-    if found is not None:
-        board, axes = found
-        speeds = Speeds(lmp.ac, lmp.vl, lmp.tvl)
-        command(board, axes, [lmp.dtm[axis] for axis in axes], speeds, spool=spool)
+@axes_call
+def smlai(asel: Selection, lmp: LMP, PcapIndex: LONG) -> None:  # noqa: N803
+    """Queue a straight line to targets, with an index; only named in the manual (Manual 002, 4.4.94)."""
+    _order(asel, lmp, *MOVES["mla"], queue, PcapIndex)
 
 
-def circle(command: Command, asel: AS, cmp: CMP, *, spool: bool = False) -> None:
-    """Give the command for a circle, which two axes take."""
-    found = selected(asel, 2)
-    if found is not None:
-        board, axes = found
-        speeds = Speeds(cmp.ac, cmp.vl, cmp.tvl)
-        command(board, axes[:2], (cmp.dtca1, cmp.dtca2), cmp.phi, speeds, spool=spool)
+@axes_call
+def smlri(asel: Selection, lmp: LMP, PcapIndex: LONG) -> None:  # noqa: N803
+    """Queue a straight line by distances, with an index; only named in the manual (Manual 002, 4.4.94)."""
+    _order(asel, lmp, *MOVES["mlr"], queue, PcapIndex)
 
 
-def helix(command: Command, asel: AS, hmp: HMP, *, spool: bool = False) -> None:
-    """Give the command for a helix, which at least two axes take."""
-    found = selected(asel, 2)
-    if found is not None:
-        board, axes = found
-        speeds = Speeds(hmp.ac, hmp.vl, hmp.tvl)
-        ends = [hmp.dtm[axis] for axis in axes]
-        command(board, axes, (hmp.dtca1, hmp.dtca2), hmp.phi, ends, speeds, spool=spool)
-
-
-def circle_in_space(command: Command, asel: AS, hmp3d: HMP3D, *, spool: bool = False) -> None:
-    """Give the command for a circle in space, which three axes take."""
-    found = selected(asel, 3)
-    if found is not None:
-        board, axes = found
-        center = (hmp3d.dtca1, hmp3d.dtca2, hmp3d.dtca3)
-        normal = (hmp3d.pn1, hmp3d.pn2, hmp3d.pn3)
-        speeds = Speeds(hmp3d.ac, hmp3d.vl, hmp3d.tvl)
-        command(board, axes[:3], center, normal, hmp3d.phi, speeds, spool=spool)
+# fmt: off
+__all__ = [
+    "ja", "jhi", "jhl", "jhr", "jr", "js", "mca", "mca3d", "mcr", "mcr3d", "mha", "mhr", "mla", "mlr",
+    "ms", "smca", "smca3d", "smcr", "smcr3d", "smha", "smhr", "smla", "smlai", "smlr", "smlri",
+]
+# fmt: on

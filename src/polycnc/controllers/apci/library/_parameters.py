@@ -1,406 +1,285 @@
 """The read and write functions of parameters, positions and system variables: the table (Manual 002, 4.4.43 ff.)."""
 
-# ruff: noqa: N802, N816  the names are the manual's
+# ruff: noqa: E501, N802, N816  the names are the manual's
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from operator import attrgetter
-from typing import Any
+from typing import Annotated
 
 import numpy as np
 
+from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import write_dp, write_mcp, write_rp
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Success
-from polycnc.controllers.apci.board._records import CTRLPARAMS, TRU, TSRP
+from polycnc.controllers.apci.board._records import CTRLPARAMS, STRUCTURES, TRU
 from polycnc.controllers.apci.board._spool_commands import free_bytes, moves_queued
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit
 from polycnc.controllers.apci.core._registers import ErrorReg
-from polycnc.controllers.apci.library._library import (
+from polycnc.controllers.apci.library._call import (
+    CODE,
+    INT,
+    INT_AT,
+    LIBRARY,
+    LONG,
+    board_call,
+    filled_call,
     is_number,
-    library,
     longint,
-    revision,
-    status_mask,
-    usable_axis,
-    usable_board,
+    record_call,
 )
+from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Session
 from polycnc.controllers.apci.library._table import (
     ACCELERATION,
+    DISPLAY,
     PATH_ACCELERATION,
     PATH_VELOCITY,
     POSITION,
     VELOCITY,
-    AxisRegister,
-    BoardRegister,
+    Rule,
+    axis_pair,
+    axis_pair_coded,
+    board_pair,
+    board_pair_coded,
+    filled_at_once_call,
+    not_negative,
+    positive,
+    read_axis,
+    read_axis_coded,
+    read_board,
+    read_record,
+    record_pair,
+    write_axis,
 )
+from polycnc.controllers.library import Out, Refused
 
-_RECORD_ELEMENTS = {element.name for element in TSRP.ELEMENTS} - {"an", "scratch"}
+_RECORD_ELEMENTS = {each.name for each in STRUCTURES["TSRP"].fields} - {"an", "scratch"}
 _FILTER = ("kp", "ki", "kd", "kpl", "kfca", "kfcv")
 
 
-def _at(name: str) -> Callable[[Any, Any], object]:
-    def put(owner: Any, value: Any) -> None:
-        setattr(owner, name, value)
-
-    return put
+def _put_rp(axis: Axis, value: float) -> None:
+    write_rp(axis.board, axis.index, value)
 
 
-def _variable(name: str) -> Callable[[Board, Any], object]:
-    def put(board: Board, value: Any) -> None:
-        setattr(board.variables, name, value)
-
-    return put
+def _put_dp(axis: Axis, value: float) -> None:
+    write_dp(axis.board, axis.index, value)
 
 
-def _positive(value: float) -> bool:
-    return value > 0.0
+def _put_mcp(axis: Axis, value: int) -> None:
+    write_mcp(axis.board, axis.index, value)
 
 
-def _not_negative(value: float) -> bool:
-    return value >= 0.0
+def _put_modereg(board: Board, value: int) -> None:
+    board.modereg = value
 
 
-def _parameter(
-    stem: str,
-    name: str,
-    what: str,
-    unit: str,
-    *sections: int,
-    fits: Callable[[float], bool] = is_number,
-    note: str = "",
-) -> AxisRegister[float]:
-    return AxisRegister(stem, what, 0.0, attrgetter(name), _at(name), unit, sections, fits=fits, note=note)
+def _put_nfrax(board: Board, value: int) -> None:
+    board.nfrax = value
 
 
-def _limit(stem: str, name: str, what: str, unit: str, *sections: int) -> AxisRegister[float]:
-    return _parameter(stem, name, what, unit, *sections, fits=_not_negative, note="0: not checked.")
+def _displayed(name: str) -> Callable[[Axis], float]:
+    return lambda axis: axis.displayed(getattr(axis, name))
 
 
-def _flags(stem: str, what: str, *sections: int) -> AxisRegister[int]:
-    return AxisRegister(stem, what, 0, attrgetter(stem), _at(stem), "", sections)
+def _free_bytes(axis: Axis) -> int:
+    return free_bytes(axis.board, axis.index)
 
 
-def _system(
-    stem: str, what: str, unit: str, *sections: int, fits: Callable[[float], bool] = is_number
-) -> BoardRegister[float]:
-    return BoardRegister(
-        stem, what, 0.0, attrgetter(f"variables.{stem}"), _variable(stem), unit, sections, fits=fits
-    )
+def _moves_queued(axis: Axis) -> int:
+    return moves_queued(axis.board, axis.index)
 
 
-# ---------------------------------------------------------------------- parameters of an axis, through TSRP
+def _pcap_index(axis: Axis) -> int:
+    return int(axis.row["pcap_index"])
 
-rdjac, wrjac = _parameter("jac", "jac", "the jog acceleration", ACCELERATION, 75, 150).in_record("jac")
-rdjvl, wrjvl = _parameter("jvl", "jvl", "the jog velocity", VELOCITY, 78, 154).in_record("jvl")
-rdjtvl, wrjtvl = _parameter("jtvl", "jtvl", "the jog target velocity", VELOCITY, 77, 153).in_record("jtv")
-rdjovr, wrjovr = AxisRegister(
-    "jovr",
-    "the jog override",
-    0.0,
-    attrgetter("jovr"),
-    _at("jovr"),
-    sections=(152, 152),
-    polled=True,
-    fits=_positive,
-    note="During a change of the trajectory override it is the override in force. rdjovr is only named in the manual.",
-).in_record("jovr")
-rdhac, wrhac = _parameter(
-    "hac", "hac", "the acceleration of reference travel", ACCELERATION, 68, 147
-).in_record("hac")
-rdhvl, wrhvl = _parameter("hvl", "hvl", "the velocity of reference travel", VELOCITY, 69, 148).in_record(
-    "hvl"
+
+def _offset(axis: Axis) -> float:
+    return float(axis.row["offset"])
+
+
+def _modereg(board: Board) -> int:
+    return longint(board.modereg)
+
+
+def _nfrax(board: Board) -> int:
+    return longint(board.nfrax)
+
+
+def _errorreg(board: Board) -> int:
+    return int(board.errorreg)
+
+
+_PORT = (
+    "Servo: -32767 to 32767 is -10 to 10 V. Stepper: the frequency is CLOCK / 2 / (|mcp| + 1) in the direction of "
+    "the sign, 0 stops. It lasts only while the loop is open."
 )
-rdsdec, wrsdec = _parameter(
-    "sdec", "sdec", "the stop deceleration", ACCELERATION, 99, 168, fits=_not_negative
-).in_record("sdec")
-rdsll, wrsll = _parameter("sll", "sll", "the left software limit", POSITION, 100, 169).in_record("sll")
-rdslr, wrslr = _parameter("slr", "slr", "the right software limit", POSITION, 101, 170).in_record("slr")
-rdipw, wripw = _parameter("ipw", "ipw", "the in-position window", POSITION, 73, 149).in_record("ipw")
-rdmpe, wrmpe = _parameter("mpe", "mpe", "the limit of the position error", POSITION, 91, 165).in_record("mpe")
-rdgf, wrgf = _parameter("gf", "gf", "the gear factor", "", 66, 145, fits=_positive).in_record("gf")
-rdaux, wraux = _parameter("aux", "aux", "the auxiliary register", "", 44, 133).in_record("aux")
-rdtp, wrtp = AxisRegister(
-    "tp",
-    "the absolute target of the last travel command",
-    0.0,
-    attrgetter("tp"),
-    _at("tp"),
-    POSITION,
-    sections=(103, 172),
-    polled=True,
-).in_record("tp")
+_OVERRIDE = "During a change of the trajectory override it is the override in force. rdjovr is only named in the manual."
+_OPEN_ONLY = (
+    "Written with open loop only; that shifts the machine zero, and the axis is not referenced any more."
+)
+_CLOSED_ONLY = "Written with closed loop only; the axis goes there as fast as it can."
 
-# ---------------------------------------------------------------------- positions and velocities
+# What is particular about a register: see `Rule`.
+LIVE, LIVE_LONG, FLAGS = Rule(polled=True), Rule(polled=True, kind=LONG), Rule(kind=LONG)
+LIVE_AT = Rule(polled=True, number=INT_AT)
+ABOVE_0, LEAST_0 = Rule(fits=positive), Rule(fits=not_negative)
+LIMIT, TIME = Rule(fits=not_negative, note="0: not checked."), Rule(fits=not_negative, note="0: at once.")
+AT_ONCE, JERK = Rule(note="0: at once."), Rule(note="0 to 1; other values are limited to it.")
+TROVR = Rule(fits=positive, note="utrovr puts it in force.")
+JTV, JOVR = Rule(field="jtv"), Rule(fits=positive, polled=True, note=_OVERRIDE)
+RP, DP = Rule(put=_put_rp, polled=True, note=_OPEN_ONLY), Rule(put=_put_dp, polled=True, note=_CLOSED_ONLY)
+LP, INDEX = Rule(polled=True, note="Reading it clears the status bit lpsf."), Rule(polled=True, field="lp")
+MCP = Rule(put=_put_mcp, polled=True, note=_PORT)
+SHOWN_RP, SHOWN_DP, SHOWN_TP = (Rule(polled=True, field=name) for name in ("rp", "dp", "tp"))
+SLSP = Rule(number=LONG, done=Success.DONE, refused=Success.FAILED)
+PCAP = Rule(
+    polled=True, kind=INT, out="PcapIndex", note="-1 until a command with an index has been executed."
+)
+MODE, NFRAX = Rule(kind=LONG, put=_put_modereg), Rule(kind=LONG, put=_put_nfrax)
+ERROR = Rule(kind=LONG, polled=True, out="ErrorReg")
 
-rdrp, wrrp = AxisRegister(
-    "rp",
-    "the actual position",
-    0.0,
-    attrgetter("rp"),
-    lambda axis, value: write_rp(axis.board, axis.index, value),
-    POSITION,
-    sections=(95, 167),
-    polled=True,
-    note="Written with open loop only; that shifts the machine zero, and the axis is not referenced any more.",
-).in_record("rp")
-rddp, wrdp = AxisRegister(
-    "dp",
-    "the setpoint",
-    0.0,
-    attrgetter("dp"),
-    lambda axis, value: write_dp(axis.board, axis.index, value),
-    POSITION,
-    sections=(56, 140),
-    polled=True,
-    note="Written with closed loop only; the axis goes there as fast as it can.",
-).in_record("dp")
-rdrpd = AxisRegister(
-    "rpd", "the actual position", 0.0, lambda a: a.displayed(a.rp), None, "display unit", (96,), True
-).read_record("rp")
-rddpd = AxisRegister(
-    "dpd", "the setpoint", 0.0, lambda a: a.displayed(a.dp), None, "display unit", (58,), True
-).read_record("dp")
-rdtpd = AxisRegister(
-    "tpd",
-    "the absolute target of the last travel command",
-    0.0,
-    lambda a: a.displayed(a.tp),
-    None,
-    "display unit",
-    (104,),
-    True,
-).read_record("tp")
-rddv = AxisRegister(
-    "dv", "the velocity of the profile", 0.0, attrgetter("dv"), None, VELOCITY, (59,), True
-).read_record("dv")
-rdrv = AxisRegister("rv", "the actual velocity", 0.0, attrgetter("rv"), None, VELOCITY, (97,), True).read()
-rdPosErr = AxisRegister(
-    "PosErr", "the position error", 0.0, attrgetter("position_error"), None, POSITION, (93,), True
-).read()
-rdlp, wrlp = AxisRegister(
-    "lp",
-    "the latched position",
-    0.0,
-    attrgetter("lp"),
-    _at("lp"),
-    POSITION,
-    sections=(82, 158),
-    polled=True,
-    note="Reading it clears the status bit lpsf.",
-).in_record("lp")
-rdlpndx, wrlpndx = AxisRegister(
-    "lpndx",
-    "the position latched at the encoder's index",
-    0.0,
-    attrgetter("lpndx"),
-    _at("lpndx"),
-    POSITION,
-    sections=(83, 159),
-    polled=True,
-).in_record("lp")
-rdmcp, wrmcp = AxisRegister(
-    "mcp",
-    "the motor command port",
-    0,
-    attrgetter("mcp"),
-    lambda axis, value: write_mcp(axis.board, axis.index, value),
-    sections=(88, 162),
-    polled=True,
-    note=(
-        "Servo: -32767 to 32767 is -10 to 10 V. Stepper: the frequency is CLOCK / 2 / (|mcp| + 1) in the direction of "
-        "the sign, 0 stops. It lasts only while the loop is open."
-    ),
-).in_record("mcp")
+# fmt: off
+# ---------------------------------------------------------------------- parameters of an axis, through TSRP
+#                             stem    register  what                                   unit          read write
+rdjac,  wrjac  = record_pair("jac",  "jac",  "the jog acceleration",                  ACCELERATION,  75, 150)
+rdjvl,  wrjvl  = record_pair("jvl",  "jvl",  "the jog velocity",                      VELOCITY,      78, 154)
+rdjtvl, wrjtvl = record_pair("jtvl", "jtvl", "the jog target velocity",               VELOCITY,      77, 153, JTV)
+rdhac,  wrhac  = record_pair("hac",  "hac",  "the acceleration of reference travel",  ACCELERATION,  68, 147)
+rdhvl,  wrhvl  = record_pair("hvl",  "hvl",  "the velocity of reference travel",      VELOCITY,      69, 148)
+rdsdec, wrsdec = record_pair("sdec", "sdec", "the stop deceleration",                 ACCELERATION,  99, 168, LEAST_0)
+rdsll,  wrsll  = record_pair("sll",  "sll",  "the left software limit",               POSITION,     100, 169)
+rdslr,  wrslr  = record_pair("slr",  "slr",  "the right software limit",              POSITION,     101, 170)
+rdipw,  wripw  = record_pair("ipw",  "ipw",  "the in-position window",                POSITION,      73, 149)
+rdmpe,  wrmpe  = record_pair("mpe",  "mpe",  "the limit of the position error",       POSITION,      91, 165)
+rdgf,   wrgf   = record_pair("gf",   "gf",   "the gear factor",                       "",            66, 145, ABOVE_0)
+rdaux,  wraux  = record_pair("aux",  "aux",  "the auxiliary register",                "",            44, 133)
+rdjovr, wrjovr = record_pair("jovr", "jovr", "the jog override",                      "",           152, 152, JOVR)
 
-# ---------------------------------------------------------------------- status words and counters, read only
-
-rdaxst = AxisRegister(
-    "axst",
-    "the axis status",
-    0,
-    lambda axis: axis.status_word & status_mask(revision()),
-    None,
-    "",
-    (45,),
-    True,
-).read_record("axst")
-rdlsm = AxisRegister(
-    "lsm",
-    "the free spooler memory",
-    0,
-    lambda axis: free_bytes(axis.board, axis.index),
-    unit="byte",
-    sections=(84,),
-    polled=True,
-).read_record("lsm")
-rdMCiS = AxisRegister(
-    "MCiS",
-    "the number of motion commands in the spooler",
-    0,
-    lambda axis: moves_queued(axis.board, axis.index),
-    sections=(87,),
-    polled=True,
-).read()
-rdPcapIndex = AxisRegister(
-    "PcapIndex",
-    "the index of the spooled command that is being executed",
-    0,
-    lambda axis: int(axis.row["pcap_index"]),
-    sections=(94,),
-    polled=True,
-    note="-1 until a command with an index has been executed.",
-).read_coded()
+# ---------------------------------------------------------------------- positions, velocities, counters: they change
+rdtp,  wrtp      = record_pair("tp",  "tp",  "the absolute target of the last travel command", POSITION, 103, 172, LIVE)
+rdrp,  wrrp      = record_pair("rp",  "rp",  "the actual position",                            POSITION,  95, 167, RP)
+rddp,  wrdp      = record_pair("dp",  "dp",  "the setpoint",                                   POSITION,  56, 140, DP)
+rdlp,  wrlp      = record_pair("lp",  "lp",  "the latched position",                           POSITION,  82, 158, LP)
+rdlpndx, wrlpndx = record_pair("lpndx", "lpndx", "the position latched at the encoder's index", POSITION, 83, 159, INDEX)
+rdmcp, wrmcp     = record_pair("mcp", "mcp", "the motor command port",                         "",        88, 162, MCP)
+rdrpd = read_record("rpd", _displayed("rp"), "the actual position",                            DISPLAY,   96, SHOWN_RP)
+rddpd = read_record("dpd", _displayed("dp"), "the setpoint",                                   DISPLAY,   58, SHOWN_DP)
+rdtpd = read_record("tpd", _displayed("tp"), "the absolute target of the last travel command", DISPLAY,  104, SHOWN_TP)
+rddv  = read_record("dv",  "dv",             "the velocity of the profile",                    VELOCITY,  59, LIVE)
+rdlsm = read_record("lsm", _free_bytes,      "the free spooler memory",                        "byte",    84, LIVE)
+rdrv     = read_axis("rv",     "rv",             "the actual velocity",                        VELOCITY,  97, LIVE_AT)
+rdPosErr = read_axis("PosErr", "position_error", "the position error",                         POSITION,  93, LIVE)
+rdMCiS   = read_axis("MCiS",   _moves_queued,    "the number of motion commands in the spooler", "",      87, LIVE_LONG)
+rdPcapIndex = read_axis_coded("PcapIndex", _pcap_index, "the index of the spooled command that is being executed", "", 94, PCAP)
 
 # ---------------------------------------------------------------------- parameters of an axis, by its number
-
-rdEffRadius, wrEffRadius = _parameter(
-    "EffRadius", "effradius", "the effective radius", "PU", 61, 143, fits=_not_negative
-).both()
-rdJerkRel, wrJerkRel = _parameter(
-    "JerkRel", "jerkrel", "the relative jerk", "", 76, 151, note="0 to 1; other values are limited to it."
-).both()
-rdMaxAcc, wrMaxAcc = _limit("MaxAcc", "MaxAcc", "the maximum acceleration", PATH_ACCELERATION, 85, 160).both()
-rdMaxVel, wrMaxVel = _limit("MaxVel", "MaxVel", "the maximum velocity", PATH_VELOCITY, 86, 161).both()
-rdMDVel, wrMDVel = _limit("MDVel", "MDVEL", "the maximum velocity jump", PATH_VELOCITY, 89, 163).both()
-rdGCR, wrGCR = _flags("GCR", "the gear configuration register", 65, 144).both()
-rdControllerFlags, wrControllerFlags = _flags(
-    "ControllerFlags", "the flags of the control algorithm", 51, 137
-).both()
-_slsp = _parameter("slsp", "slsp", "the slits or steps of a motor turn", "", 102, 171, fits=_positive)
-rdslsp = _slsp.read_coded(Success.DONE, Success.FAILED)
-_, wrslsp = _slsp.both()
-rddpoffset, wrdpoffset = _parameter(
-    "dpoffset", "dpoffset", "the offset added to the setpoint", POSITION, 57, 141
-).coded()
-rddvoffset, wrdvoffset = _parameter(
-    "dvoffset", "dvoffset", "the velocity at which dpoffset changes", VELOCITY, 60, 142, note="0: at once."
-).coded()
-rdgfaux, wrgfaux = _parameter(
-    "gfaux", "gfaux", "the ratio of motor steps to encoder counts", "", 67, 146
-).coded()
-rdZeroOffset = AxisRegister(
-    "ZeroOffset", "the zero offset in force", 0.0, lambda a: float(a.row["offset"]), None, POSITION, (110,)
-).read_coded()
+rdEffRadius, wrEffRadius = axis_pair("EffRadius", "effradius", "the effective radius",      "PU",              61, 143, LEAST_0)
+rdJerkRel, wrJerkRel     = axis_pair("JerkRel",   "jerkrel",   "the relative jerk",         "",                76, 151, JERK)
+rdMaxAcc,  wrMaxAcc      = axis_pair("MaxAcc",    "MaxAcc",    "the maximum acceleration",  PATH_ACCELERATION, 85, 160, LIMIT)
+rdMaxVel,  wrMaxVel      = axis_pair("MaxVel",    "MaxVel",    "the maximum velocity",      PATH_VELOCITY,     86, 161, LIMIT)
+rdMDVel,   wrMDVel       = axis_pair("MDVel",     "MDVEL",     "the maximum velocity jump", PATH_VELOCITY,     89, 163, LIMIT)
+rdGCR,     wrGCR         = axis_pair("GCR",       "GCR",       "the gear configuration register", "",          65, 144, FLAGS)
+rdControllerFlags, wrControllerFlags = axis_pair("ControllerFlags", "ControllerFlags", "the flags of the control algorithm", "", 51, 137, FLAGS)
+rdslsp = read_axis_coded("slsp", "slsp", "the slits or steps of a motor turn", "", 102, SLSP)
+wrslsp =      write_axis("slsp", "slsp", "the slits or steps of a motor turn", "", 171, ABOVE_0)
+rddpoffset, wrdpoffset = axis_pair_coded("dpoffset", "dpoffset", "the offset added to the setpoint",           POSITION, 57, 141)
+rddvoffset, wrdvoffset = axis_pair_coded("dvoffset", "dvoffset", "the velocity at which dpoffset changes",     VELOCITY, 60, 142, AT_ONCE)
+rdgfaux,    wrgfaux    = axis_pair_coded("gfaux",    "gfaux",    "the ratio of motor steps to encoder counts", "",       67, 146)
+rdZeroOffset           = read_axis_coded("ZeroOffset", _offset,  "the zero offset in force",                   POSITION, 110)
 
 # ---------------------------------------------------------------------- the board
-
-rdModeReg, wrModeReg = BoardRegister(
-    "ModeReg", "the mode register", 0, lambda board: longint(board.modereg), _at("modereg"), "", (90, 164)
-).both()
-rdnfrax, wrnfrax = BoardRegister(
-    "nfrax",
-    "the axes that do not count for the path, bit by bit",
-    0,
-    lambda board: longint(board.nfrax),
-    _at("nfrax"),
-    sections=(92, 166),
-).both()
-rdErrorReg = BoardRegister(
-    "ErrorReg", "the error register", 0, lambda board: int(board.errorreg), None, "", (63,), True
-).read()
-rdtrovr, wrtrovr = BoardRegister(
-    "trovr",
-    "the trajectory override as it is programmed",
-    0.0,
-    attrgetter("trovr"),
-    _at("trovr"),
-    sections=(106, 174),
-    fits=_positive,
-    note="utrovr puts it in force.",
-).both()
-rdtrovrst, wrtrovrst = BoardRegister(
-    "trovrst",
-    "the time in which the trajectory override changes by 1",
-    0.0,
-    attrgetter("trovrst"),
-    _at("trovrst"),
-    "s",
-    (107, 175),
-    fits=_not_negative,
-    note="0: at once.",
-).coded()
-rdtrac, wrtrac = _system(
-    "trac",
-    "TRAC, the trajectory acceleration of SAP programs",
-    PATH_ACCELERATION,
-    105,
-    173,
-    fits=_not_negative,
-).coded()
-rdtrvl, wrtrvl = _system(
-    "trvl", "TRVL, the trajectory velocity of SAP programs", PATH_VELOCITY, 108, 176, fits=_not_negative
-).coded()
-rdtrtvl, wrtrtvl = _system(
-    "trtvl", "TRTVL, the trajectory target velocity of SAP programs", PATH_VELOCITY, 109, 177
-).coded()
+rdModeReg, wrModeReg = board_pair("ModeReg",  _modereg,    "the mode register",                                     "", 90, 164, MODE)
+rdnfrax,   wrnfrax   = board_pair("nfrax",    _nfrax,      "the axes that do not count for the path, bit by bit",   "", 92, 166, NFRAX)
+rdtrovr,   wrtrovr   = board_pair("trovr",    "trovr",     "the trajectory override as it is programmed",           "", 106, 174, TROVR)
+rdErrorReg           = read_board("ErrorReg", _errorreg,   "the error register",                                    "", 63, ERROR)
+rdtrovrst, wrtrovrst = board_pair_coded("trovrst", "trovrst", "the time in which the trajectory override changes by 1", "s", 107, 175, TIME)
+rdtrac,    wrtrac    = board_pair_coded("trac",  "variables.trac",  "TRAC, the trajectory acceleration of SAP programs",    PATH_ACCELERATION, 105, 173, LEAST_0)
+rdtrvl,    wrtrvl    = board_pair_coded("trvl",  "variables.trvl",  "TRVL, the trajectory velocity of SAP programs",        PATH_VELOCITY,     108, 176, LEAST_0)
+rdtrtvl,   wrtrtvl   = board_pair_coded("trtvl", "variables.trtvl", "TRTVL, the trajectory target velocity of SAP programs", PATH_VELOCITY,    109, 177)
+# fmt: on
 
 
-def rdSampleTime() -> tuple[int, int]:
+@LIBRARY.on(Session.usable, refused=Success.FAILED)
+def rdSampleTime(board: Board) -> tuple[CODE, Annotated[LONG, Out("value")]]:
     """Return 1 and the time of a scan in whole microseconds, (0, 0) without a board (Manual 002, 4.4.98)."""
-    board = usable_board()
-    return (int(Success.FAILED), 0) if board is None else (int(Success.DONE), board.config.sample_time_us)
+    return int(Success.DONE), board.config.sample_time_us
 
 
-def rdepc(tsrp: TSRP) -> None:
+@filled_at_once_call
+def rdepc(tsrp: Exchange) -> None:
     """Read the number of EEPROM programming cycles into `tsrp.epc` (Manual 002, 4.4.62)."""
-    installed = library().installed()
-    if installed is not None and usable_axis(tsrp.an) is not None:
-        tsrp.epc = installed.eprom_cycles
+    tsrp.record.epc = tsrp.session.installed().eprom_cycles
 
 
 # ---------------------------------------------------------------------- several at once
 
 
-def rdap(tsrp: TSRP) -> None:
+@filled_call
+def rdaxst(tsrp: Exchange) -> None:
+    """Read the axis status into `tsrp.axst` (Manual 002, 4.4.45)."""
+    tsrp.record.axst = tsrp.session.status_of(tsrp.axis)
+
+
+@filled_call
+def rdap(tsrp: Exchange) -> None:
     """Read all elements of `tsrp` that table 3 of the manual lists (Manual 002, 4.4.43)."""
-    installed = library().installed()
-    axis = usable_axis(tsrp.an, polled=True)
-    if installed is None or axis is None:
-        return
-    for name, value in installed.axis_parameters(axis.index).items():
-        if name in _RECORD_ELEMENTS:
-            setattr(tsrp, name, value)
-    tsrp.axst &= status_mask(revision())
+    values = tsrp.session.installed().axis_parameters(tsrp.axis.index)
+    for name in _RECORD_ELEMENTS.intersection(values):
+        setattr(tsrp.record, name, values[name])
+    tsrp.record.axst = tsrp.session.status_of(tsrp.axis)
 
 
-def rdf(tsrp: TSRP) -> None:
+@filled_at_once_call
+def rdf(tsrp: Exchange) -> None:
     """Read the six coefficients of the position loop into `tsrp` (Manual 002, 4.4.64)."""
-    axis = usable_axis(tsrp.an)
-    if axis is not None:
-        for name in _FILTER:
-            setattr(tsrp, name, getattr(axis, name))
+    for name in _FILTER:
+        setattr(tsrp.record, name, getattr(tsrp.axis, name))
 
 
-def uf(tsrp: TSRP) -> None:
+@record_call
+def uf(tsrp: Exchange) -> None:
     """Send the six coefficients of the position loop, at any time (Manual 002, 4.4.131)."""
-    axis = usable_axis(tsrp.an)
-    if axis is not None and all(is_number(getattr(tsrp, name)) for name in _FILTER):
-        for name in _FILTER:
-            setattr(axis, name, getattr(tsrp, name))
-        axis.board.update_filter(axis.index)
+    values = {name: getattr(tsrp.record, name) for name in _FILTER}
+    if not all(map(is_number, values.values())):
+        raise Refused(UNKNOWN_ERROR)
+    for name, value in values.items():
+        setattr(tsrp.axis, name, value)
+    tsrp.axis.board.update_filter(tsrp.axis.index)
 
 
-def scp(an: int, ctrlparams: CTRLPARAMS) -> None:
+@LIBRARY.through(Session.axis, LONG)
+def scp(an: Axis, ctrlparams: CTRLPARAMS) -> None:
     """Send the field of 15 by 15 parameters for extensions of an axis (Manual 002, 4.4.114)."""
-    axis = usable_axis(an)
-    if axis is None:
-        return
     field = np.array(ctrlparams.parameters, np.float64)
-    if field.shape == axis.ctrlparams.shape and bool(np.isfinite(field).all()):
-        axis.ctrlparams[:] = field
+    if not bool(np.isfinite(field).all()):
+        raise Refused(UNKNOWN_ERROR)
+    an.ctrlparams[:] = field
 
 
-def ctru(tru: TRU) -> None:
+@board_call
+def ctru(board: Board, tru: TRU) -> None:
     """Select the units of position and time of all interpolation (Manual 002, 4.4.11).
 
     An index that is no unit leaves the units and sets ErrorReg.errUnit.
     """
-    board = usable_board()
-    if board is None:
-        return
     if tru.pu in set(PositionUnit) and tru.tu in set(TimeUnit):
         board.variables.pu, board.variables.tu = int(tru.pu), int(tru.tu)
     else:
         board.raise_error(ErrorReg.errUnit)
+
+
+# fmt: off
+__all__ = [
+    "ctru", "rdControllerFlags", "rdEffRadius", "rdErrorReg", "rdGCR", "rdJerkRel", "rdMCiS", "rdMDVel",
+    "rdMaxAcc", "rdMaxVel", "rdModeReg", "rdPcapIndex", "rdPosErr", "rdSampleTime", "rdZeroOffset",
+    "rdap", "rdaux", "rdaxst", "rddp", "rddpd", "rddpoffset", "rddv", "rddvoffset", "rdepc", "rdf",
+    "rdgf", "rdgfaux", "rdhac", "rdhvl", "rdipw", "rdjac", "rdjovr", "rdjtvl", "rdjvl", "rdlp", "rdlpndx",
+    "rdlsm", "rdmcp", "rdmpe", "rdnfrax", "rdrp", "rdrpd", "rdrv", "rdsdec", "rdsll", "rdslr", "rdslsp",
+    "rdtp", "rdtpd", "rdtrac", "rdtrovr", "rdtrovrst", "rdtrtvl", "rdtrvl", "scp", "uf",
+    "wrControllerFlags", "wrEffRadius", "wrGCR", "wrJerkRel", "wrMDVel", "wrMaxAcc", "wrMaxVel",
+    "wrModeReg", "wraux", "wrdp", "wrdpoffset", "wrdvoffset", "wrgf", "wrgfaux", "wrhac", "wrhvl",
+    "wripw", "wrjac", "wrjovr", "wrjtvl", "wrjvl", "wrlp", "wrlpndx", "wrmcp", "wrmpe", "wrnfrax", "wrrp",
+    "wrsdec", "wrsll", "wrslr", "wrslsp", "wrtp", "wrtrac", "wrtrovr", "wrtrovrst", "wrtrtvl", "wrtrvl",
+]
+# fmt: on

@@ -9,65 +9,64 @@ from __future__ import annotations
 
 from typing import Any
 
-from polycnc.controllers.apci.library._library import (
-    is_number,
-    longint,
-    polled_board,
-    usable_axis,
-    usable_board,
+from polycnc.controllers.apci.board._axis import Axis
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.library._call import (
+    DOUBLE,
+    INT,
+    axis_call,
+    board_call,
+    polled_axis_call,
+    polled_call,
 )
 
 
-def rdSysVarInt(ndx: int) -> int:
+@polled_call
+def rdSysVarInt(board: Board, ndx: INT) -> INT:
     """Return an integer system variable; 0 where there is none (Manual 002, 2.5.1)."""
-    board = polled_board()
-    return 0 if board is None else int(_read(board.sysvarint, ndx))
+    return int(_read(board.sysvarint, ndx))
 
 
-def rdSysVarDbl(ndx: int) -> float:
+@polled_call
+def rdSysVarDbl(board: Board, ndx: INT) -> DOUBLE:
     """Return a floating-point system variable; 0.0 where there is none (Manual 002, 2.5.1)."""
-    board = polled_board()
-    return 0.0 if board is None else float(_read(board.sysvardbl, ndx))
+    return float(_read(board.sysvardbl, ndx))
 
 
-def wrSysVarInt(ndx: int, value: int) -> None:
+@board_call
+def wrSysVarInt(board: Board, ndx: INT, value: INT) -> None:
     """Write an integer system variable (Manual 002, 2.5.1)."""
-    board = usable_board()
-    if board is not None and is_number(value):
-        _write(board.sysvarint, ndx, longint(value))
+    _write(board.sysvarint, ndx, value)
 
 
-def wrSysVarDbl(ndx: int, value: float) -> None:
+@board_call
+def wrSysVarDbl(board: Board, ndx: INT, value: DOUBLE) -> None:
     """Write a floating-point system variable (Manual 002, 2.5.1)."""
-    board = usable_board()
-    if board is not None and is_number(value):
-        _write(board.sysvardbl, ndx, value)
+    _write(board.sysvardbl, ndx, value)
 
 
-def rdAxVarInt(an: int, ndx: int) -> int:
+@polled_axis_call
+def rdAxVarInt(an: Axis, ndx: INT) -> INT:
     """Return an integer variable of an axis; 0 where there is none (Manual 002, 2.5.2)."""
-    axis = usable_axis(an, polled=True)
-    return 0 if axis is None else int(_read(axis.varint, ndx))
+    return int(_read(an.varint, ndx))
 
 
-def rdAxVarDbl(an: int, ndx: int) -> float:
+@polled_axis_call
+def rdAxVarDbl(an: Axis, ndx: INT) -> DOUBLE:
     """Return a floating-point variable of an axis; 0.0 where there is none (Manual 002, 2.5.2)."""
-    axis = usable_axis(an, polled=True)
-    return 0.0 if axis is None else float(_read(axis.vardbl, ndx))
+    return float(_read(an.vardbl, ndx))
 
 
-def wrAxVarInt(an: int, ndx: int, value: int) -> None:
+@axis_call
+def wrAxVarInt(an: Axis, ndx: INT, value: INT) -> None:
     """Write an integer variable of an axis (Manual 002, 2.5.2)."""
-    axis = usable_axis(an)
-    if axis is not None and is_number(value):
-        _write(axis.varint, ndx, longint(value))
+    _write(an.varint, ndx, value)
 
 
-def wrAxVarDbl(an: int, ndx: int, value: float) -> None:
+@axis_call
+def wrAxVarDbl(an: Axis, ndx: INT, value: DOUBLE) -> None:
     """Write a floating-point variable of an axis (Manual 002, 2.5.2)."""
-    axis = usable_axis(an)
-    if axis is not None and is_number(value):
-        _write(axis.vardbl, ndx, value)
+    _write(an.vardbl, ndx, value)
 
 
 def _read(variables: Any, ndx: int) -> Any:
@@ -77,3 +76,11 @@ def _read(variables: Any, ndx: int) -> Any:
 def _write(variables: Any, ndx: int, value: float) -> None:
     if 0 <= ndx < len(variables):
         variables[ndx] = value
+
+
+# fmt: off
+__all__ = [
+    "rdAxVarDbl", "rdAxVarInt", "rdSysVarDbl", "rdSysVarInt", "wrAxVarDbl", "wrAxVarInt", "wrSysVarDbl",
+    "wrSysVarInt",
+]
+# fmt: on

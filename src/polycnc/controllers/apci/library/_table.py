@@ -1,256 +1,287 @@
-"""How read and write functions are made: a `Register` is one row of the table, and the pair of functions comes out.
+"""How read and write functions of registers are made: a register is one row, and the pair of functions comes out.
 
-Four forms, as in the manual: through a record (TSRP), by axis number without or with a status, and for the board.
+Four forms, as in the manual: through a record (TSRP), by axis number without or with a code, and for the board. A
+register is read by the name of an attribute, or by a function; what else there is to say is its `Rule`.
 """
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol, TypeVar
+from inspect import Parameter, Signature
+from operator import attrgetter
+from typing import Annotated, Any, TypeAlias, TypeVar
 
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Status
 from polycnc.controllers.apci.board._records import TSRP
-from polycnc.controllers.apci.library._library import (
-    UNKNOWN_ERROR,
+from polycnc.controllers.apci.library._call import (
+    CODE,
+    DOUBLE,
+    DOUBLE_AT,
+    INT,
+    LIBRARY,
+    LONG,
+    LONG_AT,
+    board_call,
+    filled_call,
     is_number,
-    longint,
-    polled_board,
-    status_code,
-    usable_axis,
-    usable_board,
+    polled_call,
+    record_call,
 )
+from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Session
+from polycnc.controllers.library import INOUT, Out, Refused
 
 POSITION = "axis unit"
 VELOCITY = "axis unit per time unit"
 ACCELERATION = "axis unit per time unit²"
+DISPLAY = "display unit"
 PATH_VELOCITY = "unit of interpolation, PU/TU"
 PATH_ACCELERATION = "unit of interpolation, PU/TU²"
 
-MODULE = "polycnc.controllers.apci.pcap"
+F = TypeVar("F", bound=Callable[..., Any])
+Get: TypeAlias = str | Callable[[Any], Any]
+Put: TypeAlias = Callable[[Any, Any], object]
 
-N = TypeVar("N", int, float)
-Read = TypeVar("Read", int, float, covariant=True)
-Owner = TypeVar("Owner", Axis, Board)
-C = TypeVar("C", bound=Callable[..., Any])
-
-
-class WithRecord(Protocol):
-    """Fill an element of the record, or send it to the axis `tsrp.an`."""
-
-    def __call__(self, tsrp: TSRP) -> None: ...
-
-
-class ReadAxis(Protocol[Read]):
-    """Return a register of an axis."""
-
-    def __call__(self, an: int) -> Read: ...
+OnRecord: TypeAlias = Callable[[TSRP], None]
+OfAxis: TypeAlias = Callable[[int], Any]
+ToAxis: TypeAlias = Callable[[int, float], None]
+OfAxisCoded: TypeAlias = Callable[[int], tuple[int, Any]]
+ToAxisCoded: TypeAlias = Callable[[int, float], int]
+OfBoard: TypeAlias = Callable[[], Any]
+ToBoard: TypeAlias = Callable[[float], None]
+OfBoardCoded: TypeAlias = Callable[[], tuple[int, Any]]
+ToBoardCoded: TypeAlias = Callable[[float], int]
 
 
-class WriteAxis(Protocol):
-    """Write a register of an axis."""
-
-    def __call__(self, an: int, value: float) -> None: ...
+filled_at_once_call = LIBRARY.through(Session.named_in, Annotated[TSRP, INOUT])
 
 
-class ReadAxisCoded(Protocol[Read]):
-    """Return a code and a register of an axis."""
-
-    def __call__(self, an: int) -> tuple[int, Read]: ...
-
-
-class WriteAxisCoded(Protocol):
-    """Write a register of an axis and return a code."""
-
-    def __call__(self, an: int, value: float) -> int: ...
+def positive(value: float) -> bool:
+    """Tell whether a number is greater than 0."""
+    return value > 0.0
 
 
-class ReadBoard(Protocol[Read]):
-    """Return a register of the board."""
-
-    def __call__(self) -> Read: ...
-
-
-class WriteBoard(Protocol):
-    """Write a register of the board."""
-
-    def __call__(self, value: float) -> None: ...
-
-
-class ReadBoardCoded(Protocol[Read]):
-    """Return a code and a register of the board."""
-
-    def __call__(self) -> tuple[int, Read]: ...
-
-
-class WriteBoardCoded(Protocol):
-    """Write a register of the board and return a code."""
-
-    def __call__(self, value: float) -> int: ...
+def not_negative(value: float) -> bool:
+    """Tell whether a number is at least 0."""
+    return value >= 0.0
 
 
 @dataclass(frozen=True, slots=True)
-class _Row(Generic[Owner, N]):
-    """A register: the stem of its functions' names, what it is, its unit, and the sections of its functions.
+class Rule:
+    """What is particular about a register.
 
-    `zero` is what an unreachable board reads as, and with it the type. `polled` marks what the board changes by itself:
-    time passes before it is read. Without `put` it cannot be written; `fits` refuses values.
+    Time passes before one is read that is `polled`. `fits` says which numbers can be written, `put` how. `field` is its
+    element of the record if that has another name. `kind` is its C type, `number` that of the axis number, `out` the
+    name of what is read; `done` is the code of success, and `refused` that of all failures if there is but one.
     """
 
-    stem: str
-    what: str
-    zero: N
-    get: Callable[[Owner], Any]
-    put: Callable[[Owner, Any], object] | None = None
-    unit: str = ""
-    sections: tuple[int, ...] = ()
     polled: bool = False
     fits: Callable[[float], bool] = is_number
+    put: Put | None = None
+    field: str = ""
+    kind: Any = DOUBLE
+    number: Any = None
+    out: str = "value"
+    done: int = Status.DONE
+    refused: int | None = None
     note: str = ""
 
-    def store(self, owner: Owner, value: float) -> bool:
-        """Write the register; False if the value cannot be."""
-        if self.put is None or not is_number(value) or not self.fits(value):
-            return False
-        self.put(owner, longint(value) if isinstance(self.zero, int) else float(value))
-        return True
 
-    def named(self, function: C, verb: str, rest: str, number: int) -> C:
-        """Give a function its name and its description."""
-        function.__name__ = function.__qualname__ = f"{'rd' if verb == 'Read' else 'wr'}{self.stem}"
-        function.__module__ = MODULE
-        returned = str(function.__annotations__["return"])
-        function.__annotations__["return"] = re.sub(r"\bN\b", type(self.zero).__name__, returned)
-        unit = f" [{self.unit}]" if self.unit else ""
-        section = f" (Manual 002, 4.4.{self.sections[number]})" if number < len(self.sections) else ""
-        note = f"\n\n{self.note}" if self.note else ""
-        function.__doc__ = f"{verb} {self.what}{unit}{rest}{section}.{note}"
-        return function
+PLAIN = Rule()
 
 
-class AxisRegister(_Row[Axis, N]):
-    """A register of every axis."""
-
-    __slots__ = ()
-
-    def read_record(self, field: str) -> WithRecord:
-        """Make the function that reads into a record."""
-        get, polled = self.get, self.polled
-
-        def read(tsrp: TSRP) -> None:
-            axis = usable_axis(tsrp.an, polled=polled)
-            if axis is not None:
-                setattr(tsrp, field, get(axis))
-
-        return self.named(read, "Read", f" into `tsrp.{field}`", 0)
-
-    def write_record(self, field: str) -> WithRecord:
-        """Make the function that writes from a record."""
-        store = self.store
-
-        def write(tsrp: TSRP) -> None:
-            axis = usable_axis(tsrp.an)
-            if axis is not None:
-                store(axis, getattr(tsrp, field))
-
-        return self.named(write, "Write", f" from `tsrp.{field}`", 1)
-
-    def in_record(self, field: str) -> tuple[WithRecord, WithRecord]:
-        """Make both functions that go through a record."""
-        return self.read_record(field), self.write_record(field)
-
-    def read(self) -> ReadAxis[N]:
-        """Make the function that returns the register."""
-        get, polled, zero = self.get, self.polled, self.zero
-
-        def read(an: int) -> N:
-            axis = usable_axis(an, polled=polled)
-            value: N = zero if axis is None else get(axis)
-            return value
-
-        return self.named(read, "Read", " of axis `an`", 0)
-
-    def both(self) -> tuple[ReadAxis[N], WriteAxis]:
-        """Make the functions by axis number."""
-        store = self.store
-
-        def write(an: int, value: float) -> None:
-            axis = usable_axis(an)
-            if axis is not None:
-                store(axis, value)
-
-        return self.read(), self.named(write, "Write", " of axis `an`", 1)
-
-    def read_coded(self, done: int = Status.DONE, failed: int = UNKNOWN_ERROR) -> ReadAxisCoded[N]:
-        """Make the function that returns a code and the register; `failed` is the code for an unknown axis."""
-        get, polled, zero = self.get, self.polled, self.zero
-
-        def read(an: int) -> tuple[int, N]:
-            axis = usable_axis(an, polled=polled)
-            if axis is not None:
-                return int(done), get(axis)
-            return failed if done else (status_code() or failed), zero
-
-        return self.named(read, "Read", f" of axis `an`; {int(done)} means done", 0)
-
-    def coded(self) -> tuple[ReadAxisCoded[N], WriteAxisCoded]:
-        """Make the functions by axis number that return a code."""
-        store = self.store
-
-        def write(an: int, value: float) -> int:
-            axis = usable_axis(an)
-            if axis is None:
-                return status_code() or UNKNOWN_ERROR
-            return int(Status.DONE) if store(axis, value) else UNKNOWN_ERROR
-
-        return self.read_coded(), self.named(write, "Write", " of axis `an`; 0 means done", 1)
+def named(body: F, name: str, text: str, arguments: dict[str, Any], returns: Any = None) -> F:
+    """Give a function a name, a description, and arguments as if they had been written."""
+    body.__name__ = body.__qualname__ = name
+    body.__doc__ = text
+    body.__annotations__ = {**arguments, "return": returns}
+    parameters = [Parameter(each, Parameter.POSITIONAL_OR_KEYWORD) for each in arguments]
+    body.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
+    return body
 
 
-class BoardRegister(_Row[Board, N]):
-    """A register of the board."""
+def _text(verb: str, what: str, unit: str, rest: str, section: int, rule: Rule) -> str:
+    unit, note = f" [{unit}]" if unit else "", f"\n\n{rule.note}" if rule.note else ""
+    return f"{verb} {what}{unit}{rest} (Manual 002, 4.4.{section}).{note}"
 
-    __slots__ = ()
 
-    def read(self) -> ReadBoard[N]:
-        """Make the function that returns the register."""
-        get, zero, find = self.get, self.zero, polled_board if self.polled else usable_board
+def _getter(get: Get) -> Callable[[Any], Any]:
+    return attrgetter(get) if isinstance(get, str) else get
 
-        def read() -> N:
-            board = find()
-            value: N = zero if board is None else get(board)
-            return value
 
-        return self.named(read, "Read", "", 0)
+def _storer(get: Get, rule: Rule) -> Put:
+    """Return what writes a register, or refuses to."""
+    owner, _, name = str(get).rpartition(".")
 
-    def both(self) -> tuple[ReadBoard[N], WriteBoard]:
-        """Make the functions without a code."""
-        store = self.store
+    def put(register: Any, value: Any) -> None:
+        setattr(attrgetter(owner)(register) if owner else register, name, value)
 
-        def write(value: float) -> None:
-            board = usable_board()
-            if board is not None:
-                store(board, value)
+    write = rule.put or put
 
-        return self.read(), self.named(write, "Write", "", 1)
+    def store(register: Any, value: Any) -> None:
+        if not is_number(value) or not rule.fits(value):
+            raise Refused(UNKNOWN_ERROR)
+        write(register, value)
 
-    def coded(self) -> tuple[ReadBoardCoded[N], WriteBoardCoded]:
-        """Make the functions that return a code."""
-        get, zero, store = self.get, self.zero, self.store
+    return store
 
-        def read() -> tuple[int, N]:
-            board = usable_board()
-            return (status_code(), zero) if board is None else (int(Status.DONE), get(board))
 
-        def write(value: float) -> int:
-            board = usable_board()
-            if board is None:
-                return status_code()
-            return int(Status.DONE) if store(board, value) else UNKNOWN_ERROR
+def _out(rule: Rule) -> Any:
+    return Annotated.__class_getitem__((rule.kind, Out(rule.out)))  # type: ignore[attr-defined]
 
-        return (
-            self.named(read, "Read", "; 0 means done", 0),
-            self.named(write, "Write", "; 0 means done", 1),
-        )
+
+def _coded(out: Any) -> Any:
+    return tuple.__class_getitem__((CODE, out))
+
+
+def _axis_call(rule: Rule, number: Any) -> Callable[..., Any]:
+    find = Session.polled_axis if rule.polled else Session.axis
+    return LIBRARY.through(find, rule.number or number, refused=rule.refused)
+
+
+# ---------------------------------------------------------------------- through a record
+
+
+def read_record(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> OnRecord:
+    """Make the function that reads into an element of a record."""
+    element, value_of = rule.field or stem, _getter(get)
+
+    def read(tsrp: Exchange) -> None:
+        setattr(tsrp.record, element, value_of(tsrp.axis))
+
+    text = _text("Read", what, unit, f" into `tsrp.{element}`", section, rule)
+    call = filled_call if rule.polled else filled_at_once_call
+    return call(named(read, f"rd{stem}", text, {"tsrp": Exchange}))
+
+
+def record_pair(
+    stem: str, get: Get, what: str, unit: str, read: int, write: int, rule: Rule = PLAIN
+) -> tuple[OnRecord, OnRecord]:
+    """Make both functions that go through an element of a record."""
+    element, store = rule.field or stem, _storer(get, rule)
+
+    def send(tsrp: Exchange) -> None:
+        store(tsrp.axis, getattr(tsrp.record, element))
+
+    text = _text("Write", what, unit, f" from `tsrp.{element}`", write, rule)
+    body = named(send, f"wr{stem}", text, {"tsrp": Exchange})
+    return read_record(stem, get, what, unit, read, rule), record_call(body)
+
+
+# ---------------------------------------------------------------------- by axis number
+
+
+def read_axis(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> OfAxis:
+    """Make the function that returns a register of an axis."""
+    value_of = _getter(get)
+
+    def read(an: Axis) -> Any:
+        return value_of(an)
+
+    text = _text("Read", what, unit, " of axis `an`", section, rule)
+    body = named(read, f"rd{stem}", text, {"an": Axis}, _out(rule))
+    return _axis_call(rule, LONG)(body)  # type: ignore[no-any-return]
+
+
+def write_axis(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> ToAxis:
+    """Make the function that writes a register of an axis."""
+    store = _storer(get, rule)
+
+    def write(an: Axis, value: float) -> None:
+        store(an, value)
+
+    text = _text("Write", what, unit, " of axis `an`", section, rule)
+    body = named(write, f"wr{stem}", text, {"an": Axis, "value": _AT[rule.kind]})
+    return LIBRARY.through(Session.axis, LONG)(body)
+
+
+def axis_pair(
+    stem: str, get: Get, what: str, unit: str, read: int, write: int, rule: Rule = PLAIN
+) -> tuple[OfAxis, ToAxis]:
+    """Make both functions by axis number."""
+    return read_axis(stem, get, what, unit, read, rule), write_axis(stem, get, what, unit, write, rule)
+
+
+def read_axis_coded(
+    stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN
+) -> OfAxisCoded:
+    """Make the function that returns a code and a register of an axis."""
+    value_of, done = _getter(get), int(rule.done)
+
+    def read(an: Axis) -> Any:
+        return done, value_of(an)
+
+    text = _text("Read", what, unit, f" of axis `an`; {done} means done", section, rule)
+    body = named(read, f"rd{stem}", text, {"an": Axis}, _coded(_out(rule)))
+    return _axis_call(rule, INT)(body)  # type: ignore[no-any-return]
+
+
+def axis_pair_coded(
+    stem: str, get: Get, what: str, unit: str, read: int, write: int, rule: Rule = PLAIN
+) -> tuple[OfAxisCoded, ToAxisCoded]:
+    """Make both functions by axis number that return a code."""
+    store = _storer(get, rule)
+
+    def send(an: Axis, value: float) -> int:
+        store(an, value)
+        return int(Status.DONE)
+
+    text = _text("Write", what, unit, " of axis `an`; 0 means done", write, rule)
+    body = named(send, f"wr{stem}", text, {"an": Axis, "value": DOUBLE_AT}, CODE)
+    return read_axis_coded(stem, get, what, unit, read, rule), LIBRARY.through(Session.axis, INT)(body)
+
+
+# ---------------------------------------------------------------------- of the board
+
+
+def read_board(stem: str, get: Get, what: str, unit: str, section: int, rule: Rule = PLAIN) -> OfBoard:
+    """Make the function that returns a register of the board."""
+    value_of = _getter(get)
+
+    def read(board: Board) -> Any:
+        return value_of(board)
+
+    text = _text("Read", what, unit, "", section, rule)
+    body = named(read, f"rd{stem}", text, {"board": Board}, _out(rule))
+    return polled_call(body) if rule.polled else board_call(body)
+
+
+def board_pair(
+    stem: str, get: Get, what: str, unit: str, read: int, write: int, rule: Rule = PLAIN
+) -> tuple[OfBoard, ToBoard]:
+    """Make both functions of the board without a code."""
+    store = _storer(get, rule)
+
+    def send(board: Board, value: float) -> None:
+        store(board, value)
+
+    text = _text("Write", what, unit, "", write, rule)
+    body = named(send, f"wr{stem}", text, {"board": Board, "value": _AT[rule.kind]})
+    return read_board(stem, get, what, unit, read, rule), board_call(body)
+
+
+def board_pair_coded(
+    stem: str, get: Get, what: str, unit: str, read: int, write: int, rule: Rule = PLAIN
+) -> tuple[OfBoardCoded, ToBoardCoded]:
+    """Make both functions of the board that return a code."""
+    value_of, store = _getter(get), _storer(get, rule)
+
+    def fetch(board: Board) -> tuple[int, float]:
+        return int(Status.DONE), value_of(board)
+
+    def send(board: Board, value: float) -> int:
+        store(board, value)
+        return int(Status.DONE)
+
+    read_text = _text("Read", what, unit, "; 0 means done", read, rule)
+    write_text = _text("Write", what, unit, "; 0 means done", write, rule)
+    returns = tuple[CODE, Annotated[DOUBLE, Out("value")]]
+    return (
+        board_call(named(fetch, f"rd{stem}", read_text, {"board": Board}, returns)),
+        board_call(named(send, f"wr{stem}", write_text, {"board": Board, "value": DOUBLE_AT}, CODE)),
+    )
+
+
+_AT: dict[Any, Any] = {DOUBLE: DOUBLE_AT, LONG: LONG_AT}

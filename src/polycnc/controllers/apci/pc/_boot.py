@@ -13,7 +13,6 @@ from pathlib import Path
 from polycnc.controllers.apci.board._codes import (
     CARD_NOT_THERE,
     BootCode,
-    Code,
     InitCode,
     Status,
     TransferCode,
@@ -30,6 +29,7 @@ from polycnc.controllers.apci.pc._slots import (
     Slot,
     revision_numbers,
 )
+from polycnc.controllers.library import Code, Elements
 from polycnc.errors import ConfigurationError, UsageError
 
 _log = logging.getLogger("polycnc.apci")
@@ -99,7 +99,7 @@ class Application:
             return BootCode.DEVICE_ADDRESSES
         if fault := slot.first_fault(FAULTS_BEFORE_RESET):
             return fault
-        slot.running = slot.sysfile_loaded = False
+        slot.running = slot.sysfile_loaded = slot.has_defaults = False
         slot.boots += 1
         slot.board.reset()
         if fault := slot.first_fault(FAULTS_IN_BOOTING):
@@ -114,7 +114,7 @@ class Application:
         rosi.number_axis = slot.board.number_of_axes if slot else 0
         rosi.sysfile_loaded = int(slot.sysfile_loaded) if slot else 0
 
-    def init_mcu_system(self, tsrp: Sequence[TSRP]) -> int:
+    def init_mcu_system(self, tsrp: Elements[TSRP]) -> int:
         """Initialise the connection with `system.dat` and return an `InitCode` or `TransferCode` (4.4.16).
 
         Raises:
@@ -122,7 +122,7 @@ class Application:
         """
         return self._initialise(tsrp, SYSTEM_FILE, named_only=True)
 
-    def init_mcu_system2(self, tsrp: Sequence[TSRP], tpu_base_address: int, filename: str) -> int:
+    def init_mcu_system2(self, tsrp: Elements[TSRP], tpu_base_address: int, filename: str) -> int:
         """Initialise the connection with a system file of any name (4.4.17).
 
         Raises:
@@ -131,7 +131,7 @@ class Application:
         return self._initialise(tsrp, filename)
 
     def init_mcu_system3(
-        self, tsrp: Sequence[TSRP], rosi: ROSI, tpu_base_address: int, filename: str
+        self, tsrp: Elements[TSRP], rosi: ROSI, tpu_base_address: int, filename: str
     ) -> tuple[int, int]:
         """Initialise the connection, fill `rosi`, and return the code and the type of the board (4.4.18).
 
@@ -176,6 +176,7 @@ class Application:
             return TransferCode.DAMAGED
         slot.board.load_system(config)
         slot.sysfile_loaded = True
+        slot.has_defaults = False
         return TransferCode.DONE
 
     def get_env_str(self, env: CppString) -> int:
@@ -189,7 +190,7 @@ class Application:
         length, env.text = slot.environment.read(env.text)
         return length
 
-    def _initialise(self, tsrp: Sequence[TSRP], filename: str, *, named_only: bool = False) -> int:
+    def _initialise(self, tsrp: Elements[TSRP], filename: str, *, named_only: bool = False) -> int:
         if len(tsrp) != MAXAXIS:
             raise UsageError(
                 f"{len(tsrp)} TSRP records", hint=f"the library wants {MAXAXIS}: use tsrp_array()"
@@ -199,12 +200,11 @@ class Application:
         if (code := self._unreachable()) is not None:
             return code
         slot = self._reach()
-        for axis, record in enumerate(tsrp):
-            record.an = axis
-        defaults = slot.sysfile_loaded and not slot.board.is_described
-        if defaults or not slot.sysfile_loaded:
+        for axis in range(MAXAXIS):
+            tsrp[axis].an = axis
+        if slot.has_defaults or not slot.sysfile_loaded:
             loaded = self.txbf(filename) if named_only else self.txbf2(filename)
-            if defaults and loaded == TransferCode.CANNOT_OPEN:
+            if slot.has_defaults and loaded == TransferCode.CANNOT_OPEN:
                 _log.warning("there is no system file '%s': the board keeps its default parameters", filename)
             elif loaded != TransferCode.DONE:
                 return loaded

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
-from polycnc.controllers.apci.board._codes import BootCode, Code, InitCode, TransferCode
+from polycnc.controllers.apci.board._codes import BootCode, InitCode, TransferCode
 from polycnc.controllers.apci.board._environment import EnvironmentStrings
 from polycnc.controllers.apci.board._system_file import SystemFile
+from polycnc.controllers.library import Code
 from polycnc.errors import UsageError
 
 REVISION = "V2.5.3.100"
@@ -50,10 +51,6 @@ class BootableBoard(Protocol):
     def number_of_axes(self) -> int:
         """Return the number of axis channels."""
 
-    @property
-    def is_described(self) -> bool:
-        """Tell whether somebody has said what the board is; otherwise it has defaults."""
-
     def reset(self) -> None:
         """Become as after a start of the operating system; nothing of a system file is left."""
 
@@ -76,6 +73,7 @@ class Slot:
     environment: EnvironmentStrings = field(default_factory=EnvironmentStrings)
     running: bool = False  # the operating system is loaded and has not stopped
     sysfile_loaded: bool = False
+    has_defaults: bool = False  # nobody has said what the board is: its system file is an empty one
     boots: int = 0
     _faults: set[Code] = field(default_factory=set)
 

@@ -8,9 +8,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from polycnc.controllers.apci.board import _axis_commands as axis_commands
 from polycnc.controllers.apci.board import _jog_commands as jogs
-from polycnc.controllers.apci.board import _move_commands as moves
 from polycnc.controllers.apci.board import _spool_commands as spooler
-from polycnc.controllers.apci.board._move_commands import Speeds
+from polycnc.controllers.apci.board._move_commands import (
+    MOVES,
+    Circle,
+    Helix,
+    Kind,
+    Line,
+    SpaceCircle,
+    Speeds,
+    go,
+    queue,
+)
 from polycnc.controllers.apci.sap import Call, Program, Tasks
 from polycnc.controllers.apci.sap._polling import Read
 from polycnc.controllers.apci.sap._watching import arm, is_watchable, watched_by
@@ -39,30 +48,27 @@ def _with_axes(command: Callable[[Board, Sequence[int]], None]) -> Command:
     return lambda board, call: command(board, call.axes)
 
 
-def _line(command: Callable[..., None], spool: bool) -> Command:
-    return lambda board, call: command(board, call.axes, call.values, _speeds(call), spool=spool)
+def _helix(call: Call) -> tuple[Sequence[float], float, Sequence[float]]:
+    phi, *end = _numbers(call)
+    return call.values[:2], phi, (*(end or (0.0, 0.0)), *call.values[2:])
 
 
-def _circle(command: Callable[..., None], spool: bool) -> Command:
+def _space(call: Call) -> tuple[Sequence[float], Sequence[float], float]:
+    *normal, phi = _numbers(call)
+    return call.values, normal, phi
+
+
+_SHAPES: Mapping[Kind, Callable[[Call], tuple[Any, ...]]] = {  # what a statement gives to each
+    Line: lambda call: (call.values,),
+    Circle: lambda call: (call.values, _numbers(call)[0]),
+    Helix: _helix,
+    SpaceCircle: _space,
+}
+
+
+def _move(kind: Kind, relative: bool, verb: Callable[..., None]) -> Command:
     def run(board: Board, call: Call) -> None:
-        command(board, call.axes, call.values, _numbers(call)[0], _speeds(call), spool=spool)
-
-    return run
-
-
-def _helix(command: Callable[..., None], spool: bool) -> Command:
-    def run(board: Board, call: Call) -> None:
-        phi, *end = _numbers(call)
-        targets = (*(end or (0.0, 0.0)), *call.values[2:])
-        command(board, call.axes, call.values[:2], phi, targets, _speeds(call), spool=spool)
-
-    return run
-
-
-def _space(command: Callable[..., None], spool: bool) -> Command:
-    def run(board: Board, call: Call) -> None:
-        *normal, phi = _numbers(call)
-        command(board, call.axes, call.values, normal, phi, _speeds(call), spool=spool)
+        verb(board, call.axes, kind(*_SHAPES[kind](call), relative=relative), _speeds(call))
 
     return run
 
@@ -113,17 +119,8 @@ def _rifs(board: Board, _: Call) -> None:
 
 
 COMMANDS: Mapping[str, Command] = {
-    **{
-        prefix + name: build(getattr(moves, name), prefix == "s")
-        for prefix in ("", "s")
-        for names, build in (
-            (("mla", "mlr"), _line),
-            (("mca", "mcr"), _circle),
-            (("mha", "mhr"), _helix),
-            (("mca3d", "mcr3d"), _space),
-        )
-        for name in names
-    },
+    **{name: _move(*move, go) for name, move in MOVES.items()},
+    **{f"s{name}": _move(*move, queue) for name, move in MOVES.items()},
     **{name: _with_values(getattr(jogs, name)) for name in ("ja", "jr", "jhi")},
     **{name: _with_axes(getattr(jogs, name)) for name in ("jhl", "jhr", "js", "ms")},
     **{
@@ -265,6 +262,7 @@ class BoardTasks:
     def __init__(self, board: Board) -> None:
         self.tasks = Tasks(BoardHost(board))
         self._board = board
+        self._budget = board.config.rulings.instructions_per_scan
         self._reads: frozenset[Read] = frozenset()
         self._watched: list[tuple[int, int]] | None = []
         board.tasks = self
@@ -275,7 +273,7 @@ class BoardTasks:
 
     def scans_to_wait(self) -> float:
         """Return for how many scans no task has anything to do; infinity if they wait for profiles."""
-        sleep = self.tasks.sleep(is_watchable)
+        sleep = self.tasks.sleep(is_watchable, self._budget)
         rows = self._rows(sleep.reads)
         if rows is None or any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
             arm(self._board, ())
@@ -290,7 +288,7 @@ class BoardTasks:
 
     def run_scan(self) -> None:
         """Let every task do what it can within one scan."""
-        self.tasks.run_scan()
+        self.tasks.run_scan(self._budget)
 
     def halt(self) -> None:
         """Halt all tasks."""

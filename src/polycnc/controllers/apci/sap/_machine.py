@@ -24,7 +24,6 @@ class Machine(Protocol):
     """What instructions work on; see `Task`."""
 
     program: Program | None
-    host: Host
     number: int
     stack: list[Any]
     memory: list[Any]
@@ -32,6 +31,8 @@ class Machine(Protocol):
     base: int
     next: int
 
+    @property
+    def host(self) -> Host: ...
     def end(self, stop: bool) -> None: ...
     def leave_event(self) -> None: ...
     def wait(self, time_ms: float, axes: tuple[int, ...]) -> bool: ...

@@ -350,6 +350,7 @@ class Task:
 
     def save(self) -> dict[str, Any]:
         """Return program and state as plain data."""
+        self._catch_up()
         waits = (self.waiting, self._waiting_before)
         return {
             "program": None if self.program is None else write_cnc(self.program),
@@ -377,6 +378,8 @@ class Task:
 
         def put() -> None:
             self.program, self.state, self._steps = program, state, steps
+            self._polling_steps = only_polling(program, steps) if program is not None and steps else []
+            self._circle, self._patience = None, Patience()
             self.waiting, self._waiting_before = waits
             for name, values in cells.items():
                 getattr(self, name)[:] = values  # the steps hold on to these lists

@@ -113,6 +113,10 @@ class CardConfig(StrictModel):
         default="origin",
         description="What a position does that leaves 32 bits: go on from 0, or from the other end.",
     )
+    scale_factor: Literal["S16.32", "S16.16"] = Field(
+        default="S16.32",
+        description="Format of the factor of the event commands SCA32, SCA48 and their like.",
+    )
     delay_unit: Literal["us", "ms"] = Field(default="us", description="What delayus counts.")
     password: Annotated[str, AfterValidator(_password)] = Field(
         default="", description="Password stored in the card, none if empty."

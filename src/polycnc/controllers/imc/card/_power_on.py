@@ -116,6 +116,7 @@ def make_card(config: CardConfig) -> CardState:
     depths = config.depths
     s = make_card_state(n, (depths.ififo, depths.qfifo, depths.pfifo1, depths.pfifo2, depths.cfifo))
     s.card[0]["wrap_to_origin"] = int(config.overflow == "origin")
+    s.card[0]["short_factor"] = int(config.scale_factor == "S16.16")
     s.card[0]["delay_step"] = 1000 if config.delay_unit == "us" else 1
     for name, value in _card_values(config).items():
         set_parameter(s, n, name, value)

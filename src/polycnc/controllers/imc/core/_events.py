@@ -23,6 +23,12 @@ def scale(value: int, factor: int) -> int:
 
 
 @compiled
+def scale_short(value: int, factor: int) -> int:
+    """Return `value` times `factor` (S32.16), rounded down; both have up to 48 bits, as has what is kept of it."""
+    return value * (factor >> 16) + (value * (factor & 0xFFFF) >> 16)
+
+
+@compiled
 def condition(kind: int, result: int, carry: int) -> bool:
     """Tell whether the condition of an event type (1 to 7, or 8 to 14) holds for a result."""
     which = kind if kind <= _LAST_EDGE else kind - _LAST_EDGE
@@ -103,7 +109,10 @@ def events_cycle(s: CardState) -> None:
         b = event["constant"]
         if event["second_words"] != 0:
             b = _operand(s, event["second_row"], event["second"], event["second_words"])
-        exact = computed(operation, a, b)
+        if operation == SCALE and s.card[0]["short_factor"] != 0:
+            exact = scale_short(a, b)
+        else:
+            exact = computed(operation, a, b)
         value = wrap_words(exact, words)
         if event["boolean"] != 0:
             value = FLAG if value != 0 else 0

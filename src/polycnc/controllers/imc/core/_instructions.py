@@ -129,6 +129,11 @@ def _framed(operation: int, cells: list[int], words: int) -> list[int]:
     return [operation, HEADER + len(cells), words, *cells]
 
 
+def words_of(instruction: Instruction) -> int:
+    """Return how many 16-bit words an instruction takes in a queue."""
+    return encode(instruction)[2]
+
+
 def encode(instruction: Instruction) -> list[int]:
     """Return an instruction as it is put into a queue."""
     match instruction:

@@ -56,6 +56,7 @@ CARD_ROW = np.dtype(
         ("wrap_to_origin", np.int64),  # what a position does that leaves 32 bits: 1 restarts at 0, 0 wraps
         ("hold", np.int64),  # what was written has to be done before IFIFO goes on
         ("delay_step", np.int64),  # what delayus counts down by in a cycle
+        ("short_factor", np.int64),  # factors of events have 16 fraction bits, not 32
         ("stopped", np.int64),  # an emergency stop has been carried out
         ("group_row", np.int64),  # of a contour: cycles of the present point done, -1 none
         ("group_count", np.int64),  # axes of the present point

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from polycnc.controllers.imc.core._instructions import Instruction
+from polycnc.controllers.imc.core._instructions import (
+    InstallEvents,
+    Instruction,
+    Points,
+    WriteMany,
+    words_of,
+)
 from polycnc.controllers.imc.core._parameters import PARAMETERS
 from polycnc.controllers.imc.library._codes import (
     IMC_FIFO_FULL,
     IMC_INVALID_AXIS,
     IMC_INVALID_PARAM,
     IMC_OK,
+    IMC_OUT_OF_RANGE,
     IMC_PARAM_READ_ONLY,
     IMC_STATUS,
     SEL_IFIFO,
@@ -22,6 +29,8 @@ from polycnc.controllers.library import Facade, Refused
 LIBRARY = Facade("polycnc.controllers.imc.imclib", Session(), code="IMC_STATUS")
 session_call = LIBRARY.on(lambda session: session)
 card_call = LIBRARY.through(Session.find, HANDLE)
+
+_LONG = (WriteMany, InstallEvents, Points)  # the others fit into the smallest queue
 
 _WORDS = {  # by address: the parameter that has this word
     word: each for each in PARAMETERS.values() for word in range(each.address, each.address + each.words)
@@ -49,18 +58,26 @@ def check_place(handle: IMC_HANDLE, address: int, axis: int, *, written: bool = 
 
 
 def send(handle: IMC_HANDLE, fifo: int, instruction: Instruction) -> IMC_STATUS:
-    """Put an instruction into a queue of the card; one in IFIFO is carried out before the call is over."""
-    status = taken(handle, handle.reach().push(fifo, instruction))
+    """Put an instruction into a queue of the card; one in IFIFO is carried out before the call is over.
+
+    Raises:
+        Refused: It is longer than the queue ever holds.
+    """
+    card = handle.reach()
+    if isinstance(instruction, _LONG) and words_of(instruction) > card.config.depths.of(fifo):
+        raise Refused(IMC_OUT_OF_RANGE)
+    status = taken(handle, card.push(fifo, instruction))
     if status == IMC_OK and fifo == SEL_IFIFO:
-        handle.let_cycle_pass()
+        handle.session.let_cycle_pass(handle.card)
     return status
 
 
 def taken(handle: IMC_HANDLE, fits: bool) -> IMC_STATUS:
     """Return the status of an instruction; time passes if it does not fit, as a program will try again."""
     if fits:
+        handle.session.note_sent(handle.card)
         return IMC_OK
-    handle.reach_later()
+    handle.session.let_queue_run(handle.reach())
     return IMC_FIFO_FULL
 
 

@@ -88,10 +88,8 @@ def _open(
     return IMC_OK, session.add_handle(port, timeout_ms)
 
 
+# fmt: off
 __all__ = [
-    "IMC_Close",
-    "IMC_FindNetCard",
-    "IMC_Open",
-    "IMC_OpenUsePassword",
-    "IMC_OpenX",
+    "IMC_Close", "IMC_FindNetCard", "IMC_Open", "IMC_OpenUsePassword", "IMC_OpenX",
 ]
+# fmt: on

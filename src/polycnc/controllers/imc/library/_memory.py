@@ -215,22 +215,11 @@ def _elements(
 # Other names: as the manual misprints them, and for what its print has lost.
 IMC_GetPatamBit = LIBRARY.alias("IMC_GetPatamBit", IMC_GetParamBit)
 
+# fmt: off
 __all__ = [
-    "IMC_GetMulParam",
-    "IMC_GetParam16",
-    "IMC_GetParam32",
-    "IMC_GetParam48",
-    "IMC_GetParamBit",
-    "IMC_GetPatamBit",
-    "IMC_ORXORParam",
-    "IMC_SetMulParam",
-    "IMC_SetParam16",
-    "IMC_SetParam32",
-    "IMC_SetParam48",
-    "IMC_SetParamBit",
-    "IMC_TurnParamBit",
-    "IMC_WaitParam",
-    "IMC_WaitParamBit",
-    "IMC_WaitParamMask",
-    "IMC_WaitTime",
+    "IMC_GetMulParam", "IMC_GetParam16", "IMC_GetParam32", "IMC_GetParam48", "IMC_GetParamBit",
+    "IMC_GetPatamBit", "IMC_ORXORParam", "IMC_SetMulParam", "IMC_SetParam16", "IMC_SetParam32",
+    "IMC_SetParam48", "IMC_SetParamBit", "IMC_TurnParamBit", "IMC_WaitParam", "IMC_WaitParamBit",
+    "IMC_WaitParamMask", "IMC_WaitTime",
 ]
+# fmt: on

@@ -198,29 +198,12 @@ IMC_MovePP = LIBRARY.alias("IMC_MovePP", IMC_MoveInDist)
 IMC_MoveTV = LIBRARY.alias("IMC_MoveTV", IMC_TgvelInTime)
 IMC_MovePV = LIBRARY.alias("IMC_MovePV", IMC_TgvelInDist)
 
+# fmt: off
 __all__ = [
-    "IMC_GearFree",
-    "IMC_GearInDist",
-    "IMC_GearInTime",
-    "IMC_HandWheel",
-    "IMC_HomeIndex",
-    "IMC_HomeSwitch1",
-    "IMC_HomeSwitch2",
-    "IMC_HomeSwitch3",
-    "IMC_HomeSwitchIndex1",
-    "IMC_HomeSwitchIndex2",
-    "IMC_HomeSwitchIndex3",
-    "IMC_MoveAbsolute",
-    "IMC_MoveInDist",
-    "IMC_MoveInTime",
-    "IMC_MovePP",
-    "IMC_MovePV",
-    "IMC_MoveRelative",
-    "IMC_MoveSuperimposed",
-    "IMC_MoveTP",
-    "IMC_MoveTV",
-    "IMC_MoveVelocity",
-    "IMC_Phasing",
-    "IMC_TgvelInDist",
-    "IMC_TgvelInTime",
+    "IMC_GearFree", "IMC_GearInDist", "IMC_GearInTime", "IMC_HandWheel", "IMC_HomeIndex",
+    "IMC_HomeSwitch1", "IMC_HomeSwitch2", "IMC_HomeSwitch3", "IMC_HomeSwitchIndex1",
+    "IMC_HomeSwitchIndex2", "IMC_HomeSwitchIndex3", "IMC_MoveAbsolute", "IMC_MoveInDist",
+    "IMC_MoveInTime", "IMC_MovePP", "IMC_MovePV", "IMC_MoveRelative", "IMC_MoveSuperimposed",
+    "IMC_MoveTP", "IMC_MoveTV", "IMC_MoveVelocity", "IMC_Phasing", "IMC_TgvelInDist", "IMC_TgvelInTime",
 ]
+# fmt: on

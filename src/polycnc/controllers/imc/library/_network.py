@@ -26,7 +26,7 @@ from polycnc.controllers.imc.library._structs import ADAPTERS_MOST, DESCRIPTION_
 from polycnc.controllers.library import Refused
 from polycnc.controllers.library import Session as AnySession
 from polycnc.errors import UsageError
-from polycnc.machine import Poll, Step, Way
+from polycnc.machine import Poll, Polling, Step, Way
 
 IDS = 64
 """Ruling: ids that the switch on a card can show, 0 to 63."""
@@ -36,6 +36,7 @@ VERSION = 320
 
 PASSWORD_LEAST, PASSWORD_MOST = 4, 99
 DEFAULT_TIMEOUT_MS = 40
+EVENTS = AXIS_RESTED | AXIS_ERROR
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +99,15 @@ class IMC_HANDLE:
         self._session.let_time_pass(card)
         return card
 
-    def let_cycle_pass(self) -> None:
-        """Let the card carry out what is to be done at once."""
-        self._session.let_cycle_pass()
+    @property
+    def card(self) -> CardLike:
+        """Return the card itself, whatever the network does."""
+        return self._port.card
+
+    @property
+    def session(self) -> Session:
+        """Return whose handle it is."""
+        return self._session
 
 
 def _try_line(port: Port, timeout_ms: float) -> None:
@@ -117,7 +124,8 @@ class Session(AnySession):
         super().__init__()
         self.ports: tuple[Port, ...] = ()
         self.adapters: tuple[NetCard, ...] = (NetCard(),)
-        self.clock: Way | None = None
+        self.polling = Polling(None, self._cards)
+        self._sent: dict[CardLike, int] = {}  # in which cycle
         self.handles: set[IMC_HANDLE] = set()
 
     def attach(
@@ -128,10 +136,11 @@ class Session(AnySession):
     ) -> tuple[Port, ...]:
         """Put cards on the network and load the library anew; return where they are.
 
-        A card without a `Port` gets the first free id on adapter 0. `clock` says what a call that reads from a card,
-        or is told that a queue is full, does to the time of the cards: `Poll(1)` lets one control cycle pass,
-        `Poll(1000)` the time until something happens on an axis but at most 1000 cycles. An instruction for IFIFO
-        takes one cycle. With `None` no call takes time: only `Card.advance` lets it pass, and IFIFO waits for that too.
+        A card without a `Port` gets the first free id on adapter 0. `clock` says what a call that reads the same as
+        another one in this cycle, or is told that a queue is full, does to the time of the cards: `Poll(1)` lets one
+        control cycle pass, `Poll(1000)` the time until something happens on an axis but at most 1000 cycles. An
+        instruction for IFIFO takes one cycle. With `Elapsed` a call lets the time pass that has passed for the program.
+        With `None` no call takes time: only `Card.advance` lets it pass, and IFIFO waits for that too.
 
         Raises:
             UsageError: Two cards are in the same place, or one on an adapter that is not there.
@@ -153,8 +162,10 @@ class Session(AnySession):
             _check_place(port, len(nets))
             placed.append(port)
         with self.lock:
-            self.ports, self.adapters, self.clock = tuple(placed), tuple(nets), clock
+            self.ports, self.adapters = tuple(placed), tuple(nets)
+            self.polling = Polling(clock, self._cards)
             self.handles.clear()
+            self._sent.clear()
         return tuple(placed)
 
     def detach(self) -> None:
@@ -191,6 +202,7 @@ class Session(AnySession):
             Refused: It is none.
         """
         if isinstance(handle, IMC_HANDLE) and handle in self.handles:
+            self.polling.call(handle.card)
             return handle
         closed = isinstance(handle, IMC_HANDLE) and handle._closed
         raise Refused(IMC_DEVICE_NOT_OPEN if closed else IMC_INVALID_HANDLE)
@@ -204,19 +216,28 @@ class Session(AnySession):
         return IMC_OK
 
     def let_time_pass(self, card: CardLike) -> None:
-        """Do what a status call does to the time of a card, and keep the other cards in step with it."""
-        if self.clock is None:
-            return
-        done = self.clock.run(card, until=AXIS_RESTED | AXIS_ERROR)
-        for port in self.ports:
-            if port.card is not card:
-                Step(done).run(port.card)
+        """Do what a call that reads does to the time of a card, and keep the other cards in step with it.
 
-    def let_cycle_pass(self) -> None:
+        What has been sent in this cycle is taken first, or a program that waits for it would not even see it begin.
+        """
+        if self._sent.pop(card, -1) == card.clock.cycles:
+            self.polling.let_pass(card, until=EVENTS)
+        self.polling.read(card, self.asked, until=EVENTS)
+
+    def note_sent(self, card: CardLike) -> None:
+        """Note that an instruction waits for the next cycle of a card."""
+        self._sent[card] = card.clock.cycles
+
+    def let_queue_run(self, card: CardLike) -> None:
+        """Do what finding a queue full does to the time of a card."""
+        self.polling.let_pass(card, until=EVENTS)
+
+    def let_cycle_pass(self, card: CardLike) -> None:
         """Let one control cycle pass, the time of a call that a card answers at once."""
-        if self.clock is not None:
-            for port in self.ports:
-                port.card.advance(1)
+        self.polling.let_pass(card, Step(1))
+
+    def _cards(self) -> list[CardLike]:
+        return [port.card for port in self.ports]
 
 
 def is_password(text: str | bytes) -> bool:

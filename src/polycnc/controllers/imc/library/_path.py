@@ -7,6 +7,7 @@ from __future__ import annotations
 from polycnc.controllers.imc.core._event_codes import SHAPES, EventCommand, EventType, constant_words
 from polycnc.controllers.imc.core._event_codes import TAKE as TAKE_SECOND
 from polycnc.controllers.imc.core._instructions import Event, InstallEvents, Segment
+from polycnc.controllers.imc.core._instructions import Points as Displacements
 from polycnc.controllers.imc.core._parameters import address
 from polycnc.controllers.imc.library._call import LIBRARY, card_call, check_place, send, taken
 from polycnc.controllers.imc.library._codes import (
@@ -14,6 +15,9 @@ from polycnc.controllers.imc.library._codes import (
     IMC_OK,
     IMC_OUT_OF_RANGE,
     IMC_STATUS,
+    SEL_CFIFO,
+    SEL_PFIFO1,
+    SEL_PFIFO2,
 )
 from polycnc.controllers.imc.library._memory import signed_32
 from polycnc.controllers.imc.library._network import IMC_HANDLE
@@ -40,7 +44,11 @@ from polycnc.controllers.imc.library._types import (
 from polycnc.controllers.library import Refused
 
 CLOCKWISE = 1  # of the functions that take coordinates one by one; in the structure it is 0
-_GROUPNUM = address("groupnum")
+_AXES_OF_POINTS: dict[int, int] = {
+    SEL_CFIFO: address("groupnum"),
+    SEL_PFIFO1: address("pathaxisnum1"),
+    SEL_PFIFO2: address("pathaxisnum2"),
+}
 
 
 @card_call
@@ -137,14 +145,19 @@ def IMC_PutContourData(
 ) -> IMC_STATUS:
     """Add points of a contour: displacements of 16 bits, axis after axis, point after point (Manual 004, 3.6).
 
-    Only whole points: `nWords`, at most 126, is a multiple of groupnum if that is set.
+    Only whole points: `nWords`, at most 126, is a multiple of the number of axes if that is set: of groupnum for CFIFO.
+    A path queue takes points too, of pathaxisnum axes; these are gone along with segtgvel and pathacc.
     """
     if nWords > len(pdata):
         raise Refused(IMC_OUT_OF_RANGE)
     values = [int(pdata[k]) for k in range(nWords)]
     card = Handle.reach()
-    axes = int(card.read_words(_GROUPNUM, 0, 1)[0])
+    axes = int(card.read_words(_AXES_OF_POINTS[fifoSel], 0, 1)[0])
     if (axes and nWords % axes) or any(not -0x8000 <= value <= 0x7FFF for value in values):
+        raise Refused(IMC_OUT_OF_RANGE)
+    if fifoSel != SEL_CFIFO:
+        return send(Handle, fifoSel, Displacements(tuple(values)))
+    if nWords > card.config.depths.cfifo:
         raise Refused(IMC_OUT_OF_RANGE)
     return taken(Handle, card.push_points(values))
 
@@ -247,20 +260,11 @@ IMC_AddApiralWithVel = LIBRARY.alias("IMC_AddApiralWithVel", IMC_AddSpiralWithVe
 IMC_AddApiralWitchVel = LIBRARY.alias("IMC_AddApiralWitchVel", IMC_AddSpiralWithVel)
 IMC_AddContourData = LIBRARY.alias("IMC_AddContourData", IMC_PutContourData)
 
+# fmt: off
 __all__ = [
-    "IMC_AddApiralWitchVel",
-    "IMC_AddApiralWithVel",
-    "IMC_AddArc",
-    "IMC_AddArcLine",
-    "IMC_AddArcLineWithVel",
-    "IMC_AddArcWithVel",
-    "IMC_AddContourData",
-    "IMC_AddLineN",
-    "IMC_AddLineNWithVel",
-    "IMC_AddSpiral",
-    "IMC_AddSpiralWithVel",
-    "IMC_ClearFIFO",
-    "IMC_GetCapData",
-    "IMC_InstallEvent",
-    "IMC_PutContourData",
+    "IMC_AddApiralWitchVel", "IMC_AddApiralWithVel", "IMC_AddArc", "IMC_AddArcLine",
+    "IMC_AddArcLineWithVel", "IMC_AddArcWithVel", "IMC_AddContourData", "IMC_AddLineN",
+    "IMC_AddLineNWithVel", "IMC_AddSpiral", "IMC_AddSpiralWithVel", "IMC_ClearFIFO", "IMC_GetCapData",
+    "IMC_InstallEvent", "IMC_PutContourData",
 ]
+# fmt: on

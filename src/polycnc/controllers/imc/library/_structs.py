@@ -172,4 +172,8 @@ class PFIFOSegInfo(Structure):
 STRUCTURES = layouts(NIC_INFO, WR_MUL_DES, EventInfo, PFIFOSegData, PFIFOSegInfo)
 """What lies where, by the structure's name."""
 
-__all__ = ["NIC_INFO", "STRUCTURES", "WR_MUL_DES", "EventInfo", "PFIFOSegData", "PFIFOSegInfo"]
+# fmt: off
+__all__ = [
+    "NIC_INFO", "STRUCTURES", "WR_MUL_DES", "EventInfo", "PFIFOSegData", "PFIFOSegInfo",
+]
+# fmt: on

@@ -132,7 +132,9 @@ AxisIfAny: TypeAlias = Annotated[int, _number("IMC32", _INT, -0x80000000, 0xFFFF
 Queue: TypeAlias = Annotated[int, Queues(_INSTRUCTIONS)]
 WaitQueue: TypeAlias = Annotated[int, Queues(_INSTRUCTIONS - {FIFO_SEL.SEL_IFIFO})]
 PathQueue: TypeAlias = Annotated[int, Queues(frozenset((FIFO_SEL.SEL_PFIFO1, FIFO_SEL.SEL_PFIFO2)))]
-PointQueue: TypeAlias = Annotated[int, Queues(frozenset((FIFO_SEL.SEL_CFIFO,)))]
+PointQueue: TypeAlias = Annotated[
+    int, Queues(frozenset((FIFO_SEL.SEL_CFIFO, FIFO_SEL.SEL_PFIFO1, FIFO_SEL.SEL_PFIFO2)))
+]
 AnyQueue: TypeAlias = Annotated[int, Queues(frozenset(FIFO_SEL))]
 
 HANDLE: TypeAlias = Annotated[IMC_HANDLE, Pointer("IMC_HANDLE", None, IMC_INVALID_HANDLE)]
