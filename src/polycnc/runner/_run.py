@@ -13,6 +13,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
+from polycnc.nc.macro import language_for
 from polycnc.runner._execution import Floats, Progress, Rows, run_to_end, totals
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
 from polycnc.runner._trace import TraceCollector
@@ -57,10 +58,12 @@ def run(
         sinks.append(_progress_by_line(text, progress))
     simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if sinks else 0)
     events: list[RunEvent] = []
+    spoken = dialect_for(text.name, dialect)
     execution = ProgramRun(
         simulated,
         text,
-        dialect_for(text.name, dialect),
+        spoken,
+        language=language_for(spoken),
         options=RunOptions(block_delete=frozenset(skip_levels), stands_at_stops=stop_at_m0),
         rows=_to_all(sinks) if sinks else None,
         on_event=lambda event: _note(event, events, execution),
@@ -85,7 +88,8 @@ def check(
     text = program_text(program)
     simulated = Machine(load_machine(machine))
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = ProgramRun(simulated, text, dialect_for(text.name, dialect), options=options)
+    spoken = dialect_for(text.name, dialect)
+    execution = ProgramRun(simulated, text, spoken, options=options, language=language_for(spoken))
     run_to_end(execution, every_cycle=False)
     return execution.channel.errors
 

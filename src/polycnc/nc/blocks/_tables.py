@@ -12,6 +12,8 @@ from polycnc.machine import MachineConfig, ToolConfig
 
 COMMON_OFFSET = "EXT"
 """The work offset that counts with every other one."""
+ADDITIONAL_OFFSETS = 300
+"""How many additional work offsets (G54.1 P) there are."""
 
 
 def additional_offset(number: int) -> str:

@@ -13,6 +13,7 @@ from polycnc.nc.text._scan_plain import Block, Word
 Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
+_NOT_YET = "What it does would be left out: take it out, or post the program without it."
 _OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 
@@ -119,6 +120,8 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
     group = GROUP_OF[action]
     entry = GWord(word, code, action)
     if group is Group.IGNORED:
+        if action is Action.UNSUPPORTED:
+            raise fail(f"G{code} is not supported yet", _NOT_YET, word)
         words.ignored.append(entry)
         return
     if group in words.g:
