@@ -155,7 +155,7 @@ class Language(Protocol):
 
 
 @runtime_checkable
-class BoundLanguage(Protocol):
+class BoundLanguage(Language, Protocol):
     """A language that reads the state of the channel it works for."""
 
     def attach(self, channel: Channel) -> None:

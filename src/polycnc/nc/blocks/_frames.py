@@ -137,9 +137,7 @@ class Frames:
         centers = self.motion.axis_words()
         if not self.state.modal.whole[ABSOLUTE]:
             centers = {axis: here[axis] + value for axis, value in centers.items()}
-        linear = [
-            index for index, axis in enumerate(self.state.machine.axes) if axis.kind == "linear"
-        ]
+        linear = [index for index, axis in enumerate(self.state.machine.axes) if axis.kind == "linear"]
         letters = [letter for letter in _FACTORS if letter in words.by_letter]
         factors: dict[int, float] = {}
         if "P" in words.by_letter:
@@ -189,7 +187,9 @@ class Frames:
             raise self.fail(f"G{g.code} L{table} without P", "Add P and the number.", g.word)
         largest = {2: 6, 20: ADDITIONAL_OFFSETS}.get(table, LARGEST_OFFSET_NUMBER)
         number = (
-            0 if number_word is None else whole_number(number_word, "a number of these data", self.fail, largest)
+            0
+            if number_word is None
+            else whole_number(number_word, "a number of these data", self.fail, largest)
         )
         if table in (2, 20):
             self._set_work_offset(g, table, number, words)

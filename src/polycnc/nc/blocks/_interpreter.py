@@ -8,6 +8,7 @@ or end.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
@@ -209,6 +210,16 @@ class Interpreter:
                 return each.place
         return words[0].place if words else self._block.offset
 
+    def _count(self, code: str) -> int:
+        """Return in how many blocks of the present program text a G code stands."""
+        pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
+        return len(
+            {
+                self._text.content.rfind(b"\n", 0, found.start())
+                for found in re.finditer(pattern, self._text.content)
+            }
+        )
+
     def _placed(self, error: CompensationError) -> ProgramError:
         """Add the place to an error of radius compensation, which knows its line only."""
         here = self._block is not None and error.line == self._block.line
@@ -227,7 +238,7 @@ class Interpreter:
         if block.flags & MESSAGE and block.message:
             self.messages.add(f"MSG: {block.message}")
         line = block.line
-        words = sort_words(block, self.dialect, self.fail)
+        words = sort_words(block, self.dialect, self.fail, self._count)
         self._refuse_contradictions(words)
         self._motion.begin(words)
         for letter in _NUMBERS:
@@ -305,7 +316,12 @@ class Interpreter:
             if moves:
                 self._held_text = self._text
         whole = self.state.modal.whole
-        whole[ORDINARY] = stage.active or self._cycles.active or whole[FEED_MODE] != FEED_PER_MINUTE or self.state.frame.active
+        whole[ORDINARY] = (
+            stage.active
+            or self._cycles.active
+            or whole[FEED_MODE] != FEED_PER_MINUTE
+            or self.state.frame.active
+        )
         return items
 
     def _check_path(self, items: list[QueueItem]) -> None:

@@ -12,7 +12,7 @@ from typing import Protocol
 
 from polycnc.language import Chain, Emitter, Flaw, Python, Traced, Unary, infix, prefix
 from polycnc.nc._block_source import Drain, TextSpan
-from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS
+from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS, power
 from polycnc.nc.macro._reader import COMPARISONS, argument_numbers
 from polycnc.nc.macro._shape import Label, Region, Shape
 from polycnc.nc.macro._syntax import (
@@ -42,6 +42,7 @@ ALARM, MESSAGE_STOP = 3000, 3006
 _ANGLES_AND_LENGTHS = "ABCIJKQRUVWXYZ"
 _SMALL = 1e6  # adding so little at a time never gets a variable out of range
 _ARITHMETIC = "+-*/"
+_SUB_CALL = 98.0
 
 
 class Numbers(Protocol):
@@ -124,7 +125,9 @@ class _Compiler:
     texts: list[str] = field(default_factory=list)
     flaws: list[Flaw] = field(default_factory=list)
     before: list[str] = field(default_factory=list)  # lines that an expression needs before its own
-    loops: list[Region | None] = field(default_factory=list)  # Python loops around: of a region's pieces, else None
+    loops: list[Region | None] = field(
+        default_factory=list
+    )  # Python loops around: of a region's pieces, else None
     escapes: list[set[int]] = field(default_factory=list)  # regions that are jumped to out of each of them
     line: Line | None = None
     drain: str = ""
@@ -153,11 +156,8 @@ class _Compiler:
         self.loops.append(region)
         self.escapes.append(set())
         with out.block("while True:"):
-            self.turn()
             starts = [0, *sorted(region.targets)]
-            for piece, (first, last) in enumerate(
-                zip(starts, [*starts[1:], len(region.parts)], strict=True)
-            ):
+            for piece, (first, last) in enumerate(zip(starts, [*starts[1:], len(region.parts)], strict=True)):
                 if first == last:
                     continue
                 with out.block(f"if {at} <= {piece}:"):
@@ -197,8 +197,10 @@ class _Compiler:
             with self.out.block("if go >= 0:"):
                 self.out.put("break")
 
-    def jump(self, region: Region, place: str) -> None:
+    def jump(self, region: Region, place: str, *, back: bool = True) -> None:
         """Emit a jump to a piece of a region around."""
+        if back:
+            self.turn()
         self.out.put(f"at{region.number} = {place}")
         if self.loops[-1] is region:
             self.out.put("continue")
@@ -278,6 +280,8 @@ class _Compiler:
             case Words():
                 self.words(statement.at, statement.words)
                 self.modal_call()
+                if any(word.letter == "M" and _is(word.value, _SUB_CALL) for word in statement.words):
+                    self.after_call(region)
             case MacroCall():
                 self.macro_call(statement, region)
             case SubCall():
@@ -291,9 +295,7 @@ class _Compiler:
                     self.jump(self.shape.main, "0")
                 out.put("yield RETURN", "return")
             case _:
-                raise Flaw(
-                    statement.at, "a loop begins or ends a block", "Write it alone.", code="PS0125"
-                )
+                raise Flaw(statement.at, "a loop begins or ends a block", "Write it alone.", code="PS0125")
 
     def flush(self) -> None:
         self.out.put(*self.before)
@@ -305,9 +307,7 @@ class _Compiler:
         number = target.number
         value = self.expression(statement.value)
         if value.truth:
-            raise Flaw(
-                statement.at, "a condition is no value", "Write IF [...] THEN #1=1.", code="PS0114"
-            )
+            raise Flaw(statement.at, "a condition is no value", "Write IF [...] THEN #1=1.", code="PS0114")
         if target.index is not None:
             place = self.index(target.index)
             self.flush()
@@ -315,7 +315,12 @@ class _Compiler:
             return
         kind = self.numbers.kind(number)
         if kind == "null":
-            raise Flaw(target.at, "#0 is always vacant and cannot be written", "Write another variable.", code="PS0116")
+            raise Flaw(
+                target.at,
+                "#0 is always vacant and cannot be written",
+                "Write another variable.",
+                code="PS0116",
+            )
         if kind is None:
             self.system_assignment(statement, number, value)
             return
@@ -341,10 +346,17 @@ class _Compiler:
             self.flush()
             assert self.line is not None
             self.texts.append(statement.text)
-            out.put(f"yield stop({value.number().text}, {self.line.line}, {self.line.offset}, T[{len(self.texts) - 1}])")
+            out.put(
+                f"yield stop({value.number().text}, {self.line.line}, {self.line.offset}, T[{len(self.texts) - 1}])"
+            )
             return
         if not self.numbers.has(number):
-            raise Flaw(statement.target.at, f"there is no variable #{number}", "See the table of variables.", code="PS0115")
+            raise Flaw(
+                statement.target.at,
+                f"there is no variable #{number}",
+                "See the table of variables.",
+                code="PS0115",
+            )
         if self.numbers.waits(number):
             self.before.append(self.drain)
         self.flush()
@@ -382,7 +394,7 @@ class _Compiler:
                 "Jump out of loops or inside them, never into one.",
                 code="PS0128",
             )
-        self.jump(found.region, str(_piece(found)))
+        self.jump(found.region, str(_piece(found)), back=found.offset <= statement.at)
 
     def open_jump(self, at: int, region: Region) -> None:
         """Emit a jump to the label in `t`."""
@@ -519,7 +531,10 @@ class _Compiler:
             case None:
                 if not self.numbers.has(number):
                     raise Flaw(
-                        tree.at, f"there is no variable #{number}", "See the table of variables.", code="PS0115"
+                        tree.at,
+                        f"there is no variable #{number}",
+                        "See the table of variables.",
+                        code="PS0115",
                     )
                 if self.numbers.waits(number) and self.drain not in self.before:
                     self.before.append(self.drain)
@@ -568,7 +583,9 @@ class _Compiler:
         return _Value(Python(f"o_{operator}({left.number().text}, {right.number().text})"))
 
 
-def compile_program(shape: Shape, numbers: Numbers, increment: float, name: str) -> tuple[Code | None, list[Flaw]]:
+def compile_program(
+    shape: Shape, numbers: Numbers, increment: float, name: str
+) -> tuple[Code | None, list[Flaw]]:
     """Return a program compiled, or all that is wrong with it."""
     compiler = _Compiler(shape, numbers, increment)
     try:
@@ -581,8 +598,13 @@ def compile_program(shape: Shape, numbers: Numbers, increment: float, name: str)
 def names() -> dict[str, object]:
     """Return the functions and operators as compiled programs call them."""
     found: dict[str, object] = {f"f_{name}": function for name, function in FUNCTIONS.items()}
+    found["f_POW"] = power
     found.update({f"o_{name}": function for name, function in OPERATORS.items()})
     return found
+
+
+def _is(tree: Expression, value: float) -> bool:
+    return isinstance(tree, Number) and tree.value == value
 
 
 def _piece(label: Label) -> int:
@@ -601,8 +623,16 @@ def _may_overflow(tree: Expression) -> bool:
     if isinstance(tree, (Number, Variable)):
         return False
     if isinstance(tree, Chain):
-        variables = [each for each in (tree.first, *(link.operand for link in tree.links)) if not isinstance(each, Number)]
-        constants = [each.value for each in (tree.first, *(link.operand for link in tree.links)) if isinstance(each, Number)]
+        variables = [
+            each
+            for each in (tree.first, *(link.operand for link in tree.links))
+            if not isinstance(each, Number)
+        ]
+        constants = [
+            each.value
+            for each in (tree.first, *(link.operand for link in tree.links))
+            if isinstance(each, Number)
+        ]
         small = len(variables) <= 1 and all(abs(each) <= _SMALL for each in constants)
         plus = all(link.operator in "+-" for link in tree.links)
         return not (small and plus and all(isinstance(each, Variable) for each in variables))

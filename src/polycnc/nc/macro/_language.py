@@ -10,7 +10,6 @@ from polycnc.errors import ProgramError
 from polycnc.language import Flaw, Frame, frame_of
 from polycnc.nc._block_source import (
     CallProgram,
-    Drain,
     EndSource,
     Pause,
     SourceItem,
@@ -24,7 +23,7 @@ from polycnc.nc.macro._calls import Arguments, MacroCalls
 from polycnc.nc.macro._compile import Code, compile_program, names
 from polycnc.nc.macro._functions import asin, atan2, rounded
 from polycnc.nc.macro._reader import LARGEST_LABEL, LineReader
-from polycnc.nc.macro._shape import HAS_RETURN_TO, extent, holds_statements, parse, pattern_of, shape
+from polycnc.nc.macro._shape import RETURNS_TO, extent, parse, shape, special
 from polycnc.nc.macro._system import SystemVariables
 from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, MacroVariables, Value, checked
 from polycnc.nc.text._program import ProgramText
@@ -94,7 +93,7 @@ class MacroLanguage:
         self._channel: Channel | None = None
         self._compiled: dict[tuple[int, int, bool], _Compiled | None] = {}
         self._returns: dict[int, bool] = {}
-        self._latin: dict[int, tuple[ProgramText, str]] = {}
+        self._latin: dict[int, tuple[ProgramText, str, bytes]] = {}
         self._names = names()
         if nat:
             self._names["f_ASIN"] = lambda value: asin(value, True)
@@ -134,21 +133,24 @@ class MacroLanguage:
     def _compile(
         self, text: ProgramText, offset: int, line: int, plain: bool, *, force: bool
     ) -> _Compiled | None:
-        if id(text) not in self._latin:
-            self._latin[id(text)] = (text, text.content.decode("latin-1"))
-            self._returns[id(text)] = HAS_RETURN_TO.search(self._latin[id(text)][1]) is not None
-        whole = self._latin[id(text)][1]
         calls = _PLAIN_CALLS if plain else self.calls
+        if id(text) not in self._latin:
+            if not force and not special(calls, restarts=self.main_repeats).may_hold(text.content.upper()):
+                return None
+            decoded, folded = text.content.decode("latin-1"), text.content.upper()
+            self._latin[id(text)] = (text, decoded, folded)
+            found = next(RETURNS_TO.lines(decoded, folded, 0, len(decoded)), None)
+            self._returns[id(text)] = found is not None
+        _, whole, folded = self._latin[id(text)]
         returns = self._returns[id(text)]
-        restarts = self.main_repeats
-        special = pattern_of(calls, restarts=restarts, returns=returns)
-        if not force and special.search(whole, offset) is None:
+        wanted = special(calls, restarts=self.main_repeats, returns=returns)
+        if not force and next(wanted.lines(whole, folded, offset, len(whole)), None) is None:
             return None
         begin, first_line, end = extent(whole, offset, line)
-        if not force and not holds_statements(whole, begin, end, special):
+        if not force and next(wanted.lines(whole, folded, begin, end), None) is None:
             return None
-        reader = LineReader(whole, calls, returns=returns, repeats=restarts)
-        parts, flaws = parse(whole, begin, first_line, end, special, reader)
+        reader = LineReader(whole, calls, repeats=self.main_repeats)
+        parts, flaws = parse(whole, wanted.lines(whole, folded, begin, end), begin, first_line, end, reader)
         name = f"<macro {id(text)} {offset} {plain}>"
         code = None
         if not flaws:
@@ -358,16 +360,20 @@ class MacroSource:
                 yield from self._modal_item(letters, line, offset)
             offset, line = end, line + 1
 
-    def _modal_item(
-        self, letters: list[tuple[str, float]], line: int, offset: int
-    ) -> Iterator[SourceItem]:
+    def _modal_item(self, letters: list[tuple[str, float]], line: int, offset: int) -> Iterator[SourceItem]:
         modal = self._language.modal
         axes = self._language.channel.state.axis_names
         moves = any(letter in axes for letter, _ in letters)
-        if modal is None or not moves or any(letter == "G" and code in _NOT_A_MOVE for letter, code in letters):
+        if (
+            modal is None
+            or not moves
+            or any(letter == "G" and code in _NOT_A_MOVE for letter, code in letters)
+        ):
             return
         self._check_level()
-        yield CallProgram(modal.program, line, offset, modal.repeats, Arguments(dict(modal.values), modal=True))
+        yield CallProgram(
+            modal.program, line, offset, modal.repeats, Arguments(dict(modal.values), modal=True)
+        )
 
     def _check_level(self) -> None:
         if self._language.variables.level >= LEVELS:
@@ -491,7 +497,9 @@ def _alarm(value: float, text: str) -> NoReturn:
     if not 0 <= value <= _LARGEST_ALARM:
         raise MacroError(f"#3000={value:g}: alarms are numbered 0 to 999", "Write 0 to 999.", "PS0119")
     raise MacroError(
-        text or f"macro alarm {int(value)}", "The program has raised this alarm.", f"MC{_ALARM_BASE + int(value)}"
+        text or f"macro alarm {int(value)}",
+        "The program has raised this alarm.",
+        f"MC{_ALARM_BASE + int(value)}",
     )
 
 

@@ -73,10 +73,9 @@ _RETURN = 99.0
 class LineReader:
     """Read lines of `text` (one character a byte). `calls` are codes that call programs, None in such a program."""
 
-    def __init__(self, text: str, calls: MacroCalls, *, returns: bool, repeats: bool) -> None:
+    def __init__(self, text: str, calls: MacroCalls, *, repeats: bool) -> None:
         self._text = text
         self._calls = calls
-        self._returns = returns
         self._repeats = repeats
 
     def read(self, offset: int, end: int, line: int) -> Line:
@@ -86,16 +85,19 @@ class LineReader:
             Flaw: It is no statement.
         """
         text = self._text
-        reader = _Statements(Tokens(_LEXICON, text, offset, end), text, offset, end)
-        reader.calls, reader.returns, reader.repeats = self._calls, self._returns, self._repeats
-        return reader.line(line)
+        try:
+            reader = _Statements(Tokens(_LEXICON, text, offset, end), text, offset, end)
+            reader.calls, reader.repeats = self._calls, self._repeats
+            return reader.line(line)
+        except Flaw as flaw:
+            flaw.code = flaw.code or _FORMAT
+            raise
 
 
 class _Statements:
     """Read one line."""
 
     calls = MacroCalls()
-    returns = False
     repeats = False
 
     def __init__(self, tokens: Tokens, text: str, offset: int, end: int) -> None:
@@ -342,7 +344,10 @@ class _Statements:
         word = words[index]
         if code == _MODAL_CALL_EACH:
             raise Flaw(
-                word.at, "G66.1 is not supported yet", "Call the macro with G65 in each block.", code=_STATEMENT
+                word.at,
+                "G66.1 is not supported yet",
+                "Call the macro with G65 in each block.",
+                code=_STATEMENT,
             )
         program = repeats = None
         arguments = []
@@ -461,7 +466,10 @@ class _Statements:
         if token.kind == "number":
             if "." in token.text:
                 raise Flaw(
-                    token.at, f"{token} is no number of a variable", "Write it without a point.", code="PS0115"
+                    token.at,
+                    f"{token} is no number of a variable",
+                    "Write it without a point.",
+                    code="PS0115",
                 )
             number = real_value(token, _LARGEST_NUMBER)
             tokens.step()
@@ -514,7 +522,10 @@ class _Statements:
         if tokens.token.word != "]" or len(found) < count:
             missing = "']'" if len(found) == count else "','"
             raise Flaw(
-                tokens.token.at, f"{missing} is missing before {tokens.token}", "Check the brackets.", code=_FORMAT
+                tokens.token.at,
+                f"{missing} is missing before {tokens.token}",
+                "Check the brackets.",
+                code=_FORMAT,
             )
         tokens.step()
         self._brackets -= 1
@@ -576,4 +587,3 @@ def _repeats(arguments: list[Address] | tuple[Address, ...]) -> bool:
 
 def _constant(value: Expression) -> float | None:
     return value.value if isinstance(value, Number) else None
-

@@ -22,21 +22,68 @@ _LABEL = re.compile(r"(?:\A|(?<=[\r\n]))[ \t]*(?:/[1-9]?[ \t]*)?N[ \t]*0*([0-9]+
 _NEXT_PROGRAM = re.compile(r"[\r\n][ \t]*(?:%|[Oo:][ \t]*[0-9])")
 _HEAD = re.compile(r"(?:[ \t]*(?:%[^\r\n]*|\([^)\r\n]*\)[ \t]*)?(?:\r\n|\r|\n))*")
 _NUMBER_LINE = re.compile(r"[ \t]*[Oo:][ \t]*[0-9]+[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:\r\n|\r|\n|\Z)")
-HAS_RETURN_TO = re.compile(_RETURN_TO, re.IGNORECASE)
 
 
-def pattern_of(calls: MacroCalls, *, restarts: bool = False, returns: bool = False) -> re.Pattern[str]:
-    """Return what is found in lines that are more than plain words; `returns`: callers are to be returned into."""
+@dataclass(frozen=True, slots=True)
+class Special:
+    """What is found in lines that are more than plain words: a pattern, and texts without which it is not there."""
+
+    pattern: re.Pattern[str]
+    needles: tuple[bytes, ...]
+
+    def may_hold(self, folded: bytes) -> bool:
+        """Tell quickly whether a text in capitals may have such lines."""
+        return any(needle in folded for needle in self.needles)
+
+    def lines(self, text: str, folded: bytes, begin: int, end: int) -> Iterator[tuple[int, int]]:
+        """Yield begin and end of such lines; `folded` is the text in capitals."""
+        places = dict.fromkeys(self.needles, -1)
+        at = begin
+        while at < end:
+            for needle, place in places.items():
+                if place < at:
+                    found = folded.find(needle, at, end)
+                    places[needle] = end if found < 0 else found
+            first = min(places.values())
+            if first >= end:
+                return
+            start = max(text.rfind("\n", at, first) + 1, text.rfind("\r", at, first) + 1, at)
+            newline = _NEWLINE.search(text, first, end)
+            stop = newline.start() if newline else end
+            bare = _COMMENT.sub(lambda match: " " * len(match[0]), text[start:stop])
+            if self.pattern.search(bare):
+                yield start, stop
+            at = newline.end() if newline else end
+
+
+def special(calls: MacroCalls, *, restarts: bool = False, returns: bool = False) -> Special:
+    """Return what makes a line special; with `returns` callers are to be returned into."""
     codes = [_ANYWHERE, _MACRO_CODES, _RETURN_TO]
-    codes += [rf"G{_B}0*{re.escape(f'{code:g}')}(?![0-9.])" for code in calls.g]
-    codes += [rf"M{_B}0*{code}(?![0-9.])" for code in (*calls.m, *calls.m_sub)]
+    needles = ["#", "[", "=", "O", "D", "G6", "G 6", "M99"]
+    for code in calls.g:
+        codes.append(rf"G{_B}0*{re.escape(f'{code:g}')}(?![0-9.])")
+        needles += _written("G", code)
+    for code in (*calls.m, *calls.m_sub):
+        codes.append(rf"M{_B}0*{code}(?![0-9.])")
+        needles += _written("M", code)
     if calls.t is not None:
         codes.append(rf"T{_B}[0-9]")
+        needles.append("T")
     if restarts:
         codes.append(rf"M{_B}0*99(?![0-9.])")
     if returns:
         codes.append(_SUB_CALL)
-    return re.compile("|".join(codes), re.IGNORECASE)
+        needles += _written("M", 98)
+    pattern = re.compile("|".join(codes), re.IGNORECASE)
+    return Special(pattern, tuple(dict.fromkeys(needle.encode() for needle in needles)))
+
+
+def _written(letter: str, code: float) -> list[str]:
+    return [f"{letter}{code:g}", f"{letter}0{code:g}", f"{letter} {code:g}"]
+
+
+RETURNS_TO = Special(re.compile(_RETURN_TO, re.IGNORECASE), (b"M99",))
+"""Lines that return to a block of the calling program."""
 
 
 @dataclass
@@ -97,36 +144,14 @@ def extent(text: str, offset: int, line: int) -> tuple[int, int, int]:
     return begin, line + len(_NEWLINE.findall(text, offset, begin)), max(end, begin)
 
 
-def holds_statements(text: str, begin: int, end: int, special: re.Pattern[str]) -> bool:
-    """Tell whether there is anything in a program besides plain words."""
-    return next(_special_lines(text, begin, end, special), None) is not None
-
-
-def _special_lines(text: str, begin: int, end: int, special: re.Pattern[str]) -> Iterator[tuple[int, int]]:
-    """Yield begin and end of the lines that are more than plain words."""
-    at = begin
-    while at < end:
-        found = special.search(text, at, end)
-        if found is None:
-            return
-        start = max(text.rfind("\n", begin, found.start()), text.rfind("\r", begin, found.start())) + 1
-        start = max(start, begin)
-        newline = _NEWLINE.search(text, found.start(), end)
-        stop = newline.start() if newline else end
-        bare = _COMMENT.sub(lambda match: " " * len(match[0]), text[start:stop])
-        if special.search(bare):
-            yield start, stop
-        at = newline.end() if newline else end
-
-
 def parse(
-    text: str, begin: int, line: int, end: int, special: re.Pattern[str], reader: LineReader
+    text: str, lines: Iterator[tuple[int, int]], begin: int, line: int, end: int, reader: LineReader
 ) -> tuple[list[Part], list[Flaw]]:
     """Return the parts of a program, and all that is wrong in its lines."""
     parts: list[Part] = []
     flaws: list[Flaw] = []
     at = begin
-    for start, stop in _special_lines(text, begin, end, special):
+    for start, stop in lines:
         if start > at:
             parts.append(Span(line, at, start))
             line += len(_NEWLINE.findall(text, at, start))

@@ -139,9 +139,7 @@ class Restart:
     at: int
 
 
-Statement: TypeAlias = (
-    Assignment | Goto | If | While | End | Words | MacroCall | SubCall | Cancel | Restart
-)
+Statement: TypeAlias = Assignment | Goto | If | While | End | Words | MacroCall | SubCall | Cancel | Restart
 
 
 @dataclass(frozen=True, slots=True)

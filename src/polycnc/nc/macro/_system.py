@@ -84,7 +84,9 @@ class SystemVariables:
         place = self._position(number)
         if place is not None:
             return place[0] not in (_BLOCK_END, _LENGTH)
-        return number in _TIMERS or number in (_PARTS, _PARTS_REQUIRED) or number - _EXECUTED in _MODAL_NUMBERS
+        return (
+            number in _TIMERS or number in (_PARTS, _PARTS_REQUIRED) or number - _EXECUTED in _MODAL_NUMBERS
+        )
 
     def read(self, number: int) -> Value:
         """Return a variable.
