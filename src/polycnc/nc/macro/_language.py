@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from dataclasses import dataclass
 from typing import Any, NoReturn
 
@@ -202,7 +202,7 @@ class MacroSource:
         if arguments is not None and arguments.values is not None:
             language.variables.enter(arguments.values)
         self._inch = 1.0
-        self._generator: Iterator[Any] = iter(())
+        self._generator: Generator[Any, None, None] = (item for item in ())
         if compiled.code is not None:
             self._generator = self._start(compiled.code)
 
@@ -236,7 +236,7 @@ class MacroSource:
         if self._closed:
             return
         self._closed = True
-        self._generator.close()  # type: ignore[attr-defined]
+        self._generator.close()
         language = self._language
         if self._has_level:
             language.variables.leave()
@@ -247,7 +247,7 @@ class MacroSource:
 
     # ------------------------------------------------------------------ the program's own calls
 
-    def _start(self, code: Code) -> Iterator[Any]:
+    def _start(self, code: Code) -> Generator[Any, None, None]:
         language = self._language
         variables, system = language.variables, language.system
         common, ranges = variables.common, variables.ranges
@@ -295,7 +295,7 @@ class MacroSource:
             "modal": self._modal_call,
         }
         program = code.traced.load(names)["program"]
-        result: Iterator[Any] = program(local, common, _Host(self))
+        result: Generator[Any, None, None] = program(local, common, _Host(self))
         return result
 
     def skips(self, level: int) -> bool:
@@ -416,7 +416,7 @@ class MacroSource:
     # ------------------------------------------------------------------ errors
 
     def _endless(self) -> ProgramError:
-        frame = getattr(self._generator, "gi_frame", None)
+        frame = self._generator.gi_frame
         code = self._compiled.code
         assert code is not None
         at = 0 if frame is None else code.traced.places[frame.f_lineno - 1]
