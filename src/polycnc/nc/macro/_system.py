@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from datetime import datetime, timedelta
+from datetime import datetime
 
 from polycnc.nc._channel import Channel
 from polycnc.nc.blocks._modal import (
@@ -19,7 +19,6 @@ from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
 from polycnc.nc.macro._variables import MacroError, Value, no_variable
 
 _AXES = 8
-_EPOCH = datetime(2000, 1, 1)
 _SINGLE_BLOCK, _FEED_CONTROL, _SETTINGS, _MIRRORS = 3003, 3004, 3005, 3007
 _TIMER_MS, _TIMER_H, _DATE, _TIME = 3001, 3002, 3011, 3012
 _PARTS, _PARTS_REQUIRED = 3901, 3902
@@ -45,7 +44,7 @@ _MODAL_NUMBERS = frozenset(
 class SystemVariables:
     """Read and write the system variables of the channel that a language is attached to.
 
-    `clock` gives date and time; without it time begins on 2000-01-01 and passes with the machine. A control with more
+    `clock` gives date and time; without it they are those of the machine's clock. A control with more
     variables derives from this and asks here for the rest.
     """
 
@@ -187,7 +186,7 @@ class SystemVariables:
             begun_s, value = self._timers.get(number, (0.0, 0.0))
             unit_s = 0.001 if number == _TIMER_MS else 3600.0
             return value + (now_s - begun_s) / unit_s
-        now = self._clock() if self._clock else _EPOCH + timedelta(seconds=now_s)
+        now = self._clock() if self._clock else self.channel.machine.clock.now
         if number == _DATE:
             return float(now.year * 10_000 + now.month * 100 + now.day)
         return float(now.hour * 10_000 + now.minute * 100 + now.second)
