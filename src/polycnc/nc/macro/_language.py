@@ -202,7 +202,8 @@ class MacroSource:
         if arguments is not None and arguments.values is not None:
             language.variables.enter(arguments.values)
         self._inch = 1.0
-        self._generator: Generator[Any, None, None] = (item for item in ())
+        nothing: tuple[SourceItem, ...] = ()
+        self._generator: Generator[Any, None, None] = (item for item in nothing)
         if compiled.code is not None:
             self._generator = self._start(compiled.code)
 
@@ -416,7 +417,7 @@ class MacroSource:
     # ------------------------------------------------------------------ errors
 
     def _endless(self) -> ProgramError:
-        frame = self._generator.gi_frame
+        frame = getattr(self._generator, "gi_frame", None)
         code = self._compiled.code
         assert code is not None
         at = 0 if frame is None else code.traced.places[frame.f_lineno - 1]
