@@ -34,11 +34,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias, runtime_checkable
 
 from polycnc.nc._block_records import Call
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
+
+if TYPE_CHECKING:
+    from polycnc.nc._channel import Channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,4 +151,13 @@ class Language(Protocol):
         Raises:
             ProgramError: the program cannot be translated.
         """
+        ...
+
+
+@runtime_checkable
+class BoundLanguage(Language, Protocol):
+    """A language that reads the state of the channel it works for."""
+
+    def attach(self, channel: Channel) -> None:
+        """Take the channel, before it begins."""
         ...

@@ -15,6 +15,7 @@ from polycnc.kernel import free_slots
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc._block_records import BlockRecords, Call
 from polycnc.nc._block_source import (
+    BoundLanguage,
     CallProgram,
     Drain,
     EndSource,
@@ -149,8 +150,15 @@ class Channel:
         self.writer.stands_at_stops = stands_at_stops
         self.writer.answers = answers
         self.writer.marks = deque() if marks else None
+        if isinstance(language, BoundLanguage):
+            language.attach(self)
         self._begun = False
         self._seeking = False
+
+    @property
+    def depth(self) -> int:
+        """How deep the present program is nested; 0 is the main program."""
+        return self._calls.depth
 
     @property
     def done(self) -> bool:
@@ -324,7 +332,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
-        if _START_OFFSET in config.offsets:
+        if _START_OFFSET in config.offsets or self.dialect.macros:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 

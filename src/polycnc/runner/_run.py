@@ -13,6 +13,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
+from polycnc.nc.macro import language_for
 from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
@@ -86,7 +87,7 @@ def run(
         simulated,
         text,
         chosen,
-        language=None if control is None else control.language,
+        language=language_for(chosen) if control is None else control.language,
         options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
         rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, execution),
@@ -133,7 +134,7 @@ def check(
     if control is not None:
         return control.check(text)
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = ProgramRun(simulated, text, chosen, options=options)
+    execution = ProgramRun(simulated, text, chosen, options=options, language=language_for(chosen))
     run_to_end(execution, every_cycle=False)
     return execution.channel.errors
 

@@ -94,7 +94,8 @@ class Calls:
             UsageError: its file cannot be read.
         """
         deepest = self._dialect.sub_program.depth
-        if self.depth >= deepest:
+        # Calls with arguments have their own limit, which the language watches.
+        if sum(running.arguments is None for running in self._stack) > deepest:
             return (
                 f"sub-programs are nested more than {deepest} deep",
                 f"Dialect '{self._dialect.name}' allows {deepest} levels: does a sub-program call itself?",

@@ -12,7 +12,9 @@ from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._compensation import RadiusCompensation
 from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc.blocks._cycles import CycleWords
+from polycnc.nc.blocks._frame import Frame
 from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.blocks._tables import ProgramTables
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +55,8 @@ class Plain(NamedTuple):
     compensation_tool: int | None
     length_tool: int
     m_codes: tuple[int, ...]
+    frame: Frame
+    skip_position: tuple[float, ...] | None
 
 
 class ModalSnapshot(NamedTuple):
@@ -90,13 +94,17 @@ class ChannelState:
     the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
     -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
     length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any.
+    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
+    mirrored, `skip_position` where the last skip move ended (machine coordinates).
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
         self.machine = machine
         self.modal = modal
-        self.coordinates = Coordinates(machine, modal)
+        self.tables = ProgramTables(machine)
+        self.coordinates = Coordinates(self.tables, modal)
+        self.frame = Frame()
+        self.skip_position: tuple[float, ...] | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
@@ -143,6 +151,8 @@ class ChannelState:
             self.compensation_tool,
             self.length_tool,
             self.m_codes,
+            self.frame,
+            self.skip_position,
         )
 
     def snapshot(self) -> ModalSnapshot:
