@@ -164,7 +164,7 @@ REFUSALS = {
     ),
     "unknown key unlike any other": (
         AXIS_X + "[spindle]\npower_kw = 7",
-        (7, 1, "unknown key 'power_kw' in [spindle]", "known here: max_rpm"),
+        (7, 1, "unknown key 'power_kw' in [spindle]", "known here: max_rpm, acceleration_rpm_s"),
     ),
     "a wrong name for a required key is one problem, not two": (
         'name = "m"\n[[axis]]\nname = "X"\nvmax_m_s = 500\namax_mm_s2 = 1',

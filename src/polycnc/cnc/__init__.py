@@ -1,11 +1,90 @@
-"""A numerical control without a vendor: program runs that can be held, stepped and watched."""
+"""A numerical control without a vendor: its programs, tools, alarms, timers, spindle, PLC and manual motion."""
 
+from polycnc.cnc._alarms import (
+    ALARMS,
+    Alarm,
+    AlarmKind,
+    AlarmList,
+    AlarmRow,
+    AlarmTable,
+    ClearedBy,
+    OperatorMessage,
+    OperatorMessages,
+    PastAlarm,
+)
+from polycnc.cnc._control import Control, ControlEvent
+from polycnc.cnc._control_channel import ControlChannel
+from polycnc.cnc._control_data import AfterManual, ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
+from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
+from polycnc.cnc._program_edit import ProgramEdit
+from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
 from polycnc.cnc._program_run import ProgramRun
+from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
+from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
+from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
+from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
 __all__ = [
+    "ALARMS",
+    "AfterManual",
+    "Alarm",
+    "AlarmKind",
+    "AlarmList",
+    "AlarmRow",
+    "AlarmTable",
+    "Answer",
+    "AxisMotion",
+    "AxisStatus",
+    "ChannelStatus",
+    "ClearedBy",
+    "Control",
+    "ControlChannel",
+    "ControlData",
+    "ControlError",
+    "ControlEvent",
+    "Emergency",
+    "Feed",
+    "Found",
+    "Function",
+    "ManualData",
+    "ManualKind",
+    "ManualMotion",
+    "ManualState",
+    "MemoryData",
+    "Mode",
+    "Motion",
+    "OffsetTable",
+    "OnModeChange",
+    "OperatorMessage",
+    "OperatorMessages",
+    "Overrides",
+    "PartCounter",
+    "Parts",
+    "PastAlarm",
+    "PlcModel",
+    "PlcState",
+    "ProgramEdit",
+    "ProgramEntry",
+    "ProgramMemory",
     "ProgramRun",
+    "Refusal",
+    "Request",
     "RunAlarm",
     "RunOptions",
     "RunState",
+    "Script",
+    "Spindle",
+    "SpindleMotion",
+    "SpindleState",
+    "Status",
+    "Switches",
+    "Timer",
+    "Timers",
+    "TimersState",
+    "Tool",
+    "ToolTable",
+    "first_comment",
 ]

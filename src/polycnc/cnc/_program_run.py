@@ -34,7 +34,7 @@ from polycnc.kernel import (
     give_to_path,
     start_path,
 )
-from polycnc.machine import Machine, Reason
+from polycnc.machine import Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
@@ -43,6 +43,7 @@ from polycnc.nc import (
     Dialect,
     Event,
     Language,
+    Library,
     ModalWords,
     ProgramText,
     Stop,
@@ -51,7 +52,7 @@ from polycnc.nc import (
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 Rows: TypeAlias = Callable[[Floats, npt.NDArray[np.int64]], None]
-OnEvent: TypeAlias = Callable[[Event], None]
+OnEvent: TypeAlias = Callable[[Event], bool | None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
 _MASK = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
@@ -70,7 +71,8 @@ class ProgramRun:
     """Run `program` on path `path` of `machine`.
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
-    `on_event` is told each auxiliary function in the cycle in which the path comes to it.
+    `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
+    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -84,9 +86,12 @@ class ProgramRun:
         *,
         path: int = 0,
         options: RunOptions | None = None,
+        config: MachineConfig | None = None,
+        library: Library | None = None,
         language: Language | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
+        before: ProgramRun | None = None,
     ) -> None:
         options = options or RunOptions()
         self.machine = machine
@@ -99,6 +104,8 @@ class ProgramRun:
         self.alarm: RunAlarm | None = None
         self._options = options
         self._language = language
+        self._config = config
+        self._library = library
         self._block_delete = options.block_delete
         self._single_block = options.single_block
         self._state = RunState.READY
@@ -106,8 +113,9 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
+        self._unanswered = False  # an auxiliary function at which the path stands
         self._row = machine.state.paths.row[path]
-        self.channel = self._new_channel(program, None)
+        self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
         self.feed = PathFeed(machine, self.channel, self._ahead)
 
     def _new_channel(self, program: ProgramText, before: Channel | None) -> Channel:
@@ -116,6 +124,8 @@ class ProgramRun:
             self.dialect,
             self.machine,
             path=self.path,
+            config=self._config,
+            library=self._library,
             language=self._language,
             skip_levels=self._block_delete,
             stands_at_stops=self._options.stands_at_stops,
@@ -169,6 +179,11 @@ class ProgramRun:
         self._state = RunState.ACTIVE
         self._set_hold()
         self._set_limit(next_block=True)
+
+    def answered(self) -> None:
+        """Let the path go on from the auxiliary function at which it stands."""
+        self._unanswered = False
+        self._set_hold()
 
     def reset(self) -> None:
         """Break the program off: the axes brake on the path, then the rest of it is dropped.
@@ -378,7 +393,7 @@ class ProgramRun:
 
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        hold = self._hold or self._stop is not None
+        hold = self._hold or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == RUNNING:
@@ -398,7 +413,8 @@ class ProgramRun:
         event = self.channel.writer.events.pop(number)
         self._met = int(self._row["head"]), event.tag
         if event.word and self.on_event is not None:
-            self.on_event(event)
+            self._unanswered = bool(self.on_event(event))
+            self._set_hold()
         if event.stop is Stop.DRAIN:
             self.channel.go_on()
         elif event.stop is not None and self.stands_at(event.stop):
@@ -419,7 +435,7 @@ class ProgramRun:
         if self._dropping:
             if self.at_rest:
                 self._drop()
-        elif self._state is RunState.ACTIVE and row["state"] == READY:
+        elif self._state is RunState.ACTIVE and row["state"] == READY and not self._unanswered:
             if row["head"] >= row["tail"] and self.channel.done:
                 self._state = RunState.COMPLETED if self.channel.error is None else RunState.ALARM
             elif row["head"] >= row["limit"]:
@@ -434,6 +450,7 @@ class ProgramRun:
         self._dropping = False
         self._hold = False
         self._stop = None
+        self._unanswered = False
         self._met = None
         self._set_hold()
 

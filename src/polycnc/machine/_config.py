@@ -88,6 +88,17 @@ class SpindleConfig(StrictModel):
     """Describe the spindle."""
 
     max_rpm: Positive = Field(default=24000.0, description="Highest spindle speed, revolutions per minute.")
+    acceleration_rpm_s: Positive | None = Field(
+        default=None,
+        description="Change of the spindle speed in a second; absent: every change takes `times.spindle_start_s`.",
+    )
+    reached_share: Share = Field(
+        default=0.0, description="Deviation from the commanded speed that counts as reached, as a share of it."
+    )
+    orientation_rpm: Positive = Field(
+        default=60.0, description="Speed at which the spindle is brought to an angle."
+    )
+    orientation_deg: float = Field(default=0.0, description="Angle at which an oriented spindle stands.")
 
 
 class ToolConfig(StrictModel):

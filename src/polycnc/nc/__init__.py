@@ -15,6 +15,7 @@ from polycnc.nc._block_source import (
 from polycnc.nc._channel import Channel
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
+from polycnc.nc.blocks._calls import Library
 from polycnc.nc.blocks._channel_state import ChannelState, Spindle
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
@@ -41,6 +42,7 @@ __all__ = [
     "Event",
     "Group",
     "Language",
+    "Library",
     "MAction",
     "Message",
     "ModalWords",

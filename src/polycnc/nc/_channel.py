@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from polycnc.errors import ProgramError
 from polycnc.kernel import free_slots
-from polycnc.machine import Machine
+from polycnc.machine import Machine, MachineConfig
 from polycnc.nc._block_records import BlockRecords
 from polycnc.nc._block_source import (
     CallProgram,
@@ -21,7 +21,7 @@ from polycnc.nc._block_source import (
     WordsBlock,
 )
 from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._calls import Back, Calls, Place
+from polycnc.nc.blocks._calls import Back, Calls, Library, Place
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._interpreter import Control, Interpreter
 from polycnc.nc.blocks._messages import Messages
@@ -53,12 +53,13 @@ _START_OFFSET = "G54"
 class Channel:
     """Prepare one program for one path of a machine.
 
-    `language` executes the programs that are more than words. With `stands_at_stops` preparation waits at M0 and
-    M1 for `go_on`; else they are events like any other. `records` tells what block a segment belongs to. `before`
-    is the channel that used the path until now: its modal state stays in force. With `collect_errors` a refused
-    block is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter gives
-    the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading it, and once
-    compiling it, takes longer than they do.
+    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is none), and
+    `library` gives sub-programs that are in no file. `language` executes the programs that are more than words. With
+    `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are events like any other. `records` tells
+    what block a segment belongs to. `before` is the channel that used the path until now: its modal state stays in
+    force. With `collect_errors` a refused block is noted in `errors` and left out; else preparation ends there with
+    `error`. The ordinary interpreter gives the same queue as the compiled kernel, which takes over after the first
+    `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
     """
 
     def __init__(
@@ -68,6 +69,8 @@ class Channel:
         machine: Machine,
         *,
         path: int = 0,
+        config: MachineConfig | None = None,
+        library: Library | None = None,
         language: Language | None = None,
         skip_levels: frozenset[int] = frozenset(),
         stands_at_stops: bool = False,
@@ -87,7 +90,7 @@ class Channel:
         self.skip_levels = skip_levels
         self._language = language
         self._ordinary_blocks = ordinary_blocks
-        self._calls = Calls(program, dialect)
+        self._calls = Calls(program, dialect, library)
         self._place = Place(program)
         self._text_end = len(
             program
@@ -102,7 +105,7 @@ class Channel:
         kernel = machine.state
         if before is None:
             self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
-            self.state = self._initial_state()
+            self.state = self._initial_state(config or machine.config)
             self.records = BlockRecords(dialect, self._scan_rules, self._tables, _CHUNK_BLOCKS)
         else:
             self.writer, self.state, self.records = before.writer, before.state, before.records
@@ -171,8 +174,7 @@ class Channel:
         self._ended = True
         self._calls.close()
 
-    def _initial_state(self) -> ChannelState:
-        config = self.machine.config
+    def _initial_state(self, config: MachineConfig) -> ChannelState:
         limits = [axis.soft_limits for axis in config.axes]
         modal = make_modal(
             config.axis_names,

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
+from typing import TypeAlias
 
 from polycnc.errors import UsageError
 from polycnc.nc._block_records import Call
 from polycnc.nc._block_source import BlockSource
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.text._program import ProgramText
+
+Library: TypeAlias = Callable[[int], ProgramText | None]
+"""Where sub-programs come from that are in no file beside the main program: a program by its number, or None."""
 
 _LABEL = re.compile(rb"(?:\A|(?<=[\r\n]))[ \t]*[Oo:][ \t]*0*([0-9]+)")
 _DIGITS = 4  # how many digits a program number is usually written with
@@ -55,8 +60,9 @@ class Running:
 class Calls:
     """Keep the stack of running programs, the main program at the bottom."""
 
-    def __init__(self, main: ProgramText, dialect: Dialect) -> None:
+    def __init__(self, main: ProgramText, dialect: Dialect, library: Library | None = None) -> None:
         self._dialect = dialect
+        self._library = library
         self._main = main
         self._stack = [Running(Place(main))]
         self._calls: tuple[Call, ...] = ()
@@ -145,12 +151,15 @@ class Calls:
         )
 
     def _find(self, program: int) -> Place | None:
-        """Return where a sub-program begins: in the present file, the main file, or a file of its own."""
+        """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
         for text in (self.running.begin.text, self._main):
             if text.name not in self._labels:
                 self._labels[text.name] = _labels(text)
             if program in self._labels[text.name]:
                 return self._labels[text.name][program]
+        if self._library is not None:
+            found = self._library(program)
+            return None if found is None else Place(found)
         main = Path(self._main.name)
         if not main.is_file():
             return None  # a text from elsewhere has no folder

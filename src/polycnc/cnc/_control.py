@@ -1,0 +1,666 @@
+"""A numerical control: modes, the operator's commands, channels, and what they share, as one device.
+
+Every command is carried out or refused whole: a refused one raises `ControlError` and changes nothing. Time passes in
+`advance`, in stretches that end where anything has to be looked at, so Python is not entered in every cycle.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from enum import IntFlag
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._control_channel import ControlChannel
+from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._manual import ManualMotion
+from polycnc.cnc._plc import Function, PlcModel, Script
+from polycnc.cnc._program_edit import ProgramEdit
+from polycnc.cnc._program_memory import ProgramMemory
+from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.cnc._run_state import RunState
+from polycnc.cnc._spindle import Spindle
+from polycnc.cnc._status import Emergency, Status
+from polycnc.cnc._status_reading import read_status
+from polycnc.cnc._tables import OffsetTable, ToolTable
+from polycnc.cnc._timers import PartCounter, Timers
+from polycnc.kernel import FEED_S
+from polycnc.machine import AnyAxis, Machine, MachineConfig, Reason, Store, load_machine
+from polycnc.nc import Dialect, Event, ProgramText, load_dialect
+
+Condition: TypeAlias = Callable[[], bool]
+_MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
+_PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
+_MOST_STANDSTILLS = 10_000
+_MDI_NAME = "MDI"
+_FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
+
+
+class ControlEvent(IntFlag):
+    """What can end `Control.advance` early."""
+
+    NONE = 0
+    RUN_STATE = 1  # a channel has begun, stopped, ended
+    ALARM = 2  # an alarm has come
+    MANUAL = 4  # all manual motion has ended
+    FUNCTION = 8  # an auxiliary function was handed to the PLC, or answered
+
+
+class Control:
+    """A numerical control on a machine of its own.
+
+    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories. `script` tells how
+    the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    """
+
+    def __init__(
+        self,
+        config: MachineConfig | str | Path | None = None,
+        *,
+        channels: int = 1,
+        memory: str | Path | Store | None = None,
+        dialect: Dialect | str | Path | None = None,
+        data: ControlData | None = None,
+        script: Script | None = None,
+        servo: bool = False,
+        record_cycles: int = 0,
+    ) -> None:
+        self.data = data or ControlData()
+        self.machine = Machine(
+            load_machine(config), servo=servo, paths=channels, memory=memory, record_cycles=record_cycles
+        )
+        self.dialect = load_dialect(dialect)
+        store, clock, machine_file = self.machine.memory, self.machine.clock, self.machine.config
+        self.programs = ProgramMemory(store, clock, self.data.memory)
+        self.tools = ToolTable(store, machine_file)
+        self.offsets = OffsetTable(store, machine_file)
+        self.alarms = AlarmList(store, clock, self.data.alarms, keep=self.data.history_length)
+        self.messages = OperatorMessages(store, clock, keep=self.data.history_length)
+        self.timers = Timers(store, clock)
+        self.parts = PartCounter(store)
+        self.spindle = Spindle(clock, machine_file)
+        self.plc = PlcModel(clock, machine_file.times, script, limit_s=self.data.answer_limit_s)
+        self.manual = ManualMotion(
+            self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
+        )
+        self.channels = tuple(
+            ControlChannel(
+                self.machine,
+                path,
+                self.dialect,
+                self.manual,
+                config=self._live_config(),
+                library=self._sub_program,
+                dry_run_mm_min=self.data.dry_run_mm_min,
+                on_event=self._meet,
+            )
+            for path in range(channels)
+        )
+        self.clock = clock
+        self._mode = Mode.AUTO
+        self._emergency = Emergency.OFF
+        self._overrides = Overrides()
+        self._switches = Switches()
+        self._mdi: dict[int, ProgramText] = {}
+        self._relative_zero = [0.0] * len(machine_file.axes)
+        self._edits: list[ProgramEdit] = []
+        self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
+        self._raised = ControlEvent.NONE
+        self.manual.check_limit_switches()
+
+    def _live_config(self) -> MachineConfig:
+        """Return the machine file with the tables that change while programs run."""
+        return self.machine.config.model_copy(update={"tools": self.tools, "offsets": self.offsets})
+
+    # ------------------------------------------------------------------ modes and settings
+
+    def change_axes(self, axes: tuple[AnyAxis, ...]) -> None:
+        """Let the axes have these speeds, accelerations and limits from now on.
+
+        Raises:
+            ControlError: A program is being executed or is interrupted, or axes move.
+        """
+        for channel in self.channels:
+            self._check_over(channel)
+        if self.manual.active:
+            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+        self.machine.change_axes(axes)
+        self.manual.change_axes(axes)
+        for channel in self.channels:
+            channel.change_config(self._live_config(), self.dialect)
+
+    def change_dialect(self, dialect: Dialect) -> None:
+        """Let programs be read in another dialect, or with other settings of it, from now on.
+
+        Raises:
+            ControlError: A program is being executed or is interrupted.
+        """
+        for channel in self.channels:
+            self._check_over(channel)
+        self.dialect = dialect
+        for channel in self.channels:
+            channel.change_config(self._live_config(), dialect)
+
+    @property
+    def mode(self) -> Mode:
+        """The mode."""
+        return self._mode
+
+    @property
+    def overrides(self) -> Overrides:
+        """The overrides."""
+        return self._overrides
+
+    @property
+    def switches(self) -> Switches:
+        """What the operator has switched on for programs."""
+        return self._switches
+
+    @property
+    def emergency(self) -> Emergency:
+        """The state of the emergency stop."""
+        return self._emergency
+
+    def select_mode(self, mode: Mode) -> None:
+        """Change the mode; manual motion of the old one brakes, an edit in the foreground ends.
+
+        What it does to a program that is executed is `ControlData.mode_change_while_running`.
+
+        Raises:
+            ControlError: A program is being executed and the control refuses to leave its mode then.
+        """
+        mode = Mode(mode)
+        if mode is self._mode:
+            return
+        running = [channel for channel in self.channels if channel.active]
+        what = self.data.mode_change_while_running
+        if running and what is OnModeChange.REFUSE:
+            raise ControlError(
+                Refusal.RUNNING,
+                f"the mode cannot change to {mode} while a program is being executed",
+                hint="Hold the program first (feed hold), or wait for its end.",
+            )
+        for channel in running:
+            if what is OnModeChange.HOLD:
+                channel.hold()
+            else:
+                channel.reset()
+        self.manual.stop_all()
+        for edit in [edit for edit in self._edits if not edit.background]:
+            edit.close()
+        self._mode = mode
+
+    def set_overrides(
+        self, *, feed: float | None = None, rapid: float | None = None, spindle: float | None = None
+    ) -> None:
+        """Set overrides, 1 is 100 %; what is None stays.
+
+        Raises:
+            ControlError: One is out of range.
+        """
+        given = {"feed": feed, "rapid": rapid, "spindle": spindle}
+        wanted = replace(self._overrides, **{name: each for name, each in given.items() if each is not None})
+        self._overrides = wanted.checked(self.data)
+        self.manual.set_overrides(feed=wanted.feed, rapid=wanted.rapid)
+        self.spindle.set_override(wanted.spindle)
+        for channel in self.channels:
+            channel.set_overrides(wanted)
+
+    def set_switches(
+        self,
+        *,
+        single_block: bool | None = None,
+        optional_stop: bool | None = None,
+        dry_run: bool | None = None,
+        block_delete: frozenset[int] | None = None,
+    ) -> None:
+        """Switch single block and its like on or off; what is None stays.
+
+        Raises:
+            ControlError: A skip mark that is not from 1 to 9.
+        """
+        given: dict[str, Any] = {
+            "single_block": single_block,
+            "optional_stop": optional_stop,
+            "dry_run": dry_run,
+            "block_delete": block_delete,
+        }
+        wanted = replace(self._switches, **{name: each for name, each in given.items() if each is not None})
+        if not wanted.block_delete <= frozenset(range(1, 10)):
+            raise ControlError(
+                Refusal.DATA,
+                f"{sorted(wanted.block_delete)} are not skip marks",
+                hint="Give numbers from 1 to 9.",
+            )
+        self._switches = wanted
+        for channel in self.channels:
+            channel.set_switches(wanted)
+
+    # ------------------------------------------------------------------ programs
+
+    def select_program(self, program: str | ProgramText, *, channel: int = 0) -> None:
+        """Select what a start in AUTO executes: a program of the memory, or a text of the outside.
+
+        Raises:
+            ControlError: There is no such program or channel, or the channel executes one.
+        """
+        chosen = self._channel(channel)
+        self._check_over(chosen)
+        text = self.programs.text(program) if isinstance(program, str) else program
+        chosen.program = text
+
+    def set_mdi(self, text: str, *, channel: int = 0) -> None:
+        """Put in the text that a start in MDI executes.
+
+        Raises:
+            ControlError: Not in MDI, no text, no such channel, or the channel executes a program.
+        """
+        chosen = self._channel(channel)
+        if self._mode is not Mode.MDI:
+            raise self._wrong_mode("a text can be put in", Mode.MDI)
+        self._check_over(chosen)
+        if not text.strip():
+            raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
+        self._mdi[channel] = ProgramText.from_text(text, _MDI_NAME)
+
+    def cycle_start(self, *, channel: int = 0) -> None:
+        """Begin the selected program, the MDI text, or go on where a program is interrupted.
+
+        Raises:
+            ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
+                move or are not referenced, or a program is being executed.
+        """
+        chosen = self._channel(channel)
+        self._check_ready()
+        if self._mode not in _PROGRAM_MODES:
+            raise self._wrong_mode("a program can start", *sorted(_PROGRAM_MODES))
+        if chosen.active:
+            raise ControlError(
+                Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
+            )
+        if self.manual.active:
+            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+        is_mdi = self._mode is Mode.MDI
+        if chosen.interrupted:
+            if chosen.is_mdi is not is_mdi:
+                raise ControlError(
+                    Refusal.MODE,
+                    f"the program that is interrupted was started in {Mode.MDI if chosen.is_mdi else Mode.AUTO}",
+                    hint="Go on in that mode, or reset it.",
+                )
+            chosen.go_on(self.data.after_manual)
+        else:
+            chosen.begin(self._to_begin(chosen, channel, is_mdi), self._switches, self._overrides, mdi=is_mdi)
+            self.timers.start_cycle()
+        self._note_running()
+        self._raised |= ControlEvent.RUN_STATE
+
+    def feed_hold(self, *, channel: int | None = None) -> None:
+        """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.
+
+        Raises:
+            ControlError: Nothing moves or is being executed.
+        """
+        chosen = self.channels if channel is None else (self._channel(channel),)
+        running = [each for each in chosen if each.active]
+        if not running and not self.manual.active:
+            raise ControlError(Refusal.IDLE, "nothing is being executed", hint="There is nothing to hold.")
+        for each in running:
+            each.hold()
+        self.manual.stop_all()
+        self._raised |= ControlEvent.RUN_STATE
+
+    def reset(self) -> None:
+        """Break off everything, and take away the alarms whose causes are gone; the axes brake."""
+        self._break_off()
+        if self.data.reset_stops_spindle:
+            self.spindle.stop()
+        if self._emergency is Emergency.RESET_NEEDED:
+            self._emergency = Emergency.OFF
+        self.alarms.reset()
+        self.machine.state.servo.error_tripped[:] = 0
+        self.manual.check_limit_switches()
+        self._note_running()
+        self._raised |= ControlEvent.RUN_STATE
+
+    def emergency_stop(self, on: bool = True) -> None:
+        """Press or release the emergency stop: everything brakes and is broken off; the spindle stops."""
+        if on and self._emergency is not Emergency.ON:
+            self._emergency = Emergency.ON
+            self.alarms.put("emergency_stop")
+            self._raised |= ControlEvent.ALARM
+            self._break_off()
+            self.spindle.stop()
+            self._note_running()
+        elif not on and self._emergency is Emergency.ON:
+            self.alarms.cause_gone("emergency_stop")
+            needed = self.data.emergency_needs_reset
+            self._emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
+
+    def put_alarm(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
+        """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
+        if self.alarms.has(name, axis):
+            return self.alarms.put(name, axis=axis)
+        alarm = self.alarms.put(name, axis=axis, detail=detail)
+        self.manual.stop_all()
+        for channel in self.channels:
+            channel.fail()
+        self._raised |= ControlEvent.ALARM
+        return alarm
+
+    def _break_off(self) -> None:
+        """Let everything brake, and forget what was under way."""
+        self.manual.stop_all()
+        for channel in self.channels:
+            channel.reset()
+        self._waiting.clear()
+        self.plc.cancel()
+
+    # ------------------------------------------------------------------ editing
+
+    def edit(self, name: str, *, background: bool = False) -> ProgramEdit:
+        """Open a program for editing: in EDIT in the foreground, in any mode in the background; one of each.
+
+        Raises:
+            ControlError: Not in EDIT, such an edit is open, or the program is not there, protected or in use.
+        """
+        if not background and self._mode is not Mode.EDIT:
+            raise self._wrong_mode("a program can be edited in the foreground", Mode.EDIT)
+        self._edits = [edit for edit in self._edits if edit.is_open]
+        if any(edit.background is background for edit in self._edits):
+            raise ControlError(
+                Refusal.IN_USE,
+                f"a program is being edited in the {'background' if background else 'foreground'}",
+                hint="Close that edit first.",
+            )
+        edit = ProgramEdit(self.programs, name, background=background)
+        self._edits.append(edit)
+        return edit
+
+    # ------------------------------------------------------------------ axes by hand
+
+    def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:
+        """Press a jog key (1 or -1), or let it go (None).
+
+        Raises:
+            ControlError: Not in JOG (letting go is always allowed), or as `ManualMotion.jog`.
+        """
+        if direction:
+            self._lend(Mode.JOG)
+        self.manual.jog(axis, direction, rapid=rapid)
+
+    def increment(self, axis: str, direction: int, size: float, *, rapid: bool = False) -> None:
+        """Go one increment (mm or degree).
+
+        Raises:
+            ControlError: Not in INC, or as `ManualMotion.increment`.
+        """
+        self._lend(Mode.INC)
+        self.manual.increment(axis, direction, size, rapid=rapid)
+
+    def handwheel(self, axis: str, pulses: int, size: float) -> None:
+        """Turn the handwheel by pulses of a size (mm or degree) each.
+
+        Raises:
+            ControlError: Not in HANDLE, or as `ManualMotion.handwheel`.
+        """
+        self._lend(Mode.HANDLE)
+        self.manual.handwheel(axis, pulses, size)
+
+    def reference(self, axis: str) -> None:
+        """Reference an axis.
+
+        Raises:
+            ControlError: Not in REF, a program is interrupted, or as `ManualMotion.reference`.
+        """
+        if any(channel.interrupted for channel in self.channels):
+            raise ControlError(
+                Refusal.RUNNING, "a program is interrupted", hint="Let it go on to its end, or reset it."
+            )
+        self._lend(Mode.REF)
+        self.manual.reference(axis)
+
+    def set_relative(self, axis: str, position: float = 0.0) -> None:
+        """Let the relative position of an axis be `position` (mm or degree) here.
+
+        Raises:
+            ControlError: No such axis, or a position that is not finite.
+        """
+        names = self.machine.config.axis_names
+        if axis not in names or position - position != 0.0:
+            raise ControlError(
+                Refusal.DATA, f"axis {axis} cannot be at {position}", hint=f"The axes are {', '.join(names)}."
+            )
+        index = names.index(axis)
+        self._relative_zero[index] = float(self.machine.state.servo.actual[index]) - position
+
+    @property
+    def relative_zero(self) -> tuple[float, ...]:
+        """Where the relative positions count from (machine coordinates)."""
+        return tuple(self._relative_zero)
+
+    # ------------------------------------------------------------------ time
+
+    @property
+    def raised(self) -> ControlEvent:
+        """What happened in the last cycle that was run, and since."""
+        return self._raised
+
+    def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
+        """Let up to `cycles` control cycles pass; return how many did.
+
+        Fewer after the cycle in which one of the events `until` (`ControlEvent`) happened, or in which the condition
+        `until`, looked at in every cycle, holds.
+        """
+        condition = until if callable(until) else None
+        events = 0 if until is None or callable(until) else int(until)
+        done = 0
+        standstills = 0
+        while done < cycles:
+            self._raised = ControlEvent.NONE
+            passed = self._stretch(1 if condition is not None else cycles - done)
+            done += passed
+            standstills = 0 if passed else standstills + 1
+            if self._raised & events or (condition is not None and condition()):
+                break
+            if standstills > _MOST_STANDSTILLS:
+                break  # a program that loops without motion, as fast as time can pass
+        return done
+
+    def _stretch(self, cycles: int) -> int:
+        """Let time pass until something has to be looked at, and look."""
+        states = [channel.run_state for channel in self.channels]
+        alarms, manual = self.alarms.active, self.manual.active
+        row = self.machine.state.clock[0]
+        row["mask"] = 0
+        for number, channel in enumerate(self.channels):
+            self._take_answers(number, channel)  # somebody may have answered since
+            if channel.run is not None and not channel.returning:
+                cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
+        due = self.plc.due_cycle()
+        if due is not None:
+            cycles = min(cycles, max(1, due - self.clock.cycles))
+        cycles = min(cycles, self.manual.horizon())
+        cutting_s = self._cutting_s()
+        reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
+        passed = self.machine.advance(cycles, until=int(row["mask"]) | reasons)
+        self.timers.count(
+            passed,
+            operating=RunState.ACTIVE in states,
+            cutting_s=self._cutting_s() - cutting_s,
+            tool=self._tool(),
+        )
+        self._look(passed)
+        if [channel.run_state for channel in self.channels] != states:
+            self._raised |= ControlEvent.RUN_STATE
+        if any(alarm not in alarms for alarm in self.alarms.active):
+            self._raised |= ControlEvent.ALARM
+        if manual and not self.manual.active:
+            self._raised |= ControlEvent.MANUAL
+        return passed
+
+    def _look(self, passed: int) -> None:
+        """Look at what the last cycle has brought."""
+        alarms = self.alarms.active
+        self.manual.after()
+        for number, channel in enumerate(self.channels):
+            before = channel.run_state
+            if channel.run is not None and not channel.returning:
+                channel.run.after_cycles(passed)
+            if before is not channel.run_state:
+                self._note_end(channel)
+            channel.look()
+            self._take_answers(number, channel)
+        for request in self.plc.take_failed():
+            name = "function_not_answered" if request.timed_out else "function_failed"
+            detail = str(request) if request.timed_out else f"{request}: {request.alarm}"
+            self.alarms.put(name, detail=detail)
+        for index, axis in enumerate(self.machine.config.axes):
+            if self.machine.state.servo.error_tripped[index]:
+                self.alarms.put("following_error", axis=axis.name)
+        if any(alarm not in alarms for alarm in self.alarms.active):
+            self.manual.stop_all()
+            for channel in self.channels:
+                channel.fail()
+        self._note_running()
+
+    def _sub_program(self, number: int) -> ProgramText | None:
+        for name in self.data.sub_program_names:
+            if (found := name.format(number=number)) in self.programs:
+                return self.programs.text(found)
+        return None
+
+    def _note_end(self, channel: ControlChannel) -> None:
+        """Count the part of a program that has ended, or put its error among the alarms."""
+        run = channel.run
+        if channel.run_state is RunState.COMPLETED and self.data.count_parts and not channel.is_mdi:
+            self.parts.count()
+        if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
+            self.alarms.put("program", detail=str(run.error).splitlines()[0])
+
+    def _note_running(self) -> None:
+        self.programs.running = frozenset().union(*(channel.programs for channel in self.channels))
+
+    # ------------------------------------------------------------------ auxiliary functions
+
+    def _meet(self, channel: ControlChannel, event: Event) -> bool:
+        """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
+        block = channel.executed
+        serials = []
+        for letter, number in functions_of(event.word):
+            if letter == "S" and block is not None:
+                self.spindle.turn(rpm=block.modal.speed)
+            serials.append(self.plc.strobe(Function(letter), number, default_s=0.0))
+        if block is not None and self.spindle.state().direction != block.modal.spindle_direction:
+            self.spindle.turn(rpm=block.modal.speed, direction=block.modal.spindle_direction)
+        self._raised |= ControlEvent.FUNCTION
+        waiting = [serial for serial in serials if not self.plc.finished(serial)]
+        if waiting:
+            self._waiting.setdefault(channel.path, []).extend(waiting)
+        return bool(waiting)
+
+    def waiting_functions(self, path: int) -> tuple[str, ...]:
+        """Return the auxiliary functions, like "M8", that a channel waits for."""
+        waiting = self._waiting.get(path, [])
+        return tuple(str(each) for each in self.plc.pending if each.serial in waiting)
+
+    def _take_answers(self, number: int, channel: ControlChannel) -> None:
+        """Let a channel go on whose functions have all been answered."""
+        waiting = self._waiting.get(number)
+        if waiting and all(self.plc.finished(serial) for serial in waiting):
+            del self._waiting[number]
+            self._raised |= ControlEvent.FUNCTION
+            if channel.run is not None:
+                channel.run.answered()
+
+    # ------------------------------------------------------------------ state
+
+    def status(self) -> Status:
+        """Return what the control is and does in the present cycle."""
+        return read_status(self)
+
+    # ------------------------------------------------------------------ within
+
+    def _channel(self, number: int) -> ControlChannel:
+        if not 0 <= number < len(self.channels):
+            raise ControlError(
+                Refusal.DATA, f"there is no channel {number}", hint=f"Give 0 to {len(self.channels) - 1}."
+            )
+        return self.channels[number]
+
+    def _check_over(self, channel: ControlChannel) -> None:
+        if channel.active or channel.interrupted or channel.broken:
+            raise ControlError(
+                Refusal.RUNNING,
+                "a program is being executed or is interrupted",
+                hint="Wait for its end, or reset it.",
+            )
+
+    def _check_ready(self) -> None:
+        """Refuse to move anything by program while something is wrong."""
+        if self._emergency is not Emergency.OFF:
+            on = self._emergency is Emergency.ON
+            raise ControlError(
+                Refusal.EMERGENCY,
+                "the emergency stop is on" if on else "the emergency stop was on",
+                hint="Release it and reset." if on else "Reset first.",
+            )
+        if self.alarms:
+            first = self.alarms.active[0]
+            raise ControlError(
+                Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset."
+            )
+
+    def _to_begin(self, channel: ControlChannel, number: int, is_mdi: bool) -> ProgramText:
+        """Return the text that a start executes now."""
+        text = self._mdi.get(number) if is_mdi else channel.program
+        if text is None:
+            raise ControlError(
+                Refusal.NOT_FOUND,
+                "there is no MDI text" if is_mdi else "no program is selected",
+                hint="Put in a text." if is_mdi else "Select a program.",
+            )
+        if self.data.reference_required:
+            missing = [axis for axis, done in self.manual.referenced.items() if not done]
+            if missing:
+                raise ControlError(
+                    Refusal.NOT_REFERENCED,
+                    f"axis {', '.join(missing)} is not referenced",
+                    hint="Reference it in REF.",
+                )
+        if not is_mdi and text.name in self.programs:
+            return self.programs.text(text.name)
+        return text
+
+    def _lend(self, mode: Mode) -> None:
+        """Give the axes to manual motion in its mode."""
+        if self._mode is not mode:
+            raise self._wrong_mode(f"axes can be moved in {mode}", mode)
+        if self._emergency is not Emergency.OFF:
+            self._check_ready()
+        serious = [alarm for alarm in self.alarms.active if alarm.kind is not AlarmKind.TRAVEL]
+        if serious:
+            self._check_ready()
+        for channel in self.channels:
+            channel.lend()
+
+    def _wrong_mode(self, what: str, *modes: Mode) -> ControlError:
+        names = " or ".join(modes)
+        return ControlError(
+            Refusal.MODE, f"not in {self._mode}: {what} only in {names}", hint=f"Select {names}."
+        )
+
+    def _cutting_s(self) -> float:
+        return float(self.machine.state.paths.totals[:, FEED_S].sum())
+
+    def _tool(self) -> int:
+        block = self.channels[0].executed
+        return 0 if block is None else block.modal.tool
+
+
+def functions_of(word: str) -> list[tuple[str, int]]:
+    """Return letter and number of the auxiliary functions in the words of an event, "M6 T12" for example."""
+    return [(letter, int(float(number))) for letter, number in _FUNCTION.findall(word)]
