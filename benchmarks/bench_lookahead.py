@@ -1,6 +1,7 @@
 """Time the look-ahead over short lines: all at once, and as a stream with a window of 256 segments.
 
 All at once means limits and the backward pass (`prepare_path`), then the forward pass along all segments (`skip`).
+And how long the planned paths take, against an exact stop at every line.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy.typing as npt
 from _measure import Figure, at_least, at_most
 from _programs import contour
 from _report import run_script
-from polycnc.kernel import KernelState, Paths, append_line, entry, prepare_path, skip, start_path
+from polycnc.kernel import STOP, KernelState, Paths, append_line, entry, prepare_path, skip, start_path
 from polycnc.kernel._limits import AxisLimits
 from polycnc.kernel._segments import Segments
 from polycnc.machine import Machine, load_machine
@@ -77,6 +78,37 @@ def streamed(points: Floats, depth: int, piece: int) -> float:
     return spent
 
 
+def path_time(points: Floats, *, stops: bool) -> int:
+    """Return the cycles that the lines take, at rest after each of them if `stops`."""
+    state = started(len(points) + 8, 0, points)
+    append_points(state.seg, state.paths, state.limits, points, 1, len(points), SPEED_MM_S)
+    if stops:
+        state.seg.row["flags"] |= STOP
+    state.paths.row["closed"] = 1
+    prepare_path(state.seg, state.paths, 0, state.limits, 0.001, state.work)
+    return skip(state, 0, len(points))
+
+
+def against_stopping(points: Floats) -> float:
+    """Return the time of a path by that with an exact stop at every line."""
+    return path_time(points, stops=False) / path_time(points, stops=True)
+
+
+def stairs(steps: int) -> Floats:
+    """Return stairs of 1 mm in X and Y."""
+    points = np.zeros((2 * steps + 1, 3))
+    points[1::2, 0] = points[2::2, 0] = np.arange(1, steps + 1)
+    points[1:, 1] = np.arange(2 * steps) // 2
+    points[2::2, 1] += 1.0
+    return points
+
+
+def scribble(rng: np.random.Generator, lines: int) -> Floats:
+    """Return lines of some tenths of a millimetre that turn at random."""
+    steps = np.column_stack([rng.normal(size=(lines, 2)) * 0.3, np.zeros(lines)])
+    return np.vstack([np.zeros(3), np.cumsum(steps, axis=0)])
+
+
 def _whole_time(points: Floats) -> float:
     return sum(all_at_once(points))
 
@@ -104,6 +136,14 @@ def figures(quick: bool) -> list[Figure]:
         at_most(f"fastest to slowest of {', '.join(f'{n:,}' for n in per_s)}", spread, "x", 1.5),
         at_least(f"streamed, window {WINDOW}, in pieces of {WINDOW}", stream, "segments/s", 0.3e6),
         Figure(f"streamed, window {WINDOW}, one by one from Python", single, "segments/s"),
+        at_most("time of stairs of 1 mm, against stopping", against_stopping(stairs(100)), "x", 1.0),
+        at_most(
+            "time of a scribble, against stopping",
+            against_stopping(scribble(np.random.default_rng(3), 1500)),
+            "x",
+            1.0,
+        ),
+        at_most("time of a contour, against stopping", against_stopping(points[:15_001]), "x", 1.0),
     ]
 
 

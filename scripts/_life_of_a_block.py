@@ -161,7 +161,8 @@ def _by_hand(state, cycle_s: float) -> str:  # type: ignore[no-untyped-def]
             f"full_accel  5000 mm/s² · length / 20 mm     = {full:.3f} mm/s²    X needs most of it",
             f"junction    0.5 · 5000 mm/s² · 0.001 s / {part:.6f} = {corner:.6f} mm/s",
             f"given away  0.5²                            = {share}",
-            f"over        ({corner:.3f} mm/s + (1 - 0.25) / 2 · {full:.0f} mm/s² · 0.001 s) · 0.001 s = {beside:.6f} mm",
+            f"over        ({corner:.3f} mm/s + (1 - 0.25) / 2 · {full:.0f} mm/s² · 0.001 s) · 0.001 s"
+            f" = {beside:.6f} mm",
             f"gain        2 · full_accel · (length - 0.25 · {beside:.6f} mm) = {gain:.3f} mm²/s²",
         )
     )

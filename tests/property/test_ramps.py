@@ -7,7 +7,7 @@ import math
 import hypothesis.strategies as st
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import assume, example, given, settings
 
 from polycnc.kernel._ramps import (
     REGISTERS,
@@ -23,6 +23,7 @@ from polycnc.kernel._ramps import (
     ramps_at,
     ramps_duration,
     set_one_piece,
+    set_pieces,
 )
 
 speeds = st.one_of(st.just(0.0), st.floats(1e-3, 1e3))
@@ -69,6 +70,55 @@ def test_a_segment_is_gone_along_once_and_within_its_limits(
     assert np.allclose(places - 2.0, travelled, rtol=0.0, atol=fastest * duration / 500.0)
     step = accel * (1.0 + jerkrel) * (times[1] - times[0])
     assert np.all(np.abs(np.diff(planned)) <= step * (1.0 + 1e-6) + 1e-9 * fastest)
+
+
+@settings(max_examples=300)
+@given(
+    speed_in=speeds,
+    length=positive,
+    cap=positive,
+    accel=positive,
+    out=speeds,
+    zone=st.floats(0.0, 1.5),
+    share=st.sampled_from((0.0, 0.2, 0.75)),
+    last=st.sampled_from((0.0, 0.3, 0.75)),
+    jerkrel=st.sampled_from((0.0, 0.5)),
+)
+def test_beside_a_corner_the_acceleration_given_up_is_not_used(
+    speed_in: float,
+    length: float,
+    cap: float,
+    accel: float,
+    out: float,
+    zone: float,
+    share: float,
+    last: float,
+    jerkrel: float,
+) -> None:
+    dt = 0.05
+    ramps = np.zeros(REGISTERS)
+    slowest = math.sqrt(max(0.0, speed_in * speed_in - 0.5 * accel * length))  # reached with a quarter of it
+    through = min(max(out, slowest), math.sqrt(speed_in * speed_in + 2.0 * accel * length))
+    assume(through > 0.0 or last == 0.0)
+    set_pieces(
+        ramps, speed_in, length, accel, through, zone * length, share, last / through if last else 0.0, dt
+    )
+    plan_ramps(ramps, speed_in, length, cap, accel, through, 0.0)
+    duration = ramps_duration(ramps)
+    assert ramps[SPEED_OUT] <= through * (1.0 + 1e-9)
+    times = np.linspace(0.0, duration, 2001)
+    step = times[1] - times[0]
+    places, planned = np.array([ramps_at(ramps, t, jerkrel) for t in times]).T
+    assert places[-1] == length
+    fastest = max(float(planned.max()), 1e-12)
+    travelled = np.concatenate([[0.0], np.cumsum(0.5 * (planned[1:] + planned[:-1]) * step)])
+    assert np.allclose(places, travelled, rtol=0.0, atol=fastest * duration / 500.0)
+    used = np.abs(np.diff(planned)) / step
+    allowed = np.full(2000, accel)
+    allowed[places[1:] <= zone * length] *= 1.0 - share
+    beside = times[:-1] >= duration - dt
+    allowed[beside] = np.minimum(allowed[beside], accel * (1.0 - last))
+    assert np.all(used <= allowed * (1.0 + jerkrel) * (1.0 + 1e-6) + 1e-9 * fastest / step)
 
 
 def test_the_wanted_end_speed_is_met_where_it_can_be() -> None:

@@ -58,4 +58,4 @@ class Pc:
 
     def error(self) -> int:
         """Return the error register through the library."""
-        return pcap.rdErrorReg()
+        return int(pcap.rdErrorReg())

@@ -49,7 +49,7 @@ def _given(v: float, u: Floats, w: Floats, accel: Floats, acceleration: Floats) 
 
 
 def _lost(v: float, given: list[float], accel: Floats) -> float:
-    return max(part * a * CYCLE_S / v for part, a in zip(given, accel, strict=True))
+    return max(part * float(a) * CYCLE_S / v for part, a in zip(given, accel, strict=True))
 
 
 def corner_speed(
@@ -101,7 +101,8 @@ def planned_time(points: Floats, feed: float, speed: Floats, acceleration: Float
             if v <= end:
                 return True
             lost = v * given_start * accel[k] * CYCLE_S  # the corner at the far end takes its part as well
-            return _ramp(end, v + lost, accel[k], end * given_end)[1] - lost * CYCLE_S <= length[k]
+            distance = _ramp(end, v + lost, accel[k], end * given_end)[1]
+            return bool(distance - lost * CYCLE_S <= length[k])
 
         return _last_true(fits, 0.0, most)
 
@@ -113,10 +114,16 @@ def planned_time(points: Floats, feed: float, speed: Floats, acceleration: Float
         v[k + 1] = reach(k, v[k], after[k], before[k + 1], v[k + 1])
         ends = ((v[k], v[k] * after[k]), (v[k + 1], v[k + 1] * before[k + 1]))
 
-        def ramps(peak: float, k: int = k, ends: tuple[tuple[float, float], ...] = ends) -> Floats:
-            return np.sum([_ramp(end, max(peak, end), accel[k], given) for end, given in ends], axis=0)
+        def ramps(
+            peak: float, k: int = k, ends: tuple[tuple[float, float], ...] = ends
+        ) -> tuple[float, float]:
+            each = [_ramp(end, max(peak, end), accel[k], given) for end, given in ends]
+            return each[0][0] + each[1][0], each[0][1] + each[1][1]
 
-        peak = _last_true(lambda p, k=k, r=ramps: bool(r(p)[1] <= length[k]), max(v[k], v[k + 1]), cap[k])
+        def fit(peak: float, k: int = k) -> bool:
+            return bool(ramps(peak)[1] <= length[k])
+
+        peak = _last_true(fit, max(v[k], v[k + 1]), cap[k])
         time, distance = ramps(peak)
         stretch += time + max(0.0, length[k] - distance) / peak
         if v[k + 1] == 0.0:

@@ -612,7 +612,7 @@ def test_jogs_want_a_record_for_every_axis(pc: Pc) -> None:
     axes = pc.close(2)
     for wrong in (pc.tsrp[:2], pc.tsrp[2]):
         with pytest.raises(ValueError, match="TSRP"):
-            pcap.ja(axes, wrong)  # type: ignore[arg-type]
+            pcap.ja(axes, wrong)
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300])

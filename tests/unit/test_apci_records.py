@@ -208,7 +208,7 @@ def test_a_long_array_or_text_and_a_large_number_do_not_fit() -> None:
     ):
         with pytest.raises(UsageError, match=what):
             record(value)
-    assert LMP(dtm=[2.5, -1.0]).dtm == [2.5, -1.0, *[0.0] * 16]  # as C fills up
+    assert list(LMP(dtm=[2.5, -1.0]).dtm) == [2.5, -1.0, *[0.0] * 16]  # as C fills up
     axis = TSRP(kp=5.5)
     with pytest.raises(UsageError, match=r"TSRP\.kp"):
         axis.kp = "high"  # type: ignore[assignment]

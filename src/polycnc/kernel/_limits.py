@@ -287,7 +287,8 @@ def _speed_between(
 ) -> float:
     """Return the highest speed up to `speed` where the next corner is less than a cycle away.
 
-    `work` holds what each axis uses on both sides and the time it needs per speed, or minus its change where it may jump.
+    `work` holds what each axis uses on both sides and the time it needs per speed, or minus its change where it may
+    jump.
     """
     row, after = seg.row[k], seg.row[following]
     curved = is_curved(seg, k) or is_curved(seg, following)
@@ -440,8 +441,8 @@ def share_acceleration(
 ) -> None:
     """Set `accel` of segment `k`, and `gain`: what its ramps add to the squared speed beside both its corners.
 
-    `before` is the junction at its start, of which the segment gives `yield_before` per speed to that corner. An S-shaped
-    ramp has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
+    `before` is the junction at its start; the segment gives `yield_before` per speed to that corner. An S-shaped ramp
+    has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
     """
     row = seg.row[k]
     accel = row["full_accel"] / (1.0 + jerkrel)

@@ -33,8 +33,8 @@ MOST_SHARE = 0.75  # of its acceleration is all that a segment gives up
 def beside_corner(speed: float, accel: float, share: float, dt: float, length: float) -> float:
     """Return how far, at most `length`, the path may be from a corner passed with `speed` within `dt`.
 
-    It has given up `share` of `accel` till then. A greater share than a half counts as a half, so that what is lost by it
-    never falls with the speed.
+    It has given up `share` of `accel` till then. A greater share than a half counts as a half, so that what is lost by
+    it never falls with the speed.
     """
     return min(length, (speed + 0.5 * accel * (1.0 - min(share, 0.5)) * dt) * dt)
 
@@ -53,8 +53,8 @@ def set_pieces(
 ) -> None:
     """Set the pieces of `length` more of a segment, for `plan_ramps`.
 
-    `share` of `accel` is given up for `zone` more, and `yield_out` of it per speed beside the end. Where the pieces overlap
-    the greater part counts.
+    `share` of `accel` is given up for `zone` more, and `yield_out` of it per speed beside the end. Where the pieces
+    overlap the greater part counts.
     """
     top = math.sqrt(speed_in * speed_in + 2.0 * accel * length)
     speed = min(speed_out, top)
@@ -82,8 +82,8 @@ def plan_ramps(
 ) -> None:
     """Fill `ramps[REGISTERS]` for `length` more of a segment that has been gone along up to `s`.
 
-    Its pieces are set (`set_pieces`), `accel` is the greatest of theirs. The end speed is lowered to what can be reached,
-    or raised to what cannot be braked away.
+    Its pieces are set (`set_pieces`), `accel` is the greatest of theirs. The end speed is lowered to what can be
+    reached, or raised to what cannot be braked away.
     """
     square = speed_in * speed_in
     first = 2.0 * ramps[PIECES + 1] * ramps[PIECES]

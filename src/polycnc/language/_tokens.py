@@ -45,8 +45,7 @@ class Lexicon:
         folded: Sequence[str] = (),
         unfinished: dict[str, tuple[str, str]] | None = None,
     ) -> None:
-        self._kinds = tuple(kind for kind, _ in kinds)
-        self._folded = frozenset(folded)
+        self._kinds = (("", False), *((kind, kind in folded) for kind, _ in kinds))
         self._pattern = re.compile(f"(?:{skip})(?:{'|'.join(f'({pattern})' for _, pattern in kinds)})")
         self._skip = re.compile(skip)
         self._unfinished = unfinished or {}
@@ -65,10 +64,10 @@ class Lexicon:
                 return Token(END, "", "", at), at
             what = f"{text[at]!r} has no meaning here"
             raise Flaw(at, *self._unfinished.get(text[at], (what, "")))
-        index = int(found.lastindex or 0)
-        kind, written = self._kinds[index - 1], found[index]
-        word = written.upper() if kind in self._folded else written
-        return Token(kind, word, written, found.start(index)), found.end()
+        index: int = found.lastindex  # type: ignore[assignment]
+        kind, folded = self._kinds[index]
+        written = found[index]
+        return Token(kind, written.upper() if folded else written, written, found.start(index)), found.end()
 
 
 class Tokens:

@@ -67,9 +67,12 @@ class Drain:
 
 @dataclass(frozen=True, slots=True)
 class CallProgram:
-    """Call sub-program `program` `repeats` times from line `line`; `arguments` are handed to its source."""
+    """Call sub-program `program` `repeats` times from line `line`; `arguments` are handed to its source.
 
-    program: int
+    A language that finds its sub-programs itself gives the text instead of a number.
+    """
+
+    program: int | ProgramText
     line: int
     offset: int
     repeats: int = 1

@@ -84,7 +84,7 @@ class Calls:
         """The calls under way, the outermost first."""
         return self._calls
 
-    def trouble(self, program: int) -> tuple[str, str] | None:
+    def trouble(self, program: int | ProgramText) -> tuple[str, str] | None:
         """Return what is against calling a sub-program and what to do about it, None if nothing is.
 
         Raises:
@@ -107,7 +107,7 @@ class Calls:
             )
         return None
 
-    def enter(self, program: int, repeats: int, back: Back, arguments: object = None) -> bool:
+    def enter(self, program: int | ProgramText, repeats: int, back: Back, arguments: object = None) -> bool:
         """Begin a sub-program that `trouble` had nothing against; False for no repeats."""
         begin = self._find(program)
         assert begin is not None
@@ -150,8 +150,10 @@ class Calls:
             if inner.back is not None
         )
 
-    def _find(self, program: int) -> Place | None:
+    def _find(self, program: int | ProgramText) -> Place | None:
         """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
+        if isinstance(program, ProgramText):
+            return Place(program)
         for text in (self.running.begin.text, self._main):
             if text.name not in self._labels:
                 self._labels[text.name] = _labels(text)

@@ -1,0 +1,58 @@
+"""CPL: the language inside part programs, and what it needs of the control that runs it (Manual 003)."""
+
+from polycnc.nc.cpl._blocks import CplLanguage, CplSource
+from polycnc.nc.cpl._faults import Fault
+from polycnc.nc.cpl._fields import Field
+from polycnc.nc.cpl._formats import default_format, groups, number_in
+from polycnc.nc.cpl._host import (
+    BLOCKED,
+    OMITTED,
+    PAUSE,
+    BlockWord,
+    Box,
+    Event,
+    Host,
+    Item,
+    Lines,
+    NcValues,
+    Step,
+    SubProgram,
+    Waiting,
+)
+from polycnc.nc.cpl._permanent import PermanentMemory
+from polycnc.nc.cpl._program import Linker, Program, compile_program, holds_cpl
+from polycnc.nc.cpl._run import Execution, Run, undeclared
+from polycnc.nc.cpl._strings import CharacterField, text_of
+
+__all__ = [
+    "BLOCKED",
+    "OMITTED",
+    "PAUSE",
+    "BlockWord",
+    "Box",
+    "CharacterField",
+    "CplLanguage",
+    "CplSource",
+    "Event",
+    "Execution",
+    "Fault",
+    "Field",
+    "Host",
+    "Item",
+    "Lines",
+    "Linker",
+    "NcValues",
+    "PermanentMemory",
+    "Program",
+    "Run",
+    "Step",
+    "SubProgram",
+    "Waiting",
+    "compile_program",
+    "default_format",
+    "groups",
+    "holds_cpl",
+    "number_in",
+    "text_of",
+    "undeclared",
+]

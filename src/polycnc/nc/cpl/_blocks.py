@@ -1,0 +1,164 @@
+"""CPL as a language of the channel: what its programs yield, as items of the block source."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, TextSpan, WordsBlock
+from polycnc.nc.cpl._host import Host, Lines, NcValues, Step, SubProgram, Waiting
+from polycnc.nc.cpl._program import Linker, Program, holds_cpl
+from polycnc.nc.cpl._run import Arguments, Execution
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan_plain import Word
+
+_LINE_END = re.compile(rb"\r\n|\r|\n")
+
+
+class _Called(NamedTuple):
+    """What a call hands to the source of its sub-program."""
+
+    program: Program
+    arguments: Arguments
+
+
+class CplLanguage:
+    """Run CPL programs in a channel; one object is one run, whose global variables it holds in `globals`.
+
+    Blocks of a level in `skip_levels` are left out.
+    """
+
+    def __init__(
+        self, host: Host, *, skip_levels: frozenset[int] = frozenset(), stepping: bool = False
+    ) -> None:
+        self.globals: dict[str, Any] = {}
+        self.linker = Linker(host.program, stepping=stepping)
+        self.running: list[CplSource] = []
+        """The sources under way, that of the main program first."""
+        self._host = host
+        self._skip_levels = skip_levels
+
+    def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
+        """Return the source of a program, None for one without CPL.
+
+        Raises:
+            ProgramError: It, or a sub-program of it, is wrong; this is the link step.
+        """
+        called = arguments if isinstance(arguments, _Called) else None
+        if offset or (called is None and not holds_cpl(text.content)):
+            return None
+        if called is None:
+            if not self.running:
+                self.globals.clear()
+            main, errors = self.linker.link(_decoded(text.content), text.name)
+            if main is None:
+                raise errors[0]
+            called = _Called(main, Arguments())
+        execution = Execution(called.program, self.linker, self._host, self.globals, called.arguments)
+        source = CplSource(text, execution, self)
+        self.running.append(source)
+        return source
+
+    def skips(self, level: int) -> bool:
+        """Tell whether blocks of a level are left out."""
+        return level in self._skip_levels
+
+    def milliseconds(self) -> int:
+        """Return the time of the control."""
+        return int(str(self._host.function("CLOCK")()))
+
+
+class CplSource:
+    """The blocks of one CPL program."""
+
+    def __init__(self, text: ProgramText, execution: Execution, language: CplLanguage) -> None:
+        self.execution = execution
+        self._text = text
+        self._language = language
+        self._starts = [0, *(found.end() for found in _LINE_END.finditer(text.content)), len(text.content)]
+        self._waiting: _Wait | None = None
+        self._answer: object = None
+
+    def next(self) -> SourceItem | None:
+        """Return what comes next.
+
+        Raises:
+            ProgramError: A statement cannot be executed.
+        """
+        while True:
+            if self._waiting is not None:
+                self._answer = self._waiting.answer()
+                if self._answer is None:
+                    return Pause.PAUSE
+                self._waiting = None
+            answer, self._answer = self._answer, None
+            match self.execution.step(answer):
+                case None:
+                    return None
+                case Lines(first=first, last=last):
+                    return TextSpan(self._starts[first - 1], first, self._starts[last])
+                case NcValues() as block:
+                    if not self._language.skips(block.skip):
+                        return self._words(block)
+                case SubProgram() as call:
+                    return self._call(call)
+                case Waiting() as wait:
+                    if wait.condition is not None or wait.duration_ms is not None:
+                        self._waiting = _Wait(wait, self._language.milliseconds)
+                    return Drain(wait.line)
+                case Step():
+                    pass
+                case _:
+                    return Pause.PAUSE
+
+    def close(self) -> None:
+        """End the program."""
+        self.execution.close()
+        if self in self._language.running:
+            self._language.running.remove(self)
+
+    def _words(self, block: NcValues) -> WordsBlock:
+        begin, end = self._starts[block.line - 1 : block.line + 1]
+        line = _decoded(self._text.content[begin:end])
+        words = [Word("N", float(block.number), begin, False)] if block.number is not None else []
+        for word in block.words:
+            place = begin + len(line[: word.column - 1].encode("utf-8"))
+            words.append(Word(word.address, word.value, place, True, word.extension))
+        return WordsBlock(tuple(words), block.line, begin, block.message)
+
+    def _call(self, call: SubProgram) -> CallProgram:
+        running = [source.execution.program for source in self._language.running]
+        program = self.execution.called(call, running)
+        text = ProgramText.from_text(program.source.text, program.file)
+        arguments = Arguments(call.arguments, self.execution.linked)
+        called = _Called(program, arguments)
+        return CallProgram(text, call.line, self._starts[call.line - 1], arguments=called)
+
+
+class _Wait:
+    """A WAIT with a condition or a duration, from when the queue has been drained."""
+
+    def __init__(self, wait: Waiting, milliseconds: Callable[[], int]) -> None:
+        self._wait = wait
+        self._milliseconds = milliseconds
+        self._began: int | None = None
+
+    def answer(self) -> int | None:
+        """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet."""
+        wait = self._wait
+        first = self._began is None
+        if self._began is None:
+            self._began = self._milliseconds() if wait.duration_ms is not None else 0
+        if wait.condition is not None and wait.condition():
+            return 0 if first else 2
+        if wait.duration_ms is not None and self._milliseconds() - self._began >= wait.duration_ms:
+            return 1
+        return None
+
+
+def _decoded(content: bytes) -> str:
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")

@@ -1,0 +1,308 @@
+"""Run linked programs: the stack of running ones, their events, and run-time errors at their places."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Container, Sequence
+from typing import Any, NamedTuple, NoReturn
+
+from polycnc.errors import PolycncError, ProgramError
+from polycnc.language import Flaw, frame_of
+from polycnc.nc.cpl import _numbers, _strings
+from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
+from polycnc.nc.cpl._fields import dimension_field
+from polycnc.nc.cpl._host import (
+    OMITTED,
+    PAUSE,
+    BlockWord,
+    Box,
+    Event,
+    Host,
+    Item,
+    Lines,
+    NcValues,
+    Pause,
+    Step,
+    SubProgram,
+    Waiting,
+    wait_for,
+)
+from polycnc.nc.cpl._program import NESTING, Linker, Program
+from polycnc.nc.cpl._variables import SUFFIXES, Kind
+
+
+class Arguments(NamedTuple):
+    """What a program was called with, and whether its caller was linked."""
+
+    values: tuple[object, ...] = ()
+    linked: bool = True
+
+
+class Execution:
+    """One program that runs: its next event, and its run-time errors at their places."""
+
+    def __init__(
+        self, program: Program, linker: Linker, host: Host, variables: dict[str, Any], arguments: Arguments
+    ) -> None:
+        for error in undeclared(program, host.permanent):
+            raise error
+        self.program = program
+        self.linked = arguments.linked and not program.marked_din
+        self.line = 0
+        """The line of the last event."""
+        self._linker = linker
+        make = program.traced.load(_SCOPE)["program"]
+        self._generator = make(variables, host.permanent, host, arguments)
+
+    def step(self, answer: object = None) -> Event | None:
+        """Return the next event, None at the end; `answer` is that to the last one (WAIT: 0, 1 or 2).
+
+        Raises:
+            ProgramError: The program does what it must not.
+        """
+        try:
+            event: Event = self._generator.send(answer)
+        except StopIteration:
+            return None
+        except (Fault, ArithmeticError, TypeError, ValueError) as error:
+            self._explain(error)
+        if not isinstance(event, Pause):
+            self.line = event[0]
+        return event
+
+    def close(self) -> None:
+        """End the program."""
+        self._generator.close()
+
+    def called(self, call: SubProgram, running: Sequence[Program]) -> Program:
+        """Return the sub-program that is called, `running` being those under way.
+
+        Raises:
+            ProgramError: There is none, or it must not be called here.
+        """
+        program = self._linker.sub_program(call.address, call.name)
+        if program is None:
+            raise self._error(
+                call, f"there is no sub-program {call.name}", "write it into a file of this name"
+            )
+        if len(running) > NESTING:
+            raise self._error(call, f"sub-programs are nested more than {NESTING} deep")
+        if program in running:
+            raise self._error(call, f"{call.name} calls itself", "recursive calls are not possible")
+        if (call.unlinked or program.marked_din) and not program.is_plain:
+            hint = f"take DIN from the call of {call.name} or from its first line"
+            raise self._error(call, CPL_IN_UNLINKED.what, hint)
+        return program
+
+    def local_variables(self) -> dict[str, object]:
+        """Return the local variables by name."""
+        values = self._generator.gi_frame.f_locals if self._generator.gi_frame is not None else {}
+        local = (each for each in self.program.variables if each.scope in ("local", "parameter"))
+        return {each.name: shown(values.get(each.python)) for each in local}
+
+    def _error(self, call: SubProgram, what: str, hint: str = "") -> ProgramError:
+        source = self.program.source
+        text = source.line(call.line)
+        return source.error(Flaw(source.begin(call.line) + len(text) - len(text.lstrip()), what, hint))
+
+    def _explain(self, error: Exception) -> NoReturn:
+        frame = frame_of(error, self._linker.traced)
+        if frame is None:
+            raise error
+        what, hint, code = _meaning(error)
+        raise self._linker.source(frame.name).error(Flaw(frame.place, what, hint, code=code)) from error
+
+
+class Run:
+    """One run of a main program with its sub-programs; global variables live as long as it.
+
+    Call `step` for the next thing that the control has to do; None is the end. A sub-program call is not handed out
+    but entered: its program is on `stack` then.
+    """
+
+    def __init__(self, main: Program, linker: Linker, host: Host) -> None:
+        self.globals: dict[str, Any] = {}
+        self.stack: list[Execution] = []
+        self._host = host
+        self._linker = linker
+        self._enter(main, Arguments())
+
+    def step(self, answer: object = None) -> Event | None:
+        """Return the next event; `answer` is that to the last one (WAIT: 0, 1 or 2).
+
+        Raises:
+            ProgramError: The program does what it must not; the run is over.
+        """
+        try:
+            while self.stack:
+                event = self.stack[-1].step(answer)
+                answer = None
+                if event is None:
+                    self.stack.pop()
+                elif isinstance(event, SubProgram):
+                    caller = self.stack[-1]
+                    program = caller.called(event, [each.program for each in self.stack])
+                    self._enter(program, Arguments(event.arguments, caller.linked))
+                else:
+                    return event
+        except PolycncError:
+            self.stop()
+            raise
+        return None
+
+    def leave(self) -> bool:
+        """End the program that runs now (M30, M17); tell whether another one goes on."""
+        if self.stack:
+            self.stack.pop().close()
+        return bool(self.stack)
+
+    def stop(self) -> None:
+        """End all programs."""
+        while self.leave():
+            pass
+
+    def local_variables(self) -> dict[str, object]:
+        """Return the local variables of the program that runs now, by name."""
+        return self.stack[-1].local_variables() if self.stack else {}
+
+    def _enter(self, program: Program, arguments: Arguments) -> None:
+        self.stack.append(Execution(program, self._linker, self._host, self.globals, arguments))
+
+
+def undeclared(program: Program, permanent: Container[str]) -> list[ProgramError]:
+    """Return an error for each permanent variable of a program that the control does not have."""
+    hint = "declare it in wmhperm.dat or anwperm.dat, and write the mark of its type: % ! ? $"
+    return [
+        program.source.error(Flaw(at, f"there is no permanent variable {each.name}", hint))
+        for each, at in program.variables.items()
+        if each.scope == "permanent" and each.name not in permanent
+    ]
+
+
+def shown(value: object) -> object:
+    """Return the value of a variable as it is shown: texts as texts, fields as the field."""
+    return _strings.text_of(value) if isinstance(value, _strings.CharacterField | _strings.Part) else value
+
+
+def _meaning(error: Exception) -> tuple[str, str, str]:
+    match error:
+        case Fault():
+            return error.what, error.hint, error.code
+        case ZeroDivisionError():
+            return "division by zero", "test the divisor with IF before", ""
+        case OverflowError():
+            return "the value is out of the range of its type", "INTEGER has 32 bits, REAL reaches 3.4E38", ""
+        case TypeError() if "subscript" in str(error) or "item assignment" in str(error):
+            return (
+                "INVALID VARIABLE: the field is not dimensioned",
+                "write DIM before the first use of the field",
+                "",
+            )
+        case TypeError():
+            fault = _numbers.not_assigned()
+            return fault.what, fault.hint, fault.code
+        case _:
+            return (
+                INVALID_PARAMETER.what,
+                "the function has no value there; test its argument with IF before",
+                "",
+            )
+
+
+def _cell() -> Any:
+    return array("f", (0.0,))
+
+
+def _parameter(arguments: Arguments, name: str, kind: Kind) -> object:
+    place = int(name.rstrip("".join(SUFFIXES))[1:])
+    value = arguments.values[place - 1] if 0 < place <= len(arguments.values) else None
+    if value is None or isinstance(value, str) != (kind == "S"):
+        return None
+    if isinstance(value, str):
+        return value if arguments.linked else _Unlinked(value)
+    if kind == "B":
+        return _numbers.to_boolean(value)
+    if kind == "I":
+        whole = isinstance(value, float) and value.is_integer()
+        return _numbers.to_integer(int(value) if whole and isinstance(value, float) else value)
+    return (_numbers.to_real if kind == "R" else _numbers.to_double)(value)
+
+
+class _Unlinked:
+    """A text from a program that was not linked: only PDIM makes room for it."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+
+def _parameter_field(arguments: Arguments, name: str, size: int) -> object:
+    place = int(name.rstrip("$")[1:])
+    field = _strings.CharacterField(size)
+    value = arguments.values[place - 1] if 0 < place <= len(arguments.values) else None
+    if isinstance(value, str):
+        if len(value) > size:
+            raise Fault(
+                INVALID_VARIABLE._replace(what="invalid variable"), f"PDIM {name}({len(value)}) is needed"
+            )
+        field.assign(value)
+    return field
+
+
+def _text_of(value: object) -> str | None:
+    if isinstance(value, _Unlinked):
+        raise Fault(
+            INVALID_VARIABLE._replace(what="invalid variable"), "write PDIM before: the caller is not linked"
+        )
+    return _strings.text_of(value)
+
+
+def _kept(value: object) -> object:
+    if value is None:
+        raise Fault("INVALID ASSIGNMENT", "a permanent variable cannot be deleted: the value is NUL")
+    return value
+
+
+def _as_word(value: object) -> float:
+    if value is None:
+        raise _numbers.not_assigned()
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        raise Fault("INVALID ASSIGNMENT", "an address takes a number")
+    return float(value)
+
+
+def _inserted(host: Host, value: object, column: int) -> tuple[BlockWord, ...]:
+    if value is None:
+        raise _numbers.not_assigned()
+    return tuple(BlockWord(*word, column) for word in host.insert(value))
+
+
+def _ic_condition(
+    state: object, negated: bool, function: Callable[..., object], *arguments: object
+) -> Callable[[], bool]:
+    wanted = bool(state) != negated
+    return lambda: function(*arguments) == wanted
+
+
+def _root(value: float) -> float:
+    if value < 0:
+        raise Fault(INVALID_PARAMETER, "SQRT takes no negative number")
+    return float(value**0.5)
+
+
+_SCOPE: dict[str, object] = {
+    "OMITTED": OMITTED, "PAUSE": PAUSE, "Box": Box, "Item": Item, "BlockWord": BlockWord, "Lines": Lines,
+    "NcValues": NcValues, "Step": Step, "SubProgram": SubProgram, "Waiting": Waiting, "wait_for": wait_for,
+    "OverflowError": OverflowError, "abs": abs, "cell": _cell, "single": _numbers.single_rounder(),
+    "to_integer": _numbers.to_integer, "to_real": _numbers.to_real, "to_double": _numbers.to_double,
+    "to_boolean": _numbers.to_boolean, "sine": _numbers.sine, "cosine": _numbers.cosine,
+    "tangent": _numbers.tangent, "arc_sine": _numbers.arc_sine, "arc_cosine": _numbers.arc_cosine,
+    "arc_tangent": _numbers.arc_tangent, "root": _root, "whole": _numbers.whole, "nearest": _numbers.nearest,
+    "to_bcd": _numbers.to_bcd, "from_bcd": _numbers.from_bcd, "text_of": _text_of, "put": _strings.put,
+    "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,
+    "dimension_field": dimension_field, "middle": _strings.middle, "trimmed": _strings.trimmed,
+    "length": _strings.length, "position": _strings.position, "code": _strings.code,
+    "character": _strings.character, "written": _strings.written, "number": _strings.number,
+    "added": _strings.added, "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept,
+    "as_word": _as_word, "inserted": _inserted, "ic_condition": _ic_condition,
+}  # fmt: skip
+"""What a running program knows of Python."""

@@ -1,0 +1,108 @@
+"""Which structures of a program stay structures in Python, and which become jumps.
+
+Python has no GOTO: where one leads out of a loop or into a structure, or where structures are nested deeper than
+Python allows, the structure is taken apart into segments that are entered by number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from polycnc.language import Flaw
+from polycnc.nc.cpl._syntax import Case, For, Goto, If, Repeat, Statement, Target, While
+
+_LOOPS = 15  # Python has 20
+_LEVELS = 40  # Python has 100
+
+
+@dataclass(slots=True)
+class Shape:
+    """What stands inside a structure: jumps, places jumped to, parts taken apart; how deep loops and all else nest."""
+
+    jumps: bool = False
+    targets: bool = False
+    apart: bool = False
+    loops: int = 0
+    levels: int = 0
+
+    def take(self, other: Shape) -> None:
+        """Add what stands inside a part."""
+        self.jumps |= other.jumps
+        self.targets |= other.targets
+        self.apart |= other.apart
+        self.loops = max(self.loops, other.loops)
+        self.levels = max(self.levels, other.levels)
+
+
+def bodies(statement: Statement) -> tuple[list[Statement], ...]:
+    """Return the bodies of a structure, none for other statements."""
+    match statement:
+        case If():
+            return (statement.then, statement.otherwise)
+        case Case():
+            return tuple(body for _, body in statement.branches)
+        case For() | While() | Repeat():
+            return (statement.body,)
+    return ()
+
+
+def every(statements: Iterable[Statement]) -> Iterable[Statement]:
+    """Yield all statements, those inside structures too."""
+    for statement in statements:
+        yield statement
+        for body in bodies(statement):
+            yield from every(body)
+
+
+def taken_apart(statements: list[Statement]) -> tuple[set[int], bool]:
+    """Return the ids of the structures that become jumps, and whether there is any jump at all."""
+    apart: set[int] = set()
+    shape = _shape(statements, {each.target for each in every(statements) if isinstance(each, Goto)}, apart)
+    return apart, shape.jumps or shape.apart
+
+
+def _shape(statements: list[Statement], used: set[str], apart: set[int]) -> Shape:
+    whole = Shape()
+    for statement in statements:
+        if isinstance(statement, Goto):
+            whole.jumps = True
+        elif isinstance(statement, Target):
+            whole.targets |= statement.name in used
+        elif parts := bodies(statement):
+            inside = Shape()
+            for body in parts:
+                inside.take(_shape(body, used, apart))
+            loop = isinstance(statement, For | While | Repeat)
+            inside.loops += loop
+            inside.levels += 1
+            deep = inside.loops > _LOOPS or inside.levels > _LEVELS
+            if inside.targets or inside.apart or deep or (loop and inside.jumps):
+                apart.add(id(statement))
+                inside.apart = True
+                inside.loops = inside.levels = 0
+            whole.take(inside)
+    return whole
+
+
+def target_flaws(statements: list[Statement]) -> list[Flaw]:
+    """Return what is wrong with jumps: a destination that is missing, or stands there twice."""
+    places: dict[str, list[int]] = {}
+    gotos: list[Goto] = []
+    for statement in every(statements):
+        if isinstance(statement, Target):
+            places.setdefault(statement.name, []).append(statement.at)
+        elif isinstance(statement, Goto):
+            gotos.append(statement)
+    flaws = []
+    for goto in gotos:
+        found = len(places.get(goto.target, ()))
+        if not found:
+            flaws.append(
+                Flaw(goto.at, f"there is no jump destination {goto.target}", "spell it exactly alike")
+            )
+        elif found > 1:
+            flaws.append(
+                Flaw(goto.at, f"{found} jump destinations are called {goto.target}", "give each its own name")
+            )
+    return flaws

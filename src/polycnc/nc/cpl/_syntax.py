@@ -1,0 +1,235 @@
+"""The tree of a CPL program: what the reader builds and the compiler walks. Places are offsets into the text."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from polycnc.language import Tree
+from polycnc.nc.cpl._variables import Variable
+
+# Expressions
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A constant; whether it has a decimal point is its Python type."""
+
+    at: int
+    value: int | float
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A character string constant."""
+
+    at: int
+    value: str
+
+
+@dataclass(frozen=True, slots=True)
+class Word:
+    """TRUE, FALSE or NUL."""
+
+    at: int
+    value: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Name:
+    """A variable, with indices where it is written with some."""
+
+    at: int
+    variable: Variable
+    indices: tuple[Expression, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """A function or command with its arguments, None for one left out; `open`: a semicolon ends them."""
+
+    at: int
+    function: str
+    arguments: tuple[Expression | None, ...] = ()
+    open: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Parentheses:
+    """An expression in parentheses, kept so that their depth can be counted."""
+
+    at: int
+    inner: Expression
+
+
+Leaf: TypeAlias = Number | Text | Word | Name | Call | Parentheses
+Expression: TypeAlias = Tree[Leaf]
+
+# Statements
+
+
+@dataclass(frozen=True, slots=True)
+class Assign:
+    """``target = value``; a target that is a call is a system value that can be set, or MID$."""
+
+    at: int
+    target: Name | Call
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A function or command that stands by itself."""
+
+    at: int
+    call: Call
+
+
+@dataclass(frozen=True, slots=True)
+class Dim:
+    """DIM, or PDIM of a parameter."""
+
+    at: int
+    variable: Variable
+    sizes: tuple[int, ...]
+    parameter: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Goto:
+    """A jump; `target` is "N20", "120" or ".LABEL"."""
+
+    at: int
+    target: str
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A place that can be jumped to."""
+
+    at: int
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class SubCall:
+    """A sub-program call: by CALL, or by an address of an NC block."""
+
+    at: int
+    line: int
+    address: str
+    name: str
+    arguments: tuple[Expression, ...] = ()
+    unlinked: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Wait:
+    """WAIT; `condition` is the IC call of it, `state` what it is compared with."""
+
+    at: int
+    line: int
+    condition: Call | None = None
+    state: Expression | None = None
+    negated: bool = False
+    duration_ms: Expression | None = None
+    result: Name | None = None
+
+
+@dataclass(slots=True)
+class If:
+    """IF: a condition and two routines."""
+
+    at: int
+    condition: Expression
+    then: list[Statement] = field(default_factory=list)
+    otherwise: list[Statement] = field(default_factory=list)
+    has_else: bool = False
+
+
+@dataclass(slots=True)
+class Case:
+    """CASE: a selector and the routines of its labels; an empty tuple of labels is OTHERWISE."""
+
+    at: int
+    selector: Expression
+    branches: list[tuple[tuple[int, ...], list[Statement]]] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class For:
+    """FOR: a counting loop."""
+
+    at: int
+    counter: Name
+    start: Expression
+    step: Expression | None
+    end: Expression
+    body: list[Statement] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class While:
+    """WHILE: a loop tested before."""
+
+    at: int
+    condition: Expression
+    body: list[Statement] = field(default_factory=list)
+
+
+@dataclass(slots=True)
+class Repeat:
+    """REPEAT: a loop tested behind."""
+
+    at: int
+    condition: Expression | None = None
+    body: list[Statement] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class NcLine:
+    """NC blocks without CPL in them, from line `line` to `last`: the control reads them where they stand."""
+
+    at: int
+    line: int
+    last: int
+
+
+@dataclass(frozen=True, slots=True)
+class NcWord:
+    """A word of an NC block: an address with a value; without an address, text or AXP() that gives whole words."""
+
+    at: int
+    address: str
+    value: Expression | float
+    index: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class NcBlock:
+    """An NC block with CPL in it."""
+
+    at: int
+    line: int
+    number: int | None
+    skip: int
+    words: tuple[NcWord, ...]
+    message: str = ""
+
+
+Statement: TypeAlias = (
+    Assign
+    | Command
+    | Dim
+    | Goto
+    | Target
+    | SubCall
+    | Wait
+    | If
+    | Case
+    | For
+    | While
+    | Repeat
+    | NcLine
+    | NcBlock
+)

@@ -1,0 +1,398 @@
+"""Expressions of CPL turned into Python, with the type that each has.
+
+Intermediate results that are REAL are rounded to single precision, as a 32-bit machine does; where anything in an
+expression is DOUBLE all of it is reckoned with double precision (Manual 003, 2.4.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container
+from typing import NamedTuple
+
+from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
+from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT, NESTING_TOO_DEEP
+from polycnc.nc.cpl._functions import FUNCTIONS, Function
+from polycnc.nc.cpl._reader import single
+from polycnc.nc.cpl._syntax import Call, Expression, Leaf, Name, Number, Parentheses, Text, Word
+from polycnc.nc.cpl._variables import KIND_NAMES, Kind, Variable
+
+NUMERIC: Container[Kind] = ("I", "R", "D", "X")
+_COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
+_LOGIC = {"AND": "&", "OR": "|", "XOR": "^"}
+_DEGREES = {"SIN": "sine", "COS": "cosine", "TAN": "tangent", "SQRT": "root"}
+_DEGREES |= {"ASIN": "arc_sine", "ACOS": "arc_cosine", "ATAN": "arc_tangent"}
+_WHOLE = {"INT": "whole", "ROUND": "nearest", "BCD": "to_bcd", "BIN": "from_bcd"}
+_TEXT_CODES = {"LEN": "length", "ASC": "code", "VAL": "number"}
+_CHAIN_DEPTH = 3
+
+
+class Typed(NamedTuple):
+    """A Python expression with its type.
+
+    `exact` tells that it needs no rounding to its type any more, `leaf` that it may be NUL: it was stored so.
+    """
+
+    python: Python
+    kind: Kind
+    exact: bool = True
+    leaf: bool = False
+
+
+class Values:
+    """Turn expressions of one program into Python.
+
+    `use` notes a variable and returns the Python for it; `host` does so for a function of the control, `box` for
+    a variable that such a function sets.
+    """
+
+    def __init__(
+        self, use: Callable[[Variable, int], str], host: Callable[[str, int], str], box: Callable[[Name], str]
+    ) -> None:
+        self._use = use
+        self._host = host
+        self._box = box
+        self.fields: dict[str, int] = {}
+        """Local variables that a DIM makes a field, with the number of their indices."""
+        self._double = False
+
+    def value(self, tree: Expression, wanted: Kind | None = None) -> Typed:
+        """Return an expression that is assigned to a variable of type `wanted`, or used otherwise.
+
+        Raises:
+            Flaw: Its types do not go together.
+        """
+        outside, self._double = self._double, wanted == "D" or self._has_double(tree)
+        try:
+            return self._typed(tree)
+        finally:
+            self._double = outside
+
+    def condition(self, tree: Expression) -> str:
+        """Return a condition; NUL is none.
+
+        Raises:
+            Flaw: It is neither TRUE nor FALSE.
+        """
+        typed = self.value(tree)
+        if typed.kind == "X":
+            return f"to_boolean({typed.python.text}) & True"
+        if typed.kind != "B":
+            raise Flaw(
+                tree.at, f"a condition is TRUE or FALSE, not {KIND_NAMES[typed.kind]}", "compare it: X%<>0"
+            )
+        return infix(typed.python, "&", Python("True")).text if typed.leaf else typed.python.text
+
+    def integer(self, tree: Expression) -> str:
+        """Return an expression that must be INTEGER.
+
+        Raises:
+            Flaw: It has another type.
+        """
+        typed = self.value(tree)
+        if typed.kind == "I":
+            return typed.python.text
+        if typed.kind not in ("X", "R", "D"):
+            raise Flaw(tree.at, f"an INTEGER is needed, not {KIND_NAMES[typed.kind]}")
+        return f"to_integer({typed.python.text})"
+
+    def text(self, tree: Expression) -> str:
+        """Return the text that a string expression has.
+
+        Raises:
+            Flaw: It is none.
+        """
+        if self.makes_text(tree):
+            return self.stored(tree)
+        return f"text_of({self.stored(tree)})"
+
+    def stored(self, tree: Expression, depth: int = 0) -> str:
+        """Return a string expression as what a string variable can hold: parts of fields as references.
+
+        Raises:
+            Flaw: It is none.
+        """
+        match tree:
+            case Text():
+                return repr(tree.value)
+            case Word(value=None):
+                return "None"
+            case Name(variable=Variable(kind="S")):
+                return self._place(tree)
+            case Parentheses():
+                if depth >= _CHAIN_DEPTH:
+                    raise Flaw(
+                        tree.at, NESTING_TOO_DEEP.what, "keep a part in a field", code=NESTING_TOO_DEEP.code
+                    )
+                return self.stored(tree.inner, depth + 1)
+            case Chain():
+                return self._joined(tree, depth)
+            case Call() if FUNCTIONS[tree.function].kind in ("S", "X"):
+                return self._text_call(tree)
+        raise Flaw(tree.at, "a text is needed")
+
+    def makes_text(self, tree: Expression) -> bool:
+        """Tell whether a string expression makes a new text, which only a dimensioned field can hold."""
+        match tree:
+            case Chain():
+                return True
+            case Parentheses():
+                return self.makes_text(tree.inner)
+            case Call(function="STR$"):
+                return True
+            case Call(function="MID$" | "TRIM$") if tree.arguments and tree.arguments[0] is not None:
+                return self.makes_text(tree.arguments[0])
+        return False
+
+    def is_text(self, tree: Expression) -> bool:
+        """Tell whether an expression is a string expression."""
+        match tree:
+            case Text():
+                return True
+            case Name():
+                return tree.variable.kind == "S"
+            case Parentheses():
+                return self.is_text(tree.inner)
+            case Chain():
+                return self.is_text(tree.first) and all(link.operator == "+" for link in tree.links)
+            case Call():
+                return FUNCTIONS[tree.function].kind == "S"
+        return False
+
+    def element(self, name: Name) -> tuple[str, str]:
+        """Return a variable and its index, "" if it has none.
+
+        Raises:
+            Flaw: It has not the indices that its DIM says.
+        """
+        variable, indices = name.variable, name.indices
+        python = self._use(variable, name.at)
+        if variable.scope == "local":
+            dimensions = self.fields.get(variable.name, 0)
+            wanted = dimensions - (variable.kind == "S" and dimensions > 0)
+            if len(indices) != wanted:
+                what = f"{variable.name} has {wanted} indices, not {len(indices)}"
+                hint = "a field is dimensioned with DIM before" if not dimensions else ""
+                raise Flaw(name.at, what, hint)
+        return python, ", ".join(self.integer(index) for index in indices)
+
+    def host_call(self, call: Call) -> str:
+        """Return the call of a function of the control."""
+        parts = [self._host(call.function, call.at), *self.arguments(call)]
+        if FUNCTIONS[call.function].waiting:
+            return f"(yield from wait_for({', '.join(parts)}))"
+        return f"{parts[0]}({', '.join(parts[1:])})"
+
+    def arguments(self, call: Call) -> list[str]:
+        """Return the arguments of a call of the control, one by one."""
+        function = FUNCTIONS[call.function]
+        parts = [self._argument(function, place, tree) for place, tree in enumerate(call.arguments)]
+        return [*parts, "open=True"] if call.open else parts
+
+    def _argument(self, function: Function, place: int, tree: Expression | None) -> str:
+        if tree is None:
+            return "OMITTED"
+        from_list = function.listed and function.results and place >= function.results[0]
+        if place in function.results or from_list:
+            return self._result(tree)
+        if isinstance(tree, Name) and not tree.indices and self.fields.get(tree.variable.name):
+            return self._use(tree.variable, tree.at)
+        typed = self.value(tree)
+        if function.listed and place >= 1:
+            return f"Item({typed.kind!r}, {self.rounded(typed).text})"
+        return self.rounded(typed).text
+
+    def _result(self, tree: Expression) -> str:
+        if isinstance(tree, Call) and tree.function == "MID$":
+            raise Flaw(tree.at, "MID$ cannot be set here", "read into a field, and take MID$ of that")
+        if not isinstance(tree, Name):
+            raise Flaw(tree.at, "a variable is needed, because it is set")
+        dimensions = self.fields.get(tree.variable.name, 0)
+        if dimensions and not tree.indices:
+            return self._use(tree.variable, tree.at)
+        return self._box(tree)
+
+    def rounded(self, typed: Typed) -> Python:
+        """Return the value as its type has it, rounded to single precision if need be."""
+        if typed.exact or self._double:
+            return typed.python
+        return Python(f"single({typed.python.text})")
+
+    def _typed(self, tree: Expression) -> Typed:
+        match tree:
+            case Number():
+                return self._number(tree)
+            case Word(value=None):
+                return Typed(Python("None"), "N")
+            case Word():
+                return Typed(Python(repr(tree.value)), "B")
+            case Parentheses() if not self.is_text(tree):
+                return self._typed(tree.inner)
+            case Unary():
+                return self._unary(tree)
+            case Name() if tree.variable.kind != "S":
+                return Typed(Python(self._place(tree)), tree.variable.kind, leaf=True)
+            case Chain() if not self.is_text(tree):
+                return self._chain(tree)
+            case Call() if FUNCTIONS[tree.function].kind != "S":
+                return self._call(tree)
+        return Typed(Python(self.text(tree)), "S", leaf=True)
+
+    def _number(self, tree: Number) -> Typed:
+        if isinstance(tree.value, int):
+            return Typed(Python(repr(tree.value)), "I")
+        if self._double:
+            return Typed(Python(repr(tree.value)), "D")
+        try:
+            return Typed(Python(repr(single(tree.value))), "R")
+        except OverflowError:
+            raise Flaw(
+                tree.at, "the number is too large for REAL", "assign it to a DOUBLE variable: X!"
+            ) from None
+
+    def _place(self, name: Name) -> str:
+        python, index = self.element(name)
+        return f"{python}[{index}]" if index else python
+
+    def _unary(self, tree: Unary[Leaf]) -> Typed:
+        operand = self._typed(tree.operand)
+        if tree.operator == "NOT":
+            if operand.kind == "B":
+                return Typed(infix(operand.python, "^", Python("True")), "B")
+            if operand.kind == "I":
+                return Typed(prefix("~", operand.python), "I")
+            raise Flaw(tree.at, f"NOT takes BOOLEAN or INTEGER, not {KIND_NAMES[operand.kind]}")
+        if operand.kind not in NUMERIC:
+            raise Flaw(tree.at, f"a sign stands before a number, not before {KIND_NAMES[operand.kind]}")
+        return Typed(prefix(tree.operator, self.rounded(operand)), operand.kind)
+
+    def _chain(self, tree: Chain[Leaf]) -> Typed:
+        typed = self._typed(tree.first)
+        for link in tree.links:
+            right = self._typed(link.operand)
+            if link.operator in _COMPARISONS:
+                typed = self._compared(typed, link.operator, right, link.at)
+            elif link.operator in _LOGIC:
+                typed = _logical(typed, link.operator, right, link.at)
+            else:
+                typed = self._reckoned(typed, link.operator, right, link.at)
+        return typed
+
+    def _compared(self, left: Typed, operator: str, right: Typed, at: int) -> Typed:
+        if "N" in (left.kind, right.kind):
+            if operator not in ("=", "<>"):
+                raise Flaw(at, "NUL is only compared by = and <>")
+            value = right if left.kind == "N" else left
+            test = "is" if operator == "=" else "is not"
+            return Typed(Python(f"{value.python.within(5)} {test} None", 4), "B")
+        numbers = left.kind in NUMERIC and right.kind in NUMERIC
+        if not numbers and left.kind != right.kind and "X" not in (left.kind, right.kind):
+            raise Flaw(at, f"{KIND_NAMES[left.kind]} is not compared with {KIND_NAMES[right.kind]}")
+        if left.kind == "B" and operator not in ("=", "<>"):
+            raise Flaw(at, f"TRUE and FALSE are only compared by = and <>, not by {operator}")
+        python = infix(self.rounded(left), _COMPARISONS[operator], self.rounded(right))
+        return Typed(python, "B")
+
+    def _reckoned(self, left: Typed, operator: str, right: Typed, at: int) -> Typed:
+        if left.kind not in NUMERIC or right.kind not in NUMERIC:
+            wrong = left if left.kind not in NUMERIC else right
+            raise Flaw(at, f"{operator} does not take {KIND_NAMES[wrong.kind]}")
+        whole = operator != "/" and left.kind == right.kind == "I"
+        kind: Kind = "I" if whole else "D" if self._double else "R"
+        return Typed(infix(self.rounded(left), operator, self.rounded(right)), kind, exact=whole)
+
+    def _call(self, call: Call) -> Typed:
+        function = FUNCTIONS[call.function]
+        if not function.own:
+            if function.command:
+                raise Flaw(call.at, f"{call.function} is a command and has no value")
+            return Typed(Python(self.host_call(call)), function.kind, leaf=True)
+        first, *others = call.arguments
+        if first is None or None in others:
+            raise Flaw(call.at, f"{call.function} has an argument left out", function.usage)
+        if call.function in _TEXT_CODES:
+            return Typed(
+                Python(f"{_TEXT_CODES[call.function]}({self.text(first)})"), function.kind, leaf=True
+            )
+        if call.function == "INSTR":
+            texts = [self.text(tree) for tree in call.arguments[:2] if tree is not None]
+            start = [self.integer(tree) for tree in call.arguments[2:] if tree is not None]
+            return Typed(Python(f"position({', '.join(texts + start)})"), "I")
+        return self._own_number(call.function, first)
+
+    def _own_number(self, name: str, tree: Expression) -> Typed:
+        typed = self._typed(tree)
+        if typed.kind not in NUMERIC:
+            raise Flaw(tree.at, f"{name} takes a number, not {KIND_NAMES[typed.kind]}")
+        argument = self.rounded(typed).text
+        if name == "ABS":
+            return Typed(Python(f"abs({argument})"), typed.kind)
+        if name in _WHOLE:
+            return Typed(Python(f"{_WHOLE[name]}({argument})"), "I")
+        return Typed(Python(f"{_DEGREES[name]}({argument})"), "D" if self._double else "R", exact=False)
+
+    def _text_call(self, call: Call) -> str:
+        function = FUNCTIONS[call.function]
+        if not function.own:
+            return self.host_call(call)
+        first, *others = call.arguments
+        if first is None:
+            raise Flaw(call.at, f"{call.function} has an argument left out", function.usage)
+        match call.function:
+            case "CHR$":
+                return f"character({self.integer(first)})"
+            case "STR$":
+                value = others[0] if others else first
+                if value is None:
+                    raise Flaw(call.at, "STR$ has an argument left out", function.usage)
+                typed = self.value(value)
+                if typed.kind not in NUMERIC:
+                    raise Flaw(value.at, f"STR$ takes a number, not {KIND_NAMES[typed.kind]}")
+                form = [self.text(first)] if others else []
+                return f"written({', '.join((repr(typed.kind), self.rounded(typed).text, *form))})"
+            case "MID$":
+                places = [self.integer(tree) for tree in others if tree is not None]
+                if len(places) != len(others):
+                    raise Flaw(call.at, "MID$ has an argument left out", function.usage)
+                return f"middle({', '.join((self.stored(first), *places))})"
+            case "TRIM$":
+                side = [self.text(tree) for tree in others if tree is not None]
+                return f"trimmed({', '.join((self.stored(first), *side))})"
+        raise Flaw(call.at, f"{call.function} is no text")
+
+    def _joined(self, tree: Chain[Leaf], depth: int) -> str:
+        def text(part: Expression) -> str:
+            stored = self.stored(part, depth)
+            return stored if self.makes_text(part) else f"text_of({stored})"
+
+        python = text(tree.first)
+        for link in tree.links:
+            if link.operator != "+":
+                raise Flaw(link.at, f"texts are joined by +, not by {link.operator}")
+            python = f"added({python}, {text(link.operand)})"
+        return python
+
+    def _has_double(self, tree: object) -> bool:
+        match tree:
+            case Name():
+                return tree.variable.kind == "D"
+            case Parentheses():
+                return self._has_double(tree.inner)
+            case Unary():
+                return self._has_double(tree.operand)
+            case Chain():
+                return self._has_double(tree.first) or any(
+                    self._has_double(link.operand) for link in tree.links
+                )
+            case Call():
+                function = FUNCTIONS[tree.function]
+                return function.kind == "D" or (function.own and any(map(self._has_double, tree.arguments)))
+        return False
+
+
+def _logical(left: Typed, operator: str, right: Typed, at: int) -> Typed:
+    if left.kind != right.kind or left.kind not in ("B", "I"):
+        kinds = f"{KIND_NAMES[left.kind]} and {KIND_NAMES[right.kind]}"
+        raise Flaw(
+            at, f"{operator} takes two BOOLEAN or two INTEGER values, not {kinds}", INVALID_ASSIGNMENT.what
+        )
+    return Typed(infix(left.python, _LOGIC[operator], right.python), left.kind)
