@@ -52,7 +52,9 @@ class MacroVariables:
         self._values: dict[int, Value] = {}
         for key, row in self._area.load().items():
             pair = row.get("pair")
-            self._values[int(key)] = Value(float.fromhex(row["number"]), None if pair is None else tuple(pair))
+            self._values[int(key)] = Value(
+                float.fromhex(row["number"]), None if pair is None else tuple(pair)
+            )
 
     def __contains__(self, number: object) -> bool:
         return any(number in block for block in self.common.blocks)

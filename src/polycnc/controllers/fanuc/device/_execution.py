@@ -142,9 +142,7 @@ class Execution:
         start = self._power_mate.mdi.start
         if block is None or ahead is None:
             return MdiPointers(0, start, 0, start)
-        return MdiPointers(
-            number_of(block.program), block.line - 1, number_of(ahead.program), ahead.line - 1
-        )
+        return MdiPointers(number_of(block.program), block.line - 1, number_of(ahead.program), ahead.line - 1)
 
     # ------------------------------------------------------------------ searches
 

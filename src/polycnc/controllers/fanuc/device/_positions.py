@@ -52,7 +52,8 @@ class Positions:
             program, machine = power_mate.input_scale(axis), power_mate.output_scale(axis)
             found.append(
                 AxisPositions(
-                    absolute=program.counts(each.machine - zero[axis - 1]),
+                    absolute=program.counts(each.machine - zero[axis - 1])
+                    + power_mate.axis_motion.shift(axis),
                     machine=machine.counts(each.machine),
                     relative=program.counts(each.relative),
                     distance=program.counts(each.to_go),

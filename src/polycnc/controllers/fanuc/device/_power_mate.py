@@ -27,12 +27,17 @@ from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterR
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
 from polycnc.controllers.fanuc.device._alarms import POWER_MATE_ALARMS, PREFIX, AlarmBit, alarm_bits
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
 from polycnc.controllers.fanuc.device._execution import Execution
+from polycnc.controllers.fanuc.device._history import Histories
 from polycnc.controllers.fanuc.device._machine_file import AxisSetting, axis_of, default_names, machine_of
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
+from polycnc.controllers.fanuc.device._panel import Panel
+from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
+from polycnc.controllers.fanuc.device._signals import Signals
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
 from polycnc.machine import AnyAxis, Clock, Machine, Store
@@ -113,11 +118,17 @@ class PowerMate:
         self.execution = Execution(self)
         self.positions = Positions(self)
         self.tool_offsets = ToolOffsets(self, offsets)
+        self.signals = Signals(self)
+        self.panel = Panel(self)
+        self.pmc = PmcMemory(self)
+        self.history = Histories(self)
+        self.axis_motion = AxisMotion(self)
         bind(self)
         self.parameters.on_change = self._parameters_changed
         self.control = self._switched_on({})
         if self.selected not in self.programs:
             self.unselect()
+        self._begin_signals()
 
     # ------------------------------------------------------------------ what it is
 
@@ -183,6 +194,7 @@ class PowerMate:
         wanted = mode_of(mode)
         self.control.select_mode(CONTROL_MODES[wanted])
         self._mode = wanted
+        self.signals.apply_overrides()
 
     def select_program(self, number: int) -> None:
         """Select a program for MEM and EDIT.
@@ -223,9 +235,7 @@ class PowerMate:
         self._take_over()
         channel = self.control.channels[0]
         if self._mode is PowerMateMode.RMT and not channel.interrupted:
-            raise ControlError(
-                Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI."
-            )
+            raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
         if not channel.active and not channel.interrupted:
             self.execution.prepare_start()
         self.control.cycle_start()
@@ -245,6 +255,7 @@ class PowerMate:
         """Press RESET: break off what is being executed, clear alarms, stop an open download."""
         if self.transfer is not None:
             self.transfer.stop()
+        self.axis_motion.drop()
         self.control.reset()
         self._cursor = 0
         if not self.parameters.bit(6001, 6):
@@ -252,6 +263,8 @@ class PowerMate:
 
     def emergency_stop(self, on: bool = True) -> None:
         """Press or release the emergency stop."""
+        if on:
+            self.axis_motion.drop()
         self.control.emergency_stop(on)
 
     def optional_stop(self, on: bool = True) -> None:
@@ -337,6 +350,7 @@ class PowerMate:
         self._mode = PowerMateMode.MEM
         if self.selected:
             self.control.select_program(name_of(self.selected))
+        self._begin_signals()
 
     # ------------------------------------------------------------------ time and state
 
@@ -344,11 +358,29 @@ class PowerMate:
         """Let up to `cycles` control cycles pass; return how many did, see `cnc.Control.advance`."""
         if self._stale:
             self._take_over()
-        done = self.control.advance(cycles, until=until)
+        done = self._pass(cycles, until)
         block = self.control.channels[0].executed
         if block is not None and done and block.modal.inch is not self._inch:
             self._inch = block.modal.inch
             self.parameters.set(0, self.parameters.value(0) ^ 4)
+        return done
+
+    def _pass(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
+        """Let time pass, in stretches that end where direct commands have to be looked at."""
+        events = 0 if until is None or callable(until) else int(until)
+        done = 0
+        while done < cycles:
+            self.axis_motion.look()
+            step = min(cycles - done, self.axis_motion.horizon())
+            watch = until if callable(until) else events | self.axis_motion.EVENTS
+            busy = self.axis_motion.busy
+            passed = self.control.advance(step, until=watch if busy else until)
+            done += passed
+            over = callable(until) and until()
+            if over or self.control.raised & events or (passed < step and not busy) or not passed:
+                break
+        self.axis_motion.look()
+        self.history.sample()
         return done
 
     def status(self) -> Status:
@@ -361,6 +393,14 @@ class PowerMate:
         self.store.close()
 
     # ------------------------------------------------------------------ within
+
+    def _begin_signals(self) -> None:
+        """Let signals, panel and histories begin with the power."""
+        self.axis_motion.clear()
+        self.signals.clear()
+        self.pmc.clear()
+        self.panel.switched_on()
+        self.history.switched_on()
 
     def _common_range(self) -> CommonRange:
         if self.has_option("macro_variables_600"):

@@ -95,7 +95,9 @@ class Programs:
             Listed(number_of(each.name), each.comment[:COMMENT_MOST], each.size_bytes)
             for each in self.memory.directory()
         )
-        return tuple(sorted((each for each in listed if first <= each.number <= last), key=lambda each: each.number))
+        return tuple(
+            sorted((each for each in listed if first <= each.number <= last), key=lambda each: each.number)
+        )
 
     def register(self, number: int, content: str | bytes) -> None:
         """Put a program in, in place of one of this number; as the operator does it, for a machine that shall have it.

@@ -12,6 +12,7 @@ import ctypes
 from typing import Annotated
 
 from polycnc.controllers.fanuc.library._codes import MAX_AXIS, MAX_PBUF, MAX_RBUF
+from polycnc.controllers.library import CHAR as _CHAR
 from polycnc.controllers.library import (
     LONG,
     SHORT,
@@ -25,7 +26,6 @@ from polycnc.controllers.library import (
     Union,
     structure,
 )
-from polycnc.controllers.library import CHAR as _CHAR
 
 MAX_OFFSETS = 99
 MAX_MACROS = 500
