@@ -21,6 +21,7 @@ from polycnc.cnc import (
     Status,
 )
 from polycnc.controllers.fanuc.data._bindings import bind
+from polycnc.controllers.fanuc.data._configuration import Configuration
 from polycnc.controllers.fanuc.data._increment import Increment, Scale, scale
 from polycnc.controllers.fanuc.data._macro_variables import CommonRange, MacroVariables
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
@@ -32,6 +33,7 @@ from polycnc.controllers.fanuc.device._execution import Execution
 from polycnc.controllers.fanuc.device._history import Histories
 from polycnc.controllers.fanuc.device._machine_file import AxisSetting, axis_of, default_names, machine_of
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
+from polycnc.controllers.fanuc.device._modal_data import ModalData
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
 from polycnc.controllers.fanuc.device._panel import Panel
 from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
@@ -123,6 +125,8 @@ class PowerMate:
         self.pmc = PmcMemory(self)
         self.history = Histories(self)
         self.axis_motion = AxisMotion(self)
+        self.modal_data = ModalData(self)
+        self.configuration = Configuration()
         bind(self)
         self.parameters.on_change = self._parameters_changed
         self.control = self._switched_on({})
