@@ -138,9 +138,7 @@ def test_protected_addresses_are_not_written(kind: int, first: int, count: int) 
             0, 43, 12, "cdata", [0x12, 0x34, 0x56, -2], marks=pytest.mark.covers("fanuc.pmc.data_type.0")
         ),
         pytest.param(1, 43, 12, "idata", [0x3412, -426], marks=pytest.mark.covers("fanuc.pmc.data_type.1")),
-        pytest.param(
-            2, 43, 12, "ldata", [-0x1A9CBEE], marks=pytest.mark.covers("fanuc.pmc.data_type.2")
-        ),
+        pytest.param(2, 43, 12, "ldata", [-0x1A9CBEE], marks=pytest.mark.covers("fanuc.pmc.data_type.2")),
     ],
 )
 def test_items_of_a_type(data_type: int, last: int, length: int, member: str, values: list[int]) -> None:
