@@ -140,6 +140,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     if path["state"] != IDLE:
         path["state"] = READY
     path["entry_share"] = 0.0
+    path["entry_zone"] = 0.0
     path["pending"] = 0
     path["limit"] = NO_LIMIT
 

@@ -58,9 +58,9 @@ class Plain(NamedTuple):
 class ModalSnapshot(NamedTuple):
     """Hold what was in force with one block, to be shown while it is executed; see `ChannelState`."""
 
-    whole: tuple[int, ...]
+    whole: bytes  # `Modal.whole`
     feed: float  # as programmed
-    offset: tuple[float, ...]
+    offset: bytes  # `Modal.offset`
     work: tuple[str, ...]
     spindle: Spindle
     cycle: str
@@ -111,7 +111,7 @@ class ChannelState:
         self.axis_names: Sequence[str] = machine.axis_names
 
     def save(self) -> SavedState:
-        """Return the state to go back to when the block that comes is refused."""
+        """Return the state to go back to."""
         return SavedState(
             save_modal(self.modal),
             self.coordinates.save(),
@@ -126,7 +126,7 @@ class ChannelState:
         if saved.compensation is None:
             self.compensation.reset()
         else:
-            self.compensation = saved.compensation
+            self.compensation = saved.compensation.copy()
         for name, value in zip(Plain._fields, saved.plain, strict=True):
             setattr(self, name, value)
 
@@ -149,9 +149,9 @@ class ChannelState:
         """Return what is in force now."""
         modal, coordinates = self.modal, self.coordinates
         return ModalSnapshot(
-            tuple(modal.whole.tolist()),
+            modal.whole.tobytes(),
             float(modal.real[FEED_NUMBER]),
-            tuple(modal.offset.tolist()),
+            modal.offset.tobytes(),
             coordinates.work,
             self.spindle,
             self.cycle.action,

@@ -38,6 +38,7 @@ class Coordinates:
         self.shift: Floats = np.zeros(axes)  # G92
         self.length: Floats = np.zeros(axes)
         self.length_sign = 0
+        self._revision = _revision(machine)
 
     def save(self) -> SavedCoordinates:
         """Return what to go back to; the sum in `modal.offset` is the modal state's business."""
@@ -70,9 +71,20 @@ class Coordinates:
         self.length[axis] = sign * length_mm
         self._renew()
 
+    def take_changes(self) -> None:
+        """Take over work offsets that have been changed in the table since."""
+        if _revision(self._machine) != self._revision:
+            self._renew()
+
     def _renew(self) -> None:
+        self._revision = _revision(self._machine)
         total = self.shift + self.length
         for name in self.work:
             if name != MACHINE_ZERO:
                 total = total + self._machine.work_offset(name)
         self._modal.offset[:] = total
+
+
+def _revision(machine: MachineConfig) -> int:
+    """Return how often the table of work offsets has been changed; that of a machine file never is."""
+    return int(getattr(machine.offsets, "revision", 0))

@@ -138,6 +138,7 @@ class Interpreter:
         """
         self._text, self._block = text, block
         self.messages.begin(block.line)
+        self.state.coordinates.take_changes()
         saved = self.state.save()
         try:
             outcome, items = self._execute(block)
@@ -149,8 +150,7 @@ class Interpreter:
             raise
         if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
             self._queue.set_tolerance(self.state.path_tolerance_mm)
-        for item in items:
-            self._queue.put(item)
+        self._queue.put_block(items)
         return outcome
 
     def finish(self) -> None:
@@ -238,17 +238,46 @@ class Interpreter:
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
         self._note_position(items)
-        return outcome, self._compensated(self._tagged(items, line), change_compensation)
+        return outcome, self._compensated(
+            self._tagged(items, line, words_stand=bool(block.words)), change_compensation
+        )
 
-    def _tagged(self, items: list[QueueItem], line: int) -> list[QueueItem]:
-        """Return the items with the reference of the block's record, another one than the block just before has."""
+    def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
+        """Return the items with the reference of the block's record, another one than the block just before has.
+
+        A block with words and without items is noted as such.
+        """
         if not items:
+            if words_stand:
+                self.mark(line)
             return items
+        tag = self._next_tag(line)
+        return [item.tagged(tag) for item in items]
+
+    def _next_tag(self, line: int) -> int:
         tag = self._reference(line)
         if tag == self._last_tag:
             tag ^= AGAIN
         self._last_tag = tag
-        return [item.tagged(tag) for item in items]
+        return tag
+
+    def snapshot(self) -> tuple[int, ProgramText]:
+        """Return what one block leaves for the next besides the state, to go back to."""
+        return self._last_tag, self._held_text
+
+    def restore(self, saved: tuple[int, ProgramText]) -> None:
+        """Go back to a snapshot."""
+        self._last_tag, self._held_text = saved
+
+    @property
+    def last_tag(self) -> int:
+        """The reference of the last block that was executed."""
+        return self._last_tag
+
+    def mark(self, line: int) -> None:
+        """Note a block that does nothing on the path, to be stepped to."""
+        if self._queue.marks is not None:
+            self._queue.mark(self._next_tag(line))
 
     def _compensated(self, items: list[QueueItem], change: Callable[[], None] | None) -> list[QueueItem]:
         """Return what of the items the queue gets now; radius compensation may hold moves back."""
