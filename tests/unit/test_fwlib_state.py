@@ -53,7 +53,7 @@ def test_system_of_a_power_mate_d() -> None:
     assert (system.max_axis, system.mt_type, system.axes) == (2, b" D", b" 1")
 
 
-MODULES = {
+MODULES: dict[str, tuple[str, dict[int, Any]]] = {
     "frmmin": ("from_module", {-1: "not mounted", 0: "2 MB", 2: "4 MB"}),
     "drmmin": ("dram_module", {-1: "not mounted", 0: "2 MB", 1: "2.5 MB", 3: "3 MB"}),
     "srmmin": (

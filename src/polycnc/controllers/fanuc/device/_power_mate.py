@@ -407,7 +407,7 @@ class PowerMate:
             if over or self.control.raised & events or (passed < step and not busy) or not passed:
                 break
         self.axis_motion.look()
-        self.history.sample()
+        self.history.sample(force=False)
         return done
 
     def status(self) -> Status:
@@ -427,6 +427,10 @@ class PowerMate:
             protection_keys=self.protection_keys,
             parameters_writable=self.parameters_writable,
             inch=self._inch,
+            signals=self.signals.snapshot(),
+            axis_motion=self.axis_motion.snapshot(),
+            pmc=self.pmc.snapshot(),
+            sampling_stopped=self.history.stopped,
         )
 
     def restore(self, snapshot: PowerMateSnapshot) -> None:
@@ -442,6 +446,10 @@ class PowerMate:
         self.protection_keys = snapshot.protection_keys
         self.parameters_writable = snapshot.parameters_writable
         self._inch = snapshot.inch
+        self.signals.restore(snapshot.signals)
+        self.axis_motion.restore(snapshot.axis_motion)
+        self.pmc.restore(snapshot.pmc)
+        self.history.stopped = snapshot.sampling_stopped
 
     def close(self) -> None:
         """Switch off: save the timers and close the memory."""

@@ -7,7 +7,7 @@ state only: reading an address shows what holds, whoever has set it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from polycnc.cnc import ControlError, Emergency, Mode, Motion, RunState
@@ -56,6 +56,19 @@ _FUNCTION_BYTES = {"M": 10, "S": 22, "T": 26, "B": 30}
 _INTERRUPTED = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
 
 
+@dataclass(frozen=True, slots=True)
+class SignalState:
+    """The signals that are given, to go back to."""
+
+    given: dict[int, int]
+    feed: int
+    rapid: int
+    jog: float
+    battery_low: bool
+    torque_mode: int
+    torque_override: tuple[int, ...]
+
+
 class Signals:
     """Read and give the operation signals of a Power Mate; `battery_low` is a condition that a test can set."""
 
@@ -85,6 +98,25 @@ class Signals:
         """Let all signals be as they are when the power comes on."""
         self._given: dict[int, int] = {4: 0, 7: 0, 8: _SP | _ESP, 126: 0}
         self._feed, self._rapid, self._jog = 100, 0, 100.0
+
+    def snapshot(self) -> SignalState:
+        """Return what is given, to go back to."""
+        return SignalState(
+            dict(self._given),
+            self._feed,
+            self._rapid,
+            self._jog,
+            self.battery_low,
+            self.torque_mode,
+            tuple(self._torque_override),
+        )
+
+    def restore(self, state: SignalState) -> None:
+        """Go back to a snapshot; the control behind has gone back by itself."""
+        self._given = dict(state.given)
+        self._feed, self._rapid, self._jog = state.feed, state.rapid, state.jog
+        self.battery_low, self.torque_mode = state.battery_low, state.torque_mode
+        self._torque_override = list(state.torque_override)
 
     # ------------------------------------------------------------------ G addresses
 
