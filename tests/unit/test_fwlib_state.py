@@ -235,6 +235,17 @@ def test_alarm_and_low_battery() -> None:
     assert library.cnc_statinfo(handle)[1].alarm == 1
 
 
+@pytest.mark.covers("fanuc.ODBST.edit.3")
+def test_a_program_that_goes_out_shows_as_output() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    put(control, 3, "G0 X1.")
+    assert library.cnc_upstart(handle, 3) == 0
+    assert library.cnc_statinfo(handle)[1].edit == 3
+    assert library.cnc_upend(handle) == 0
+    assert library.cnc_statinfo(handle)[1].edit == 0
+
+
 @pytest.mark.covers(
     "fanuc.ODBST.edit.0",
     "fanuc.ODBST.edit.1",
