@@ -519,7 +519,11 @@ def test_a_snapshot_holds_signals_buffers_and_memory() -> None:
     control.pmc.write("R", 12, b"\x11")
     control.advance(50)
     control.restore(there)
-    assert (machine(control), control.pmc.read("R", 12, 12), control.signals.feed_override) == (before, b"\x37", 70)
+    assert (machine(control), control.pmc.read("R", 12, 12), control.signals.feed_override) == (
+        before,
+        b"\x37",
+        70,
+    )
     assert buffers(library, handle)[0][1] == 2
     control.advance(3000)
     assert (machine(control)[0], library.cnc_finstate(handle)[1].cdata[1]) == (4000, 2)

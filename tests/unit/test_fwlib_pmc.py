@@ -252,6 +252,11 @@ def test_feed_override_is_255_less_the_value() -> None:
     write(library, handle, G, 12, 255)
     assert control.control.overrides.feed == 0.0
     assert read(library, handle, G, 12) == [255]
+    control.control.set_overrides(feed=0.4, rapid=0.25)
+    assert (read(library, handle, G, 12), read(library, handle, G, 14)) == ([215], [2])
+    control.select_mode("MDI")
+    write(library, handle, G, 14, 1)
+    assert (control.control.overrides.feed, control.control.overrides.rapid) == (0.4, 0.5)
 
 
 def test_rapid_override_shows_in_the_speed() -> None:

@@ -213,7 +213,7 @@ class PowerMate:
         wanted = mode_of(mode)
         self.control.select_mode(CONTROL_MODES[wanted])
         self._mode = wanted
-        self.signals.apply_overrides()
+        self.signals.mode_changed()
 
     def select_program(self, number: int) -> None:
         """Select a program for MEM and EDIT.
