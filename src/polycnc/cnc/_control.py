@@ -415,6 +415,11 @@ class Control:
         self._edits.append(edit)
         return edit
 
+    @property
+    def is_editing(self) -> bool:
+        """Whether a program is open for editing."""
+        return any(edit.is_open for edit in self._edits)
+
     # ------------------------------------------------------------------ axes by hand
 
     def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:

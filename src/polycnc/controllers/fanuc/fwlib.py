@@ -21,23 +21,39 @@ from __future__ import annotations
 from polycnc.controllers.fanuc.library import (
     _axes,
     _codes,
+    _diagnosis,
     _handles,
+    _history,
     _macros,
+    _misc,
+    _modal,
+    _motion,
     _offsets,
+    _panel,
     _parameters,
+    _pmc,
     _programs,
     _structs_a,
+    _structs_b,
 )
 from polycnc.controllers.fanuc.library._axes import *  # noqa: F403
 from polycnc.controllers.fanuc.library._call import LIBRARY
 from polycnc.controllers.fanuc.library._codes import *  # noqa: F403
+from polycnc.controllers.fanuc.library._diagnosis import *  # noqa: F403
 from polycnc.controllers.fanuc.library._handles import *  # noqa: F403
+from polycnc.controllers.fanuc.library._history import *  # noqa: F403
 from polycnc.controllers.fanuc.library._macros import *  # noqa: F403
+from polycnc.controllers.fanuc.library._misc import *  # noqa: F403
+from polycnc.controllers.fanuc.library._modal import *  # noqa: F403
+from polycnc.controllers.fanuc.library._motion import *  # noqa: F403
 from polycnc.controllers.fanuc.library._network import Node, Session
 from polycnc.controllers.fanuc.library._offsets import *  # noqa: F403
+from polycnc.controllers.fanuc.library._panel import *  # noqa: F403
 from polycnc.controllers.fanuc.library._parameters import *  # noqa: F403
+from polycnc.controllers.fanuc.library._pmc import *  # noqa: F403
 from polycnc.controllers.fanuc.library._programs import *  # noqa: F403
 from polycnc.controllers.fanuc.library._structs_a import *  # noqa: F403
+from polycnc.controllers.fanuc.library._structs_b import *  # noqa: F403
 from polycnc.controllers.library import layouts
 
 attach = LIBRARY.default.attach
@@ -45,18 +61,26 @@ detach = LIBRARY.default.detach
 FUNCTIONS = LIBRARY.functions
 """The table of all functions, with the C types and directions of their arguments."""
 
-STRUCTURES = layouts(*_structs_a.STRUCTURES_A)
+STRUCTURES = layouts(*_structs_a.STRUCTURES_A, *_structs_b.STRUCTURES_B)
 """The tables of all structures: `size`, and `fields` with name, type, offset and size."""
 
 __all__ = [
     *_axes.__all__,
     *_codes.__all__,
+    *_diagnosis.__all__,
     *_handles.__all__,
+    *_history.__all__,
     *_macros.__all__,
+    *_misc.__all__,
+    *_modal.__all__,
+    *_motion.__all__,
     *_offsets.__all__,
+    *_panel.__all__,
     *_parameters.__all__,
+    *_pmc.__all__,
     *_programs.__all__,
     *_structs_a.__all__,
+    *_structs_b.__all__,
     "FUNCTIONS",
     "STRUCTURES",
     "Node",

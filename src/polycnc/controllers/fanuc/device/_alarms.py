@@ -87,9 +87,14 @@ def shown(alarms: Iterable[Alarm]) -> tuple[Alarm, ...]:
     return tuple(alarm for alarm in alarms if alarm.number >= 0)
 
 
+def bit_of(number: int) -> AlarmBit:
+    """Return the group of an alarm number."""
+    return _SINGLE.get(number) or _of(number)[0]
+
+
 def alarm_bits(alarms: Iterable[Alarm]) -> AlarmBit:
     """Return the groups of the alarms that are on."""
     bits = AlarmBit(0)
     for alarm in shown(alarms):
-        bits |= _SINGLE.get(alarm.number) or _of(alarm.number)[0]
+        bits |= bit_of(alarm.number)
     return bits

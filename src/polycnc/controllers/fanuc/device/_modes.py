@@ -13,6 +13,7 @@ class PowerMateMode(IntEnum):
 
     MDI = 0
     MEM = 1
+    NONE = 2
     EDIT = 3
     HND = 4
     JOG = 5
@@ -25,12 +26,13 @@ class PowerMateMode(IntEnum):
     @property
     def label(self) -> str:
         """Return the name that the operator reads."""
-        return self.name.replace("_", "-")
+        return "****" if self is PowerMateMode.NONE else self.name.replace("_", "-")
 
 
 CONTROL_MODES = {
     PowerMateMode.MDI: Mode.MDI,
     PowerMateMode.MEM: Mode.AUTO,
+    PowerMateMode.NONE: Mode.EDIT,  # nothing starts or moves there
     PowerMateMode.EDIT: Mode.EDIT,
     PowerMateMode.HND: Mode.HANDLE,
     PowerMateMode.JOG: Mode.JOG,

@@ -52,11 +52,12 @@ class Positions:
         shift = self._shift(tuple(axes))
         scales = self._scales()
         found = []
-        for each in axes.values():
+        for axis, each in enumerate(axes.values(), 1):
             program, machine = scales[each.unit]
             found.append(
                 AxisPositions(
-                    absolute=program.counts(each.work + shift.get(each.name, 0.0)),
+                    absolute=program.counts(each.work + shift.get(each.name, 0.0))
+                    + self._power_mate.axis_motion.shift(axis),
                     machine=machine.counts(each.machine),
                     relative=program.counts(each.relative),
                     distance=program.counts(each.to_go),

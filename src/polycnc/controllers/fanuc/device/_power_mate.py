@@ -21,6 +21,7 @@ from polycnc.cnc import (
     Status,
 )
 from polycnc.controllers.fanuc.data._bindings import bind
+from polycnc.controllers.fanuc.data._configuration import Configuration
 from polycnc.controllers.fanuc.data._increment import Increment, Scale, scale
 from polycnc.controllers.fanuc.data._macro_variables import CommonRange, MacroVariables
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
@@ -33,7 +34,9 @@ from polycnc.controllers.fanuc.device._alarms import (
     AlarmBit,
     alarm_bits,
 )
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
 from polycnc.controllers.fanuc.device._execution import Execution
+from polycnc.controllers.fanuc.device._history import Histories
 from polycnc.controllers.fanuc.device._machine_file import (
     AxisSetting,
     axis_of,
@@ -42,9 +45,13 @@ from polycnc.controllers.fanuc.device._machine_file import (
     usable_names,
 )
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
+from polycnc.controllers.fanuc.device._modal_data import ModalData
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
+from polycnc.controllers.fanuc.device._panel import Panel
+from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
+from polycnc.controllers.fanuc.device._signals import Signals
 from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
@@ -128,11 +135,19 @@ class PowerMate:
         self.execution = Execution(self)
         self.positions = Positions(self)
         self.tool_offsets = ToolOffsets(self, offsets)
+        self.signals = Signals(self)
+        self.panel = Panel(self)
+        self.pmc = PmcMemory(self)
+        self.history = Histories(self)
+        self.axis_motion = AxisMotion(self)
+        self.modal_data = ModalData(self)
+        self.configuration = Configuration()
         bind(self)
         self.parameters.on_change = self._parameters_changed
         self.control = self._switched_on(None)
         if self.selected not in self.programs:
             self.unselect()
+        self._begin_signals()
 
     # ------------------------------------------------------------------ what it is
 
@@ -198,6 +213,7 @@ class PowerMate:
         wanted = mode_of(mode)
         self.control.select_mode(CONTROL_MODES[wanted])
         self._mode = wanted
+        self.signals.mode_changed()
 
     def select_program(self, number: int) -> None:
         """Select a program for MEM and EDIT.
@@ -257,6 +273,7 @@ class PowerMate:
         """Press RESET: break off what is being executed, clear alarms, stop an open download."""
         if self.transfer is not None:
             self.transfer.stop()
+        self.axis_motion.drop()
         self.control.reset()
         self._cursor = 0
         if not self.parameters.bit(6001, 6):
@@ -264,6 +281,8 @@ class PowerMate:
 
     def emergency_stop(self, on: bool = True) -> None:
         """Press or release the emergency stop."""
+        if on:
+            self.axis_motion.drop()
         self.control.emergency_stop(on)
 
     def optional_stop(self, on: bool = True) -> None:
@@ -355,6 +374,7 @@ class PowerMate:
         self._mode = PowerMateMode.MEM
         if self.selected:
             self.control.select_program(name_of(self.selected))
+        self._begin_signals()
 
     # ------------------------------------------------------------------ time and state
 
@@ -364,12 +384,30 @@ class PowerMate:
             self._take_over()
         channel = self.control.channels[0]
         active = channel.active
-        done = self.control.advance(cycles, until=until)
+        done = self._pass(cycles, until)
         block = channel.executed if active else None
         if block is not None and block.modal.inch is not self._inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
         if self._stale:
             self._take_over()
+        return done
+
+    def _pass(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
+        """Let time pass, in stretches that end where direct commands have to be looked at."""
+        events = 0 if until is None or callable(until) else int(until)
+        done = 0
+        while done < cycles:
+            self.axis_motion.look()
+            step = min(cycles - done, self.axis_motion.horizon())
+            watch = until if callable(until) else events | self.axis_motion.EVENTS
+            busy = self.axis_motion.busy
+            passed = self.control.advance(step, until=watch if busy else until)
+            done += passed
+            over = callable(until) and until()
+            if over or self.control.raised & events or (passed < step and not busy) or not passed:
+                break
+        self.axis_motion.look()
+        self.history.sample(force=False)
         return done
 
     def status(self) -> Status:
@@ -389,6 +427,10 @@ class PowerMate:
             protection_keys=self.protection_keys,
             parameters_writable=self.parameters_writable,
             inch=self._inch,
+            signals=self.signals.snapshot(),
+            axis_motion=self.axis_motion.snapshot(),
+            pmc=self.pmc.snapshot(),
+            sampling_stopped=self.history.stopped,
         )
 
     def restore(self, snapshot: PowerMateSnapshot) -> None:
@@ -404,6 +446,10 @@ class PowerMate:
         self.protection_keys = snapshot.protection_keys
         self.parameters_writable = snapshot.parameters_writable
         self._inch = snapshot.inch
+        self.signals.restore(snapshot.signals)
+        self.axis_motion.restore(snapshot.axis_motion)
+        self.pmc.restore(snapshot.pmc)
+        self.history.stopped = snapshot.sampling_stopped
 
     def close(self) -> None:
         """Switch off: save the timers and close the memory."""
@@ -411,6 +457,14 @@ class PowerMate:
         self.store.close()
 
     # ------------------------------------------------------------------ within
+
+    def _begin_signals(self) -> None:
+        """Let signals, panel and histories begin with the power."""
+        self.axis_motion.clear()
+        self.signals.clear()
+        self.pmc.clear()
+        self.panel.switched_on()
+        self.history.switched_on()
 
     def _common_range(self) -> CommonRange:
         if self.has_option("macro_variables_600"):

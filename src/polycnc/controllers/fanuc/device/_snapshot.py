@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from polycnc.cnc import ControlSnapshot
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
+from polycnc.controllers.fanuc.device._signals import SignalState
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +24,10 @@ class PowerMateSnapshot:
     protection_keys: frozenset[int]
     parameters_writable: bool
     inch: bool
+    signals: SignalState
+    axis_motion: AxisMotionState
+    pmc: dict[tuple[str, int], int]
+    sampling_stopped: bool
 
     @property
     def cycle(self) -> int:

@@ -128,6 +128,11 @@ class ProgramStream:
             self._end()
 
     @property
+    def begun(self) -> bool:
+        """Whether the first end of block has come, up to which everything is skipped."""
+        return self._begun
+
+    @property
     def waiting(self) -> int:
         """How many characters of a block have come whose end has not."""
         return len(self._rest)
@@ -177,6 +182,11 @@ class Transfer:
             on_program=self._check_program,
             on_block=self._count,
         )
+
+    @property
+    def begun(self) -> bool:
+        """Whether anything has come that counts."""
+        return self._stream.begun
 
     def stop(self) -> None:
         """RESET or STOP was pressed: nothing more is taken, and nothing will be registered."""

@@ -1,0 +1,88 @@
+"""The diagnosis data of a Power Mate. Ruling: the manual leaves numbers to another book; these are usual ones."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING
+
+from polycnc.cnc import Emergency, Motion
+from polycnc.controllers.fanuc.device._alarms import shown
+
+if TYPE_CHECKING:
+    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+
+
+class Kind(IntEnum):
+    """Kinds of diagnosis data, as the type of cnc_diagnosr has them (Manual 000)."""
+
+    BIT = 0
+    BYTE = 1
+    WORD = 2
+    TWO_WORD = 3
+
+    @property
+    def size(self) -> int:
+        """Return the bytes of one value."""
+        return (1, 1, 2, 4)[self]
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """One diagnosis number; `value` is given the axis (from 1), 0 for data without axes."""
+
+    name: str
+    kind: Kind
+    value: Callable[[PowerMate, int], int]
+    per_axis: bool = False
+
+
+def _alarm(number: int) -> Callable[[PowerMate, int], int]:
+    def value(power_mate: PowerMate, axis: int) -> int:
+        name = power_mate.axis_name(axis)
+        alarms = shown(power_mate.control.alarms.active)
+        return int(any(each.number == number and each.axis == name for each in alarms))
+
+    return value
+
+
+def _servo_bits(power_mate: PowerMate, axis: int) -> int:
+    return _alarm(411)(power_mate, axis) << 3 | _alarm(417)(power_mate, axis) << 4
+
+
+def _stopped(power_mate: PowerMate, axis: int) -> int:
+    signals = power_mate.signals
+    emergency = power_mate.control.emergency is Emergency.ON
+    return signals.reset_is_on << 2 | emergency << 3 | signals.hold_is_on << 5
+
+
+def _axis_state(power_mate: PowerMate, axis: int) -> int:
+    status = power_mate.status().axes[power_mate.axis_name(axis)]
+    return 0 if not status.moving else 2 if status.manual != "none" else 1
+
+
+# fmt: off
+DIAGNOSIS: dict[int, Diagnosis] = {
+    0: Diagnosis("waits for the answer to a function", Kind.BYTE, lambda it, axis: bool(it.status().channel.functions)),
+    1: Diagnosis("axes move", Kind.BYTE, lambda it, axis: it.status().channel.motion is Motion.MOVING),
+    2: Diagnosis("dwells", Kind.BYTE, lambda it, axis: it.status().channel.motion is Motion.DWELL),
+    4: Diagnosis("the feed override is 0 %", Kind.BYTE, lambda it, axis: it.signals.feed_override == 0),
+    20: Diagnosis("what stops: #2 reset, #3 emergency stop, #5 feed hold", Kind.BIT, _stopped),
+    30: Diagnosis("feed override (%)", Kind.WORD, lambda it, axis: it.signals.feed_override),
+    31: Diagnosis("actual feed (mm/min)", Kind.TWO_WORD, lambda it, axis: it.positions.feed()),
+    200: Diagnosis("servo alarms: #3 excess error, #4 parameter", Kind.BIT, _servo_bits, True),
+    201: Diagnosis("what moves the axis: 1 program, 2 hand or direct command", Kind.BYTE, _axis_state, True),
+    202: Diagnosis(
+        "torque override (0.1 %)", Kind.WORD, lambda it, axis: round(10 * it.signals.torque_override(axis)), True
+    ),
+    203: Diagnosis("torque mode", Kind.BYTE, lambda it, axis: it.signals.torque_mode >> axis - 1 & 1, True),
+    300: Diagnosis(
+        "position error (increments)", Kind.TWO_WORD, lambda it, axis: it.positions.read()[axis - 1].servo_delay, True
+    ),
+    301: Diagnosis(
+        "distance from the reference position (increments)", Kind.TWO_WORD,
+        lambda it, axis: it.positions.read()[axis - 1].machine, True,
+    ),
+}
+# fmt: on

@@ -1,0 +1,229 @@
+"""Axes moved by direct commands of a program on a PC: two execution buffers and a completion flag per path.
+
+Every axis of a command goes to its own end at the commanded speed, and a block is over when all of them stand. The
+feed override holds, and so does a hold. An alarm, a reset or the emergency stop empties all buffers.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from typing import TYPE_CHECKING
+
+from polycnc.cnc import ControlError, ControlEvent, Emergency
+from polycnc.controllers.fanuc.device._alarms import shown
+
+if TYPE_CHECKING:
+    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+
+PATHS = 6
+BUFFERS = 2
+_MM_PER_MIN = 60.0
+_FOR_EVER = 1 << 40
+
+
+class Order(Enum):
+    """What a direct command does."""
+
+    REFERENCE = auto()
+    ABSOLUTE = auto()
+    INCREMENTAL = auto()
+    DWELL = auto()
+    SET = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A direct command: values by axis (from 1), in increments of the output unit, of a dwell in milliseconds."""
+
+    order: Order
+    values: tuple[tuple[int, int], ...]
+    feed: int = 0
+    flag: bool = False
+
+    @property
+    def axes(self) -> frozenset[int]:
+        """The axes that it is about."""
+        return frozenset(axis for axis, _ in self.values)
+
+
+@dataclass(slots=True)
+class _Path:
+    """The buffers of a path: blocks with the number of the buffer that they are in, the first is executed."""
+
+    blocks: deque[tuple[int, Block]]
+    begun: bool = False
+    until: int = 0  # the cycle at which a dwell ends
+
+
+@dataclass(frozen=True, slots=True)
+class AxisMotionState:
+    """Buffers, flags and coordinates, to go back to."""
+
+    shift: tuple[int, ...]
+    paths: tuple[tuple[tuple[tuple[int, Block], ...], bool, int], ...]
+    finished: tuple[bool, ...]
+
+
+class AxisMotion:
+    """Execute direct commands on the machine of a Power Mate."""
+
+    def __init__(self, power_mate: PowerMate) -> None:
+        self._power_mate = power_mate
+        self._shift = [0] * power_mate.max_axis
+        self._paths = [_Path(deque()) for _ in range(PATHS)]
+        self.finished = [False] * PATHS
+
+    def clear(self) -> None:
+        """Forget everything, as when the power comes on."""
+        self.drop()
+        self._shift = [0] * len(self._shift)
+        self.finished = [False] * PATHS
+
+    def drop(self) -> None:
+        """Empty all buffers; axes that were moving brake."""
+        for path in self._paths:
+            if path.begun:
+                for axis in path.blocks[0][1].axes:
+                    self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
+            path.blocks.clear()
+            path.begun = False
+
+    def snapshot(self) -> AxisMotionState:
+        """Return everything, to go back to."""
+        return AxisMotionState(
+            tuple(self._shift),
+            tuple((tuple(path.blocks), path.begun, path.until) for path in self._paths),
+            tuple(self.finished),
+        )
+
+    def restore(self, state: AxisMotionState) -> None:
+        """Go back to a snapshot; the control behind has gone back by itself."""
+        self._shift = list(state.shift)
+        self._paths = [_Path(deque(blocks), begun, until) for blocks, begun, until in state.paths]
+        self.finished = list(state.finished)
+
+    # ------------------------------------------------------------------ what is known
+
+    @property
+    def busy(self) -> bool:
+        """Whether a buffer holds a block."""
+        return any(path.blocks for path in self._paths)
+
+    def buffers(self, path: int) -> tuple[bool, bool]:
+        """Return which execution buffers of a path (from 1) hold a block."""
+        used = {buffer for buffer, _ in self._paths[path - 1].blocks}
+        return 0 in used, 1 in used
+
+    def has_room(self, path: int) -> bool:
+        """Whether a path (from 1) takes a block now: a buffer is free, and no program has the axes."""
+        programs = any(channel.active for channel in self._power_mate.control.channels)
+        return len(self._paths[path - 1].blocks) < BUFFERS and not programs
+
+    def shift(self, axis: int) -> int:
+        """Return by how much the coordinate of an axis (from 1) was shifted by setting it, in increments."""
+        return self._shift[axis - 1]
+
+    # ------------------------------------------------------------------ commands
+
+    def put(self, path: int, block: Block) -> None:
+        """Put a block into a free buffer of a path (from 1); it begins when the one before it is over."""
+        blocks = self._paths[path - 1].blocks
+        buffer = 1 - blocks[0][0] if blocks else 0
+        blocks.append((buffer, block))
+
+    # ------------------------------------------------------------------ time
+
+    def horizon(self) -> int:
+        """Return how many cycles may pass before somebody has to look."""
+        if not self.busy:
+            return _FOR_EVER
+        now = self._power_mate.clock.cycles
+        dwells = [path.until - now for path in self._paths if path.begun and path.until > now]
+        waits = any(path.blocks and not path.begun for path in self._paths)
+        return 1 if waits else min(dwells, default=_FOR_EVER)
+
+    EVENTS = ControlEvent.MANUAL | ControlEvent.ALARM | ControlEvent.RUN_STATE
+
+    def look(self) -> None:
+        """Begin blocks whose turn it is, and end those that are over."""
+        control = self._power_mate.control
+        if self.busy and (control.emergency is not Emergency.OFF or shown(control.alarms.active)):
+            self.drop()
+        for number, path in enumerate(self._paths):
+            while path.blocks:
+                if not path.begun and not self._begin(path):
+                    break
+                if not self._is_over(path):
+                    break
+                _, block = path.blocks.popleft()
+                path.begun, path.until = False, 0
+                if block.flag:
+                    self.finished[number] = True
+
+    def _is_over(self, path: _Path) -> bool:
+        control, block = self._power_mate.control, path.blocks[0][1]
+        if block.order is Order.DWELL:
+            return control.clock.cycles >= path.until
+        names = map(self._power_mate.axis_name, block.axes)
+        return all(control.manual.motion(name).kind.value == "none" for name in names)
+
+    def _begin(self, path: _Path) -> bool:
+        """Begin the first block; tell whether it could."""
+        power_mate, block = self._power_mate, path.blocks[0][1]
+        signals = power_mate.signals
+        if signals.hold_is_on or any(signals.servo_is_off(axis) for axis in block.axes):
+            return False
+        taken = {
+            axis
+            for other in self._paths
+            if other is not path and other.begun
+            for axis in other.blocks[0][1].axes
+        }
+        if taken & block.axes:
+            return False
+        if block.order is Order.DWELL:
+            longest_s = max(value for _, value in block.values) / 1000.0
+            path.until = power_mate.clock.cycles + power_mate.clock.cycles_for(longest_s)
+        elif block.order is Order.SET:
+            for axis, value in block.values:
+                self._shift[axis - 1] += value - power_mate.positions.read()[axis - 1].absolute
+        else:
+            try:
+                for channel in power_mate.control.channels:
+                    channel.lend()
+                for axis, value in block.values:
+                    self._move(block, axis, value)
+            except ControlError as error:
+                for axis in block.axes:
+                    power_mate.control.manual.stop(power_mate.axis_name(axis))
+                if error.reason.name != "TRAVEL":
+                    return False
+                self.drop()
+                axis = min(block.axes)
+                power_mate.raise_alarm(500, f"OVER TRAVEL : {power_mate.axis_name(axis)}", axis=axis)
+                return False
+        path.begun = True
+        return True
+
+    def _move(self, block: Block, axis: int, value: int) -> None:
+        power_mate = self._power_mate
+        manual, name = power_mate.control.manual, power_mate.axis_name(axis)
+        if block.order is Order.REFERENCE:
+            manual.reference(name)
+            return
+        position = power_mate.positions.read()[axis - 1]
+        scale = power_mate.output_scale(axis)
+        distance = value if block.order is Order.INCREMENTAL else value - position.absolute
+        target = float(
+            power_mate.machine.state.base[power_mate.control.machine.config.axis_names.index(name)]
+        )
+        there = scale.value(scale.counts(target) + distance)
+        speeds = manual.data.jog_speeds
+        speed = block.feed / _MM_PER_MIN * (0.254 if scale.inch else 1.0)
+        manual.data = replace(manual.data, jog_speeds={**speeds, name: speed})
+        try:
+            manual.go_to(name, there)
+        finally:
+            manual.data = replace(manual.data, jog_speeds=speeds)

@@ -1,0 +1,405 @@
+"""The operation signals: G addresses that a PMC gives the control and what they do, F addresses that show its state.
+
+Addresses are the usual ones of this family of controls. What a signal shares with a switch of the control has one
+state only: reading an address shows what holds, whoever has set it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+from polycnc.cnc import ControlError, Emergency, Mode, Motion, Overrides, RunState
+from polycnc.controllers.fanuc.device._alarms import shown
+from polycnc.controllers.fanuc.device._modes import PowerMateMode
+
+if TYPE_CHECKING:
+    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+
+_M = PowerMateMode
+_MD, _DNCI, _ZRN = 0x07, 0x20, 0x80
+_MODE_SIGNALS = {
+    _M.MDI: 0,
+    _M.MEM: 1,
+    _M.RMT: 1 | _DNCI,
+    _M.NONE: 2,
+    _M.EDIT: 3,
+    _M.HND: 4,
+    _M.JOG: 5,
+    _M.REF: 5 | _ZRN,
+    _M.T_JOG: 6,
+    _M.T_HND: 7,
+}
+_HANDLE = 4  # the handle or, where there is none, increments
+_JOGS = frozenset({_M.JOG, _M.T_JOG, _M.INC})
+RAPID_STEPS = {0: 1.0, 1: 0.5, 2: 0.25}
+F0 = 3
+_MOST_FEED = 200
+_INCREMENTS = (1, 10, 100, 1000)
+_FIN, _ST, _SP, _ESP, _ERS = 1 << 3, 1 << 2, 1 << 5, 1 << 4, 1 << 7
+_RT = 1 << 7
+_MODE_LAMPS = {
+    _M.INC: 0,
+    _M.HND: 1,
+    _M.T_HND: 1,
+    _M.JOG: 2,
+    _M.T_JOG: 2,
+    _M.MDI: 3,
+    _M.RMT: 4,
+    _M.MEM: 5,
+    _M.EDIT: 6,
+}
+_TEACHES = frozenset({_M.T_JOG, _M.T_HND})
+_FUNCTION_BITS = {"M": 0, "S": 2, "T": 3, "B": 7}
+_FUNCTION_BYTES = {"M": 10, "S": 22, "T": 26, "B": 30}
+_INTERRUPTED = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
+
+
+@dataclass(frozen=True, slots=True)
+class SignalState:
+    """The signals that are given, to go back to."""
+
+    given: dict[int, int]
+    feed: int
+    rapid: int
+    jog: float
+    battery_low: bool
+    torque_mode: int
+    torque_override: tuple[int, ...]
+
+
+class Signals:
+    """Read and give the operation signals of a Power Mate; `battery_low` is a condition that a test can set."""
+
+    def __init__(self, power_mate: PowerMate) -> None:
+        self._power_mate = power_mate
+        self.battery_low = False
+        self.torque_mode = 0
+        self._torque_override = [255] * power_mate.max_axis
+        self.clear()
+        self._handlers: dict[int, Callable[[int, int], None]] = {
+            4: self._finish,
+            7: self._start,
+            8: self._stops,
+            10: self._jog_override_changed,
+            11: self._jog_override_changed,
+            12: lambda old, new: self.set_feed_override(255 - new),
+            14: lambda old, new: self.set_rapid_override(new & 3),
+            43: lambda old, new: self._select(new),
+            44: lambda old, new: self._switch(block_delete=bool(new & 1)),
+            46: self._switches,
+            100: lambda old, new: self._jog_keys(old, new, 1),
+            102: lambda old, new: self._jog_keys(old, new, -1),
+            126: lambda old, new: self._servo_off(new),
+        }
+
+    def clear(self) -> None:
+        """Let all signals be as they are when the power comes on."""
+        self._given: dict[int, int] = {4: 0, 7: 0, 8: _SP | _ESP, 126: 0}
+        self._feed, self._rapid, self._jog = 100, 0, 100.0
+        self._applied = Overrides()
+
+    def snapshot(self) -> SignalState:
+        """Return what is given, to go back to."""
+        return SignalState(
+            dict(self._given),
+            self._feed,
+            self._rapid,
+            self._jog,
+            self.battery_low,
+            self.torque_mode,
+            tuple(self._torque_override),
+        )
+
+    def restore(self, state: SignalState) -> None:
+        """Go back to a snapshot; the control behind has gone back by itself."""
+        self._given = dict(state.given)
+        self._feed, self._rapid, self._jog = state.feed, state.rapid, state.jog
+        self.battery_low, self.torque_mode = state.battery_low, state.torque_mode
+        self._torque_override = list(state.torque_override)
+        self._applied = self._power_mate.control.overrides
+
+    # ------------------------------------------------------------------ G addresses
+
+    def g(self, address: int) -> int:
+        """Return the byte of a G address, with the switches as they are."""
+        power_mate = self._power_mate
+        switches = power_mate.control.switches
+        given = self._given.get(address, 0)
+        match address:
+            case 8:
+                on = power_mate.control.emergency is Emergency.ON
+                return given & ~_ESP | (0 if on else _ESP)
+            case 10 | 11:
+                return self._jog_complement >> (8 * (address - 10)) & 0xFF
+            case 12:
+                return 255 - self.feed_override
+            case 14:
+                return given & ~3 | self.rapid_override
+            case 43:
+                return given & ~(_MD | _DNCI | _ZRN) | _MODE_SIGNALS.get(power_mate.mode, _HANDLE)
+            case 44:
+                return given & ~1 | (1 in switches.block_delete)
+            case 46:
+                keys = sum(1 << 2 + key for key in range(1, 5) if key not in power_mate.protection_keys)
+                return given & 0x05 | switches.single_block << 1 | keys | switches.dry_run << 7
+            case _:
+                return given
+
+    def give(self, address: int, value: int) -> None:
+        """Give the control a byte of signals; what it does not let happen now does not happen."""
+        old = self.g(address)
+        self._given[address] = value
+        handler = self._handlers.get(address)
+        if handler is not None and (old != value or address in (10, 11)):
+            handler(old, value)
+        new = self.g(address)
+        if new != old:
+            self._power_mate.history.note_signal("G", address, old, new)
+
+    def give_bits(self, address: int, mask: int, value: int) -> None:
+        """Give some bits of an address; the others stay."""
+        self.give(address, self.g(address) & ~mask | value & mask)
+
+    # ------------------------------------------------------------------ overrides
+
+    @property
+    def feed_override(self) -> int:
+        """The feed override that is given (%); the control feeds at most at 200 %."""
+        self._adopt()
+        return self._feed
+
+    def set_feed_override(self, percent: int) -> None:
+        """Give a feed override, 0 to 254 %; 255 is all signals off: 0 %."""
+        self._adopt()
+        self._feed = 0 if percent == 255 else percent
+        self.apply_overrides()
+
+    @property
+    def rapid_override(self) -> int:
+        """The rapid override: 0 100 %, 1 50 %, 2 25 %, 3 F0 (parameter 1421)."""
+        self._adopt()
+        return self._rapid
+
+    def set_rapid_override(self, code: int) -> None:
+        """Give a rapid override by its code."""
+        self._adopt()
+        self._rapid = code
+        self.apply_overrides()
+
+    @property
+    def jog_override(self) -> float:
+        """The override of jogging (%)."""
+        return self._jog
+
+    def set_jog_override(self, percent: float) -> None:
+        """Give an override of jogging (%), in steps of 0.01 %."""
+        self._adopt()
+        self._jog = percent
+        self.apply_overrides()
+
+    @property
+    def _jog_complement(self) -> int:
+        return 0xFFFF - round(self._jog * 100.0)
+
+    def apply_overrides(self) -> None:
+        """Let the control have the overrides; with a servo off nothing is fed."""
+        power_mate, control = self._power_mate, self._power_mate.control
+        f0 = min(1.0, power_mate.parameters.value(1421, 1) / power_mate.parameters.value(1420, 1))
+        rapid = RAPID_STEPS.get(self._rapid, f0)
+        control.data = replace(control.data, rapid_overrides=(0.0, *RAPID_STEPS.values(), f0))
+        feed = min(self._feed, _MOST_FEED) / 100.0
+        interlock = bool(self._given.get(126))
+        control.set_overrides(feed=0.0 if interlock else feed, rapid=0.0 if interlock else rapid)
+        self._applied = control.overrides
+        self.mode_changed()
+
+    def mode_changed(self) -> None:
+        """Let manual motion have the override of its mode: that of jogging, or the feed override."""
+        power_mate, control = self._power_mate, self._power_mate.control
+        by_hand = power_mate.mode in _JOGS and not self._given.get(126)
+        control.manual.set_overrides(feed=self._jog / 100.0 if by_hand else control.overrides.feed)
+
+    def _adopt(self) -> None:
+        """Take over overrides that were set at the control itself."""
+        there = self._power_mate.control.overrides
+        if there == self._applied:
+            return
+        if there.feed != self._applied.feed:
+            self._feed = round(100.0 * there.feed)
+        if there.rapid != self._applied.rapid:
+            self._rapid = next((code for code, share in RAPID_STEPS.items() if share == there.rapid), F0)
+        self._applied = there
+
+    def torque_override(self, axis: int) -> float:
+        """Return how much of its torque an axis (from 1) may give (%)."""
+        return self._torque_override[axis - 1] / 255.0 * 100.0
+
+    def set_torque_override(self, axis: int, value: int) -> None:
+        """Let an axis (from 1, 0: all) give value/255 of its torque."""
+        for k in range(len(self._torque_override)) if axis == 0 else (axis - 1,):
+            self._torque_override[k] = value
+
+    def servo_is_off(self, axis: int) -> bool:
+        """Whether the servo of an axis (from 1) is switched off by its signal."""
+        return bool(self._given.get(126, 0) >> axis - 1 & 1)
+
+    # ------------------------------------------------------------------ what signals do
+
+    def _press(self, button: Callable[[], None]) -> None:
+        """Press a button: what is not possible now does not happen."""
+        try:
+            button()
+        except ControlError:
+            return
+
+    def _finish(self, old: int, new: int) -> None:
+        if new & ~old & _FIN:
+            self._press(lambda: self._power_mate.control.plc.answer())
+
+    def _start(self, old: int, new: int) -> None:
+        if old & ~new & _ST and not self.hold_is_on:
+            self._press(self._power_mate.cycle_start)
+
+    @property
+    def hold_is_on(self) -> bool:
+        """Whether the signal of feed hold is given, so that nothing can start."""
+        return not self._given[8] & _SP
+
+    @property
+    def reset_is_on(self) -> bool:
+        """Whether the signal of external reset is given."""
+        return bool(self._given[8] & _ERS)
+
+    def _stops(self, old: int, new: int) -> None:
+        power_mate = self._power_mate
+        if (old ^ new) & _ESP:
+            power_mate.emergency_stop(not new & _ESP)
+        if old & ~new & _SP:
+            power_mate.feed_hold()
+        if new & ~old & _ERS:
+            power_mate.reset()
+
+    def _jog_override_changed(self, old: int, new: int) -> None:
+        low = self._given.get(10, self._jog_complement & 0xFF)
+        high = self._given.get(11, self._jog_complement >> 8)
+        counts = 0xFFFF - (high << 8 | low)
+        self.set_jog_override(0.0 if counts == 0xFFFF else counts / 100.0)
+
+    def _select(self, value: int) -> None:
+        wanted = value & (_MD | _ZRN | _DNCI)
+        code = wanted & _MD
+        if code == _HANDLE:
+            mode = _M.INC if self._power_mate.mode is _M.INC else _M.HND
+        else:
+            mode = next(
+                (mode for mode, signals in _MODE_SIGNALS.items() if signals == wanted),
+                next(mode for mode, signals in _MODE_SIGNALS.items() if signals == code),
+            )
+        self._power_mate.select_mode(mode)
+        self._hold_keys()
+
+    def _switch(self, *, block_delete: bool) -> None:
+        self._power_mate.control.set_switches(block_delete=frozenset({1} if block_delete else ()))
+
+    def _switches(self, old: int, new: int) -> None:
+        power_mate = self._power_mate
+        power_mate.control.set_switches(single_block=bool(new & 2), dry_run=bool(new & 0x80))
+        for key in range(1, 5):
+            power_mate.protect_key(not new >> 2 + key & 1, key=key)
+
+    # ------------------------------------------------------------------ axes
+
+    def _jog_keys(self, old: int, new: int, direction: int) -> None:
+        for axis in range(1, self._power_mate.axes + 1):
+            bit = 1 << axis - 1
+            if (old ^ new) & bit:
+                self._jog_key(axis, direction, bool(new & bit))
+
+    def _jog_key(self, axis: int, direction: int, on: bool) -> None:
+        power_mate = self._power_mate
+        control, name = power_mate.control, power_mate.axis_name(axis)
+        rapid = bool(self._given.get(19, 0) & _RT)
+        if on and self.servo_is_off(axis):
+            return
+        if control.mode is Mode.REF and on:
+            self._press(lambda: control.reference(name))
+        elif control.mode is Mode.INC and on:
+            size = power_mate.output_scale(axis).value(_INCREMENTS[self._given.get(19, 0) >> 4 & 3])
+            self._press(lambda: control.increment(name, direction, size, rapid=rapid))
+        else:
+            self._press(lambda: control.jog(name, direction if on else None, rapid=rapid))
+
+    def _hold_keys(self) -> None:
+        """Let keys that are held down act in the mode that has come."""
+        if self._power_mate.control.mode is Mode.JOG:
+            self._jog_keys(0, self._given.get(100, 0), 1)
+            self._jog_keys(0, self._given.get(102, 0), -1)
+
+    def _servo_off(self, new: int) -> None:
+        for axis in range(1, self._power_mate.axes + 1):
+            if new >> axis - 1 & 1:
+                self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
+        self._adopt()
+        self.apply_overrides()
+
+    # ------------------------------------------------------------------ F addresses
+
+    def f(self, address: int) -> int:
+        """Return the byte of an F address."""
+        power_mate = self._power_mate
+        panel = power_mate.panel.image(address)
+        if panel is not None:
+            return panel
+        status = power_mate.status()
+        mode, channel, switches = power_mate.mode, status.channel, status.switches
+        moving = channel.motion is Motion.MOVING
+        match address:
+            case 0:
+                active, held = channel.run_state is RunState.ACTIVE, channel.run_state is RunState.HOLD
+                ready = status.emergency is Emergency.OFF
+                return _bits(
+                    {4: held, 5: active, 6: ready, 7: active or held or channel.run_state in _INTERRUPTED}
+                )
+            case 1:
+                alarm, low = bool(shown(status.alarms)), self.battery_low
+                return _bits({0: alarm, 1: self.reset_is_on, 2: low, 7: True})
+            case 2:
+                rapid = moving and channel.feed.rapid
+                cut = moving and channel.run_state is RunState.ACTIVE and not rapid
+                return _bits({0: power_mate.inch_input, 1: rapid, 6: cut, 7: switches.dry_run})
+            case 3:
+                lamp = _MODE_LAMPS.get(mode)
+                return (0 if lamp is None else 1 << lamp) | (mode in _TEACHES) << 7
+            case 4:
+                lock = bool(self.g(44) & 2)
+                return _bits(
+                    {0: 1 in switches.block_delete, 1: lock, 3: switches.single_block, 5: mode is _M.REF}
+                )
+            case 7:
+                return _bits({_FUNCTION_BITS[each[0]]: True for each in channel.functions})
+            case 94:
+                at = [power_mate.positions.read(status)[k].machine == 0 for k in range(power_mate.axes)]
+                return _bits(dict(enumerate(at)))
+            case 102:
+                return _bits({k: axis.velocity != 0.0 for k, axis in enumerate(status.axes.values())})
+            case 106:
+                return _bits({k: axis.velocity < 0.0 for k, axis in enumerate(status.axes.values())})
+            case 120:
+                return _bits({k: axis.referenced for k, axis in enumerate(status.axes.values())})
+            case _:
+                return self._function_byte(address, channel.functions)
+
+    @staticmethod
+    def _function_byte(address: int, functions: tuple[str, ...]) -> int:
+        """Return a byte of the number of a function that waits for its answer."""
+        for each in functions:
+            first = _FUNCTION_BYTES[each[0]]
+            if first <= address < first + 4:
+                return int(each[1:]) >> 8 * (address - first) & 0xFF
+        return 0
+
+
+def _bits(bits: dict[int, bool]) -> int:
+    return sum(1 << bit for bit, on in bits.items() if on)

@@ -1,0 +1,302 @@
+"""Diagnosis data, figures, servo values and messages to the operator through the library (Manual 000)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.fwlib import EW
+
+
+def at(control: PowerMate) -> tuple[Any, int]:
+    session = fwlib.Session()
+    session.attach(0, control)
+    _, handle = session.cnc_allclibhndl()
+    return session, handle
+
+
+def moving(text: str = "G1 X90. Y-45. F1200", **more: Any) -> tuple[PowerMate, Any, int]:
+    control = PowerMate(**more)
+    library, handle = at(control)
+    control.programs.memory.create("O0004", f"O0004\n{text}\n".encode())
+    control.select_program(4)
+    control.cycle_start()
+    control.advance(300)
+    return control, library, handle
+
+
+KINDS = [  # kind, diagnosis number, bytes of a value, axis, length, value of the kind in the range's type
+    ("bit", 20, 1, 0, 5, 0x28),
+    ("bit_axis", 200, 1, 2, 5, 0x10),
+    ("byte", 4, 1, 0, 5, 1),
+    ("byte_axis", 203, 1, 3, 5, 1),
+    ("word", 30, 2, 0, 6, 173),
+    ("word_axis", 202, 2, 1, 6, 600),
+    ("2word", 31, 4, 0, 8, 1200),
+    ("2word_axis", 301, 4, 2, 8, -61500),
+]
+
+
+def arranged(kind: str) -> tuple[PowerMate, Any, int]:
+    """Return a control in a state that a kind of diagnosis shows."""
+    if kind == "2word":
+        return moving("G1 X90. F1200")
+    control = PowerMate()
+    library, handle = at(control)
+    control.signals.give(12, 255 if kind == "byte" else 255 - 173)
+    control.signals.torque_mode = 4
+    control.signals.set_torque_override(1, 153)
+    if kind == "2word_axis":
+        control.signals.give(12, 155)
+        library.cnc_incpoint(handle, 1, 0, 1, 9000, bytes(fwlib.ODBPOS(idata=2, ldata=-61500)))
+        control.advance(3000)
+    control.signals.give(8, 0)  # emergency stop and feed hold
+    control.raise_alarm(417, axis=2)
+    return control, library, handle
+
+
+@pytest.mark.parametrize(
+    ("kind", "number", "size", "axis", "length", "value"),
+    [pytest.param(*row, marks=pytest.mark.covers(f"fanuc.diag.kind.{row[0]}"), id=row[0]) for row in KINDS],
+)
+@pytest.mark.covers("fanuc.cnc_diagnoss", "fanuc.diag.bitread", "fanuc.diag.axis.0", "fanuc.diag.axis.1..m")
+def test_a_diagnosis_value_of_each_kind(
+    kind: str, number: int, size: int, axis: int, length: int, value: int
+) -> None:
+    _, library, handle = arranged(kind)
+    code, diag = library.cnc_diagnoss(handle, number, axis, length)
+    assert (code, diag.datano, diag.type) == (0, number, axis)
+    member = {1: "cdata", 2: "idata", 4: "ldata"}[size]
+    assert getattr(diag.u, member) == value
+    assert bytes(diag)[4 + size :] == bytes(28 - 4 - size)
+    assert library.cnc_diagnoss(handle, number, axis, length - 1)[0] is EW.EW_LENGTH
+
+
+@pytest.mark.covers("fanuc.diag.axis.-1")
+def test_all_axes_at_once() -> None:
+    control, library, handle = moving()
+    control.advance(8000)
+    code, diag = library.cnc_diagnoss(handle, 301, -1, 4 + 4 * 3)
+    assert (code, diag.type, list(diag.u.ldatas)) == (0, -1, [90000, -45000, 0, 0, 0, 0])
+    assert library.cnc_diagnoss(handle, 301, -1, 4 + 4 * 2)[0] is EW.EW_LENGTH
+    assert library.cnc_diagnoss(handle, 301, -1, 4 + 4 * 6)[0] is EW.EW_OK
+
+
+@pytest.mark.parametrize(
+    ("number", "axis", "code"),
+    [
+        pytest.param(6, 0, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_NUMBER")),
+        (-1, 0, "EW_NUMBER"),
+        pytest.param(301, 0, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_ATTRIB")),
+        (301, 7, "EW_ATTRIB"),
+        (301, -2, "EW_ATTRIB"),
+    ],
+)
+def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
+    library, handle = at(PowerMate())
+    assert library.cnc_diagnoss(handle, number, axis, 28)[0] is EW[code]
+
+
+@pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
+def test_a_diagnosis_needs_its_length() -> None:
+    library, handle = at(PowerMate())
+    assert library.cnc_diagnoss(handle, 301, 1, 7)[0] is EW.EW_LENGTH
+    assert library.cnc_diagnoss(handle, 4, 0, 5)[0] is EW.EW_OK
+
+
+@pytest.mark.parametrize(
+    ("number", "axis", "kind", "length"),
+    [
+        pytest.param(20, 0, 0, 6, marks=pytest.mark.covers("fanuc.diag.type_attr.0")),
+        pytest.param(4, 0, 1, 6, marks=pytest.mark.covers("fanuc.diag.type_attr.1")),
+        pytest.param(30, 0, 2, 6, marks=pytest.mark.covers("fanuc.diag.type_attr.2")),
+        pytest.param(31, 0, 3, 8, marks=pytest.mark.covers("fanuc.diag.type_attr.3")),
+        (203, 3, 1, 6),
+        (203, -1, 1, 10),
+        (202, -1, 2, 16),
+        (300, -1, 3, 28),
+    ],
+)
+@pytest.mark.covers("fanuc.diag.padding", "fanuc.cnc_diagnosr")
+def test_an_entry_of_a_range(number: int, axis: int, kind: int, length: int) -> None:
+    library, handle = at(PowerMate())
+    code, first, last, used, data = library.cnc_diagnosr(handle, number, axis, number, 99)
+    assert (code, first, last, used) == (0, number, number, length)
+    assert data[:4] == number.to_bytes(2, "little") + bytes([axis & 0xFF, kind])
+    assert len(data) == length
+
+
+def test_a_range_of_diagnosis_numbers() -> None:
+    _, library, handle = arranged("byte_axis")
+    code, first, last, used, data = library.cnc_diagnosr(handle, 25, -1, 250, 99)
+    assert (code, first, last, used) == (0, 30, 203, 6 + 8 + 10 + 10 + 16 + 10)
+    numbers = [int.from_bytes(data[k : k + 2], "little") for k in (0, 6, 14, 24, 34, 50)]
+    assert numbers == [30, 31, 200, 201, 202, 203]
+    assert data[:6] == b"\x1e\0\0\2\xad\0"
+    assert data[14:24] == b"\xc8\0\xff\0\0\x10\0\0\0\0"
+    assert data[34:50] == b"\xca\0\xff\2" + b"\x58\2\xe8\3\xe8\3" + bytes(6)
+
+
+@pytest.mark.parametrize(
+    ("first", "axis", "last", "length", "code"),
+    [
+        pytest.param(
+            25, -1, 250, 59, "EW_LENGTH", marks=pytest.mark.covers("fanuc.cnc_diagnosr.err.EW_LENGTH")
+        ),
+        pytest.param(
+            32, 0, 199, 99, "EW_NUMBER", marks=pytest.mark.covers("fanuc.cnc_diagnosr.err.EW_NUMBER")
+        ),
+        (30, 0, 20, 99, "EW_NUMBER"),
+        (-3, 0, 4, 99, "EW_NUMBER"),
+        pytest.param(
+            30, 0, 200, 99, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_diagnosr.err.EW_ATTRIB")
+        ),
+        (200, 7, 201, 99, "EW_ATTRIB"),
+    ],
+)
+def test_a_range_is_refused(first: int, axis: int, last: int, length: int, code: str) -> None:
+    library, handle = at(PowerMate())
+    answer = library.cnc_diagnosr(handle, first, axis, last, length)
+    assert (answer[0], answer[1:4]) == (EW[code], (first, last, length))
+    assert library.cnc_diagnosr(handle, 30, 0, 31, 14)[0] is EW.EW_OK
+
+
+# ---------------------------------------------------------------------- figures
+
+AXIS = {  # decimals in mm, inch and degree
+    "IS-A": (2, 3, 2), "IS-B": (3, 4, 3), "IS-C": (4, 5, 4),
+}  # fmt: skip
+OFFSET = {"IS-A": (2, 3), "IS-B": (3, 4), "IS-C": (4, 5)}
+MACRO = {"IS-A": (3, 4), "IS-B": (3, 4), "IS-C": (4, 5)}
+
+
+@pytest.mark.covers("fanuc.cnc_getfigure", "fanuc.cnc_getfigure.data_type.0", "fanuc.getfigure.valid.axis",
+                    "fanuc.param.0000_2", "fanuc.param.1001_0", "fanuc.concept.increment_system")  # fmt: skip
+@pytest.mark.parametrize(
+    ("system", "mm", "inch", "degree"),
+    [
+        pytest.param(
+            system, *row, id=system,
+            marks=pytest.mark.covers(*(f"fanuc.getfigure.dec.axis.{system}.{unit}" for unit in ("mm", "inch", "deg"))),
+        )
+        for system, row in AXIS.items()
+    ],
+)  # fmt: skip
+def test_figures_of_axes(system: str, mm: int, inch: int, degree: int) -> None:
+    for inch_input in (False, True):
+        for inch_output in (False, True):
+            control = PowerMate(
+                increment=system, rotary=(2,), axes=4, inch_input=inch_input, inch_output=inch_output
+            )
+            library, handle = at(control)
+            code, digits, read, shown = library.cnc_getfigure(handle, 0)
+            entered, moved = inch if inch_input else mm, inch if inch_output else mm
+            assert (code, digits) == (0, 8)
+            assert read == [entered, degree, entered, entered, 0, 0]
+            assert shown == [moved, degree, moved, moved, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "digits", "system", "mm", "inch"),
+    [
+        pytest.param(
+            kind, digits, system, *row, id=f"{name}-{system}",
+            marks=pytest.mark.covers(
+                f"fanuc.getfigure.dec.{name}.{system}.mm", f"fanuc.getfigure.dec.{name}.{system}.inch",
+                f"fanuc.getfigure.valid.{name}", f"fanuc.cnc_getfigure.data_type.{kind}"),
+        )
+        for kind, digits, name, table in ((1, 7, "tool_offset", OFFSET), (2, 8, "macro", MACRO))
+        for system, row in table.items()
+    ],
+)  # fmt: skip
+def test_figures_of_tool_offsets_and_macro_variables(
+    kind: int, digits: int, system: str, mm: int, inch: int
+) -> None:
+    for inch_input, decimals in ((False, mm), (True, inch)):
+        library, handle = at(PowerMate(increment=system, inch_input=inch_input, rotary=(1,)))
+        code, valid, read, _ = library.cnc_getfigure(handle, kind)
+        assert (code, valid, read[0]) == (0, digits, decimals)
+
+
+@pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1", "fanuc.cnc_getfigure.err.EW_ATTRIB")
+def test_the_increment_system_is_a_parameter() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    for bits, decimals in ((1, 2), (2, 4), (0, 3)):
+        control.parameters.set(1004, bits)
+        control.power_cycle()
+        assert library.cnc_getfigure(handle, 0)[2][0] == decimals
+    assert library.cnc_getfigure(handle, 3)[0] is EW.EW_ATTRIB
+    assert library.cnc_getfigure(handle, -1)[0] is EW.EW_ATTRIB
+
+
+# ---------------------------------------------------------------------- servo values
+
+
+@pytest.mark.covers("fanuc.cnc_rdcurrent", "fanuc.param.2086", "fanuc.cnc_rdsrvspeed", "fanuc.cnc_rdloopgain")
+def test_servo_values_of_a_moving_machine() -> None:
+    control, library, handle = moving("G0 X90. Y-45.")
+    code, speed = library.cnc_rdsrvspeed(handle)
+    assert (code, speed) == (0, [15000, -7500, 0, 0, 0, 0])
+    code, current = library.cnc_rdcurrent(handle)
+    assert (code, current) == (0, [1782, -891, 0, 0, 0, 0])
+    control.parameters.set(2086, 0, 1)
+    control.parameters.set(1825, 4500, 2)
+    assert library.cnc_rdcurrent(handle)[1] == [0, -891, 0, 0, 0, 0]
+    assert library.cnc_rdloopgain(handle) == (EW.EW_OK, [3000, 4500, 3000, 0, 0, 0])
+    control.advance(3000)
+    assert library.cnc_rdsrvspeed(handle)[1] == library.cnc_rdcurrent(handle)[1] == [0] * 6
+
+
+# ---------------------------------------------------------------------- messages
+
+
+@pytest.mark.covers(
+    "fanuc.cnc_rdopmsg", "fanuc.example.cnc_rdopmsg", "fanuc.OPMSG.datano.-1", "fanuc.OPMSG.datano.range",
+    "fanuc.cnc_rdopmsg.type.0", "fanuc.OPMSG.type.0",
+)  # fmt: skip
+def test_the_manuals_program_prints_the_message() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+
+    def printed() -> str:
+        code, buf = library.cnc_rdopmsg(handle, 0, 6 + 256)
+        assert (code, buf.type) == (0, 0)
+        return "No operator message." if buf.datano == -1 else f"{buf.datano:04d} {buf.data.decode()}"
+
+    seen = [printed()]
+    for number in (99, 1000, 1999, 2100):
+        control.operator_message(number, "NOT ONE OF THESE")
+    seen.append(printed())
+    control.operator_message(2099, "LUBRICANT LOW")
+    seen.append(printed())
+    control.control.messages.withdraw(2099)
+    control.operator_message(100, "X" * 255)
+    seen.append(printed())
+    assert seen == ["No operator message.", "No operator message.", "2099 LUBRICANT LOW", "0100 " + "X" * 255]
+    assert library.cnc_rdopmsg(handle, 0, 262)[1].char_num == 255
+    control.operator_message(999, "AND ANOTHER")
+    code, count, messages = library.cnc_rdopmsg3(handle, -1, 5)
+    assert (code, count, [each.datano for each in messages]) == (0, 2, [100, 999])
+
+
+@pytest.mark.parametrize(
+    ("kind", "length", "options", "code"),
+    [
+        pytest.param(0, 261, True, "EW_LENGTH", marks=pytest.mark.covers("fanuc.cnc_rdopmsg.err.EW_LENGTH")),
+        pytest.param(1, 262, True, "EW_ATTRIB", marks=pytest.mark.covers("fanuc.cnc_rdopmsg.err.EW_ATTRIB")),
+        pytest.param(0, 262, False, "EW_NOOPT", marks=pytest.mark.covers("fanuc.cnc_rdopmsg.err.EW_NOOPT")),
+        pytest.param(0, 262, ("external_data_input",), "EW_NOOPT",
+                     marks=pytest.mark.covers("fanuc.option.external_message")),
+        pytest.param(0, 262, ("external_message",), "EW_NOOPT",
+                     marks=pytest.mark.covers("fanuc.option.external_data_input")),
+        (0, 262, ("external_message", "external_data_input"), "EW_OK"),
+    ],
+)  # fmt: skip
+def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -> None:
+    control = PowerMate(options=options)
+    control.operator_message(2001, "DOOR")
+    library, handle = at(control)
+    assert library.cnc_rdopmsg(handle, kind, length)[0] is EW[code]

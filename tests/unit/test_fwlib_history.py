@@ -1,0 +1,350 @@
+"""Operation and alarm history through the library (Manual 000, operation history)."""
+
+from __future__ import annotations
+
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.fwlib import EW
+
+AT = datetime(2031, 4, 17, 22, 53, 41)
+
+
+def at(control: PowerMate) -> tuple[Any, int]:
+    session = fwlib.Session()
+    session.attach(0, control)
+    _, handle = session.cnc_allclibhndl()
+    return session, handle
+
+
+def fresh(**more: Any) -> tuple[PowerMate, Any, int]:
+    """Return a control at a known date with empty histories."""
+    control = PowerMate(**more)
+    control.clock.set_now(AT)
+    library, handle = at(control)
+    assert library.cnc_clearophis(handle, 0) == library.cnc_clearophis(handle, 1) == 0
+    return control, library, handle
+
+
+def operations(library: Any, handle: int) -> list[bytes]:
+    """Stop, read all operation records as bytes, go on."""
+    assert library.cnc_stopophis(handle) == 0
+    code, count = library.cnc_rdophisno(handle)
+    assert code == 0
+    records = []
+    if count:
+        code, his = library.cnc_rdophistry(handle, 1, count, 6 + 8 * count)
+        assert (code, his.s_no, his.e_no) == (0, 1, count)
+        memory = bytes(his)
+        records = [memory[6 + 8 * k : 14 + 8 * k] for k in range(count)]
+    assert library.cnc_startophis(handle) == 0
+    return records
+
+
+def alarms(library: Any, handle: int) -> bytes:
+    library.cnc_stopophis(handle)
+    _, count = library.cnc_rdalmhisno(handle)
+    code, his = library.cnc_rdalmhistry(handle, 1, count, 6 + 48 * count)
+    assert code == 0
+    library.cnc_startophis(handle)
+    return bytes(his)
+
+
+# ---------------------------------------------------------------------- stop and start
+
+
+@pytest.mark.covers(
+    "fanuc.cnc_stopophis", "fanuc.cnc_startophis", "fanuc.cnc_rdophisno", "fanuc.cnc_rdalmhisno",
+    "fanuc.cnc_rdophisno.err.EW_FUNC", "fanuc.cnc_rdophistry.err.EW_FUNC", "fanuc.cnc_rdalmhisno.err.EW_FUNC",
+    "fanuc.cnc_rdalmhistry.err.EW_FUNC", "fanuc.concept.history_protocol",
+)  # fmt: skip
+def test_histories_are_read_while_sampling_is_stopped() -> None:
+    control, library, handle = fresh()
+    control.raise_alarm(85, "A")
+    control.raise_alarm(417, axis=2)
+
+    def codes() -> list[EW]:
+        return [
+            library.cnc_rdophisno(handle)[0],
+            library.cnc_rdalmhisno(handle)[0],
+            library.cnc_rdophistry(handle, 1, 2, 22)[0],
+            library.cnc_rdalmhistry(handle, 1, 2, 102)[0],
+        ]
+
+    assert codes() == [EW.EW_FUNC] * 4
+    library.cnc_stopophis(handle)
+    assert codes() == [EW.EW_OK] * 4
+    control.raise_alarm(700)
+    assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (2, 2)
+    library.cnc_startophis(handle)
+    assert codes() == [EW.EW_FUNC] * 4
+    control.raise_alarm(5011, "B")
+    library.cnc_stopophis(handle)
+    assert (library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]) == (3, 3)
+    assert [each.alm_no for each in library.cnc_rdalmhistry(handle, 1, 3, 150)[1].alm_his] == [85, 417, 5011]
+
+
+# ---------------------------------------------------------------------- operation records
+
+
+@pytest.mark.covers("fanuc.cnc_rdophistry", "fanuc.ODBHIS.rec_type.0", "fanuc.concept.history_record_kinds")
+def test_a_key() -> None:
+    control, library, handle = fresh()
+    control.history.press_key(ord("G"))
+    control.history.press_key(0x9C)
+    assert operations(library, handle) == [b"\0\0G\0\0\0\0\0", b"\0\0\x9c\0\0\0\0\0"]
+
+
+NAMES = {"X": 1, "G": 2, "Y": 3, "F": 4}
+
+
+def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) -> EW:
+    sig = fwlib.IODBSIG(type=len(entries))
+    for each, (entry, name, address, mask) in zip(sig.data, entries, strict=False):
+        each.ent_no, each.sig_name, each.sig_no, each.mask_pat = entry, name, address, mask
+    return EW(library.cnc_wrhissgnl(handle, sig))
+
+
+@pytest.mark.parametrize(
+    ("letter", "number"),
+    [
+        pytest.param(letter, number, id=letter,
+                     marks=pytest.mark.covers(f"fanuc.ODBHIS.sig_name.{number}", f"fanuc.IODBSIG.sig_name.{number}"))
+        for letter, number in NAMES.items()
+    ],
+)  # fmt: skip
+@pytest.mark.covers("fanuc.ODBHIS.rec_type.1", "fanuc.cnc_wrhissgnl")
+def test_the_change_of_a_signal(letter: str, number: int) -> None:
+    control, library, handle = fresh()
+    address = 3 if letter == "F" else 44
+    assert monitored(library, handle, (7, number, address, 0xFE)) is EW.EW_OK
+
+    def change(value: int) -> None:
+        if letter == "X":
+            control.pmc.set_input(address, value)
+        elif letter == "F":
+            control.select_mode({0x12: "HND", 0x28: "MEM", 0x29: "MEM"}[value])
+            control.advance(1)
+        else:
+            control.pmc.write(letter, address, bytes([value]))
+
+    change(0x12)
+    change(0x28)
+    change(0x29)
+    first = b"\x20\x02" if letter == "F" else b"\0\x12"
+    second = b"\x02\x20" if letter == "F" else b"\x12\x28"
+    head = bytes([1, 0, number])
+    tail = bytes([0, address, 0])
+    assert operations(library, handle) == [head + first + tail, head + second + tail]
+
+
+@pytest.mark.parametrize(
+    ("bit", "number"),
+    [
+        pytest.param(bit, number, marks=pytest.mark.covers(f"fanuc.ODBHIS.alm_grp.bit{bit}"), id=str(bit))
+        for bit, number in {
+            0: 100,
+            1: 0,
+            2: 101,
+            3: 85,
+            4: 506,
+            5: 700,
+            6: 417,
+            8: 300,
+            10: 5010,
+            15: 1003,
+        }.items()
+    ],
+)
+@pytest.mark.covers("fanuc.ODBHIS.rec_type.2")
+def test_an_alarm(bit: int, number: int) -> None:
+    control, library, handle = fresh()
+    control.raise_alarm(number, "TEXT", axis=2)
+    expected = b"\2\0" + (1 << bit).to_bytes(2, "little") + number.to_bytes(2, "little") + b"\0\0"
+    assert operations(library, handle) == [expected]
+
+
+@pytest.mark.covers(*(f"fanuc.ODBHIS.alm_grp.bit{bit}" for bit in (9, 11, 12, 13, 14)))
+def test_unused_alarm_groups_never_appear() -> None:
+    control, library, handle = fresh()
+    for number in (3, 100, 101, 255, 310, 399, 444, 512, 704, 749, 1000, 1999, 2000, 5999):
+        control.raise_alarm(number, "TEXT")
+    bits = 0
+    for record in operations(library, handle):
+        bits |= int.from_bytes(record[2:4], "little")
+    assert bits & 0x7A00 == 0
+    assert bits & 0x0100
+
+
+def test_power_on_notes_date_and_time() -> None:
+    control, library, handle = fresh()
+    control.power_cycle()
+    assert operations(library, handle) == [b"\3\0\x1f\4\x11\1\0\0", b"\4\0\x16\x35\x29\1\0\0"]
+
+
+def test_fewer_records_than_asked_for() -> None:
+    control, library, handle = fresh()
+    for code in (65, 66, 67):
+        control.history.press_key(code)
+    library.cnc_stopophis(handle)
+    code, his = library.cnc_rdophistry(handle, 2, 6, 6 + 8 * 5)
+    assert (code, his.s_no, his.e_no) == (0, 2, 3)
+    assert [each.rec_mdi.key_code for each in his.data] == [66, 67, 0, 0, 0]
+    assert library.cnc_rdophistry(handle, 4, 4, 14)[0] is EW.EW_NUMBER
+
+
+@pytest.mark.parametrize(
+    ("function", "first", "last", "length", "code"),
+    [
+        pytest.param(
+            "cnc_rdophistry",
+            1,
+            2,
+            6 + 8,
+            "EW_LENGTH",
+            marks=pytest.mark.covers("fanuc.cnc_rdophistry.err.EW_LENGTH"),
+        ),
+        ("cnc_rdophistry", 1, 2, 6 + 24, "EW_LENGTH"),
+        ("cnc_rdophistry", 2, 1, 6 + 8, "EW_NUMBER"),
+        pytest.param(
+            "cnc_rdalmhistry",
+            1,
+            2,
+            6 + 48,
+            "EW_LENGTH",
+            marks=pytest.mark.covers("fanuc.cnc_rdalmhistry.err.EW_LENGTH"),
+        ),
+        ("cnc_rdalmhistry", 1, 2, 6 + 97, "EW_LENGTH"),
+        pytest.param(
+            "cnc_rdalmhistry",
+            0,
+            1,
+            6 + 96,
+            "EW_NUMBER",
+            marks=pytest.mark.covers("fanuc.cnc_rdalmhistry.err.EW_NUMBER"),
+        ),
+        ("cnc_rdalmhistry", 1, 3, 6 + 144, "EW_NUMBER"),
+        ("cnc_rdalmhistry", 2, 1, 6, "EW_NUMBER"),
+    ],
+)
+def test_reading_is_refused(function: str, first: int, last: int, length: int, code: str) -> None:
+    control, library, handle = fresh()
+    control.raise_alarm(85, "A")
+    control.raise_alarm(86, "B")
+    library.cnc_stopophis(handle)
+    assert getattr(library, function)(handle, first, last, length)[0] is EW[code]
+
+
+# ---------------------------------------------------------------------- alarm records
+
+
+@pytest.mark.covers("fanuc.cnc_rdalmhistry")
+def test_an_alarm_record_byte_by_byte() -> None:
+    control, library, handle = fresh()
+    control.raise_alarm(85, "COMMUNICATION ERROR OF THE READER/PUNCHER")
+    control.raise_alarm(417, axis=3)
+    control.raise_alarm(1007, "")
+    memory = alarms(library, handle)
+    date = bytes([31, 4, 17, 22, 53, 41, 0])
+    assert memory[:6] == b"\1\0\0\0\3\0"
+    assert memory[6:54] == b"\0\0\0\0\x55\0\xff" + date + b"\x20\0COMMUNICATION ERROR OF THE READE"
+    assert memory[54:102] == b"\0\0\0\0\xa1\1\3" + date + b"\x11\0" + b"Z AXIS DGTL PARAM".ljust(32, b"\0")
+    assert memory[102:150] == b"\0\0\0\0\xef\3\xff" + date + b"\0\0" + bytes(32)
+
+
+@pytest.mark.covers(
+    "fanuc.cnc_clearophis",
+    "fanuc.cnc_clearophis.slct.0",
+    "fanuc.cnc_clearophis.slct.1",
+    "fanuc.cnc_clearophis.err.EW_ATTRIB",
+)
+def test_one_history_is_cleared_alone() -> None:
+    control, library, handle = fresh()
+
+    def counts() -> tuple[int, int]:
+        library.cnc_stopophis(handle)
+        found = library.cnc_rdophisno(handle)[1], library.cnc_rdalmhisno(handle)[1]
+        library.cnc_startophis(handle)
+        return found
+
+    control.raise_alarm(85, "A")
+    assert counts() == (1, 1)
+    assert library.cnc_clearophis(handle, 2) == library.cnc_clearophis(handle, -1) == EW.EW_ATTRIB
+    assert counts() == (1, 1)
+    library.cnc_clearophis(handle, 0)
+    assert counts() == (0, 1)
+    control.raise_alarm(86, "B")
+    library.cnc_clearophis(handle, 1)
+    assert counts() == (1, 0)
+
+
+# ---------------------------------------------------------------------- monitored signals
+
+
+@pytest.mark.covers("fanuc.cnc_rdhissgnl", "fanuc.IODBSIG.sig_name.0")
+def test_the_table_has_twenty_entries_and_keeps_those_not_named() -> None:
+    _, library, handle = fresh()
+    assert monitored(library, handle, (20, 2, 1003, 0x81), (3, 1, 12, 0x7F)) is EW.EW_OK
+    assert monitored(library, handle, (20, 4, 7, 0xFF)) is EW.EW_OK
+    code, sig = library.cnc_rdhissgnl(handle)
+    found = [(each.ent_no, each.sig_name, each.sig_no, each.mask_pat) for each in sig.data]
+    assert code == 0
+    assert found == [(k, *{3: (1, 12, 0x7F), 20: (4, 7, 0xFF)}.get(k, (0, 0, 0))) for k in range(1, 21)]
+    monitored(library, handle, (3, 0, 12, 0x7F))
+    assert library.cnc_rdhissgnl(handle)[1].data[2].sig_name == 0
+
+
+@pytest.mark.parametrize(
+    ("letter", "good", "bad"),
+    [
+        pytest.param(letter, good, bad, id=letter,
+                     marks=pytest.mark.covers(f"fanuc.IODBSIG.sig_no.{letter}", f"fanuc.ODBHIS.sig_no.{letter}"))
+        for letter, good, bad in (
+            ("X", (0, 127, 1000, 1063), (-1, 128, 999, 1064)),
+            ("Y", (0, 127, 1000, 1063), (-1, 128, 999, 1064)),
+            ("G", (0, 255, 1000, 1255), (-1, 256, 999, 1256)),
+            ("F", (0, 255, 1000, 1255), (-1, 256, 999, 1256)),
+        )
+    ],
+)  # fmt: skip
+@pytest.mark.covers("fanuc.cnc_wrhissgnl.err.EW_DATA")
+def test_addresses_that_can_be_watched(letter: str, good: tuple[int, ...], bad: tuple[int, ...]) -> None:
+    _, library, handle = fresh()
+    for address in good:
+        assert monitored(library, handle, (5, NAMES[letter], address, 0x3C)) is EW.EW_OK
+        assert library.cnc_rdhissgnl(handle)[1].data[4].sig_no == address
+    for address in bad:
+        assert monitored(library, handle, (5, NAMES[letter], address, 0x3C)) is EW.EW_DATA
+    assert library.cnc_rdhissgnl(handle)[1].data[4].sig_no == good[-1]
+
+
+@pytest.mark.covers("fanuc.cnc_wrhissgnl.err.EW_ATTRIB")
+def test_a_wrong_table_is_refused_whole() -> None:
+    _, library, handle = fresh()
+    for count in (0, 21, -1):
+        assert library.cnc_wrhissgnl(handle, fwlib.IODBSIG(type=count)) is EW.EW_ATTRIB
+    assert monitored(library, handle, (4, 2, 9, 1), (21, 2, 9, 1)) is EW.EW_DATA
+    assert monitored(library, handle, (4, 2, 9, 1), (5, 5, 9, 1)) is EW.EW_DATA
+    assert all(each.sig_name == 0 for each in library.cnc_rdhissgnl(handle)[1].data)
+
+
+def test_histories_and_table_outlast_switching_off(tmp_path: Path) -> None:
+    control, library, handle = fresh(memory=tmp_path / "memory")
+    monitored(library, handle, (11, 3, 1007, 0x18))
+    control.raise_alarm(85, "A")
+    control.pmc.write("Y", 1007, b"\x08")
+    control.advance(1)
+    control.close()
+    again = PowerMate(memory=tmp_path / "memory")
+    library, handle = at(again)
+    records = operations(library, handle)
+    assert {record[0] for record in records[:2]} == {1, 2}
+    assert [record[0] for record in records[2:]] == [3, 4]
+    assert alarms(library, handle)[10:12] == b"\x55\0"
+    entry = library.cnc_rdhissgnl(handle)[1].data[10]
+    assert (entry.sig_name, entry.sig_no, entry.mask_pat) == (3, 1007, 0x18)
+    again.close()
