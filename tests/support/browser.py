@@ -1,4 +1,4 @@
-"""A real browser for pages that polycnc writes: Debian's Chromium, driven by Playwright; no part of it is on a network."""
+"""A real browser for pages that polycnc writes: Debian's Chromium, driven by Playwright; without a network."""
 
 from __future__ import annotations
 

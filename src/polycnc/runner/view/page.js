@@ -58,16 +58,25 @@
   const sides = ranges.map(([low, high]) => high - low);
 
   // ---------------------------------------------------------------- the path, rapids apart from the rest
+  const stretch = (k) => Math.hypot(...[ix, iy, iz].map((i) => (i === undefined ? 0 : position(k, i) - position(k - 1, i))));
+  let whole = 0;
+  for (let k = 1; k < points; k++) whole += stretch(k);
+  const step = Math.max(longest / 200, whole / 50000); // long lines get points between, for clicks
   const lineOf = (rapid) => {
-    const line = { x: [], y: [], z: [], point: [] };
-    const add = (k, colour) => {
-      const of = (i) => (k < 0 ? null : coordinate((axis) => position(k, axis), i));
-      line.x.push(of(ix)); line.y.push(of(iy)); line.z.push(of(iz)); line.point.push(colour);
+    const line = { x: [], y: [], z: [], point: [], time: [] };
+    const push = (values, k, t) => {
+      [ix, iy, iz].forEach((i, n) => line["xyz"[n]].push(values && coordinate(values, i)));
+      line.point.push(k); line.time.push(t);
     };
+    const at = (k, colour) => push((axis) => position(k, axis), colour, data.t_s[k]);
+    const between = (k, share) => push(
+      (axis) => position(k - 1, axis) + share * (position(k, axis) - position(k - 1, axis)), k, data.t_s[k - 1] + share * (data.t_s[k] - data.t_s[k - 1]));
     for (let k = 1; k < points; k++) {
       if (Boolean(data.rapid[k]) !== rapid) continue;
-      if (k === 1 || Boolean(data.rapid[k - 1]) !== rapid) { if (line.x.length) add(-1, k); add(k - 1, k); }
-      add(k, k);
+      if (k === 1 || Boolean(data.rapid[k - 1]) !== rapid) { if (line.x.length) push(null, k, data.t_s[k]); at(k - 1, k); }
+      const parts = Math.ceil(stretch(k) / step);
+      for (let part = 1; part < parts; part++) between(k, part / parts);
+      at(k, k);
     }
     return line;
   };
@@ -82,7 +91,7 @@
   const topRapid = rapids.point.reduce((top, k) => Math.max(top, data.feed[k]), 0);
   const usualFeed = (() => { // 98 % of the cutting time is at most so fast: few fast moves leave the colours to the rest
     const speeds = new Float64Array(1001);
-    for (const k of cuts.point) speeds[Math.min(Math.ceil(1000 * data.feed[k] / topFeed), 1000)] += data.t_s[k] - data.t_s[k - 1];
+    for (let k = 1; k < points; k++) if (!data.rapid[k]) speeds[Math.min(Math.ceil(1000 * data.feed[k] / topFeed), 1000)] += data.t_s[k] - data.t_s[k - 1];
     const all = speeds.reduce((sum, s) => sum + s, 0);
     let i = 0;
     for (let sum = speeds[0]; i < 1000 && sum < 0.98 * all; sum += speeds[i]) i++;
@@ -175,6 +184,8 @@
   const held = lookedAt(directions[0]);
   const alarms = about.remarks.filter((each) => each.kind === "alarm" && points);
   const alarmPlaces = alarms.map((each) => where(each.time_s).axes);
+  // Plotly scales by the extent of what is drawn: unseen corners keep that the box, however flat the lines are.
+  const corners = { type: "scatter3d", mode: "markers", x: ranges[0], y: ranges[1], z: ranges[2], hoverinfo: "skip", marker: { size: 1, opacity: 0 } };
   function drawPath() {
     const colouring = colourings[element("colour").value]();
     const line = (part, style, width) => ({ type: "scatter3d", mode: "lines", x: part.x, y: part.y, z: part.z, connectgaps: false, hoverinfo: "none", line: { width, ...style } });
@@ -182,6 +193,7 @@
       line(cuts, { color: colouring.values, colorscale: colouring.scale, cmin: colouring.low, cmax: colouring.high }, 4),
       line(rapids, { color: css("--rapid") }, 2),
     ];
+    traces.push(corners);
     if (lathe) traces.push(line({ x: ranges[0], y: [0, 0], z: [0, 0] }, { color: css("--soft"), dash: "dashdot" }, 2));
     if (alarms.length) {
       const of = (i) => alarmPlaces.map((place) => coordinate((axis) => place[axis], i));
@@ -194,7 +206,7 @@
     const scene = { xaxis: hidden(ranges[0]), yaxis: hidden(ranges[1]), zaxis: hidden(ranges[2]), aspectmode: "manual", ...held };
     const block = { type: "scatter3d", mode: "lines", x: [], y: [], z: [], line: { width: 9, color: css("--accent") }, hoverinfo: "skip" };
     const mark = { type: "scatter3d", mode: "markers", x: [], y: [], z: [], hoverinfo: "skip", marker: { size: 9, color: css("--accent"), line: { width: 2, color: css("--paper") } } };
-    return Plotly.react("tool", [mark, block], { ...frame(), scene }, { displayModeBar: false, responsive: true });
+    return Plotly.react("tool", [mark, block, corners], { ...frame(), scene }, { displayModeBar: false, responsive: true });
   }
   let following = false;
   function follow(event) { // the tool's picture lies over that of the path and turns with it
@@ -236,7 +248,7 @@
     const axis = { color: css("--soft"), gridcolor: css("--line"), zeroline: false };
     const speed = chart.name === "speed", calm = topRapid > 2 * topFeed && cuts.x.length > 0;
     const height = speed && calm ? { range: [0, 1.15 * topFeed] } : { rangemode: speed ? "tozero" : "normal" };
-    const faster = { text: `rapids, to ${topRapid.toFixed(0)}, are left out`, showarrow: false, xref: "paper", yref: "paper", x: 1, y: 1, xanchor: "right", yanchor: "top", font: { color: css("--soft"), size: 11 } };
+    const faster = { text: `rapids, to ${topRapid.toFixed(0)}, are left out`, showarrow: false, xref: "paper", yref: "paper", x: 1, y: 1, xanchor: "right", yanchor: "top", bgcolor: css("--panel"), font: { color: css("--soft"), size: 11 } };
     return Plotly.react("chart", [{ type: "scatter", mode: "lines", ...chartPoints(chart.of, speed && calm ? (k) => data.rapid[k] : () => false, ...window_s), line: { color: paletteColour(0), width: 1.5 }, hovertemplate: "%{x:.3f} s: %{y:.3f}<extra></extra>" }], {
       ...frame(), margin: { l: 64, r: 8, t: 8, b: 34 }, plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x", dragmode: "zoom",
       xaxis: { ...axis, title: { text: "time [s]", standoff: 4 }, range: [...window_s], minallowed: 0, maxallowed: end_s || 1 },
@@ -419,7 +431,7 @@
   element("path").on("plotly_relayout", follow);
   element("path").on("plotly_click", ({ points: [hit] }) => {
     const part = [cuts, rapids][hit.curveNumber];
-    if (part) goTo(data.t_s[part.point[hit.pointNumber]]);
+    if (part) goTo(part.time[hit.pointNumber]);
   });
   element("chart").on("plotly_click", ({ points: [hit] }) => goTo(hit.x));
   element("chart").on("plotly_relayout", (event) => {
