@@ -6,6 +6,7 @@ What posting and debugging need is loaded when it is first used.
 from typing import TYPE_CHECKING, Any
 
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
+from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
 from polycnc.runner._run import check, program_text, run
 from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
@@ -34,6 +35,7 @@ _LATER = {
 
 __all__ = [
     "PLOT_FORMATS",
+    "SCREEN_FORMATS",
     "TRACE_FORMATS",
     "Alarm",
     "Debugger",
@@ -58,6 +60,7 @@ __all__ = [
     "plot",
     "post_file",
     "program_text",
+    "read_keys",
     "read_trace",
     "run",
     "time_text",

@@ -114,6 +114,8 @@ class RunResult:
     events: list[RunEvent] = field(repr=False)
     source: ProgramText | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)
+    variables: dict[str, object] = field(default_factory=dict, repr=False)
+    """Variables of a program's language by name, after the run: permanent and global ones."""
 
     def __str__(self) -> str:
         state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"
@@ -195,6 +197,7 @@ class RunResult:
             },
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
+            **({"variables": self.variables} if self.variables else {}),
         }
 
 
