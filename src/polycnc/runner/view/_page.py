@@ -38,7 +38,7 @@ def page(
     """
     library = plotly_source()
     listing = _Listing(result, track, texts)
-    columns = {
+    columns: dict[str, npt.NDArray[Any]] = {
         "t_s": track.t_s,
         "position": np.ascontiguousarray(track.position.T, dtype=np.float32),
         "feed": (track.feed_mm_s * 60.0).astype(np.float32),

@@ -79,7 +79,7 @@ class TrackCollector:
         points = np.concatenate([*self._pieces, *ends]) if ends else np.zeros((0, 4 + self._axes))
         cycle_s = float(points[-1, 0]) / self._rows if self._rows else 0.0
         start, number = execution.start, execution.number
-        start_s = start * cycle_s
+        start_s = start.astype(np.float64) * cycle_s
         thinned = len(start) > 2 * self._most
         if thinned:  # keep the executions that a point belongs to
             at = np.searchsorted(start_s, points[:, 0] - 0.5 * cycle_s, side="right") - 1

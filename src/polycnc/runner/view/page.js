@@ -54,21 +54,29 @@
     const room = Math.max(0.04 * longest, 0.5 * (0.1 * longest - (range[1] - range[0])));
     range[0] -= room; range[1] += room;
   }
+  if (lathe) { ranges[1][0] = -0.25 * longest; ranges[1][1] = 0.25 * longest; }
   const sides = ranges.map(([low, high]) => high - low);
-  const largest = Math.max(...sides);
-  const aspect = { x: 1.5 * sides[0] / largest, y: 1.5 * sides[1] / largest, z: 1.5 * sides[2] / largest };
 
   // ---------------------------------------------------------------- the path, rapids apart from the rest
+  const stretch = (k) => Math.hypot(...[ix, iy, iz].map((i) => (i === undefined ? 0 : position(k, i) - position(k - 1, i))));
+  let whole = 0;
+  for (let k = 1; k < points; k++) whole += stretch(k);
+  const step = Math.max(longest / 200, whole / 50000); // long lines get points between, for clicks
   const lineOf = (rapid) => {
-    const line = { x: [], y: [], z: [], point: [] };
-    const add = (k, colour) => {
-      const of = (i) => (k < 0 ? null : coordinate((axis) => position(k, axis), i));
-      line.x.push(of(ix)); line.y.push(of(iy)); line.z.push(of(iz)); line.point.push(colour);
+    const line = { x: [], y: [], z: [], point: [], time: [] };
+    const push = (values, k, t) => {
+      [ix, iy, iz].forEach((i, n) => line["xyz"[n]].push(values && coordinate(values, i)));
+      line.point.push(k); line.time.push(t);
     };
+    const at = (k, colour) => push((axis) => position(k, axis), colour, data.t_s[k]);
+    const between = (k, share) => push(
+      (axis) => position(k - 1, axis) + share * (position(k, axis) - position(k - 1, axis)), k, data.t_s[k - 1] + share * (data.t_s[k] - data.t_s[k - 1]));
     for (let k = 1; k < points; k++) {
       if (Boolean(data.rapid[k]) !== rapid) continue;
-      if (k === 1 || Boolean(data.rapid[k - 1]) !== rapid) { if (line.x.length) add(-1, k); add(k - 1, k); }
-      add(k, k);
+      if (k === 1 || Boolean(data.rapid[k - 1]) !== rapid) { if (line.x.length) push(null, k, data.t_s[k]); at(k - 1, k); }
+      const parts = Math.ceil(stretch(k) / step);
+      for (let part = 1; part < parts; part++) between(k, part / parts);
+      at(k, k);
     }
     return line;
   };
@@ -80,6 +88,15 @@
   }
   const tools = [...new Set([...about.tools.map((each) => each.tool), ...data.block_tool])].sort((a, b) => a - b);
   const topFeed = cuts.point.reduce((top, k) => Math.max(top, data.feed[k]), 1e-9);
+  const topRapid = rapids.point.reduce((top, k) => Math.max(top, data.feed[k]), 0);
+  const usualFeed = (() => { // 98 % of the cutting time is at most so fast: few fast moves leave the colours to the rest
+    const speeds = new Float64Array(1001);
+    for (let k = 1; k < points; k++) if (!data.rapid[k]) speeds[Math.min(Math.ceil(1000 * data.feed[k] / topFeed), 1000)] += data.t_s[k] - data.t_s[k - 1];
+    const all = speeds.reduce((sum, s) => sum + s, 0);
+    let i = 0;
+    for (let sum = speeds[0]; i < 1000 && sum < 0.98 * all; sum += speeds[i]) i++;
+    return Math.max(i, 1) * topFeed / 1000;
+  })();
 
   // ---------------------------------------------------------------- colours
   const PALETTE = { // told apart without red and green; after Okabe and Ito
@@ -93,7 +110,7 @@
   const paletteColour = (i) => { const all = PALETTE[root.dataset.theme]; return all[i % all.length]; };
   const colourings = {
     speed: () => ({
-      values: cuts.point.map((k) => data.feed[k]), low: 0, high: topFeed,
+      values: cuts.point.map((k) => data.feed[k]), low: 0, high: usualFeed,
       scale: SCALE[root.dataset.theme].map((c, i, all) => [i / (all.length - 1), c]),
     }),
     tool: () => classes(cuts.point.map((k) => tools.indexOf(data.block_tool[numberAt[k]])), tools.length),
@@ -119,7 +136,7 @@
       const bar = document.createElement("div"), ends = document.createElement("div");
       bar.className = "scale"; ends.className = "ends";
       bar.style.background = `linear-gradient(to right, ${SCALE[root.dataset.theme].join(",")})`;
-      for (const text of ["0", `${topFeed.toFixed(0)} mm/min`]) ends.append(Object.assign(document.createElement("span"), { textContent: text }));
+      for (const text of ["0", `${usualFeed < 0.99 * topFeed ? "≥ " : ""}${usualFeed.toFixed(0)} mm/min`]) ends.append(Object.assign(document.createElement("span"), { textContent: text }));
       legend.append(bar, ends);
     } else if (how === "tool") {
       tools.forEach((tool, i) => legend.append(chip(paletteColour(i), `T${tool}`)));
@@ -131,14 +148,30 @@
   }
 
   // ---------------------------------------------------------------- the picture
-  const CAMERAS = {
-    "3-D": { eye: { x: -1.1, y: -1.5, z: 1.1 }, up: { x: 0, y: 0, z: 1 } },
-    Top: { eye: { x: 0, y: 0, z: 2.2 }, up: { x: 0, y: 1, z: 0 } },
-    Front: { eye: { x: 0, y: -2.2, z: 0 }, up: { x: 0, y: 0, z: 1 } },
-    Side: { eye: { x: 2.2, y: 0, z: 0 }, up: { x: 0, y: 0, z: 1 } },
+  const VIEWS = { // from where, and what is up
+    "3-D": [[-0.5, -0.68, 0.54], [0, 0, 1]], Top: [[0, 0, 1], [0, 1, 0]], Front: [[0, -1, 0], [0, 0, 1]], Side: [[1, 0, 0], [0, 0, 1]],
   };
-  const directions = lathe ? ["Front", "3-D"] : Object.keys(CAMERAS);
-  const camera = (name) => ({ ...CAMERAS[name], center: { x: 0, y: 0, z: 0 }, projection: { type: "orthographic" } });
+  const directions = lathe ? ["Front", "3-D"] : Object.keys(VIEWS);
+  const VISIBLE = 2; // units of the scene that its height shows
+  const xyz = ([x, y, z]) => ({ x, y, z });
+  const box = (line) => ["x", "y", "z"].map((name, i) => line[name].reduce(
+    ([low, high], v) => (v === null ? [low, high] : [Math.min(low, v), Math.max(high, v)]), lathe && i === 2 ? [0, 0] : [Infinity, -Infinity]));
+  const shownBox = cuts.x.length ? box(cuts) : ranges;
+  function lookedAt(name, boxes = shownBox) { // camera and size of the scene with which the boxes fill the stage
+    const [from, up] = VIEWS[name];
+    const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    const unit = (a) => a.map((v) => v / Math.hypot(...a));
+    const right = unit(cross(up, from)), upright = unit(cross(from, right));
+    const across = (direction) => Math.max(direction.reduce((sum, d, i) => sum + Math.abs(d) * (boxes[i][1] - boxes[i][0]), 0), 0.02 * longest);
+    const stage = element("stage"), shape = stage.clientWidth / Math.max(stage.clientHeight, 1);
+    const scale = 0.78 * VISIBLE * Math.min(shape / across(right), 1 / across(upright));
+    const center = boxes.map(([low, high], i) => scale * ((low + high) / 2 - (ranges[i][0] + ranges[i][1]) / 2));
+    const eye = center.map((c, i) => c + 2.5 * from[i]);
+    return {
+      camera: { eye: xyz(eye), center: xyz(center), up: xyz(up), projection: { type: "orthographic" } },
+      aspectratio: xyz(sides.map((side) => scale * side)),
+    };
+  }
   const sceneAxis = (i, range) => ({
     title: { text: label(i) }, range, visible: i !== undefined, color: css("--soft"), gridcolor: css("--line"),
     zerolinecolor: css("--soft"), backgroundcolor: "rgba(0,0,0,0)", showspikes: false,
@@ -148,16 +181,19 @@
     margin: { l: 0, r: 0, t: 0, b: 0 }, showlegend: false, paper_bgcolor: "rgba(0,0,0,0)", font: { family: "system-ui, sans-serif", size: 12 }, hovermode: "closest",
   });
   const options = { displayModeBar: false, responsive: true, scrollZoom: true, doubleClick: false };
-  const held = { camera: camera(directions[0]), aspectratio: aspect };
+  const held = lookedAt(directions[0]);
   const alarms = about.remarks.filter((each) => each.kind === "alarm" && points);
   const alarmPlaces = alarms.map((each) => where(each.time_s).axes);
+  // Plotly scales by the extent of what is drawn: unseen corners keep that the box, however flat the lines are.
+  const corners = { type: "scatter3d", mode: "markers", x: ranges[0], y: ranges[1], z: ranges[2], hoverinfo: "skip", marker: { size: 1, opacity: 0 } };
   function drawPath() {
     const colouring = colourings[element("colour").value]();
     const line = (part, style, width) => ({ type: "scatter3d", mode: "lines", x: part.x, y: part.y, z: part.z, connectgaps: false, hoverinfo: "none", line: { width, ...style } });
     const traces = [
       line(cuts, { color: colouring.values, colorscale: colouring.scale, cmin: colouring.low, cmax: colouring.high }, 4),
-      line(rapids, { color: css("--rapid"), dash: "dash" }, 2),
+      line(rapids, { color: css("--rapid") }, 2),
     ];
+    traces.push(corners);
     if (lathe) traces.push(line({ x: ranges[0], y: [0, 0], z: [0, 0] }, { color: css("--soft"), dash: "dashdot" }, 2));
     if (alarms.length) {
       const of = (i) => alarmPlaces.map((place) => coordinate((axis) => place[axis], i));
@@ -170,7 +206,7 @@
     const scene = { xaxis: hidden(ranges[0]), yaxis: hidden(ranges[1]), zaxis: hidden(ranges[2]), aspectmode: "manual", ...held };
     const block = { type: "scatter3d", mode: "lines", x: [], y: [], z: [], line: { width: 9, color: css("--accent") }, hoverinfo: "skip" };
     const mark = { type: "scatter3d", mode: "markers", x: [], y: [], z: [], hoverinfo: "skip", marker: { size: 9, color: css("--accent"), line: { width: 2, color: css("--paper") } } };
-    return Plotly.react("tool", [mark, block], { ...frame(), scene }, { staticPlot: true, responsive: true });
+    return Plotly.react("tool", [mark, block, corners], { ...frame(), scene }, { displayModeBar: false, responsive: true });
   }
   let following = false;
   function follow(event) { // the tool's picture lies over that of the path and turns with it
@@ -179,8 +215,9 @@
     following = true;
     requestAnimationFrame(() => { following = false; Plotly.relayout("tool", { "scene.camera": held.camera, "scene.aspectratio": held.aspectratio }); });
   }
-  function lookFrom(name) {
-    const change = { "scene.camera": camera(name), "scene.aspectratio": { ...aspect } };
+  function lookFrom(name, boxes) {
+    const { camera, aspectratio } = lookedAt(name, boxes);
+    const change = { "scene.camera": camera, "scene.aspectratio": aspectratio };
     Plotly.relayout("path", change);
     follow(change);
   }
@@ -189,13 +226,18 @@
   const charts = [{ name: "speed", unit: "mm/min", of: (k) => data.feed[k] }];
   about.axes.forEach((axis, i) => charts.push({ name: `axis ${axis.name}`, unit: axis.unit, of: (k) => position(k, i) }));
   const CHART_POINTS = 4000;
-  function chartPoints(of, from_s, to_s) { // the lowest and highest of each of many pieces, where there are too many
+  function chartPoints(of, left_out, from_s, to_s) { // the lowest and highest of each of many pieces, where there are too many
     const first = Math.max(after(data.t_s, from_s) - 1, 0), last = Math.min(after(data.t_s, to_s) + 1, points);
     const x = [], y = [], step = Math.max(Math.ceil((last - first) / (CHART_POINTS / 2)), 1);
     for (let k = first; k < last; k += step) {
-      let low = k, high = k;
-      for (let j = k; j < Math.min(k + step, last); j++) { if (of(j) < of(low)) low = j; if (of(j) > of(high)) high = j; }
-      for (const j of new Set([Math.min(low, high), Math.max(low, high)])) { x.push(data.t_s[j]); y.push(of(j)); }
+      let low = -1, high = -1, gap = false;
+      for (let j = k; j < Math.min(k + step, last); j++) {
+        if (left_out(j)) { gap = true; continue; }
+        if (low < 0 || of(j) < of(low)) low = j;
+        if (high < 0 || of(j) > of(high)) high = j;
+      }
+      if (low >= 0) for (const j of new Set([Math.min(low, high), Math.max(low, high)])) { x.push(data.t_s[j]); y.push(of(j)); }
+      if (gap) { x.push(data.t_s[k]); y.push(null); }
     }
     return { x, y };
   }
@@ -204,10 +246,13 @@
   function drawChart() {
     const chart = charts[element("shown").value];
     const axis = { color: css("--soft"), gridcolor: css("--line"), zeroline: false };
-    return Plotly.react("chart", [{ type: "scatter", mode: "lines", ...chartPoints(chart.of, ...window_s), line: { color: paletteColour(0), width: 1.5 }, hovertemplate: "%{x:.3f} s: %{y:.3f}<extra></extra>" }], {
+    const speed = chart.name === "speed", calm = topRapid > 2 * topFeed && cuts.x.length > 0;
+    const height = speed && calm ? { range: [0, 1.15 * topFeed] } : { rangemode: speed ? "tozero" : "normal" };
+    const faster = { text: `rapids, to ${topRapid.toFixed(0)}, are left out`, showarrow: false, xref: "paper", yref: "paper", x: 1, y: 1, xanchor: "right", yanchor: "top", bgcolor: css("--panel"), font: { color: css("--soft"), size: 11 } };
+    return Plotly.react("chart", [{ type: "scatter", mode: "lines", ...chartPoints(chart.of, speed && calm ? (k) => data.rapid[k] : () => false, ...window_s), line: { color: paletteColour(0), width: 1.5 }, hovertemplate: "%{x:.3f} s: %{y:.3f}<extra></extra>" }], {
       ...frame(), margin: { l: 64, r: 8, t: 8, b: 34 }, plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x", dragmode: "zoom",
       xaxis: { ...axis, title: { text: "time [s]", standoff: 4 }, range: [...window_s], minallowed: 0, maxallowed: end_s || 1 },
-      yaxis: { ...axis, title: { text: chart.unit }, fixedrange: true, rangemode: chart.name === "speed" ? "tozero" : "normal", tickformat: ",~g" }, shapes: cursor(now),
+      yaxis: { ...axis, title: { text: chart.unit }, fixedrange: true, ...height, tickformat: ",~g" }, shapes: cursor(now), annotations: speed && calm ? [faster] : [],
     }, { displayModeBar: false, responsive: true });
   }
 
@@ -319,7 +364,8 @@
   }
 
   // ---------------------------------------------------------------- what stands around it
-  element("title").textContent = about.program;
+  element("title").textContent = about.program.split(/[\\/]/).pop();
+  element("title").title = about.program;
   element("summary").textContent = `${about.machine} · ${about.summary}${about.ok ? "" : " · stopped by an alarm"}`;
   element("note").textContent = about.note;
   element("slider").max = end_s;
@@ -330,6 +376,9 @@
     button.onclick = () => lookFrom(name);
     element("views").append(button);
   });
+  element("views").append(Object.assign(document.createElement("button"), {
+    type: "button", textContent: "All", title: "Everything, rapids too", onclick: () => lookFrom(directions[0], ranges),
+  }));
   function drawTools() {
     const body = element("tools").tBodies[0];
     body.replaceChildren();
@@ -382,7 +431,7 @@
   element("path").on("plotly_relayout", follow);
   element("path").on("plotly_click", ({ points: [hit] }) => {
     const part = [cuts, rapids][hit.curveNumber];
-    if (part) goTo(data.t_s[part.point[hit.pointNumber]]);
+    if (part) goTo(part.time[hit.pointNumber]);
   });
   element("chart").on("plotly_click", ({ points: [hit] }) => goTo(hit.x));
   element("chart").on("plotly_relayout", (event) => {
