@@ -15,7 +15,9 @@ class Root:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
-    def run(self, program: str, *, check: bool = True, keys: tuple[str, ...] = (), screen: str = "") -> RunResult:
+    def run(
+        self, program: str, *, check: bool = True, keys: tuple[str, ...] = (), screen: str = ""
+    ) -> RunResult:
         """Run a program; its errors are raised unless `check` is off."""
         text = ProgramText.from_text(program, str(self.folder / "main.npg"))
         return run(

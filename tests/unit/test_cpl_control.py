@@ -33,8 +33,7 @@ def test_permanent_variables_survive_to_the_next_run(root: Root) -> None:
     root.write("anwperm.dat", b"DEF INT @ABCD ;\n")
     root.run(
         '1 @36%=3 : @ABCD%=-17 : @IJKL!=5.12345 : @MNOP?=TRUE : @PSTR1$="ABC"\n2 @WZNR%(2)=6 : @WZKOR(3,2)=7.625\n'
-        '3 @PSTR2$(3)="DE" : @_R!(4)=2.75'
-        .replace("@_R!", "@_R")
+        '3 @PSTR2$(3)="DE" : @_R!(4)=2.75'.replace("@_R!", "@_R")
     )
     found = root.run("1 #A%=@ABCD%+1 : #B=@WZKOR(3,2) : @36%=@36%*7").variables
     assert (found["@36"], found["#A%"], found["#B"]) == (21, -16, 7.625)
@@ -64,7 +63,7 @@ def test_nothing_permanent_leaves_no_file(root: Root) -> None:
 
 def test_positions_are_of_now_or_of_the_last_prepared_block(root: Root) -> None:
     found = root.run(
-        "N1 G54\nN10 G1 X20 Y-7.5 F6000\n20 #A=CPOS(1) : #B=CPOS(\"Y\",1) : #C=MPOS(1)\n30 WAIT\n"
+        'N1 G54\nN10 G1 X20 Y-7.5 F6000\n20 #A=CPOS(1) : #B=CPOS("Y",1) : #C=MPOS(1)\n30 WAIT\n'
         '40 #D=MPOS("X") : #E=SPOS(2) : #F=APOS("Y") : #G=WPOS("Y",1,1) : #H=MPOS(2,0) : #I=MPOS(1,1,1)\n'
         "N50 G91 X2.5\n60 #J=CPOS(1)"
     ).variables
@@ -82,7 +81,17 @@ def test_program_positions_have_shifts_and_inches(root: Root) -> None:
 
 @pytest.mark.parametrize(
     "call",
-    ['MPOS("U")', "MPOS(9)", "MPOS(0)", "MPOS(1,0,1)", "MPOS(1,2)", "WPOS(1,1,2)", "CPOS(4,1)", "APOS(7)", "PPOS(1)"],
+    [
+        'MPOS("U")',
+        "MPOS(9)",
+        "MPOS(0)",
+        "MPOS(1,0,1)",
+        "MPOS(1,2)",
+        "WPOS(1,1,2)",
+        "CPOS(4,1)",
+        "APOS(7)",
+        "PPOS(1)",
+    ],
 )
 def test_axes_that_are_not_there_are_refused(root: Root, call: str) -> None:
     error = root.error(f"1 A={call}")
@@ -95,7 +104,7 @@ def test_axes_that_are_not_there_are_refused(root: Root, call: str) -> None:
 @pytest.mark.covers("cpl.CLOCK", "cpl.DATE", "cpl.TIME", "cpl.ex.2494")
 def test_the_clock_is_the_machine_s(root: Root) -> None:
     result = root.run(
-        "1 WAIT\n2 T%=CLOCK\nN4 G1 X100 F6000\n5 WAIT\n6 #T%=CLOCK-T%\n7 DIM A$(9) : DIM B$(9) : WAIT(,1500)\n"
+        "1 WAIT\n2 T%=CLOCK\nN4 G1 X100 F6000\n5 WAIT\n6 #T%=CLOCK-T%\n7 DIM A$(9) : DIM B$(9)\n17 WAIT(,1500)\n"
         '8 A$=DATE : B$=TIME : PRN#(0,A$," ",B$)'
     )
     assert result.variables["#T%"] == pytest.approx(result.cutting_time_s * 1000, abs=2)
@@ -105,7 +114,9 @@ def test_the_clock_is_the_machine_s(root: Root) -> None:
 
 
 def test_inputs_are_false_and_outputs_can_be_set(root: Root) -> None:
-    found = root.run("1 #A?=IC(5,1,2) : IC(80,0,1)=TRUE\n2 WAIT(NOT IC(3,2,1),,#C%)\n3 WAIT(IC(4),250,#D%)").variables
+    found = root.run(
+        "1 #A?=IC(5,1,2) : IC(80,0,1)=TRUE\n2 WAIT(NOT IC(3,2,1),,#C%)\n3 WAIT(IC(4),250,#D%)"
+    ).variables
     assert (found["#A?"], found["#C%"], found["#D%"]) == (False, 0, 1)
     assert root.error("1 IC(96,0,1)=TRUE") == "1: INVALID PARAMETER"
     assert root.error("1 A?=IC(6,9)") == "1: INVALID PARAMETER"
@@ -155,7 +166,9 @@ def test_check_links_and_reports_every_error(root: Root) -> None:
 
 def test_the_command_runs_a_program_on_a_root(root: Root) -> None:
     program = root.folder / "main.npg"
-    program.write_text('10 @5=3 : #A%=5 : #B?=FALSE : #C=NUL\n20 OPENW(1,"P1") : PRN#(1,"X")\nN10 G1 X5 F600\n')
+    program.write_text(
+        '10 @5=3 : #A%=5 : #B?=FALSE : #C=NUL\n20 OPENW(1,"P1") : PRN#(1,"X")\nN10 G1 X5 F600\n'
+    )
     told = CliRunner().invoke(app, ["run", str(program), "--json"])
     assert told.exit_code == 0, told.output
     variables = json.loads(told.stdout)["variables"]

@@ -51,7 +51,7 @@ def test_a_file_from_an_editor_is_continued_on_a_new_line(root: Root) -> None:
 @pytest.mark.covers("cpl.ex.4183", "cpl.OPENR")
 def test_what_was_written_is_read_back(root: Root) -> None:
     text = (
-        '90 DIM A$(35)\nN5 G1 X12.5 Y-3.75 F9000\n95 WAIT\n100 XPOS=MPOS(1)\n110 YPOS=MPOS(2)\n'
+        "90 DIM A$(35)\nN5 G1 X12.5 Y-3.75 F9000\n95 WAIT\n100 XPOS=MPOS(1)\n110 YPOS=MPOS(2)\n"
         '120 OPENW(1,"P5",500,"AXISPOS")\n130 REWRITE(1)\n140 PRN#(1,"X AXIS",XPOS,"Y AXIS",YPOS)\n150 CLOSE(1)\n'
         '160 OPENR(1,"P5")\n170 INP#(1,A$)\n175 #L%=LEN(A$) : PRN#(0,A$)\n180 CLOSE(1)'
     )
@@ -136,7 +136,7 @@ def test_another_record_length_is_refused(root: Root) -> None:
 
 @pytest.mark.covers("cpl.ex.3965")
 def test_a_program_is_copied_into_records(root: Root) -> None:
-    lines = ['N10 G1F10000X1000Y1000Z1000', '1 A$="01234567890123456789"', '2 B$="TEST"', "N20 X0", "M30"]
+    lines = ["N10 G1F10000X1000Y1000Z1000", '1 A$="01234567890123456789"', '2 B$="TEST"', "N20 X0", "M30"]
     root.write("P1", "".join(line + "\n" for line in lines).encode() + END)
     root.run(
         '1 OPENW(1,"PMeas_PRG",500,"RANDOM FILE",10)\n2 OPENR(2,"P1")\n3 DIM A$(30)\n4 FOR I% = 1 TO 5\n'
@@ -167,7 +167,9 @@ def test_without_a_semicolon_the_rest_becomes_blanks(root: Root) -> None:
         '6 SEEK(2,1)\n7 PRN#(2,"OVERWRITE")\n8 CLOSE(2)'
     )
     assert root.read("P2") == (
-        b"OVERWRITE" + b" " * 26 + b"\nTEST2 FOR PRN COMMAND W/O SEMICOLON\nTEST3 FOR PRN COMMAND W/O SEMICOLON\n"
+        b"OVERWRITE"
+        + b" " * 26
+        + b"\nTEST2 FOR PRN COMMAND W/O SEMICOLON\nTEST3 FOR PRN COMMAND W/O SEMICOLON\n"
         + END
     )
 
@@ -395,7 +397,14 @@ def test_a_protected_file_is_not_erased(root: Root) -> None:
 )  # fmt: skip
 @pytest.mark.parametrize(
     ("mode", "open_", "code"),
-    [(0o644, "", 6), (0o444, "", 4), (0o555, "", 5), (0o200, "", 2), (0o000, "", 0), (0o644, 'OPENR(1,"P2")', 22)],
+    [
+        (0o644, "", 6),
+        (0o444, "", 4),
+        (0o555, "", 5),
+        (0o200, "", 2),
+        (0o000, "", 0),
+        (0o644, 'OPENR(1,"P2")', 22),
+    ],
 )
 def test_file_access_tells_rights(root: Root, mode: int, open_: str, code: int) -> None:
     (root.folder / "usr").mkdir()
@@ -474,6 +483,6 @@ def test_a_full_disk_is_an_error_of_the_program_and_loses_nothing(
 def test_a_reader_sees_what_the_writer_adds(root: Root) -> None:
     said = root.said(
         '1 DIM A$(9)\n2 OPENW(1,"P2")\n3 PRN#(1,"ONE")\n4 OPENR(2,"P2")\n5 INP#(2,A$) : PRN#(0,A$)\n6 PRN#(1,"TWO")\n'
-        "7 INP#(2,A$) : PRN#(0,A$) : CLOSE(1)\n8 IF EOF(2) THEN PRN#(0,\"END\") ENDIF"
+        '7 INP#(2,A$) : PRN#(0,A$) : CLOSE(1)\n8 IF EOF(2) THEN PRN#(0,"END") ENDIF'
     )
     assert said == ["ONE", "TWO", "END"]

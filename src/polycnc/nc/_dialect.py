@@ -181,7 +181,8 @@ class Dialect(StrictModel):
         description="How many blocks are prepared beyond the one that is executed; absent: as many as fit.",
     )
     language: Literal["none", "cpl"] = Field(
-        default="none", description='The language that programs may hold besides NC blocks; "cpl" is that of Bosch.'
+        default="none",
+        description='The language that programs may hold besides NC blocks; "cpl" is that of Bosch.',
     )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")

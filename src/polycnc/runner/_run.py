@@ -47,9 +47,9 @@ def run(
     run ends at the first M0. `progress` is called now and then with the part that is done, 0 to 1;
     it goes back where sub-programs repeat.
 
-    Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if absent;
-    `keys` are pressed when the program asks for one, and what it has shown at the end is written to `screen` (.txt, .svg
-    or .png).
+    Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
+    absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to `screen`
+    (.txt, .svg or .png).
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.

@@ -11,10 +11,20 @@ from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._memory import KeptVariables, plain_variable
 from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch.files import Directory, FileCommands
+from polycnc.controllers.bosch.screen import Dialog, Keyboard, Surface
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock
 from polycnc.nc import ProgramText
-from polycnc.nc.cpl import OMITTED, CplLanguage, CplSource, Fault, Linker, PermanentMemory, text_of, undeclared
+from polycnc.nc.cpl import (
+    OMITTED,
+    CplLanguage,
+    CplSource,
+    Fault,
+    Linker,
+    PermanentMemory,
+    text_of,
+    undeclared,
+)
 
 _WORD = re.compile(
     r"(?P<letter>[A-Za-z]) *(?:(?P<extension>[0-9]{1,2}) *= *)?(?P<value>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
@@ -45,6 +55,7 @@ class Pnc:
         """Interface bits that programs have set, by bit and channel."""
         self.language = _Language(self, skip_levels=frozenset(skip_levels))
         self.files = FileCommands(self.directory, self._say, self._running_files)
+        self.dialog = Dialog(Keyboard(keys), lambda: self.files.left_justified)
         self._clock = clock
         self._run: ProgramRun | None = None
         self._main = None if program is None else Path(program).resolve()
@@ -52,6 +63,7 @@ class Pnc:
         self.functions: dict[str, Callable[..., object]] = {
             **Positions(self._attached).functions,
             **self.files.functions,
+            **self.dialog.functions,
             "CLOCK": lambda: int(self._clock.now_s * 1000.0 + 0.5) & 0x7FFFFFFF,
             "DATE": lambda: self._clock.now.strftime("%d.%m."),
             "TIME": lambda: self._clock.now.strftime("%H.%M.%S"),
@@ -95,6 +107,11 @@ class Pnc:
 
     # ------------------------------------------------------------------ for who runs it
 
+    @property
+    def screen(self) -> Surface:
+        """What the program has put on the screen."""
+        return self.dialog.surface
+
     def attach(self, run: ProgramRun) -> None:
         """Take the run whose channel this control is."""
         self._run = run
@@ -132,11 +149,15 @@ class Pnc:
             self.files.close_all()
         except Fault as fault:
             self._say(f"{fault.what}: {fault.hint}")
+        self.dialog.finish()
         self.kept.keep()
 
     def variables(self) -> dict[str, object]:
         """Return permanent and global variables as plain values, by name."""
-        return {**self.kept.values(), **{name: _shown(value) for name, value in self.language.globals.items()}}
+        return {
+            **self.kept.values(),
+            **{name: _shown(value) for name, value in self.language.globals.items()},
+        }
 
     # ------------------------------------------------------------------ within
 

@@ -35,7 +35,9 @@ class Positions:
     def _apos(self, axis: object) -> float:
         index = self._axis(axis, OMITTED, OMITTED)
         machine = self._run().machine
-        simulated = machine.state.servo.row[index]["mode"] == PIDF  # without servos an axis is where it should be
+        simulated = (
+            machine.state.servo.row[index]["mode"] == PIDF
+        )  # without servos an axis is where it should be
         positions = machine.actual if simulated else machine.setpoints
         return float(list(positions.values())[index]) / self._scale(index)
 

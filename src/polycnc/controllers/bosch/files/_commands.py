@@ -39,6 +39,11 @@ class FileCommands:
             "NJUST": self._njust, "FILEACCESS": self._access, "FILEDATE": self._date,
         }  # fmt: skip
 
+    @property
+    def left_justified(self) -> bool:
+        """Whether LJUST is in force."""
+        return self._left
+
     def close_all(self) -> None:
         """Close all files, as at the end of a program; numbers are formatted again.
 
@@ -113,7 +118,7 @@ class FileCommands:
 
     # ------------------------------------------------------------------ writing and reading
 
-    def _print(self, number: object, *items: object, open: bool = False) -> int:  # noqa: A002 (the Host's word)
+    def _print(self, number: object, *items: object, open: bool = False) -> int:
         output = as_output(items, left=self._left)
         if output.misfits:
             self._say(f"PRN FORMAT INCORRECT: {', '.join(output.misfits)}")
@@ -126,7 +131,7 @@ class FileCommands:
         handle.put(output.text, stays_open=open)
         return 0
 
-    def _input(self, number: object, *variables: object, open: bool = False) -> int:  # noqa: A002 (the Host's word)
+    def _input(self, number: object, *variables: object, open: bool = False) -> int:
         if number == 0 and not isinstance(number, bool):
             for variable in variables:  # no block is selected in an editor: there are no parameters
                 if isinstance(variable, Box) and variable.kind != "S":

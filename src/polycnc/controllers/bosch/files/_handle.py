@@ -8,7 +8,10 @@ from collections.abc import Callable, Iterable
 from polycnc.controllers.bosch.files._stored import LONGEST_RECORD, StoredFile
 from polycnc.nc.cpl import Box, CharacterField, Fault, Section
 
-_NUMBERS = {"I": re.compile(r" *([+-]? *[0-9]+)"), "R": re.compile(r" *([+-]? *(?:[0-9]+\.?[0-9]*|\.[0-9]+))")}
+_NUMBERS = {
+    "I": re.compile(r" *([+-]? *[0-9]+)"),
+    "R": re.compile(r" *([+-]? *(?:[0-9]+\.?[0-9]*|\.[0-9]+))"),
+}
 _LIMITS = {"I": 2**31 - 1, "R": 3.4028235e38, "D": 1.7976931348623157e308}
 _TOO_LONG = "BLOCK EXCEEDS 1024 BYTES"
 
@@ -191,15 +194,17 @@ def _read(text: str, variable: object) -> int:
         part = text[: variable.length]
         variable.write(part)
         return len(part)
-    raise Fault("inadmissible assignment to a non-dimensioned STRING variable", "dimension it with DIM before")
+    raise Fault(
+        "inadmissible assignment to a non-dimensioned STRING variable", "dimension it with DIM before"
+    )
 
 
 def _read_value(text: str, box: Box) -> int:
     box.value = None
     if box.kind == "B":
-        for word, value in (("TRUE", True), ("FALSE", False)):
+        for word in ("TRUE", "FALSE"):
             if text.lstrip(" ").startswith(word):
-                box.value = value
+                box.value = word == "TRUE"
                 return len(text) - len(text.lstrip(" ")) + len(word)
         return 0
     kind = "I" if box.kind == "I" else "R"
@@ -210,6 +215,8 @@ def _read_value(text: str, box: Box) -> int:
     convert: Callable[[str], int | float] = int if kind == "I" else float
     value = convert(digits)
     if not -_LIMITS[box.kind] - (kind == "I") <= value <= _LIMITS[box.kind]:
-        raise Fault("INVALID INTEGER VALUE" if kind == "I" else "INVALID FLOAT VALUE", f"{digits} is too large")
+        raise Fault(
+            "INVALID INTEGER VALUE" if kind == "I" else "INVALID FLOAT VALUE", f"{digits} is too large"
+        )
     box.value = value
     return found.end()

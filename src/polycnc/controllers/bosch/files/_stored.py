@@ -111,9 +111,7 @@ class StoredFile:
 
     def _open(self, flags: int) -> None:
         try:
-            self._descriptor = os.open(
-                self.path, os.O_RDWR | flags | _FLAGS, 0o644
-            )
+            self._descriptor = os.open(self.path, os.O_RDWR | flags | _FLAGS, 0o644)
         except OSError as error:
             raise Fault(_NOT_WRITTEN, _reason(error)) from None
 
