@@ -54,10 +54,10 @@ def test_a_person_runs_stops_steps_and_looks(debugger: Debugger) -> None:
             await pilot.press("space")
             app.pass_time(100_000)
             await pilot.pause()
-            # Before line 4: the last block was line 3 of the sub-program, in its own file.
+            # Before line 4: the last block was the return of the sub-program, in its own file.
             text = seen(app)
             assert "O0815.nc" in text
-            assert "▶ N120 Y3.5" in text
+            assert "▶ M99" in text
             assert "main.nc:3" in text
             assert "stopped at block" in text
             await pilot.press("s")

@@ -158,6 +158,11 @@ def test_override_0_in_single_block_neither_ends_nor_skips_a_block() -> None:
     made.set_switches(single_block=True)
     made.select_program("PART")
     made.cycle_start()
+    made.advance(10, until=ControlEvent.RUN_STATE)
+    assert made.status().channel.run_state == RunState.STOPPED_AT_BLOCK  # behind the line with the O number
+    made.advance(50)
+    assert x(made) == 12.5
+    made.cycle_start()
     made.advance(200)
     made.set_overrides(feed=0.0)
     made.advance(5000)
@@ -568,11 +573,63 @@ def test_what_is_out_of_range_is_refused() -> None:
         lambda: made.set_overrides(feed=0.5, rapid=0.3),
         lambda: made.set_overrides(spindle=float("nan")),
         lambda: made.set_switches(block_delete=frozenset({0})),
+        lambda: made.set_switches(single_block=True, block_delete=frozenset({3, 10})),
         lambda: made.cycle_start(channel=1),
         lambda: made.set_relative("W"),
         lambda: made.set_relative("X", float("inf")),
     ):
         refused(Refusal.DATA, call, made)
+
+
+def test_the_machine_lock_executes_without_the_axes_and_only_changes_in_between() -> None:
+    made = control()
+    made.set_switches(machine_lock=True)
+    made.select_program("PART")
+    made.cycle_start()
+    made.advance(300)
+    assert x(made) == 12.5
+    refused(Refusal.RUNNING, lambda: made.set_switches(machine_lock=False), made)
+    made.advance(100_000, until=ControlEvent.RUN_STATE)
+    assert x(made) == 12.5
+    made.set_switches(machine_lock=False)
+    made.cycle_start()
+    made.advance(300)
+    assert x(made) > 20.0
+
+
+def test_dry_run_and_block_delete_reach_the_program() -> None:
+    made = control(ControlData(dry_run_mm_min=1200.0))
+    made.programs.create("DRY", "/2 N10 X99 \nN20 G1 X32.5 F60\nM30\n".replace(" X99", " Z-3 F900 G1"))
+    made.set_switches(dry_run=True, block_delete=frozenset({2}))
+    made.select_program("DRY")
+    made.cycle_start()
+    passed = made.advance(100_000, until=ControlEvent.RUN_STATE)
+    assert passed == pytest.approx(1000, abs=60)
+    assert made.status().axes["Z"].machine == 3.0
+
+
+def test_auxiliary_functions_take_the_machine_files_times_and_the_spindle_its_ramp() -> None:
+    made = control()
+    made.programs.create("AUX", "S1500 M3\nT4 M6\nM8\nM30\n")
+    made.select_program("AUX")
+    made.cycle_start()
+    # 1500 rpm at 3000 rpm/s, 1.5 s of tool change, 0.3 s of coolant.
+    passed = made.advance(100_000, until=ControlEvent.RUN_STATE)
+    assert made.status().channel.run_state is RunState.COMPLETED
+    assert passed == pytest.approx(500 + 1500 + 300, abs=8)
+
+
+def test_a_sub_program_comes_from_the_memory() -> None:
+    made = Control(cnc_machine(), dialect="fanuc")
+    made.programs.create("MAIN", "G1 X13.5 F6000\nM98 P31\nM30\n")
+    made.programs.create("O0031", "O31\nG1 Y4.25\nM99\n")
+    made.select_program("MAIN")
+    made.cycle_start()
+    made.advance(100_000, until=lambda: made.status().axes["Y"].machine > 1.0)
+    assert made.programs.running == {"MAIN", "O0031"}
+    refused(Refusal.IN_USE, lambda: made.programs.delete("O0031"), made)
+    made.advance(100_000, until=ControlEvent.RUN_STATE)
+    assert made.status().axes["Y"].machine == 4.25
 
 
 def test_positions_machine_work_and_relative() -> None:

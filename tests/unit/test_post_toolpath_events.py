@@ -106,7 +106,7 @@ def test_a_tool_path_without_operations_is_one() -> None:
     assert [macro for macro, _ in calls_of("STOP\n")[0]] == [
         *("PROGRAM_START", "PATH_START", "STOP", "PATH_END", "PROGRAM_END")
     ]
-    assert [macro for macro, _ in calls_of("")[0]] == ["PROGRAM_START", "PROGRAM_END"]
+    assert [macro for macro, _ in calls_of("PARTNO A\n")[0]] == ["PROGRAM_START", "PROGRAM_END"]
 
 
 def test_texts_of_the_program() -> None:

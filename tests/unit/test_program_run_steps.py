@@ -397,10 +397,15 @@ def test_a_run_goes_back_to_a_snapshot_and_ends_the_same(cycle: int, nested: Pro
     run.advance(cycle)
     saved, machine = run.snapshot(), run.machine.snapshot()
     record = run.executed
-    first = []
-    while run.active:
-        run.advance(1)
-        first.append((run.position, run.executed))
+
+    def to_the_end() -> list[object]:
+        went: list[object] = []
+        while run.active:
+            run.advance(1)
+            went.append((run.position, run.executed))
+        return went
+
+    first = to_the_end()
     run.restore(saved)
     run.machine.restore(machine)
     assert run.executed == record
@@ -408,11 +413,7 @@ def test_a_run_goes_back_to_a_snapshot_and_ends_the_same(cycle: int, nested: Pro
     run.advance(50)
     run.restore(saved)
     run.machine.restore(machine)
-    second = []
-    while run.active:
-        run.advance(1)
-        second.append((run.position, run.executed))
-    assert first == second
+    assert to_the_end() == first
     assert len(first) > 20
 
 

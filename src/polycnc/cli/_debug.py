@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -31,4 +32,9 @@ def debug_command(
             "the debugger needs textual", hint="Install it: pip install 'polycnc[debug]'."
         ) from None
     debugger = runner.Debugger(runner.program_text(program), machine, dialect)
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        raise UsageError(
+            "the debugger needs a terminal to draw on and to read keys from",
+            hint="Run it in a terminal window, without < > or | around it; `polycnc run` needs none.",
+        )
     DebugScreen(debugger, rate=rate).run()

@@ -18,7 +18,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 from textual.widgets import Footer, Header, Static
 
-from polycnc.cnc import Emergency, RunState, Status
+from polycnc.cnc import Emergency, RunState, Status, Step
 from polycnc.errors import PolycncError
 from polycnc.nc import ProgramText
 from polycnc.runner import Debugger, Place
@@ -113,7 +113,9 @@ class DebugScreen(App[None]):
     """
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("space", "run_or_hold", "Run/hold"),
-        Binding("s", "step", "Step"),
+        Binding("s", "step('into')", "Step"),
+        Binding("n", "step('over')", "Over"),
+        Binding("o", "step('out')", "Out"),
         Binding("b", "breakpoint", "Breakpoint"),
         Binding("plus,equals_sign", "override(1)", "Feed +", key_display="+"),
         Binding("minus", "override(-1)", "Feed -", key_display="-"),
@@ -147,7 +149,7 @@ class DebugScreen(App[None]):
             self.set_interval(_TICK_S, self._tick)
 
     def _tick(self) -> None:
-        if self.query(Listing) and (self.debugger.running or self._moves()):
+        if self.is_running and self.query("#state") and (self.debugger.running or self._moves()):
             self.pass_time(self.cycles_per_tick)
 
     def _moves(self) -> bool:
@@ -167,9 +169,9 @@ class DebugScreen(App[None]):
         """Run the program, or hold it."""
         self._do(self.debugger.hold if self.debugger.running else self.debugger.run)
 
-    def action_step(self) -> None:
-        """Execute one block."""
-        self._do(self.debugger.step)
+    def action_step(self, step: str) -> None:
+        """Execute one block, into, over or out of sub-programs."""
+        self._do(lambda: self.debugger.step(Step(step)))
 
     def action_reset(self) -> None:
         """Break the program off."""

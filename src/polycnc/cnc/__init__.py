@@ -22,12 +22,13 @@ from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
-from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState, ToolTime
+from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
 from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
+from polycnc.cnc._tool_times import ToolTime
 
 __all__ = [
     "ALARMS",

@@ -43,7 +43,7 @@ class ChannelMoment:
     is_mdi: bool
     broken: bool
     returning: bool
-    lent: tuple[float, ...] | None
+    lent: tuple[tuple[int, float], ...] | None
     waiting: tuple[int, ...]
 
 

@@ -140,6 +140,10 @@ class ManualMotion:
 
     # ------------------------------------------------------------------ commands
 
+    def change_axes(self, axes: tuple[AxisConfig, ...]) -> None:
+        """Move axes with other speeds and limits from now on; nothing may be moving by hand."""
+        self._axes = axes
+
     def set_overrides(self, *, feed: float | None = None, rapid: float | None = None) -> None:
         """Set the overrides of jogging (0 to 2) and of rapid jogging and reference searches (0 to 1)."""
         feed = self._feed_override if feed is None else feed

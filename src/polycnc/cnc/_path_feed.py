@@ -170,6 +170,12 @@ class PathFeed:
             return marks[0][1]
         return self.tags(head, head + 1)[0] if head < self.row["tail"] else None
 
+    def pass_marks(self) -> None:
+        """Forget the blocks without segments that lie before segments that have been gone along."""
+        marks, head = self.channel.writer.marks, int(self.row["head"])
+        while marks and marks[0][0] < head:
+            marks.popleft()
+
     def take_mark(self) -> int | None:
         """Take the block without segments that comes next; return its tag, None if a segment comes next."""
         marks = self.channel.writer.marks

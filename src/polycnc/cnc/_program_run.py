@@ -13,10 +13,12 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
-from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState, ToolTime
+from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
+from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import (
     BLOCK,
@@ -24,8 +26,6 @@ from polycnc.kernel import (
     FOLLOWING_ERROR,
     HELD,
     IDLE,
-    LIMIT_HIGH,
-    LIMIT_LOW,
     NO_LIMIT,
     OTHER_SOURCE,
     PATH_EVENT,
@@ -63,7 +63,6 @@ OnEvent: TypeAlias = Callable[[Event], bool | None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
 _MASK = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
-_LIMIT_SWITCHES = (LIMIT_LOW, LIMIT_HIGH)
 _STANDING = {
     RunState.STOPPED_AT_BLOCK,
     RunState.PROGRAM_STOP,
@@ -88,8 +87,7 @@ _SAVED = (
     "_locked",
     "_unanswered",
     "_approach",
-    "_tool",
-    "_counted",
+    "_tool_times",
 )
 
 
@@ -102,7 +100,6 @@ class RunSnapshot(NamedTuple):
     feed: FeedSnapshot
     stopper: Stopper
     fields: dict[str, Any]
-    tool_times: dict[int, ToolTime]
 
 
 class ProgramRun:
@@ -152,9 +149,7 @@ class ProgramRun:
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
         self._locked = False
-        self._tool = 0
-        self._tool_times: dict[int, ToolTime] = {}
-        self._counted = 0.0, 0.0  # feed and rapid time that have been accounted to tools
+        self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
             None  # where a searched block begins, and its line
         )
@@ -484,8 +479,7 @@ class ProgramRun:
     @property
     def tool_times(self) -> dict[int, ToolTime]:
         """How long each tool has cut and positioned so far; tool 0 is an empty spindle."""
-        self._note_tool(self._tool)
-        return dict(sorted(self._tool_times.items()))
+        return self._tool_times.until(self._seconds())
 
     @property
     def distance_to_go(self) -> dict[str, float]:
@@ -568,8 +562,8 @@ class ProgramRun:
             self._meet_event()
         if raised & RECORDER_FULL:
             self.drain()
-        if raised & (FOLLOWING_ERROR | SWITCH_EDGE):
-            self._check_alarm(raised)
+        if (found := axis_alarm(self.machine, raised)) is not None:
+            self._stop_by(*found)
         self._look()
 
     def drain(self) -> None:
@@ -600,7 +594,6 @@ class ProgramRun:
             self.feed.snapshot(),
             replace(self.stopper),
             {name: getattr(self, name) for name in _SAVED},
-            dict(self._tool_times),
         )
 
     def restore(self, saved: RunSnapshot) -> None:
@@ -614,7 +607,6 @@ class ProgramRun:
         self.stopper.breakpoints = saved.stopper.breakpoints
         for name, value in saved.fields.items():
             setattr(self, name, value)
-        self._tool_times = dict(saved.tool_times)
         self.channel.skip_levels = self._block_delete
 
     # ------------------------------------------------------------------ within
@@ -624,19 +616,6 @@ class ProgramRun:
         if self.channel.records.crowded:
             self.drain()  # rows refer to records
             self.feed.forget_records(self.executed_tag)
-
-    def _note_tool(self, tool: int) -> None:
-        """Account the time since the last tool change to the tool before."""
-        totals = self.machine.state.paths.totals[self.path]
-        now = float(totals[FEED_S]), float(totals[RAPID_S])
-        before = self._tool_times.get(self._tool, ToolTime())
-        spent = ToolTime(
-            before.cutting_s + now[0] - self._counted[0], before.rapid_s + now[1] - self._counted[1]
-        )
-        if spent != before:
-            self._tool_times[self._tool] = spent
-        self._counted = now
-        self._tool = tool
 
     def _check_over(self) -> None:
         """Refuse what would change the program while it is executed."""
@@ -681,9 +660,16 @@ class ProgramRun:
             if axis >= 0 and state.owner[axis] in (self.path, OTHER_SOURCE):
                 state.owner[axis] = OTHER_SOURCE if self._locked else self.path
 
+    def _seconds(self) -> ToolTime:
+        totals = self.machine.state.paths.totals[self.path]
+        return ToolTime(float(totals[FEED_S]), float(totals[RAPID_S]))
+
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        hold = self._hold or self._stop is not None or self._unanswered
+        stands = (
+            self._state is RunState.STOPPED_AT_BLOCK
+        )  # before a segment that is in the look-ahead already
+        hold = self._hold or stands or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == RUNNING:
@@ -713,6 +699,7 @@ class ProgramRun:
         depth_of = record if within or following is None else following
         stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
         if not within and self._stand_at_marks():
+            self._set_hold()
             return
         self.feed.look_again()
         self._set_hold()
@@ -735,8 +722,7 @@ class ProgramRun:
         number = int(self._row["event"])
         event = self.channel.writer.events.pop(number)
         self._met = int(self._row["head"]), event.tag
-        if (tool := self.channel.records.tool(event.tag)) != self._tool:
-            self._note_tool(tool)
+        self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
             self._unanswered = bool(self.on_event(event))
             self._set_hold()
@@ -768,6 +754,7 @@ class ProgramRun:
 
     def _stop_at_block(self) -> None:
         """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        self.feed.pass_marks()
         while self.feed.at_mark:
             following = self.feed.next_tag()
             if following is None or self.stopper.stops_before(following):
@@ -789,25 +776,6 @@ class ProgramRun:
         self._unanswered = False
         self._met = None
         self._set_hold()
-
-    def _check_alarm(self, raised: int) -> None:
-        state, config = self.machine.state, self.machine.config
-        for index, axis in enumerate(config.axes):
-            if raised & FOLLOWING_ERROR and state.servo.error_tripped[index]:
-                error = float(state.servo.row[index]["following_error"])
-                self._stop_by(
-                    f"axis {axis.name}: following error {error:.4f} {axis.unit} is above its limit",
-                    "following_error",
-                )
-                return
-            if raised & SWITCH_EDGE and any(
-                state.switches.switch[index, j]["level"] for j in _LIMIT_SWITCHES
-            ):
-                at = float(state.servo.actual[index])
-                self._stop_by(
-                    f"axis {axis.name} is on a limit switch at {at:.3f} {axis.unit}", "limit_switch"
-                )
-                return
 
     def _stop_by(self, text: str, code: str) -> None:
         self.alarm = RunAlarm(text, code, self.executed_tag, self.machine.clock.cycles)

@@ -51,11 +51,3 @@ class RunAlarm:
     code: str
     tag: int
     cycle: int
-
-
-@dataclass(frozen=True, slots=True)
-class ToolTime:
-    """How long a tool has cut, and positioned, in s."""
-
-    cutting_s: float = 0.0
-    rapid_s: float = 0.0

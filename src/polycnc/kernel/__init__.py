@@ -85,7 +85,6 @@ from polycnc.kernel._state import (
     RECORDER_FULL,
     SOFT_LIMIT,
     SWITCH_EDGE,
-    TABLE_EMPTY,
     KernelState,
     make_state,
 )
@@ -132,7 +131,6 @@ __all__ = [
     "SOFT_LIMIT",
     "STOP",
     "SWITCH_EDGE",
-    "TABLE_EMPTY",
     "TIME_S",
     "TOP_SPEED",
     "VELOCITY",

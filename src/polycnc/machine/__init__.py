@@ -9,7 +9,7 @@ from polycnc.machine._config import (
     TimesConfig,
     ToolConfig,
 )
-from polycnc.machine._config_axis import AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
+from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._describe import (
     AXIS_COLUMNS,
     axis_rows,
@@ -35,6 +35,7 @@ __all__ = [
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
     "PRESETS",
+    "AnyAxis",
     "Area",
     "Array",
     "AxisConfig",

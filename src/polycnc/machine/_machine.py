@@ -18,6 +18,7 @@ from polycnc.errors import UsageError
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, PIDF, REFERENCE, KernelState, make_state, place_machine
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import MachineConfig
+from polycnc.machine._config_axis import AnyAxis
 from polycnc.machine._io import IoImage
 from polycnc.machine._snapshot import Array, Snapshot, arrays_of
 from polycnc.machine._store import Store
@@ -37,7 +38,6 @@ class Reason(IntFlag):
     FOLLOWING_ERROR = kernel.FOLLOWING_ERROR
     RECORDER_FULL = kernel.RECORDER_FULL
     PATH_EVENT = kernel.PATH_EVENT
-    TABLE_EMPTY = kernel.TABLE_EMPTY
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ class Machine:
 
     `servo` simulates the position loops that the configuration describes; without it every axis follows
     exactly. `record_cycles` is the size of the recorder's buffer, 0 for none. `memory` is the file of the
-    durable memory; without one it lasts as long as the machine.
+    durable memory, or an open store; without one it lasts as long as the machine.
     """
 
     def __init__(
@@ -82,13 +82,13 @@ class Machine:
         record_cycles: int = 0,
         paths: int = 1,
         segments: int = 1 << 16,
-        memory: str | Path | None = None,
+        memory: str | Path | Store | None = None,
     ) -> None:
         self.config = config
         self.clock = Clock(config.cycle_s, config.epoch)
         self.io = IoImage(config.io)
-        self._memory_file = memory
-        self._memory: Store | None = None
+        self._memory_file = None if isinstance(memory, Store) else memory
+        self._memory = memory if isinstance(memory, Store) else None
         self.state: KernelState = make_state(
             len(config.axes),
             cycle_s=config.cycle_s,
@@ -179,6 +179,23 @@ class Machine:
         )
         if done < 0:
             raise UsageError(f"axis {axis} cannot move like that", hint="Give a finite speed above zero.")
+
+    def change_axes(self, axes: tuple[AnyAxis, ...]) -> None:
+        """Let the axes have these speeds, accelerations, limits and switches from now on, while they stand.
+
+        Raises:
+            UsageError: Other axes than the machine has, or a path moves them.
+        """
+        if [(axis.name, axis.kind) for axis in axes] != [(axis.name, axis.kind) for axis in self.config.axes]:
+            raise UsageError(
+                "these are other axes", hint=f"The axes are {', '.join(self.config.axis_names)}."
+            )
+        if (self.state.paths.row["state"] == kernel.RUNNING).any():
+            raise UsageError("a path moves the axes", hint="Wait until the path has come to rest.")
+        self.config = self.config.model_copy(update={"axes": axes})
+        for index, axis in enumerate(axes):
+            self._set_axis(index, axis.vmax, axis.amax, axis.jump, axis.kind == "linear")
+            self._set_switches(index)
 
     # ------------------------------------------------------------------ memory
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
 
 _LATER = {
     "Debugger": "_debugger",
@@ -24,8 +25,12 @@ _LATER = {
     "Place": "_debugger",
     "PostResult": "_post",
     "PostVerification": "_verify_post",
+    "View": "view",
+    "check_view_file": "view",
+    "open_in_browser": "view",
     "post_file": "_post",
     "verify_post": "_verify_post",
+    "view_program": "view",
 }
 
 __all__ = [
@@ -44,11 +49,14 @@ __all__ = [
     "RunResult",
     "Trace",
     "TraceWriter",
+    "View",
     "Violation",
     "WallClock",
     "check",
     "check_plot_file",
+    "check_view_file",
     "counted",
+    "open_in_browser",
     "plot",
     "post_file",
     "program_text",
@@ -59,6 +67,7 @@ __all__ = [
     "trace_columns",
     "verify_post",
     "verify_trace",
+    "view_program",
 ]
 
 

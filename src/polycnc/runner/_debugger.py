@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from polycnc.cnc import Control, ControlData, ControlEvent, RunState, Status
+from polycnc.cnc import Breakpoint, Control, ControlData, ControlEvent, Status, Step
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText, dialect_for
-
-_OVER = frozenset({RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM})
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,8 +22,8 @@ class Place:
 class Debugger:
     """Execute one program on a control of its own, and stop it where one wants to look.
 
-    With breakpoints the program runs from block to block, so that it can stand before the block on a breakpoint;
-    it then takes longer, and its path stays the same. M0 stops it; M1 does with `optional_stop`.
+    At a breakpoint it stands before the block of that line; its path stays the same. M0 stops it, and M1 does with
+    `optional_stop`.
 
     Raises:
         UsageError: There is no such machine or dialect.
@@ -48,7 +46,6 @@ class Debugger:
         self.control.set_switches(optional_stop=optional_stop)
         self.control.select_program(program)
         self._breakpoints: set[Place] = set()
-        self._stepping = False
         self._texts = {program.name: program}
 
     # ------------------------------------------------------------------ what it shows
@@ -98,18 +95,25 @@ class Debugger:
         Raises:
             ControlError: The control refuses the start.
         """
-        self._stepping = False
-        self._start()
+        self._go(Step.RUN)
 
-    def step(self) -> None:
-        """Execute one block; without effect while the program runs.
+    def step(self, step: Step = Step.INTO) -> None:
+        """Execute one block, `Step.OVER` with the sub-program that it calls, `Step.OUT` to the end of this one.
+
+        Without effect while the program runs.
 
         Raises:
             ControlError: The control refuses the start.
         """
-        if not self.running:
-            self._stepping = True
-            self._start()
+        self._go(step)
+
+    def _go(self, step: Step) -> None:
+        if self.running:
+            return
+        begins = not self.control.channels[0].interrupted
+        self.control.cycle_start(step=step)
+        if begins and step is Step.RUN and self.next in self._breakpoints:
+            self.control.feed_hold()  # nothing has moved yet
 
     def hold(self) -> None:
         """Brake and stand; without effect where nothing is executed."""
@@ -130,7 +134,9 @@ class Debugger:
         if not 1 <= place.line <= lines:
             raise UsageError(f"{place.program} has no line {place.line}", hint=f"It has {lines} lines.")
         self._breakpoints ^= {place}
-        self._set_single_block()
+        self.control.channels[0].set_breakpoints(
+            frozenset(Breakpoint(each.program, each.line) for each in self._breakpoints)
+        )
         return place in self._breakpoints
 
     def change_feed_override(self, change: float) -> float:
@@ -143,33 +149,9 @@ class Debugger:
     def pass_time(self, cycles: int) -> int:
         """Let control cycles pass; return how many did, fewer where the program has come to a stand."""
         done = 0
-        while done < cycles:
+        while done < cycles and self.running:
             moved = self.control.advance(cycles - done, until=ControlEvent.RUN_STATE)
             done += moved
-            if self._between_blocks():
-                self._start()
-            elif moved == 0 or not self.running:
+            if moved == 0:
                 break
         return done
-
-    # ------------------------------------------------------------------ within
-
-    def _between_blocks(self) -> bool:
-        """Tell whether the program stands at a block's end only because of breakpoints elsewhere."""
-        stands = self.control.channels[0].run_state is RunState.STOPPED_AT_BLOCK
-        return stands and not self._stepping and self.next not in self._breakpoints
-
-    def _start(self) -> None:
-        if self.running:
-            return
-        first = self.control.channels[0].run_state in _OVER
-        self._set_single_block()
-        self.control.cycle_start()
-        if first and not self._stepping and self._begins_at_breakpoint():
-            self.control.feed_hold()
-
-    def _set_single_block(self) -> None:
-        self.control.set_switches(single_block=self._stepping or bool(self._breakpoints))
-
-    def _begins_at_breakpoint(self) -> bool:
-        return self.next in self._breakpoints

@@ -10,10 +10,12 @@ import numpy.typing as npt
 
 from polycnc.cnc import ProgramRun
 from polycnc.kernel import FEED_LENGTH, FEED_S, RAPID_LENGTH, RAPID_S, TOP_SPEED, WAIT_S
+from polycnc.nc import BlockRecords
 from polycnc.runner._program_control import ProgramControl
 
 Floats = npt.NDArray[np.float64]
 Rows = Callable[[Floats], None]
+TaggedRows = Callable[[Floats, npt.NDArray[np.int64], BlockRecords], None]
 Progress = Callable[[float], None]
 
 _STEP_CYCLES = 1 << 16

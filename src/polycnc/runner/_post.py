@@ -12,6 +12,7 @@ from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.post import (
+    ArcAxis,
     BlockMap,
     ControlFile,
     PostSummary,
@@ -68,13 +69,14 @@ def post_file(
     verify: bool = False,
     machine: str | MachineConfig | None = None,
     tolerance_mm: float = DEFAULT_TOLERANCE_MM,
+    arc_axis: ArcAxis | None = None,
     progress: Progress | None = None,
 ) -> PostResult:
     """Turn a tool path into a program for a control, and with `verify` run it and compare both.
 
     `control` is the name of a control file that comes with polycnc, or a path. The program goes to `output`,
     which gets its name when it is complete, or into the result. `machine` stands for the one that the control
-    file names.
+    file names, `arc_axis` for what it says about the axes of CIRCLE/ (without effect on a ToolPath).
 
     Raises:
         UsageError: no such file, control file or machine, or the program cannot be written.
@@ -82,7 +84,11 @@ def post_file(
         ProgramError: the tool path cannot be posted.
     """
     chosen = control if isinstance(control, ControlFile) else load_control(control)
-    path = tool_path if isinstance(tool_path, ToolPath) else open_tool_path(tool_path)
+    path = (
+        tool_path
+        if isinstance(tool_path, ToolPath)
+        else open_tool_path(tool_path, arc_axis or chosen.parameters.arc_axis)
+    )
     block_map = BlockMap() if verify else None
     text = io.StringIO()
     with ExitStack() as stack:

@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc.cnc import ToolTime
-from polycnc.errors import AlarmError, PolycncError, ProgramError
+from polycnc.errors import AlarmError, PolycncError, ProgramError, UsageError
+from polycnc.nc import ProgramText
+from polycnc.runner._blocks import Execution
+
+if TYPE_CHECKING:
+    from polycnc.runner.view import View
 
 Floats = npt.NDArray[np.float64]
 
@@ -62,6 +67,8 @@ class Trace:
 
     `axes` and `units` name the columns of `setpoint` [cycles, n] and `actual`, which is None without
     simulated servos. The first row is the end of the first cycle, the last row the end of the run.
+    `execution` tells the block of each row apart from its neighbours, in whatever program it stands; None in a trace
+    that was read from a file.
     """
 
     axes: tuple[str, ...]
@@ -72,6 +79,7 @@ class Trace:
     rapid: npt.NDArray[np.bool_]
     setpoint: Floats
     actual: Floats | None = None
+    execution: Execution | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.t_s)
@@ -104,6 +112,7 @@ class RunResult:
     messages: list[RunMessage]
     tool_times: dict[int, ToolTime]
     events: list[RunEvent] = field(repr=False)
+    source: ProgramText | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)
     variables: dict[str, object] = field(default_factory=dict, repr=False)
     """Variables of a program's language by name, after the run: permanent and global ones."""
@@ -137,6 +146,18 @@ class RunResult:
         assert isinstance(error, ProgramError | AlarmError)
         error.result = self
         raise error
+
+    def view(self) -> View:
+        """Return a page that shows the run: save it, open it, or leave it to a notebook to show.
+
+        Raises:
+            UsageError: the result has no trace, or plotly is not installed.
+        """
+        from polycnc.runner.view import view_of_trace
+
+        if self.trace is None or self.trace.execution is None:
+            raise UsageError("there is nothing to view: the result has no trace", hint="Run with trace=True.")
+        return view_of_trace(self, self.trace, self.trace.execution)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON, without the trace."""

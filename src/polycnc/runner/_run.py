@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
-from polycnc.runner._execution import Floats, Progress, Rows, run_to_end, totals
+from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
 from polycnc.runner._trace import TraceCollector
@@ -32,6 +32,7 @@ def run(
     skip_levels: Iterable[int] = (),
     stop_at_m0: bool = False,
     rows: Rows | None = None,
+    tagged_rows: TaggedRows | None = None,
     progress: Progress | None = None,
     root: str | Path | None = None,
     keys: Iterable[str] = (),
@@ -42,14 +43,15 @@ def run(
     `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file
     or a configuration (the 3-axis mill if absent), `dialect` a name (chosen by the file's extension, else
     DIN). With `trace` the result holds one row per control cycle; `rows` gets the same in pieces,
-    [cycles, columns], as it is recorded. `servo` simulates the position loops. Blocks with a skip mark `/n`
+    [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks and the records that
+    read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
     are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
     run ends at the first M0. `progress` is called now and then with the part that is done, 0 to 1;
     it goes back where sub-programs repeat.
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
-    absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to `screen`
-    (.txt, .svg or .png).
+    absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
+    `screen` (.txt, .svg or .png).
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -59,12 +61,21 @@ def run(
     text = program_text(program)
     config = load_machine(machine)
     collector = TraceCollector(config, servo) if trace else None
-    sinks = [sink for sink in (collector.add if collector else None, rows) if sink is not None]
-    every_cycle = bool(sinks) or servo or _has_limit_switches(config)
+    sinks: list[Rows] = [] if rows is None else [rows]
+    tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
+    every_cycle = bool(sinks or tagged) or servo or _has_limit_switches(config)
     if every_cycle and progress is not None:
         sinks.append(_progress_by_line(text, progress))
-    simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if sinks else 0)
+    recorded = bool(sinks or tagged)
+    simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if recorded else 0)
     events: list[RunEvent] = []
+
+    def to_all(piece: Floats, tags: npt.NDArray[np.int64]) -> None:
+        for sink in sinks:
+            sink(piece)
+        for tagged_sink in tagged:
+            tagged_sink(piece, tags, execution.channel.records)
+
     chosen = dialect_for(text.name, dialect)
     levels = frozenset(skip_levels)
     surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
@@ -77,7 +88,7 @@ def run(
         chosen,
         language=None if control is None else control.language,
         options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
-        rows=_to_all(sinks) if sinks else None,
+        rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, execution),
     )
     stuck: ProgramError | None = None
@@ -139,14 +150,6 @@ def program_text(program: str | Path | ProgramText) -> ProgramText:
         if isinstance(program, str) and " " in program:
             error.hint = "Check the name and the folder; a program text needs a newline at its end."
         raise
-
-
-def _to_all(sinks: list[Rows]) -> Callable[[Floats, npt.NDArray[np.int64]], None]:
-    def to_all(rows: Floats, _tags: npt.NDArray[np.int64]) -> None:
-        for sink in sinks:
-            sink(rows)
-
-    return to_all
 
 
 def _note(event: Event, events: list[RunEvent], execution: ProgramRun) -> None:
@@ -216,5 +219,6 @@ def _result(
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
         tool_times=execution.tool_times,
         events=events,
+        source=execution.program,
         trace=collector.trace() if collector else None,
     )

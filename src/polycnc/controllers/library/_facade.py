@@ -67,6 +67,10 @@ class Handles(Generic[T]):
     def __len__(self) -> int:
         return len(self._open)
 
+    def items(self) -> list[tuple[int, T]]:
+        """Return all handles and what they stand for."""
+        return list(self._open.items())
+
     def add(self, what: T) -> int:
         """Return a new handle.
 

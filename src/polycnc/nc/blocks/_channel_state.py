@@ -58,9 +58,9 @@ class Plain(NamedTuple):
 class ModalSnapshot(NamedTuple):
     """Hold what was in force with one block, to be shown while it is executed; see `ChannelState`."""
 
-    whole: tuple[int, ...]
+    whole: bytes  # `Modal.whole`
     feed: float  # as programmed
-    offset: tuple[float, ...]
+    offset: bytes  # `Modal.offset`
     work: tuple[str, ...]
     spindle: Spindle
     cycle: str
@@ -149,9 +149,9 @@ class ChannelState:
         """Return what is in force now."""
         modal, coordinates = self.modal, self.coordinates
         return ModalSnapshot(
-            tuple(modal.whole.tolist()),
+            modal.whole.tobytes(),
             float(modal.real[FEED_NUMBER]),
-            tuple(modal.offset.tolist()),
+            modal.offset.tobytes(),
             coordinates.work,
             self.spindle,
             self.cycle.action,

@@ -78,6 +78,10 @@ class QueueWriter:
 
     def put_block(self, items: list[QueueItem]) -> None:
         """Append what a block gives; one that gives nothing after all, a move without length, is marked."""
+        if self.marks is None:
+            for item in items:
+                self.put(item)
+            return
         row = self.paths.row[self.path]
         before = int(row["tail"])
         for item in items:

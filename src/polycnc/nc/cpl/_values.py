@@ -186,6 +186,9 @@ class Values:
         """Return the arguments of a call of the control, one by one."""
         function = FUNCTIONS[call.function]
         parts = [self._argument(function, place, tree) for place, tree in enumerate(call.arguments)]
+        if function.named:
+            names = tuple(tree.variable.name for tree in call.arguments if isinstance(tree, Name))
+            parts.append(f"names={names!r}")
         return [*parts, "open=True"] if call.open else parts
 
     def _argument(self, function: Function, place: int, tree: Expression | None) -> str:

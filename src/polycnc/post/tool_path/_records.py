@@ -9,6 +9,12 @@ from typing import Literal, NamedTuple, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 
+LARGEST_MM = 1e6
+"""No machine has a position, centre or radius further away: a kilometre."""
+
+MOST_TURNS = 100_000
+"""No thread has more turns in one arc."""
+
 UPRIGHT: Vector = (0.0, 0.0, 1.0)
 """The tool axis of a machine without rotary axes: from the tip to the holder."""
 
@@ -104,9 +110,24 @@ class Delta(NamedTuple):
 
 
 class Home(NamedTuple):
-    """A rapid to where FROM was."""
+    """A rapid to a point, or with None to where FROM was."""
 
     line: int
+    point: Vector | None = None
+
+
+class Retract(NamedTuple):
+    """A rapid along Z up to a level; from above it, nothing."""
+
+    line: int
+    z: float
+
+
+class Axis(NamedTuple):
+    """The tool axis from here on; nothing moves."""
+
+    line: int
+    axis: Vector
 
 
 class Circle(NamedTuple):
@@ -186,6 +207,6 @@ class End(NamedTuple):
 
 
 Record: TypeAlias = (
-    Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Circle | Cycle
-    | CycleOff | Coolant | Compensation | Dwell | Stop | End
+    Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis | Circle
+    | Cycle | CycleOff | Coolant | Compensation | Dwell | Stop | End
 )  # fmt: skip

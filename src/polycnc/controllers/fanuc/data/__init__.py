@@ -1,0 +1,1 @@
+"""Data of a Power Mate: parameters, increment systems, macro variables."""

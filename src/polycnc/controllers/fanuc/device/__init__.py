@@ -1,0 +1,1 @@
+"""The control itself: a Power Mate on a control without a vendor."""

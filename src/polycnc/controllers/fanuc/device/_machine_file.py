@@ -1,0 +1,81 @@
+"""The machine behind a Power Mate, made from what the control is told: axes, kinds, speeds, limits."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from polycnc.errors import UsageError
+from polycnc.machine import AnyAxis, LinearAxis, MachineConfig, RotaryAxis
+
+LINEAR_NAMES = ("X", "Y", "Z", "U", "V", "W")
+ROTARY_NAMES = ("A", "B", "C", "P", "Q", "R")
+CYCLE_S = 0.001
+
+
+@dataclass(frozen=True, slots=True)
+class AxisSetting:
+    """What parameters say about an axis, in mm or degree, per second."""
+
+    name: str
+    rotary: bool
+    vmax: float
+    amax: float
+    soft_limits: tuple[float, float] | None
+    servo_kp: float | None
+    error_limit: float | None
+
+
+def axis_of(setting: AxisSetting) -> AnyAxis:
+    """Return the axis of a machine file."""
+    unit = "deg" if setting.rotary else "mm"
+    row: dict[str, object] = {
+        "name": setting.name,
+        f"vmax_{unit}_s": setting.vmax,
+        f"amax_{unit}_s2": setting.amax,
+    }
+    if setting.soft_limits is not None:
+        row[f"soft_limits_{unit}"] = setting.soft_limits
+    if setting.servo_kp is not None:
+        row["servo"] = {"kind": "pidf", "kp": setting.servo_kp, "lag_s": 0.002}
+        if setting.error_limit is not None:
+            row["servo"] = {**row["servo"], f"following_error_limit_{unit}": setting.error_limit}  # type: ignore[dict-item]
+    return (RotaryAxis if setting.rotary else LinearAxis).model_validate(row)
+
+
+def machine_of(axes: Sequence[AnyAxis], start: Mapping[str, float]) -> MachineConfig:
+    """Return the machine file; without soft limits, as axes may stand beyond them."""
+    free = [axis.model_copy(update={f"soft_limits_{axis.unit}": None}) for axis in axes]
+    return MachineConfig.model_validate(
+        {
+            "name": "power mate",
+            "cycle_s": CYCLE_S,
+            "axis": tuple(free),
+            "start": dict(start),
+            "spindle": {"max_rpm": 6000.0, "acceleration_rpm_s": 6000.0},
+        }
+    )
+
+
+def default_names(axes: int, rotary: Sequence[int | str]) -> tuple[tuple[str, bool], ...]:
+    """Return name and kind (rotary or not) of the axes; `rotary` are numbers from 1, or names.
+
+    Linear axes are X Y Z U V W in their order, rotary ones A B C P Q R.
+
+    Raises:
+        UsageError: An axis that there is not.
+    """
+    numbers = set()
+    for each in rotary:
+        number = LINEAR_NAMES.index(each) + 1 if each in LINEAR_NAMES else each
+        if isinstance(number, str):  # a rotary name: the last axes, in the order of the names
+            raise UsageError(
+                f"rotary axis '{each}' has no place", hint="Give the numbers of the rotary axes, from 1."
+            )
+        if not 1 <= number <= axes:
+            raise UsageError(f"there is no axis {each} to be rotary", hint=f"The axes are 1 to {axes}.")
+        numbers.add(number)
+    linear, turning = iter(LINEAR_NAMES), iter(ROTARY_NAMES)
+    return tuple(
+        (next(turning), True) if number in numbers else (next(linear), False) for number in range(1, axes + 1)
+    )

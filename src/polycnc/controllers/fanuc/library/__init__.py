@@ -1,0 +1,1 @@
+"""The function library: codes, structures, sessions, functions."""
