@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import struct
 from pathlib import Path
 
 import pytest
@@ -312,6 +313,123 @@ def test_the_grid_of_circles_of_the_manual_ends_by_key_or_size(tmp_path: Path) -
     shown = Shown(text, tmp_path, "A", "x", "B")
     assert shown.globals["#M"] == 4
     assert [shown.colour(250 + r, 160) for r in (1, 2, 3, 4)] == [-1, 1, 1, -1]
+
+
+# ---------------------------------------------------------------------- the manual's dialogs
+
+
+@pytest.mark.covers("cpl.ex.4635")
+def test_pressed_keys_are_shown_until_enter(tmp_path: Path) -> None:
+    text = (
+        '1 NEW%=0 : OLD%=0\n2 CLS\n3 DSP(10,10,"Press any key! ABORT WITH ENTER")\n4 WHILE NEW%<>13 DO\n5 NEW%=INKEY\n'
+        '6 IF (OLD%<>NEW%) AND (NEW%>0) THEN\n7 DSP(12,10,"KEY NUMBER:###",NEW%) : OLD%=NEW%\n8 ENDIF\n9 END'
+    )
+    shown = Shown(text, tmp_path, "x", "SOFTKEY7", "ENTER")
+    assert (shown[10], shown[12]) == (" " * 9 + "Press any key! ABORT WITH ENTER", " " * 9 + "KEY NUMBER: 13")
+    assert Shown(text + "\n10 CLG", tmp_path, "x", "ENTER")[12] == ""
+
+
+@pytest.mark.covers("cpl.ex.4752")
+@pytest.mark.parametrize(("keys", "last"), [((), 301), (("A", "C", "B"), 13)])
+def test_drawing_goes_on_until_a_key_is_pressed(tmp_path: Path, keys: tuple[str, ...], last: int) -> None:
+    text = "10 M=10\n20 REPEAT\n30 KEY%=INKEY\n40 LIN(250,10,M,M)\n45 M=M+1\n50 UNTIL ((KEY%=66) OR (M>300))\n55 #M=M"
+    shown = Shown(text, tmp_path, *keys)
+    assert shown.globals["#M"] == last
+    assert [shown.colour(at, at) for at in (10, last - 1, last + 1)] == [1, 1, -1]
+
+
+@pytest.mark.covers("cpl.ex.4780")
+def test_the_dialog_of_a_cycle_writes_its_call(tmp_path: Path) -> None:
+    root = Root(tmp_path)
+    result = root.run(
+        '30 DLG\n40 PRN(8,4,"MAX.CUTTING WIDTH: ###.### MM",WI)\n50 PRN(10,4,"MAX. CUTTING DEPTH: ###.### MM",DP)\n'
+        '60 INP(WI):INP(DP)\n70 ENDDLG\n80 PRN#(0,"Q900[",WI,",",DP,"]")',
+        keys=(*"42.25", "ENTER", *"7.5", "ENTER"),
+    )
+    assert result.messages[-1].text == "MSG: Q900[  42.250,   7.500]"
+
+
+@pytest.mark.covers("cpl.ex.4822", "cpl.key.LEVEL_RETURN")
+@pytest.mark.parametrize(
+    ("keys", "end", "bars"),
+    [(("SOFTKEY2",), 40, 1), (("SOFTKEY4",), 30, 1), (("LEVEL_RETURN", "SOFTKEY1", "SOFTKEY4"), 30, 3)],
+)
+def test_softkeys_branch(tmp_path: Path, keys: tuple[str, ...], end: int, bars: int) -> None:
+    shown = Shown(
+        '1 .SOFTKEY1\n10 .SOFTKEY2\n11 KEY%=0\n12 B%=0 : IF #N%=NUL THEN #N%=0 ENDIF:\n#N%=#N%+1\n'
+        '13 SFK(KEY%,,"ABORT",,"ACTION",,,,)\n14 IF KEY%=2 THEN GOTO .END ENDIF\n'
+        "15 IF KEY%=4 THEN GOTO .ACTION ENDIF\n16 IF KEY%=0 THEN GOTO .SOFTKEY1 ELSE GOTO .SOFTKEY2 ENDIF\n"
+        "30 .ACTION\n31 #E%=30\n32 GOTO .OUT\n40 .END\n41 #E%=40\n50 .OUT",
+        tmp_path, *keys,
+    )  # fmt: skip
+    assert (shown.globals["#E%"], shown.globals["#N%"]) == (end, bars)
+
+
+@pytest.mark.covers("cpl.ex.4942")
+def test_the_manual_s_choices_of_colours(tmp_path: Path) -> None:
+    shown = Shown(
+        '5 DSP(9,9,"GONE")\n10 COL(,,,7)\n20 DSP(8,9,"GONE")\n30 COL(,,,10)\n50 COL(,,,,1,4)\n70 COL(4)\n'
+        '90 COL(,6,5)\n95 DSP(7,9,"T") : LIN(3,3,8,3)',
+        tmp_path,
+    )
+    assert (shown[8], shown[9], shown.surface.table) == ("", "", 3)
+    assert shown.surface.softkey_colours == (1, 4)
+    assert (shown.colour(5, 3), shown.surface.cells[7, 9]) == (4, ("T", 6, 5))
+
+
+# ---------------------------------------------------------------------- bitmaps
+
+
+def _bmp(rows: list[list[tuple[int, int, int]]]) -> bytes:
+    """Return a file of 24 bits a pixel; `rows` from the top, red green blue."""
+    lines = b"".join(
+        b"".join(bytes(pixel[::-1]) for pixel in row).ljust((len(row) * 3 + 3) // 4 * 4, b"\0")
+        for row in rows[::-1]
+    )
+    head = struct.pack("<2sIIIIiiHHIIiiII", b"BM", 54 + len(lines), 0, 54, 40, len(rows[0]), len(rows), 1, 24, 0, 0,
+                       0, 0, 0, 0)  # fmt: skip
+    return head + lines
+
+
+RED, GREEN, YELLOW = (255, 0, 0), (0, 255, 0), (250, 255, 9)
+
+
+@pytest.mark.covers("cpl.BMP", *(f"cpl.BMP.copy.{n}" for n in range(9)), "cpl.graphics.functions")
+@pytest.mark.parametrize(
+    ("copy", "first", "second"),
+    # on what is drawn in cyan (6) and where nothing is: red, green above; yellow (3) below
+    [("", (1, 2), 3), (",0", (1, 2), 3), (",1", (7, 7), 7), (",2", (0, 0), 0), (",3", (7, 6), 3), (",4", (0, 2), 0),
+     (",5", (7, 4), 3), (",6", (1, 0), 3), (",7", (6, 5), 4), (",8", (0, 1), 4)],
+)  # fmt: skip
+def test_bitmaps_are_copied_and_linked(
+    tmp_path: Path, copy: str, first: tuple[int, int], second: int
+) -> None:
+    (tmp_path / "cplbmp").mkdir()
+    (tmp_path / "cplbmp/mark.bmp").write_bytes(_bmp([[RED, GREEN], [YELLOW, YELLOW]]))
+    shown = Shown(f'1 COL(6) : LIN(20,50,30,50)\n2 BMP(22,50,"mark"{copy})', tmp_path)
+    assert (shown.colour(22, 50), shown.colour(23, 50)) == first
+    assert (shown.colour(22, 49), shown.colour(23, 49)) == (second, second)
+    assert (shown.colour(21, 50), shown.colour(24, 50), shown.colour(24, 49), shown.colour(22, 48)) == (
+        6,
+        6,
+        -1,
+        -1,
+    )
+
+
+def test_a_bitmap_that_is_not_there_is_told_and_the_program_goes_on(tmp_path: Path) -> None:
+    (tmp_path / "secret.bmp").write_bytes(_bmp([[RED]]))
+    (tmp_path / "cplbmp").mkdir()
+    (tmp_path / "cplbmp/bad.bmp").write_bytes(b"BM")
+    root = Root(tmp_path)
+    said = root.said('1 BMP(0,0,"none")\n2 BMP(0,0,"../secret")\n3 BMP(0,0,"bad")\n4 PRN#(0,"on")')
+    assert said == [
+        "cplbmp\\none.bmp is not existing", "cplbmp\\../secret.bmp is not existing", "cplbmp\\bad.bmp is not existing",
+        "on",
+    ]  # fmt: skip
+    assert root.error('1 BMP(0,375,"mark")') == "1: INVALID PARAMETER"
+    assert root.error('1 BMP(0,0,"mark",9)') == "1: INVALID PARAMETER"
+    assert root.error(f'1 BMP(0,0,"{"m" * 71}")') == "1: INVALID FILE NAME"
 
 
 # ---------------------------------------------------------------------- files

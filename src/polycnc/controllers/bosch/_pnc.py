@@ -11,7 +11,7 @@ from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._memory import KeptVariables, plain_variable
 from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch.files import Directory, FileCommands
-from polycnc.controllers.bosch.screen import Dialog, Keyboard, Surface
+from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock
 from polycnc.nc import ProgramText
@@ -55,7 +55,9 @@ class Pnc:
         """Interface bits that programs have set, by bit and channel."""
         self.language = _Language(self, skip_levels=frozenset(skip_levels))
         self.files = FileCommands(self.directory, self._say, self._running_files)
-        self.dialog = Dialog(Keyboard(keys), lambda: self.files.left_justified)
+        self.dialog = Dialog(
+            Keyboard(keys), lambda: self.files.left_justified, self._bitmap, lambda text: self._say(text)
+        )
         self._clock = clock
         self._run: ProgramRun | None = None
         self._main = None if program is None else Path(program).resolve()
@@ -168,6 +170,12 @@ class Pnc:
     def _say(self, text: str) -> None:
         line = self.language.running[-1].execution.statement_line if self.language.running else 0
         self._attached().channel.messages.note(f"MSG: {text}", line)
+
+    def _bitmap(self, name: str) -> Image | None:
+        folder = self.directory.root / "cplbmp"
+        path = (folder / f"{name}.bmp").resolve()
+        inside = path.is_relative_to(self.directory.root) and path.parent == folder
+        return read_bitmap(path) if inside and path.is_file() else None
 
     def _running_files(self) -> set[Path]:
         files = {self.directory.root / source.execution.program.file for source in self.language.running}

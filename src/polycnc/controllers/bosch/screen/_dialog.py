@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from polycnc.controllers.bosch.files import as_output
+from polycnc.controllers.bosch.screen._bitmap import COPY_TYPES, Image, paint
 from polycnc.controllers.bosch.screen._drawing import Drawing, colour_code, number
 from polycnc.controllers.bosch.screen._keys import KEYS, Keyboard
 from polycnc.controllers.bosch.screen._surface import (
@@ -13,6 +14,7 @@ from polycnc.controllers.bosch.screen._surface import (
     COLUMNS,
     HEIGHT,
     LINES,
+    SOFTKEY_ROWS,
     SOFTKEYS,
     WIDTH,
     Font,
@@ -32,6 +34,7 @@ from polycnc.nc.cpl import (
 )
 
 _LONGEST_TEXT = 77
+_LONGEST_BITMAP = 70
 _TABLES = {1: 1, 7: 2, 10: 3}
 _SKIPS = {KEYS[name] for name in KEYS if name.startswith("CURSOR")}
 
@@ -39,14 +42,23 @@ _SKIPS = {KEYS[name] for name in KEYS if name.startswith("CURSOR")}
 class Dialog:
     """The dialog of one program: its window, and the keys that are pressed.
 
-    `left` tells whether numbers are put out left-justified.
+    `left` tells whether numbers are put out left-justified, `bitmap` returns the picture of a name, `say` takes
+    messages.
     """
 
-    def __init__(self, keyboard: Keyboard, left: Callable[[], bool] = lambda: False) -> None:
+    def __init__(
+        self,
+        keyboard: Keyboard,
+        left: Callable[[], bool] = lambda: False,
+        bitmap: Callable[[str], Image | None] = lambda name: None,
+        say: Callable[[str], None] = lambda text: None,
+    ) -> None:
         self.surface = Surface()
         self.in_front = True
         self._keyboard = keyboard
         self._left = left
+        self._bitmap = bitmap
+        self._say = say
         self._drawing = Drawing(self.surface)
         self._font = Font()
         self._text_colours = (2, 0)
@@ -58,6 +70,7 @@ class Dialog:
             "DSP": self._dsp, "DLG": self._dlg, "ENDDLG": self._enddlg, "PRN": self._prn, "INP": self._inp,
             "INKEY": self._inkey, "SFK": self._sfk, "CSF": self._csf, "TFO": self._tfo, "COL": self._col,
             "RGB": self._rgb, "CLS": self._cls, "CLG": self._clg, "DLF": self._dlf, "GPR": self._gpr,
+            "BMP": self._bmp,
         }  # fmt: skip
 
     def finish(self) -> None:
@@ -89,6 +102,21 @@ class Dialog:
         if not (0 <= place[0] < WIDTH and 0 <= place[1] < HEIGHT):
             raise Fault("INVALID PARAMETER", f"pixels are 0 to {WIDTH - 1} and 0 to {HEIGHT - 1}")
         self.surface.texts.append(Text(*place, text_of(text) or "", self._text_colours[0], self._font))
+        return 0
+
+    def _bmp(self, x: object, y: object, file: object, copy_type: object = OMITTED) -> int:
+        at = round(number(x)), round(number(y))
+        if not (0 <= at[0] < WIDTH and 0 <= at[1] < HEIGHT - SOFTKEY_ROWS):
+            raise Fault("INVALID PARAMETER", "a bitmap begins at 0 to 632 and 0 to 374")
+        name = text_of(file) or ""
+        if len(name) > _LONGEST_BITMAP:
+            raise Fault("INVALID FILE NAME", f"the name of a bitmap has at most {_LONGEST_BITMAP} characters")
+        how = _within(copy_type, len(COPY_TYPES) - 1, "copy types", 0)
+        image = self._bitmap(name)
+        if image is None:
+            self._say(f"cplbmp\\{name}.bmp is not existing")
+            return 0
+        paint(self.surface, *at, image, how)
         return 0
 
     def _tfo(
