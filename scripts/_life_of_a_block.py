@@ -49,7 +49,7 @@ def stations() -> dict[str, str]:
     channel.fill()
     found["modal state"] = _table([("", "before", "after both blocks"), *_beside(before, _modal(channel))])
     state = machine.state
-    found["segment"] = _segments(state.seg, ("length", "feed", "tag", "flags"), corners=True)
+    found["segment"] = _segments(state.seg, ("length", "feed_mm_s", "tag", "flags"), corners=True)
     give_to_path(state, 0)
     start_path(state.paths, 0)
     state.paths.row[0]["closed"] = True  # nothing follows

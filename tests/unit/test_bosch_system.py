@@ -196,7 +196,7 @@ def test_differences_of_clock_are_ms() -> None:
 def test_date_and_time_are_texts() -> None:
     control = Control()
     control.clock.tick(250 * 64)
-    ran = Ran('10 DIM A$(20)\n20 A$=DATE : #A?=A$="29.07"\n30 A$=TIME : #B?=A$="12.59.05"\n', control)
+    ran = Ran('10 DIM A$(20)\n20 A$=DATE : #A?=A$="29.07."\n30 A$=TIME : #B?=A$="12.59.05"\n', control)
     assert (ran["#A?"], ran["#B?"]) == (True, True)
 
 

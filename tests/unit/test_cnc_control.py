@@ -24,6 +24,7 @@ from polycnc.cnc import (
     RunState,
     Timer,
 )
+from polycnc.errors import UsageError
 from polycnc.machine import SnapshotError
 from support.cnc_machine import cnc_machine
 
@@ -730,3 +731,53 @@ def test_the_snapshot_of_another_thing_is_refused_before_anything_changes() -> N
     assert made.status().channel.run_state is RunState.COMPLETED
     with pytest.raises(SnapshotError):
         ControlSnapshot.from_bytes(Control("mill3").machine.snapshot().to_bytes())
+
+
+# ---------------------------------------------------------------------- what a vendor's control changes
+
+
+def test_axes_can_be_given_other_limits_while_nothing_runs() -> None:
+    made = started()
+    axes = made.machine.config.axes
+    slower = axes[0].model_copy(update={"vmax_mm_s": 30.0, "soft_limits_mm": (-50.0, 42.0)})
+    made.advance(10)
+    refused(Refusal.RUNNING, lambda: made.change_axes((slower, *axes[1:])), made)
+    made.reset()
+    made.advance(200)
+    made.change_axes((slower, *axes[1:]))
+    made.cycle_start()
+    assert made.status().alarms[0].name == "program"  # 42.5 is beyond the new limit
+    made.reset()
+    made.programs.write("PART", PART.replace("42.5", "41.5"))
+    made.cycle_start()
+    made.advance(300)
+    assert made.status().axes["X"].velocity == pytest.approx(30.0)
+    with pytest.raises(UsageError):
+        made.machine.change_axes(axes[1:])
+
+
+def test_a_program_can_begin_at_a_line() -> None:
+    made = control()
+    made.select_program("SLOT")
+    refused(Refusal.NOT_FOUND, lambda: made.cycle_start(line=99), made)
+    made.programs.write("SLOT", "N10 G1 X20 F600\nN20 Y3\nN30 G1 X15.5 F600\nM2\n")
+    made.cycle_start(line=3)
+    made.advance(2000)
+    status = made.status()
+    assert (status.axes["X"].machine, status.axes["Y"].machine) == (15.5, 0.0)
+
+
+def test_an_alarm_from_outside_stops_everything_once() -> None:
+    made = started()
+    made.advance(100)
+    made.put_alarm("function_failed", detail="M8")
+    made.advance(300)
+    at = x(made)
+    made.advance(300)
+    assert x(made) == at
+    assert made.status().channel.run_state is RunState.ALARM
+    assert [alarm.text for alarm in made.status().alarms] == ["M8"]
+    made.put_alarm("function_failed", detail="again")
+    assert [alarm.text for alarm in made.status().alarms] == ["M8"]
+    made.reset()
+    assert made.status().alarms == ()

@@ -104,8 +104,8 @@ def test_axes_that_are_not_there_are_refused(root: Root, call: str) -> None:
 @pytest.mark.covers("cpl.CLOCK", "cpl.DATE", "cpl.TIME", "cpl.ex.2494")
 def test_the_clock_is_the_machine_s(root: Root) -> None:
     result = root.run(
-        "1 WAIT\n2 T%=CLOCK\nN4 G1 X100 F6000\n5 WAIT\n6 #T%=CLOCK-T%\n7 DIM A$(9) : DIM B$(9)\n17 WAIT(,1500)\n"
-        '8 A$=DATE : B$=TIME : PRN#(0,A$," ",B$)'
+        "1 WAIT\n2 T%=CLOCK\nN4 G1 X100 F6000\n5 WAIT\n6 #T%=CLOCK-T%\n7 DIM A$(9) : DIM B$(9)\n8 WAIT(,1500)\n"
+        '9 A$=DATE : B$=TIME : PRN#(0,A$," ",B$)'
     )
     assert result.variables["#T%"] == pytest.approx(result.cutting_time_s * 1000, abs=2)
     assert result.time_s == pytest.approx(1.5 + result.cutting_time_s, abs=0.01)
@@ -187,3 +187,17 @@ def test_the_command_runs_a_program_on_a_root(root: Root) -> None:
     told = CliRunner().invoke(app, ["check", str(program), "--root", str(other)])
     assert told.exit_code == 1
     assert "1 error" in told.output
+
+
+# ---------------------------------------------------------------------- tables
+
+
+def test_tables_are_usable_without_set_up(root: Root) -> None:
+    found = root.run(
+        '1 TC(1,10,5)=31.5 : TC(-1,10,5)=0.25 : FXC("Y",54,1)=80 : FXC(-2,54,1)=2 : TDA(1,1,9)=20000\n'
+        "2 #A=TC(1,10,5) : #B=FXC(2,54,1) : #C%=TDA(1,1,9) : DIM E%(2,3) : #D%=GETERR(1,,E%)\n"
+        'N3 G70\n4 FXC("X",160,0)=2\nN5 G71\n6 #E=FXC("X",160,0)'
+    ).variables
+    assert [found[name] for name in ("#A", "#B", "#C%", "#D%")] == [31.75, 82.0, 20000, 0]
+    assert found["#E"] == pytest.approx(50.8)
+    assert root.error('1 A=FXC("Q",54,1)') == "1: INVALID PARAMETER"

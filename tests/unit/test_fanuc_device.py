@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -228,6 +229,25 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     assert axis.vmax == pytest.approx(15_000 / 60 * 2.54)  # 0.1 inch/min
 
 
+@pytest.mark.parametrize(
+    ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]
+)
+def test_axis_names_come_from_a_parameter_and_are_never_unusable(code: int, name: str) -> None:
+    control, handle = attached(axes=2)
+    moved(control, "G0 X3. Y-4.")
+    data = fwlib.IODBPSD(datano=1020, type=2)
+    data.u.cdata = code
+    assert fwlib.cnc_wrparam(handle, 5, data) == OK
+    assert control.axis_name(2) == "Y"
+    control.power_cycle()
+    assert [control.axis_name(axis) for axis in (1, 2)] == ["X", name]
+    assert control.machine.actual == {"X": 3.0, name: -4.0}
+    assert bool(control.alarm_bits) is (code != ord("W"))
+    control.reset()
+    moved(control, f"G0 {name}1.5")
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 1500
+
+
 def test_work_offsets_are_parameters() -> None:
     control, handle = attached()
     control.parameters.set(1222, -2_500, 2)
@@ -259,6 +279,52 @@ def test_every_parameter_has_a_default_that_it_takes() -> None:
 
 
 # ---------------------------------------------------------------------- what survives
+
+
+def test_a_snapshot_is_gone_back_to() -> None:
+    control, handle = attached(axes=2)
+    registered(control, O7="\nN10 G1 X20. F3000\nN20 Y-7.\nM30\n")
+    running(control, 7)
+    control.advance(150)
+    moment = control.snapshot()
+    seen = []
+    for _ in range(2):
+        control.advance(400)
+        seen.append(
+            (fwlib.cnc_rddynamic(handle, -1, 118)[1], control.mode, control.protection_keys, control.cursor)
+        )
+        control.reset()
+        control.advance(50)
+        control.select_mode("JOG")
+        control.protect_key()
+        control.restore(moment)
+        assert control.snapshot() == moment
+    assert seen[0] == seen[1]
+    assert seen[0][0].seqnum == 20
+    assert moment.cycle == 150
+
+
+def test_two_programs_in_two_threads_have_one_control() -> None:
+    control, _ = attached(axes=1)
+    opened = []
+
+    def begin(session: fwlib.Session) -> None:
+        session.attach(0, control)
+        _, handle = session.cnc_allclibhndl()
+        for _ in range(200):
+            if session.cnc_dwnstart(handle) == OK:
+                opened.append(handle)
+                assert session.cnc_download(handle, "\nO9\nM30\n%", 9) == OK
+                assert session.cnc_dwnend(handle) == OK
+                assert session.cnc_delete(handle, 9) == OK
+
+    threads = [threading.Thread(target=begin, args=(fwlib.Session(),)) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert opened
+    assert control.transfer is None
 
 
 def test_power_off_and_on() -> None:

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
@@ -20,26 +21,6 @@ from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
-from polycnc.kernel import (
-    BLOCK,
-    FEED_S,
-    FOLLOWING_ERROR,
-    HELD,
-    IDLE,
-    NO_LIMIT,
-    OTHER_SOURCE,
-    PATH_EVENT,
-    PATH_RESTED,
-    QUEUE_LOW,
-    RAPID_S,
-    READY,
-    RECORDER_FULL,
-    RUNNING,
-    SWITCH_EDGE,
-    drop_queue,
-    give_to_path,
-    start_path,
-)
 from polycnc.machine import Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
@@ -62,7 +43,14 @@ Rows: TypeAlias = Callable[[Floats, npt.NDArray[np.int64]], None]
 OnEvent: TypeAlias = Callable[[Event], bool | None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
-_MASK = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
+_MASK = (
+    kernel.QUEUE_LOW
+    | kernel.RECORDER_FULL
+    | kernel.PATH_EVENT
+    | kernel.PATH_RESTED
+    | kernel.FOLLOWING_ERROR
+    | kernel.SWITCH_EDGE
+)
 _STANDING = {
     RunState.STOPPED_AT_BLOCK,
     RunState.PROGRAM_STOP,
@@ -256,7 +244,7 @@ class ProgramRun:
             self.channel.go_to(target)
             return target
         state = self.machine.state
-        give_to_path(state, self.path)
+        kernel.give_to_path(state, self.path)
         self.channel.state.modal.position[:] = state.paths.position[self.path]
         try:
             found = self.channel.calculate_to(target, self._skip_queue)
@@ -270,7 +258,7 @@ class ProgramRun:
             )
         except UsageError as error:
             problem = error
-        drop_queue(state.seg, state.paths, self.path)
+        kernel.drop_queue(state.seg, state.paths, self.path)
         if problem is not None:
             self._replace_channel(self.program, keeps_modal=False)
             raise problem
@@ -317,7 +305,7 @@ class ProgramRun:
         """
         self.alarm = None
         self.channel.close()
-        if self._row["state"] == IDLE:
+        if self._row["state"] == kernel.IDLE:
             self._state = RunState.RESET
             return
         self._dropping = True
@@ -363,13 +351,13 @@ class ProgramRun:
     @property
     def dry_run(self) -> bool:
         """Whether moves at feed go with the feed of a dry run."""
-        return bool(self._row["dry_feed"] > 0.0)
+        return bool(self._row["dry_feed_mm_s"] > 0.0)
 
     @dry_run.setter
     def dry_run(self, on: bool) -> None:
         if on and not self._options.dry_run_mm_s > 0.0:
             raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
-        self._row["dry_feed"] = self._options.dry_run_mm_s if on else 0.0
+        self._row["dry_feed_mm_s"] = self._options.dry_run_mm_s if on else 0.0
         self.feed.replan()
 
     @property
@@ -439,7 +427,7 @@ class ProgramRun:
     @property
     def at_rest(self) -> bool:
         """Whether the path stands."""
-        return bool(self._row["state"] != RUNNING)
+        return bool(self._row["state"] != kernel.RUNNING)
 
     @property
     def error(self) -> ProgramError | None:
@@ -450,7 +438,7 @@ class ProgramRun:
     def executed_tag(self) -> int:
         """The tag of the block that is executed, or was last."""
         row = self._row
-        if self._met is not None and row["state"] == READY and row["head"] == self._met[0]:
+        if self._met is not None and row["state"] == kernel.READY and row["head"] == self._met[0]:
             return self._met[1]
         return int(row["tag"])
 
@@ -486,7 +474,7 @@ class ProgramRun:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
         row = self._row
         here = self.machine.state.paths.position[self.path]
-        if row["state"] not in (RUNNING, HELD):
+        if row["state"] not in (kernel.RUNNING, kernel.HELD):
             return self._by_axis(np.zeros_like(here))
         last = self.feed.block_end(int(row["head"])) - 1
         k = int(row["base"]) + last % int(row["capacity"])
@@ -558,9 +546,9 @@ class ProgramRun:
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
         raised = int(self.machine.state.clock[0]["raised"])
-        if raised & PATH_EVENT and self._row["event"] >= 0:
+        if raised & kernel.PATH_EVENT and self._row["event"] >= 0:
             self._meet_event()
-        if raised & RECORDER_FULL:
+        if raised & kernel.RECORDER_FULL:
             self.drain()
         if (found := axis_alarm(self.machine, raised)) is not None:
             self._stop_by(*found)
@@ -572,8 +560,8 @@ class ProgramRun:
         count = int(recorder.filled[0])
         if self.rows is not None and count:
             rows = recorder.rows[:count]
-            tags = rows[:, BLOCK].astype(np.int64)
-            rows[:, BLOCK] = tags & LINE_MASK
+            tags = rows[:, kernel.BLOCK].astype(np.int64)
+            rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
 
@@ -634,12 +622,12 @@ class ProgramRun:
         state, path = self.machine.state, self.path
         if self._state is not RunState.READY:
             self._replace_channel(self.program, keeps_modal=False)
-        give_to_path(state, path)
+        kernel.give_to_path(state, path)
         self._give_axes()
         self.channel.state.modal.position[:] = state.paths.position[path]
-        start_path(state.paths, path)
+        kernel.start_path(state.paths, path)
         self._hold = False
-        self._row["limit"] = NO_LIMIT
+        self._row["limit"] = kernel.NO_LIMIT
         self._row["tag"] = 0
         if self._approach is not None:
             self.channel.begin_at(*self._approach)
@@ -657,12 +645,12 @@ class ProgramRun:
         """Let the axes follow the path, or nothing while the machine is locked."""
         state = self.machine.state
         for axis in state.paths.axis[self.path]:
-            if axis >= 0 and state.owner[axis] in (self.path, OTHER_SOURCE):
-                state.owner[axis] = OTHER_SOURCE if self._locked else self.path
+            if axis >= 0 and state.owner[axis] in (self.path, kernel.OTHER_SOURCE):
+                state.owner[axis] = kernel.OTHER_SOURCE if self._locked else self.path
 
     def _seconds(self) -> ToolTime:
         totals = self.machine.state.paths.totals[self.path]
-        return ToolTime(float(totals[FEED_S]), float(totals[RAPID_S]))
+        return ToolTime(float(totals[kernel.FEED_S]), float(totals[kernel.RAPID_S]))
 
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
@@ -672,7 +660,7 @@ class ProgramRun:
         hold = self._hold or stands or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
-            if self._row["state"] == RUNNING:
+            if self._row["state"] == kernel.RUNNING:
                 self.feed.replan()
 
     def _step(self, step: Step) -> None:
@@ -686,7 +674,7 @@ class ProgramRun:
 
     def _go(self, step: Step) -> None:
         """Go on from where the program stands, as far as `step` says."""
-        within = self._state is RunState.HOLD and self._row["state"] in (RUNNING, HELD)
+        within = self._state is RunState.HOLD and self._row["state"] in (kernel.RUNNING, kernel.HELD)
         record = self.executed_tag
         self._pass_stop()
         self._hold = False
@@ -746,7 +734,7 @@ class ProgramRun:
         if self._dropping:
             if self.at_rest:
                 self._drop()
-        elif self._state is RunState.ACTIVE and row["state"] == READY and not self._unanswered:
+        elif self._state is RunState.ACTIVE and row["state"] == kernel.READY and not self._unanswered:
             if row["head"] >= row["limit"]:
                 self._stop_at_block()
             elif row["head"] >= row["tail"] and self.channel.done:
@@ -767,7 +755,7 @@ class ProgramRun:
     def _drop(self) -> None:
         """Drop what is still queued; the path stands."""
         state = self.machine.state
-        drop_queue(state.seg, state.paths, self.path)
+        kernel.drop_queue(state.seg, state.paths, self.path)
         self.channel.writer.clear()
         self.feed.clear()
         self._dropping = False

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.errors import UsageError
-from polycnc.kernel import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
+from polycnc.kernel import BLOCK, FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import ExecutionCollector
@@ -22,7 +22,7 @@ from polycnc.runner._result import Trace
 
 Floats = npt.NDArray[np.float64]
 
-_COLUMNS = (TIME_S, BLOCK, FEED)
+_COLUMNS = (TIME_S, BLOCK, FEED_MM_S)
 _COLUMN_NAMES = ("t_s", "block", "feed_mm_s")
 _AXIS_COLUMN = re.compile(r"([A-Z][0-9]*)(_actual)?_(mm|deg)")
 
@@ -71,7 +71,7 @@ class TraceCollector:
             units=tuple(axis.unit for axis in self._config.axes),
             t_s=rows[:, TIME_S],
             block=rows[:, BLOCK].astype(np.int64),
-            feed_mm_s=rows[:, FEED],
+            feed_mm_s=rows[:, FEED_MM_S],
             rapid=rows[:, IS_RAPID] != 0.0,
             setpoint=rows[:, LEADING : LEADING + axes],
             actual=rows[:, LEADING + axes :] if self._actual else None,

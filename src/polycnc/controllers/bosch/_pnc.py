@@ -10,13 +10,13 @@ from typing import Any
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._memory import KeptVariables, plain_variable
 from polycnc.controllers.bosch._positions import Positions
+from polycnc.controllers.bosch._system_functions import SystemFunctions
 from polycnc.controllers.bosch.files import Directory, FileCommands
 from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock
 from polycnc.nc import ProgramText
 from polycnc.nc.cpl import (
-    OMITTED,
     CplLanguage,
     CplSource,
     Fault,
@@ -29,8 +29,6 @@ from polycnc.nc.cpl import (
 _WORD = re.compile(
     r"(?P<letter>[A-Za-z]) *(?:(?P<extension>[0-9]{1,2}) *= *)?(?P<value>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
 )
-_OUTPUT_BITS = range(80, 96)
-"""The interface bits that a program may set: signals 81 to 96 of a channel."""
 
 
 class Pnc:
@@ -51,8 +49,7 @@ class Pnc:
     ) -> None:
         self.directory = Directory(root)
         self.kept = KeptVariables(self.directory)
-        self.outputs: dict[tuple[int, int], bool] = {}
-        """Interface bits that programs have set, by bit and channel."""
+        self.system = SystemFunctions(clock, self._attached)
         self.language = _Language(self, skip_levels=frozenset(skip_levels))
         self.files = FileCommands(self.directory, self._say, self._running_files)
         self.dialog = Dialog(
@@ -66,12 +63,9 @@ class Pnc:
             **Positions(self._attached).functions,
             **self.files.functions,
             **self.dialog.functions,
-            "CLOCK": lambda: int(self._clock.now_s * 1000.0 + 0.5) & 0x7FFFFFFF,
-            "DATE": lambda: self._clock.now.strftime("%d.%m."),
-            "TIME": lambda: self._clock.now.strftime("%H.%M.%S"),
-            "IC": self._interface,
+            **self.system.functions,
         }
-        self.setters: dict[str, Callable[..., None]] = {"IC": self._set_interface}
+        self.setters: dict[str, Callable[..., None]] = dict(self.system.setters)
 
     # ------------------------------------------------------------------ nc.cpl.Host
 
@@ -181,21 +175,6 @@ class Pnc:
         files = {self.directory.root / source.execution.program.file for source in self.language.running}
         return files if self._main is None else files | {self._main}
 
-    def _interface(self, bit: object, group: object = OMITTED, index: object = OMITTED) -> bool:
-        _check_interface(bit, group)
-        return False
-
-    def _set_interface(self, value: object, bit: object, group: object = 0, index: object = 1) -> None:
-        if group is OMITTED:
-            group = 0
-        if index is OMITTED:
-            index = 1
-        if group != 0 or not isinstance(bit, int) or bit not in _OUTPUT_BITS or not isinstance(index, int):
-            raise Fault("INVALID PARAMETER", "bits 80 to 95 of group 0 can be set")
-        if not isinstance(value, bool):
-            raise Fault("INVALID ASSIGNMENT", "an interface bit is BOOLEAN")
-        self.outputs[bit, index] = value
-
 
 class _Language(CplLanguage):
     """CPL on a control whose declarations of permanent variables are right."""
@@ -208,18 +187,6 @@ class _Language(CplLanguage):
         if self._pnc.kept.errors:
             raise self._pnc.kept.errors[0]
         return super().source(text, offset, line, arguments)
-
-
-_SIZES = (112, 112, 112, 96, 64, 64, 32, 32, 8, 6)
-"""Interface bits of each group."""
-
-
-def _check_interface(bit: object, group: object) -> None:
-    number = 0 if group is OMITTED else group
-    if type(number) is not int or not 0 <= number < len(_SIZES):
-        raise Fault("INVALID PARAMETER", f"interface groups are 0 to {len(_SIZES) - 1}")
-    if type(bit) is not int or not 0 <= bit < _SIZES[number]:
-        raise Fault("INVALID PARAMETER", f"bits of group {number} are 0 to {_SIZES[number] - 1}")
 
 
 def _missing(name: str) -> Callable[..., Any]:

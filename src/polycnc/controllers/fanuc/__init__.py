@@ -4,6 +4,7 @@ from polycnc.controllers.fanuc.data._parameter_rows import Attribute, Kind, Para
 from polycnc.controllers.fanuc.device._alarms import AlarmBit
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 
 __all__ = [
     "AlarmBit",
@@ -12,5 +13,6 @@ __all__ = [
     "ParameterRow",
     "PowerMate",
     "PowerMateMode",
+    "PowerMateSnapshot",
     "parameter_rows",
 ]

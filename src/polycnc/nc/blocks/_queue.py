@@ -74,7 +74,7 @@ class QueueWriter:
 
     def set_tolerance(self, tolerance_mm: float) -> None:
         """Set how far the path may leave the corners of lines appended from now on."""
-        self.paths.row[self.path]["tolerance"] = tolerance_mm
+        self.paths.row[self.path]["tolerance_mm"] = tolerance_mm
 
     def put_block(self, items: list[QueueItem]) -> None:
         """Append what a block gives; one that gives nothing after all, a move without length, is marked."""

@@ -231,7 +231,7 @@ def _run(
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
                     return block, NOT_PLAIN
-            elif path[g]["tolerance"] > 0.0:
+            elif path[g]["tolerance_mm"] > 0.0:
                 moves = append_line(seg, paths, g, limits, work.target, speed, flags, tag)
             else:
                 moves = add_line(

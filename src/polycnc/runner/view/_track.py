@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.kernel import FEED, IS_RAPID, LEADING, TIME_S
+from polycnc.kernel import FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import KINDS, ExecutedBlock, Execution, ExecutionCollector
 from polycnc.runner._result import Trace
@@ -58,7 +58,7 @@ class TrackCollector:
         if len(rows):
             style = _styles(self._executions.table.blocks, self._executions.add(tags, records))
             axes = rows[:, LEADING : LEADING + self._axes]
-            self._take(np.column_stack((rows[:, TIME_S], rows[:, IS_RAPID], style, axes, rows[:, FEED])))
+            self._take(np.column_stack((rows[:, TIME_S], rows[:, IS_RAPID], style, axes, rows[:, FEED_MM_S])))
 
     def add_trace(self, trace: Trace, execution: Execution) -> None:
         """Take a whole trace."""

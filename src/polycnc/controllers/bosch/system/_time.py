@@ -13,8 +13,8 @@ def clock_ms(clock: Clock) -> int:
 
 
 def date_text(clock: Clock) -> str:
-    """Return the date as DD.MM."""
-    return f"{clock.now:%d.%m}"
+    """Return the date as DD.MM., with a point at its end."""
+    return f"{clock.now:%d.%m.}"
 
 
 def time_text(clock: Clock) -> str:

@@ -26,13 +26,26 @@ from polycnc.controllers.fanuc.data._macro_variables import CommonRange, MacroVa
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
-from polycnc.controllers.fanuc.device._alarms import POWER_MATE_ALARMS, PREFIX, AlarmBit, alarm_bits
+from polycnc.controllers.fanuc.device._alarms import (
+    NAME_ALARM,
+    POWER_MATE_ALARMS,
+    PREFIX,
+    AlarmBit,
+    alarm_bits,
+)
 from polycnc.controllers.fanuc.device._execution import Execution
-from polycnc.controllers.fanuc.device._machine_file import AxisSetting, axis_of, default_names, machine_of
+from polycnc.controllers.fanuc.device._machine_file import (
+    AxisSetting,
+    axis_of,
+    default_names,
+    machine_of,
+    usable_names,
+)
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
+from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
 from polycnc.machine import AnyAxis, Clock, Machine, Store
@@ -117,7 +130,7 @@ class PowerMate:
         self.tool_offsets = ToolOffsets(self, offsets)
         bind(self)
         self.parameters.on_change = self._parameters_changed
-        self.control = self._switched_on({})
+        self.control = self._switched_on(None)
         if self.selected not in self.programs:
             self.unselect()
 
@@ -337,7 +350,7 @@ class PowerMate:
         self._skip, self._skip_positions, self._cursor = False, (), 0
         self.mdi.clear()
         self._inch = self.parameters.bit(0, 2)
-        self.control = self._switched_on(old.machine.actual)
+        self.control = self._switched_on(old.machine)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self._mode = PowerMateMode.MEM
         if self.selected:
@@ -363,6 +376,35 @@ class PowerMate:
         """Return what the control is and does in the present cycle."""
         return self.control.status()
 
+    def snapshot(self) -> PowerMateSnapshot:
+        """Return the state of the present cycle; what is durable is not in it."""
+        return PowerMateSnapshot(
+            control=self.control.snapshot(),
+            mode=self._mode,
+            cursor=self._cursor,
+            mdi=self.mdi.blocks,
+            mdi_start=self.mdi.start,
+            skip=self._skip,
+            skip_positions=self._skip_positions,
+            protection_keys=self.protection_keys,
+            parameters_writable=self.parameters_writable,
+            inch=self._inch,
+        )
+
+    def restore(self, snapshot: PowerMateSnapshot) -> None:
+        """Go back to a snapshot; what is durable stays as it is.
+
+        Raises:
+            SnapshotError: It is of another control, or axes have other limits now; nothing has changed.
+        """
+        self.control.restore(snapshot.control)
+        self._mode, self._cursor = snapshot.mode, snapshot.cursor
+        self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
+        self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
+        self.protection_keys = snapshot.protection_keys
+        self.parameters_writable = snapshot.parameters_writable
+        self._inch = snapshot.inch
+
     def close(self) -> None:
         """Switch off: save the timers and close the memory."""
         self.control.timers.save()
@@ -375,13 +417,18 @@ class PowerMate:
             return CommonRange.LARGE
         return CommonRange.MIDDLE if self.has_option("macro_variables_300") else CommonRange.SMALL
 
-    def _switched_on(self, start: dict[str, float]) -> Control:
-        """Return the control as it is when power comes on; positions are those of absolute encoders."""
+    def _switched_on(self, before: Machine | None) -> Control:
+        """Return the control as it is when power comes on; encoders are absolute."""
         axes = self._axes()
         characters, most_programs = self._sizes
-        known = {axis.name for axis in axes}
+        names = [axis.name for axis in axes]
+        start = (
+            dict.fromkeys(names, 0.0)
+            if before is None
+            else dict(zip(names, before.actual.values(), strict=True))
+        )
         control = Control(
-            machine_of(axes, {name: at for name, at in start.items() if name in known}),
+            machine_of(axes, start),
             memory=self.store,
             dialect=self._dialect(),
             script=self._script,
@@ -398,6 +445,11 @@ class PowerMate:
             ),
         )
         control.change_axes(axes)
+        for axis, name in enumerate(names, 1):
+            if self.parameters.value(1020, axis) != ord(name):
+                control.put_alarm(
+                    f"{PREFIX}{NAME_ALARM}", axis=name, detail=f"PARAMETER 1020 OF AXIS {axis}: {name}"
+                )
         return control
 
     def _dialect(self) -> Dialect:
@@ -414,9 +466,11 @@ class PowerMate:
     def _axes(self) -> tuple[AnyAxis, ...]:
         """Return the axes as the parameters describe them."""
         value = self.parameters.value
+        numbers = range(1, self.axes + 1)
+        turning = [self.parameters.bit(1006, 0, axis) for axis in numbers]
+        names = usable_names([value(1020, axis) for axis in numbers], turning)
         made = []
-        for axis in range(1, self.axes + 1):
-            rotary = self.parameters.bit(1006, 0, axis)
+        for axis, name, rotary in zip(numbers, names, turning, strict=True):
             units = scale(self.increment, linear=not rotary, inch=self.inch_output)
             vmax = self._speed(value(1420, axis), units)
             high, low = value(1320, axis), value(1321, axis)
@@ -424,7 +478,7 @@ class PowerMate:
             made.append(
                 axis_of(
                     AxisSetting(
-                        name=chr(value(1020, axis) or ord("?")),
+                        name=name,
                         rotary=rotary,
                         vmax=vmax,
                         amax=vmax / (value(1620, axis) / 1000.0),
