@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.bosch import Pnc
+from polycnc.errors import UsageError
 from polycnc.machine import Clock
 from polycnc.nc.cpl import Linker, Run
 from polycnc.runner import read_keys
@@ -450,6 +451,29 @@ def test_the_screen_is_written_as_text_and_as_drawing(tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     root.run(program, screen="screen.png")
     assert root.read("screen.png").startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize(
+    ("program", "screen", "what"),
+    [
+        ("N10 X5\n", "shown.txt", "main.npg has no screen"),
+        ("10 A=5\n", "shown.gif", "'.gif' is none of its formats"),
+        ("10 A=5\n", "none/shown.txt", "there is no folder"),
+    ],
+)
+def test_a_screen_that_cannot_be_kept_is_refused_before_the_run(
+    tmp_path: Path, program: str, screen: str, what: str
+) -> None:
+    with pytest.raises(UsageError, match=what):
+        Root(tmp_path).run(program + '20 OPENW(1,"P1")\n' * ("A=" in program), screen=screen)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_key_that_is_none_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="there is no key 'RETURN'"):
+        Root(tmp_path).run("10 A=INKEY\n", keys=("RETURN",))
+    with pytest.raises(UsageError, match="no keys can be read"):
+        read_keys(tmp_path / "none")
 
 
 def test_keys_come_from_a_file(tmp_path: Path) -> None:
