@@ -191,6 +191,17 @@ def test_a_table_of_colours_erases_the_screen(tmp_path: Path) -> None:
     assert shown.surface.tables[3] == [*two[:3], (10, 20, 250), *two[4:]]
 
 
+@pytest.mark.covers("cpl.COL.tab.1", "cpl.color.default.graphics_background")
+def test_table_1_and_its_background_are_there_at_the_start_and_on_demand(tmp_path: Path) -> None:
+    shown = Shown("1 A=5", tmp_path)
+    assert shown.surface.table == 1
+    assert '<rect width="633" height="415" fill="#000000"/>' in shown.surface.svg()
+    shown = Shown('1 COL(,,,7)\n2 DSP(1,1,"A")', tmp_path)
+    assert '<rect width="633" height="415" fill="#ffffff"/>' in shown.surface.svg()
+    shown = Shown('1 COL(,,,7)\n2 DSP(1,1,"A")\n3 COL(,,,1)', tmp_path)
+    assert (shown.surface.table, shown[1]) == (1, "")
+
+
 @pytest.mark.covers(
     "cpl.TFO", "cpl.TFO.omit", "cpl.TFO.size.h", "cpl.TFO.size.hw", "cpl.TFO.size.0", "cpl.TFO.orientation",
     *(f"cpl.TFO.cut.{n}" for n in range(4)), *(f"cpl.TFO.font.{n}" for n in range(11)),
