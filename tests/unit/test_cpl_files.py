@@ -368,6 +368,17 @@ def test_names_have_capitals_folders_and_30_characters(root: Root) -> None:
     assert root.error('1 OPENW(4,"P1*")') == "1: INVALID FILE NAME"
 
 
+@pytest.mark.covers("cpl.file.system")
+def test_files_in_folders_are_opened_before_access_and_closed_behind(root: Root) -> None:
+    (root.folder / "usr" / "data").mkdir(parents=True)
+    root.write("usr/data/P1", b"17\n" + END)
+    opened = '1 OPENR(3,"usr/data/P1")\n2 INP#(3,#A%)\n3 CLOSE(3)\n'
+    assert root.run(opened).variables["#A%"] == 17
+    assert root.error(opened + "4 INP#(3,#A%)") == "4: INVALID LOGICAL NUMBER"
+    assert root.error('1 PRN#(3,"A")') == "1: INVALID LOGICAL NUMBER"
+    assert root.error('1 OPENR(3,"none/P1")') == "1: FILE CANNOT BE WRITTEN"
+
+
 # ---------------------------------------------------------------------- files by name
 
 

@@ -184,10 +184,9 @@ def test_a_tool_change_ends_a_cycle_and_a_retraction_does_not() -> None:
 def test_gohome_goes_to_its_point() -> None:
     assert records("GOHOME/12,-7,85")[0] == Home(1, (12.0, -7.0, 85.0))
     text = "UNITS/INCHES\nFROM/0,0,3\nGOHOME/1,2,4\nGOHOME\n"
-    assert points_of(moves_of(text)) == [
-        ("RAPID", 25.4, 50.8, pytest.approx(101.6)),
-        ("RAPID", 0.0, 0.0, pytest.approx(76.2)),
-    ]
+    (first, *there), (second, *back) = points_of(moves_of(text))
+    assert (first, second) == ("RAPID", "RAPID")
+    assert (there, back) == (pytest.approx([25.4, 50.8, 101.6]), pytest.approx([0.0, 0.0, 76.2]))
     assert [sweep.end for sweep in sweep_tool_path(parse_tool_path(text))] == [
         pytest.approx((25.4, 50.8, 101.6)),
         pytest.approx((0.0, 0.0, 76.2)),
@@ -403,7 +402,7 @@ def test_clear_ends_a_cycle_that_has_had_its_points() -> None:
 def test_spindle_and_coolant_come_back_after_a_tool_change() -> None:
     text = "LOADTL/1\nSPINDL/RPM,900,CCLW\nCOOLNT/MIST\nRAPID\nGOTO/1,2,3\nLOADTL/2\n{}RAPID\nGOTO/4,5,6\n"
 
-    def after(between: str) -> list[tuple[str, object]]:
+    def after(between: str) -> list[tuple[str, float | str | None]]:
         calls = calls_of(text.format(between))[0]
         changes = [place for place, (macro, _) in enumerate(calls) if macro == "TOOL_CHANGE"]
         return [(macro, words.get("S")) for macro, words in calls[changes[1] + 1 :]][:-2]

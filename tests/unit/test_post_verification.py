@@ -214,7 +214,8 @@ def on(machine: MachineConfig, program: str = "fanuc-mill", text: str = PLATE) -
     """Return the proof of a plate on a machine."""
     used: str | ControlFile = program
     if program != "fanuc-mill":
-        used = parse_control(shipped_text("fanuc-mill").replace(*program.split("|")), "mine.toml")
+        old, new = program.split("|")
+        used = parse_control(shipped_text("fanuc-mill").replace(old, new), "mine.toml")
     proof = post_file(parse_tool_path(text, "plate.cl"), used, verify=True, machine=machine).verification
     assert proof is not None
     return proof

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Protocol
 
@@ -119,10 +120,24 @@ _CONTROLS: dict[str, Callable[[ProgramText, Machine, Surroundings], ProgramContr
 SCREEN_FORMATS = (".txt", ".svg", ".png")
 
 
-def check_screen_file(path: str | Path) -> None:
-    """Check that a screen can be kept under a name.
+def check_screen_file(path: str | Path, program: ProgramText, control: ProgramControl | None) -> None:
+    """Check that the screen of a program can be kept under a name.
 
     Raises:
-        UsageError: No format has this ending, or the place is wrong.
+        UsageError: The program shows nothing, no format has this ending, or the place is wrong.
     """
-    check_output(path, SCREEN_FORMATS, "a screen")
+    target = check_output(path, SCREEN_FORMATS, "a screen")
+    if control is None:
+        raise UsageError(
+            f"{program.name} has no screen: it holds NC blocks only",
+            hint="Leave --screen out, or name the dialect of a control with a language (bosch).",
+        )
+    if target.resolve() == Path(program.name).resolve():
+        raise UsageError(
+            f"a screen cannot be written to {path}: it is the program", hint="Take another name."
+        )
+    if target.suffix.lower() == ".png" and find_spec("matplotlib") is None:
+        raise UsageError(
+            "a screen as .png needs matplotlib",
+            hint="Install it: pip install 'polycnc[plot]'; .svg needs nothing.",
+        )

@@ -82,7 +82,7 @@ def run(
     surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
     control = control_for(chosen, text, simulated, surroundings)
     if screen is not None:
-        check_screen_file(screen)
+        check_screen_file(screen, text, control)
     execution = ProgramRun(
         simulated,
         text,

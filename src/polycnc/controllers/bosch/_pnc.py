@@ -12,6 +12,7 @@ from polycnc.controllers.bosch._memory import KeptVariables, plain_variable
 from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch._system_functions import SystemFunctions
 from polycnc.controllers.bosch.files import Directory, FileCommands
+from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock
 from polycnc.nc import ProgramText
@@ -51,6 +52,9 @@ class Pnc:
         self.system = SystemFunctions(clock, self._attached)
         self.language = _Language(self, skip_levels=frozenset(skip_levels))
         self.files = FileCommands(self.directory, self._say, self._running_files)
+        self.dialog = Dialog(
+            Keyboard(keys), lambda: self.files.left_justified, self._bitmap, lambda text: self._say(text)
+        )
         self._clock = clock
         self._run: ProgramRun | None = None
         self._main = None if program is None else Path(program).resolve()
@@ -58,6 +62,7 @@ class Pnc:
         self.functions: dict[str, Callable[..., object]] = {
             **Positions(self._attached).functions,
             **self.files.functions,
+            **self.dialog.functions,
             **self.system.functions,
         }
         self.setters: dict[str, Callable[..., None]] = dict(self.system.setters)
@@ -98,6 +103,11 @@ class Pnc:
 
     # ------------------------------------------------------------------ for who runs it
 
+    @property
+    def screen(self) -> Surface:
+        """What the program has put on the screen."""
+        return self.dialog.surface
+
     def attach(self, run: ProgramRun) -> None:
         """Take the run whose channel this control is."""
         self._run = run
@@ -135,6 +145,7 @@ class Pnc:
             self.files.close_all()
         except Fault as fault:
             self._say(f"{fault.what}: {fault.hint}")
+        self.dialog.finish()
         self.kept.keep()
 
     def variables(self) -> dict[str, object]:
@@ -153,6 +164,12 @@ class Pnc:
     def _say(self, text: str) -> None:
         line = self.language.running[-1].execution.statement_line if self.language.running else 0
         self._attached().channel.messages.note(f"MSG: {text}", line)
+
+    def _bitmap(self, name: str) -> Image | None:
+        folder = self.directory.root / "cplbmp"
+        path = (folder / f"{name}.bmp").resolve()
+        inside = path.is_relative_to(self.directory.root) and path.parent == folder
+        return read_bitmap(path) if inside and path.is_file() else None
 
     def _running_files(self) -> set[Path]:
         files = {self.directory.root / source.execution.program.file for source in self.language.running}

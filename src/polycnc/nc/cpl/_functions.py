@@ -135,7 +135,7 @@ def _rows() -> list[Function]:
         ),
         *(f(name, "I", (0, 0), name, command=True) for name in ("CSF", "DLF", "CLG", "CLR", "CLS", "ENDDLG")),
         f("DLG", "I", (0, 0), "DLG", command=True),
-        f("TFO", "I", (4, 4), "TFO(font,size,cut,orientation)", command=True),
+        f("TFO", "I", (1, 4), "TFO(font,size,cut,orientation)", command=True),
         f(
             "COL",
             "I",

@@ -39,6 +39,11 @@ class FileCommands:
             "NJUST": self._njust, "FILEACCESS": self._access, "FILEDATE": self._date,
         }  # fmt: skip
 
+    @property
+    def left_justified(self) -> bool:
+        """Whether LJUST is in force."""
+        return self._left
+
     def close_all(self) -> None:
         """Close all files, as at the end of a program; numbers are formatted again.
 

@@ -202,9 +202,9 @@ def _read(text: str, variable: object) -> int:
 def _read_value(text: str, box: Box) -> int:
     box.value = None
     if box.kind == "B":
-        for word, value in (("TRUE", True), ("FALSE", False)):
+        for word in ("TRUE", "FALSE"):
             if text.lstrip(" ").startswith(word):
-                box.value = value
+                box.value = word == "TRUE"
                 return len(text) - len(text.lstrip(" ")) + len(word)
         return 0
     kind = "I" if box.kind == "I" else "R"
