@@ -7,7 +7,7 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _machine, _post, _run, _sap, _warmup
+from polycnc.cli import _check, _conformance, _machine, _post, _run, _sap, _serve, _warmup
 from polycnc.cli._errors import end_on_termination, guarded
 from polycnc.cli._output import print_remarks
 
@@ -42,6 +42,9 @@ app.command("run", short_help="Run a part program: times, path, alarms.")(guarde
 app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
 app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
+app.command("serve", short_help="Serve a simulated control to clients on the network.")(
+    guarded(_serve.serve_command)
+)
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
 )
