@@ -49,7 +49,7 @@ def stations() -> dict[str, str]:
     channel.fill()
     found["modal state"] = _table([("", "before", "after both blocks"), *_beside(before, _modal(channel))])
     state = machine.state
-    found["segment"] = _segments(state.seg, ("length", "feed", "tag", "flags"), corners=True)
+    found["segment"] = _segments(state.seg, ("length", "feed_mm_s", "tag", "flags"), corners=True)
     give_to_path(state, 0)
     start_path(state.paths, 0)
     state.paths.row[0]["closed"] = True  # nothing follows
@@ -128,13 +128,17 @@ def _beside(first: list[tuple[str, str]], second: list[tuple[str, str]]) -> list
 
 def _segments(seg, names, corners=False) -> str:  # type: ignore[no-untyped-def]
     rows = [("", "segment 0", "segment 1")]
-    rows += [(name, *(_number(seg.row[k][name]) for k in range(2))) for name in names]
+    rows += [(name, *(_value(name, seg.row[k][name]) for k in range(2))) for name in names]
     if corners:
         rows += [
             (name, *(" ".join(map(_number, points[k])) for k in range(2)))
             for name, points in (("start", seg.start), ("end", seg.end))
         ]
     return _table(rows)
+
+
+def _value(name: str, value: float) -> str:
+    return f"{int(value):#x}" if name == "tag" else _number(value)
 
 
 def _by_hand(state, cycle_s: float) -> str:  # type: ignore[no-untyped-def]

@@ -33,6 +33,12 @@ def apci_system_file_page() -> str:
     return page()
 
 
+def fanuc_page(name: str) -> str:
+    """Return one of the pages of the FANUC Power Mate."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_fanuc_pages.py"))[name]
+    return page()
+
+
 def imc_page(name: str) -> str:
     """Return one of the pages of the iMC card."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_imc_pages.py"))[name]
@@ -45,11 +51,20 @@ def post_events_page() -> str:
     return page()
 
 
+def bosch_ncs_page() -> str:
+    """Return the page of the NCS coupling."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_bosch_ncs.py"))["page"]
+    return page()
+
+
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
     "docs/reference/apci-functions.md": apci_functions_page,
     "docs/reference/apci-system-file.md": apci_system_file_page,
+    "docs/reference/bosch-ncs.md": bosch_ncs_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
+    "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),
     "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),
     "docs/reference/post-events.md": post_events_page,

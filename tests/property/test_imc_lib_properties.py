@@ -68,7 +68,7 @@ POINTERS: dict[str, st.SearchStrategy[Any]] = {
 def arguments(name: str) -> st.SearchStrategy[tuple[Any, ...]]:
     """Return the arguments of a function behind its handle."""
     made: list[st.SearchStrategy[Any]] = []
-    for each in lib.FUNCTIONS[name].passed[1:]:
+    for each in lib.FUNCTIONS[getattr(lib, name).__name__].passed[1:]:  # some have two names
         if isinstance(each.type, Pointer):
             made.append(st.one_of(st.none(), POINTERS[each.c], POINTERS[each.c]))
         elif each.c == "IMCFLOAT":

@@ -10,8 +10,6 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from polycnc.kernel._curve import CLAMP, REPEAT, curve_value, make_curve, set_curve
-from polycnc.kernel._follower import fixed_follower_cycle, make_fixed_follower
 from polycnc.kernel._plant import make_plant, measured, plant_cycle, plant_place
 from polycnc.kernel._servo import PIDF, make_servo, servo_cycle
 from polycnc.kernel._switches import index_crossings
@@ -130,49 +128,6 @@ def test_full_feed_forward_follows_every_ramp_without_error(
         servo_cycle(0, servo, plant, velocity * k * DT, velocity, 0.0, DT)
     first_cycles_error = abs(velocity) * (2.0 * DT + lag_share / kp)
     assert abs(servo.row["following_error"][0]) <= first_cycles_error * math.exp(-0.15 * kp / 2.0) + 1e-9
-
-
-@some
-@given(
-    ratio=st.integers(-(1 << 47), (1 << 47) - 1),
-    moves=st.lists(st.integers(1 - 2**31, 2**31 - 1), min_size=1, max_size=30),
-)
-def test_fixed_gear_is_exact(ratio: int, moves: list[int]) -> None:
-    follower = make_fixed_follower(1)
-    follower.row["ratio"][0] = ratio
-    follower.row["engaged"][0] = 1
-    counts = np.zeros(1, np.int64)
-    fixed_follower_cycle(0, follower, counts, counts)
-    at = 0
-    for move in moves:
-        assume(abs(at + move) < 2**46)
-        at += move
-        expected = at * ratio
-        assume(abs(expected) < 2**94)
-        counts[0] = at
-        assert fixed_follower_cycle(0, follower, counts, counts) == expected >> 32
-        assert follower.row["fraction"][0] == expected & 0xFFFFFFFF
-
-
-@some
-@given(
-    steps=st.lists(between(0.01, 10.0), min_size=1, max_size=12),
-    slaves=st.lists(between(-50.0, 50.0), min_size=13, max_size=13),
-    cubic=st.booleans(),
-    outside=st.sampled_from([CLAMP, REPEAT]),
-    at=between(-30.0, 60.0),
-)
-def test_curve_has_no_jumps(
-    steps: list[float], slaves: list[float], cubic: bool, outside: int, at: float
-) -> None:
-    master = np.concatenate([[0.0], np.cumsum(steps)])
-    slave = np.array(slaves[: len(master)])
-    slopes = np.array(slaves[: len(master)][::-1]) if cubic else None
-    curve = make_curve(1, len(master))
-    set_curve(curve, 0, 0, master, slave, slopes, outside)
-    near = 1e-9
-    steepest = max(100.0 / min(steps), 50.0) * 10.0
-    assert abs(curve_value(0, curve, at + near) - curve_value(0, curve, at)) <= 2.0 * steepest * near + 1e-9
 
 
 @some

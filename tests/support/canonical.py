@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from polycnc.kernel import ARC, LINE, RAPID, WAIT
-from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP, WAIT_EVENT, WAIT_S
+from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP_RAD, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine
 from polycnc.nc import Channel
 
@@ -69,7 +69,7 @@ def queued_steps(machine: Machine, channel: Channel) -> list[Step]:
         k = int(row["base"]) + count % int(row["capacity"])
         segment, geo = state.seg.row[k], state.seg.geo[k]
         end = tuple(float(value) for value in state.seg.end[k])
-        speed = float(segment["feed"]) * 60.0
+        speed = float(segment["feed_mm_s"]) * 60.0
         kind = int(segment["kind"])
         if kind == WAIT:
             if geo[WAIT_EVENT] >= 0:
@@ -79,7 +79,7 @@ def queued_steps(machine: Machine, channel: Channel) -> list[Step]:
         elif kind == ARC:
             p, q = (int(axis) for axis in state.seg.plane[k, :2])
             center = (float(geo[CENTER_P]), float(geo[CENTER_Q]))
-            steps.append(Turn(end, center, (p, q), float(geo[SWEEP]), speed))
+            steps.append(Turn(end, center, (p, q), float(geo[SWEEP_RAD]), speed))
         elif segment["flags"] & RAPID:
             steps.append(Traverse(end))
         else:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from polycnc.kernel import ARC, LINE, RAPID, STOP, WAIT, give_to_path
-from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP, WAIT_EVENT, WAIT_S
+from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP_RAD, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
 from polycnc.nc import Channel, Dialect, ProgramText, line_of, load_dialect
 from polycnc.nc._block_records import LINE_MASK
@@ -109,7 +109,7 @@ def _item(channel: Channel, k: int) -> str:
     names = channel.machine.config.axis_names
     segment, geo = state.seg.row[k], state.seg.geo[k]
     start, end = state.seg.start[k], state.seg.end[k]
-    feed = "" if math.isinf(segment["feed"]) else f" F{number(segment['feed'] * 60.0)}"
+    feed = "" if math.isinf(segment["feed_mm_s"]) else f" F{number(segment['feed_mm_s'] * 60.0)}"
     stop = " stop" if segment["flags"] & STOP else ""
     # An arc names both axes of its plane; a move only what moves.
     named = set(state.seg.plane[k, :2].tolist()) if segment["kind"] == ARC else set()
@@ -126,7 +126,7 @@ def _item(channel: Channel, k: int) -> str:
         case 1:
             p, q = (names[axis] for axis in state.seg.plane[k, :2])
             center = f"{p}{number(geo[CENTER_P])} {q}{number(geo[CENTER_Q])}"
-            return f"arc{point} about {center} by {number(math.degrees(geo[SWEEP]))}{feed}{stop}"
+            return f"arc{point} about {center} by {number(math.degrees(geo[SWEEP_RAD]))}{feed}{stop}"
         case 0:
             return f"{'rapid' if segment['flags'] & RAPID else 'line'}{point}{feed}{stop}"
         case _:
@@ -147,7 +147,7 @@ def queue_bytes(channel: Channel) -> list[bytes]:
     state = channel.machine.state
     tail = int(state.paths.row[channel.path]["tail"])
     seg = state.seg
-    fields = ("length", "feed", "end_speed", "kind", "flags")
+    fields = ("length", "feed_mm_s", "end_speed", "kind", "flags")
     columns = [np.ascontiguousarray(seg.row[name][:tail]) for name in fields]
     columns.append(seg.row["tag"][:tail] & LINE_MASK)  # the numbers of contexts depend on the way
     columns += [seg.start[:tail], seg.end[:tail], seg.geo[:tail], seg.plane[:tail]]
@@ -174,6 +174,6 @@ def channel_state(channel: Channel) -> dict[str, object]:
         "plain": state.plain()._replace(feed_word=0.0),  # of the present block only
         "compensation": dict(vars(stage)) if stage.active else {},
         "messages": [(message.text, message.line, message.count) for message in channel.messages.all()],
-        "tolerance": float(channel.writer.paths.row[channel.path]["tolerance"]),
+        "tolerance": float(channel.writer.paths.row[channel.path]["tolerance_mm"]),
         "events": list(channel.writer.events.values()),
     }

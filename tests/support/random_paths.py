@@ -45,7 +45,7 @@ def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 40
     state.limits.speed[:] = rng.uniform(50.0, 600.0, AXES)
     state.limits.acceleration[:] = rng.uniform(300.0, 8000.0, AXES)
     row = state.paths.row[0]
-    row["tolerance"], row["jerkrel"], row["depth"] = settings.tolerance, settings.jerkrel, settings.depth
+    row["tolerance_mm"], row["jerkrel"], row["depth"] = settings.tolerance, settings.jerkrel, settings.depth
     give_to_path(state, 0)
     return state
 

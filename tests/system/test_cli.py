@@ -318,3 +318,20 @@ def test_warmup_makes_a_job_ready_and_knows_its_jobs(tmp_path: Path) -> None:
     command = [*COMMAND, "run", str(part)]
     done = subprocess.run(command, env=environment(), capture_output=True, text=True, check=True, timeout=240)
     assert done.stderr == ""
+
+
+def test_view_writes_a_page_and_never_over_an_input(part: Path) -> None:
+    printed = polycnc("view", "part.nc", cwd=part).stdout
+    assert printed == "time       2.073 s\nwrote      part.html\n"
+    assert (part / "part.html").read_text("utf-8").startswith("<!doctype html>")
+    (part / "text.html").write_text(PROGRAM)
+    refused = polycnc("view", "text.html", cwd=part, status=2).stderr
+    assert "a view cannot be written to text.html: the run reads that file" in refused
+    assert (part / "text.html").read_text() == PROGRAM
+
+
+def test_view_shows_the_run_up_to_an_alarm(tmp_path: Path) -> None:
+    (tmp_path / "wrong.nc").write_text("G1 X20 F600\nG1 Y5 Q\n")
+    printed = polycnc("view", "wrong.nc", "-o", "w.html", cwd=tmp_path, status=1).stdout
+    assert "alarm: wrong.nc:2:7: 'Q' has no number" in printed
+    assert (tmp_path / "w.html").is_file()

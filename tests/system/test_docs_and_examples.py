@@ -66,7 +66,7 @@ def test_bracket_runs_on_the_example_machine_too() -> None:
 
 
 SCRIPTS = {  # each example script: what it says, what it draws
-    "run_and_plot.py": ("82 blocks take 109.340 s", "bracket.png"),
+    "run_and_plot.py": ("82 blocks take 109.321 s", "bracket.png"),
     "apci_session.py": ("stopped at 151.41 mm by the limit: True\nrecovered: True", "apci_session.png"),
     "imc_session.py": (
         "paused 2476 pulses up the slot\nemergency stop, axis 1 in run: False\nrecovered: True",

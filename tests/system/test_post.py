@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 from polycnc.cli._app import app
-from polycnc.post import CONTROLS, load_control
+from polycnc.post import CONTROLS, load_control, parse_tool_path
 from polycnc.post.tool_path._cl_words import HANDLERS
 from polycnc.post.tool_path._json_path import DOINGS
 from polycnc.runner import post_file
@@ -48,10 +48,26 @@ def test_an_example_part_is_cut_as_meant(control: str, part: str, tmp_path: Path
     assert proof.rapid_cuts == 0
     assert result.ok
     assert result.summary.remarks == ()
-    assert proof.detour_mm < 1e-6 or part == "badge.json"
+    assert proof.detour_mm < 1e-6 or part == "badge.json" or control == "fanuc-mill"  # Z first, then X and Y
     assert proof.path_feed_mm == pytest.approx(result.summary.feed_mm, rel=0.05)  # pecks by moves go farther
     assert 10.0 < proof.run.time_s < 200.0
     assert list(tmp_path.iterdir()) == [output]
+
+
+def test_fanuc_mill_goes_home_before_a_tool_change_and_comes_in_x_and_y_first() -> None:
+    text = "LOADTL/{0}\nSPINDL/RPM,900\nRAPID\nGOTO/7,{0},30\nRAPID\nGOTO/7,{0},2\nFEDRAT/90\nGOTO/7,{0},-1\n"
+    drill = "LOADTL/9\nCYCLE/DRILL,DEPTH,6,CLEAR,3\nGOTO/7,11,0\nCYCLE/OFF\nRAPID\nGOTO/7,11,40\n"
+    path = parse_tool_path(text.format(4) + text.format(5) + drill)
+    blocks = (post_file(path, "fanuc-mill").text or "").splitlines()
+    change = ["M05", "G91 G28 Z0.", "G90 G49"]
+    first, second, third = (
+        blocks.index(f"N{number} T0{tool} M06") for number, tool in ((10, 4), (20, 5), (30, 9))
+    )
+    for place in (first, second, third):
+        assert blocks[place - 3 : place] == change
+    assert blocks[second + 1 : second + 5] == ["S900 M03", "G00 X7. Y5.", "G43 H05 Z30.", "Z2."]
+    assert blocks[third + 2 : third + 5] == ["G00 X7. Y11.", "G43 H09 Z3.", "G99 G81 X7. Y11. Z-6. R3. F90."]
+    assert [block for block in blocks if block.startswith("G00") and "Z" in block] == ["G00 X7. Y11. Z40."]
 
 
 def test_post_prints_the_program_and_tells_the_rest_beside(tmp_path: Path) -> None:
@@ -94,6 +110,8 @@ def test_a_deviation_is_status_1_and_the_program_stays_to_look_at(tmp_path: Path
         (("part.cl", "-c", "din", "--json"), 2, "--json needs --output"),
         (("part.cl", "-c", "din", "-o", "no/such/folder.nc"), 2, "no/such/folder.nc"),
         (("part.cl", "-c", "din", "--verify", "--machine", "none"), 2, "there is no machine 'none'"),
+        (("part.cl", "-c", "din", "--arc-axis", "left"), 2, "'left' is no sense of rotation"),
+        (("part.json", "-c", "din", "--arc-axis", "clockwise"), 2, "is for a file in APT words"),
         (("part.cl", "-c", "bad.toml", "-o", "part.nc"), 2, "bad.toml:2:"),
         (("bad.cl", "-c", "din", "-o", "part.nc"), 1, "bad.cl:2:8: 'X' is no number"),
     ],

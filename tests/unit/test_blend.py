@@ -18,7 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 def queue_of(points: list[tuple[float, float, float]], tolerance: float, flags: int = 0) -> KernelState:
     state = make_state(3, segments=64)
-    state.paths.row["tolerance"] = tolerance
+    state.paths.row["tolerance_mm"] = tolerance
     for tag, point in enumerate(points):
         append_line(state.seg, state.paths, 0, state.limits, np.array(point), 50.0, flags, tag)
     return state

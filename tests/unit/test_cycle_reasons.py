@@ -21,7 +21,6 @@ from polycnc.kernel import (
     SHORT_OVERSHOOT,
     SOFT_LIMIT,
     SWITCH_EDGE,
-    TABLE_EMPTY,
     KernelState,
     advance,
     append_arc,
@@ -35,14 +34,12 @@ from polycnc.kernel import (
     start_path,
     stop_axis,
 )
-from polycnc.kernel._curve import set_curve
-from polycnc.kernel._table import table_push
 
 CYCLE_S = 0.001
 
 
-def state_of(axes: int = 2, *, record_cycles: int = 0, table_rows: int = 1) -> KernelState:
-    state = make_state(axes, segments=256, record_cycles=record_cycles, table_rows=table_rows)
+def state_of(axes: int = 2, *, record_cycles: int = 0) -> KernelState:
+    state = make_state(axes, segments=256, record_cycles=record_cycles)
     state.limits.speed[:] = 100.0
     state.limits.acceleration[:] = 1000.0
     return state
@@ -71,27 +68,14 @@ def run_until(state: KernelState, reason: int) -> int:
 
 
 def test_a_setpoint_is_the_sum_of_its_sources() -> None:
-    state = state_of(3, table_rows=8)
+    state = state_of(3)
     give_to_path(state, 0)
-    append_line(state.seg, state.paths, 0, state.limits, np.array([10.0, 0.0, 0.0]), 50.0, 0, 1)
+    append_line(state.seg, state.paths, 0, state.limits, np.array([10.0, 0.0, 7.25]), 50.0, 0, 1)
     finish(state)
     move(state, 0, 2.5, ADDED)
-    state.follower.slave[0] = 1
-    state.follower.row[0]["master"] = 0
-    state.follower.row[0]["ratio"] = -0.5
-    state.follower.row[0]["engaged"] = 1
-    set_curve(state.curve, 0, 0, np.array([0.0, 20.0]), np.array([0.0, 4.0]))
-    state.curve.slave[0] = 2
-    state.curve.row[0]["engaged"] = 1
-    state.table.axis[0, 0] = 2
-    state.table.running[0] = 1
-    table_push(0, state.table, np.array([[0.1, 0.0, 0.0], [0.3, 0.0, 0.0]]))
+    move(state, 2, -1.75, ADDED)
     advance(state, 2000)
-    # The gear is engaged with the first cycle, when its master has moved by the first samples of both sources.
-    first = 2 * 0.5 * 1000.0 * CYCLE_S**2
-    assert state.setpoint[0] == 12.5
-    assert state.setpoint[1] == pytest.approx(-0.5 * (12.5 - first), abs=1e-12)
-    assert state.setpoint[2] == pytest.approx(0.3 + 12.5 * 4.0 / 20.0, abs=1e-12)
+    assert state.setpoint.tolist() == [12.5, 0.0, 5.5]
 
 
 def test_a_path_begins_where_the_axis_stands_and_hands_it_back_without_a_step() -> None:
@@ -203,12 +187,9 @@ def test_a_following_error_above_its_limit_is_told() -> None:
     assert state.clock[0]["axis"] == 0
 
 
-def test_a_full_recorder_and_an_empty_table_are_told() -> None:
+def test_a_full_recorder_is_told() -> None:
     state = state_of(record_cycles=25)
     assert run_until(state, RECORDER_FULL) == 25
-    state.recorder.filled[0] = 0
-    state.table.running[0] = 1
-    assert run_until(state, TABLE_EMPTY) == 1
 
 
 def test_prescribed_end_speeds_replace_the_look_ahead() -> None:

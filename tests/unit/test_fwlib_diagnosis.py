@@ -7,8 +7,7 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
-
-EW = fwlib.EW
+from polycnc.controllers.fanuc.fwlib import EW
 
 
 def at(control: PowerMate) -> tuple[Any, int]:

@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.fwlib import EW
 
-EW = fwlib.EW
 AT = datetime(2031, 4, 17, 22, 53, 41)
 
 

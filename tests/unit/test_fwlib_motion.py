@@ -10,8 +10,7 @@ import pytest
 from polycnc.cnc import RunState
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
-
-EW = fwlib.EW
+from polycnc.controllers.fanuc.fwlib import EW
 
 
 def at(control: PowerMate) -> tuple[Any, int]:
@@ -288,7 +287,7 @@ def test_a_command_is_refused_whole(
 def give(library: Any, handle: int, number: int, value: int, axis: int = 0) -> EW:
     signal = fwlib.ODBOPDI(axis=axis)
     signal.u.cdata = value
-    return library.cnc_opdi(handle, number, signal)
+    return EW(library.cnc_opdi(handle, number, signal))
 
 
 def started(text: str = "G1 X90. F600") -> tuple[PowerMate, Any, int]:
@@ -482,3 +481,49 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
     before = control.pmc.read("G", 0, 255)
     assert give(library, handle, number, value, axis) is EW[code]
     assert (control.pmc.read("G", 0, 255), state(control)) == (before, RunState.ACTIVE)
+
+
+@pytest.mark.covers(
+    "fanuc.cnc_opdi.err.EW_BUSY", "fanuc.cnc_exebufstat.err.EW_BUSY", "fanuc.cnc_finstate.err.EW_BUSY",
+    "fanuc.cnc_setfin.err.EW_BUSY",
+)  # fmt: skip
+def test_a_busy_control_is_asked_again() -> None:
+    control, library, handle = started()
+    library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))
+    control.axis_motion.finished[0] = True
+    library.nodes[0].fault = EW.EW_BUSY
+    fin = fwlib.ODBFIN(cdata=[1] * 8)
+    answers = [
+        give(library, handle, 2, 0),
+        library.cnc_exebufstat(handle)[0],
+        library.cnc_finstate(handle)[0],
+        library.cnc_setfin(handle, fin),
+    ]
+    assert answers == [EW.EW_BUSY] * 4
+    assert (state(control), control.axis_motion.finished[0]) == (RunState.ACTIVE, True)
+    library.nodes[0].fault = EW.EW_OK
+    assert [library.cnc_finstate(handle)[1].cdata[0], library.cnc_setfin(handle, fin)] == [1, EW.EW_OK]
+    assert (give(library, handle, 2, 0), state(control)) == (EW.EW_OK, RunState.HOLD)
+
+
+def test_a_snapshot_holds_signals_buffers_and_memory() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    library.cnc_incpoint(handle, 2, 1, 1, 1200, idb((1, 4000)))
+    give(library, handle, 10, 70)
+    control.pmc.write("R", 12, b"\x37")
+    control.advance(100)
+    there, before = control.snapshot(), machine(control)
+    control.reset()
+    give(library, handle, 10, 30)
+    control.pmc.write("R", 12, b"\x11")
+    control.advance(50)
+    control.restore(there)
+    assert (machine(control), control.pmc.read("R", 12, 12), control.signals.feed_override) == (
+        before,
+        b"\x37",
+        70,
+    )
+    assert buffers(library, handle)[0][1] == 2
+    control.advance(3000)
+    assert (machine(control)[0], library.cnc_finstate(handle)[1].cdata[1]) == (4000, 2)

@@ -9,8 +9,7 @@ import pytest
 
 from polycnc.cnc import RunState
 from polycnc.controllers.fanuc import PowerMate, fwlib
-
-EW = fwlib.EW
+from polycnc.controllers.fanuc.fwlib import EW
 
 
 def at(control: PowerMate) -> tuple[Any, int]:

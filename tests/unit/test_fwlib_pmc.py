@@ -10,9 +10,9 @@ import pytest
 from polycnc.cnc import Answer, Function, RunState
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
+from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.controllers.fanuc.library._structs_b import iodbpmc
 
-EW = fwlib.EW
 LETTERS = dict(enumerate("GFYXARTKCD"))
 G, F, Y, X, A, R, T, K, C, D = range(10)
 
@@ -27,7 +27,7 @@ def at(control: PowerMate) -> tuple[Any, int]:
 def write(library: Any, handle: int, kind: int, first: int, *data: int) -> EW:
     block = iodbpmc(len(data))(type_a=kind, type_d=0, datano_s=first, datano_e=first + len(data) - 1)
     block.u.cdata = [each - 256 if each > 127 else each for each in data]
-    return library.pmc_wrpmcrng(handle, 8 + len(data), bytes(block)[: 8 + len(data)])
+    return EW(library.pmc_wrpmcrng(handle, 8 + len(data), bytes(block)[: 8 + len(data)]))
 
 
 def read(library: Any, handle: int, kind: int, first: int, last: int | None = None) -> list[int]:
@@ -204,8 +204,8 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))
-    assert library.pmc_rdpmcrng(handle, D, 0, 3, 3, 9)[0] == EW.EW_NOPMC == 1
-    assert write(library, handle, D, 3, 7) == 1
+    assert library.pmc_rdpmcrng(handle, D, 0, 3, 3, 9)[0] is EW.EW_NOPMC
+    assert int(write(library, handle, D, 3, 7)) == 1
 
 
 @pytest.mark.covers(
@@ -252,6 +252,11 @@ def test_feed_override_is_255_less_the_value() -> None:
     write(library, handle, G, 12, 255)
     assert control.control.overrides.feed == 0.0
     assert read(library, handle, G, 12) == [255]
+    control.control.set_overrides(feed=0.4, rapid=0.25)
+    assert (read(library, handle, G, 12), read(library, handle, G, 14)) == ([215], [2])
+    control.select_mode("MDI")
+    write(library, handle, G, 14, 1)
+    assert (control.control.overrides.feed, control.control.overrides.rapid) == (0.4, 0.5)
 
 
 def test_rapid_override_shows_in_the_speed() -> None:
@@ -292,7 +297,7 @@ def test_start_hold_and_reset_signals() -> None:
     control.programs.memory.create("O0004", b"O0004\nG1 X80. F600\n")
     control.select_program(4)
     write(library, handle, G, 7, 4)
-    assert control.control.channels[0].run_state is RunState.READY
+    assert control.status().channel.run_state is RunState.READY
     write(library, handle, G, 7, 0)
     control.advance(50)
     assert (control.control.channels[0].run_state, read(library, handle, F, 0)[0] & 0xB0) == (
@@ -316,7 +321,7 @@ def test_start_hold_and_reset_signals() -> None:
     control.advance(100)
     assert control.positions.read()[0].machine > held
     write(library, handle, G, 8, 0xB0)  # ERS
-    assert control.control.channels[0].run_state is RunState.RESET
+    assert control.control.status().channel.run_state is RunState.RESET
 
 
 def test_switches_and_keys_are_signals() -> None:

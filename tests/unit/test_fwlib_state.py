@@ -53,7 +53,7 @@ def test_system_of_a_power_mate_d() -> None:
     assert (system.max_axis, system.mt_type, system.axes) == (2, b" D", b" 1")
 
 
-MODULES = {
+MODULES: dict[str, tuple[str, dict[int, Any]]] = {
     "frmmin": ("from_module", {-1: "not mounted", 0: "2 MB", 2: "4 MB"}),
     "drmmin": ("dram_module", {-1: "not mounted", 0: "2 MB", 1: "2.5 MB", 3: "3 MB"}),
     "srmmin": (
@@ -233,6 +233,17 @@ def test_alarm_and_low_battery() -> None:
     assert library.cnc_statinfo(handle)[1].alarm == 2
     control.raise_alarm(85, "OVERRUN")
     assert library.cnc_statinfo(handle)[1].alarm == 1
+
+
+@pytest.mark.covers("fanuc.ODBST.edit.3")
+def test_a_program_that_goes_out_shows_as_output() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    put(control, 3, "G0 X1.")
+    assert library.cnc_upstart(handle, 3) == 0
+    assert library.cnc_statinfo(handle)[1].edit == 3
+    assert library.cnc_upend(handle) == 0
+    assert library.cnc_statinfo(handle)[1].edit == 0
 
 
 @pytest.mark.covers(

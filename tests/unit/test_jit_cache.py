@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import cast
 
 import pytest
@@ -231,3 +232,16 @@ def test_what_cannot_be_told_is_refused() -> None:
     odd = compiled(cast("Callable[[int], int]", namespace["odd"]))
     with pytest.raises(NotKnownError, match="cannot be told"):
         Fingerprints().of(odd)
+
+
+def test_a_constant_named_by_its_module_counts() -> None:
+    addresses = ModuleType("polycnc.example_addresses")
+    namespace: dict[str, object] = {"__name__": "polycnc.example", "addr": addresses}
+    exec("def moved(x):\n    return x + addr.BASE\n", namespace)
+
+    def digest(base: int, other: int) -> str:
+        vars(addresses).update(BASE=base, OTHER=other)
+        return Fingerprints().of(compiled(cast("Callable[[int], int]", namespace["moved"])))
+
+    assert digest(17, 2) == digest(17, 3)
+    assert digest(17, 2) != digest(18, 2)

@@ -16,6 +16,7 @@ from polycnc.post import (
     program_file,
     shipped_text,
 )
+from support.post_controls import control, posted
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 SMALL = """\
@@ -352,3 +353,37 @@ def test_the_reference_page_explains_every_key() -> None:
     assert all(line.count("|") >= 4 for line in page.splitlines() if line.startswith("| `"))
     assert "{" + "nested_ifs" not in page
     assert "up to 5 `&&` and `||`" in page
+
+
+def test_an_unknown_dialect_is_found_when_the_file_is_read() -> None:
+    with pytest.raises(ConfigurationError) as caught:
+        parse_control("[parameters]\nname = 'x'\ndialect = 'fanuk'\n[nc_macros]\n", "mine.toml")
+    assert caught.value.what == "there is no dialect 'fanuk'"
+    assert str(caught.value.position) == "mine.toml:3:1"
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("[nc_macros]\nSTOP = '''\nIF(S>0)\n(Grün)\nENDIF\n'''\n", "mine.toml:6:4"),
+        ('[nc_macros]\nSTOP = """\n"(Grün)"\n"""\n', "mine.toml:5:5"),
+        ("[nc_macros]\nSTOP = '''\n<ENDOFLINE=\"ü\">\nM0\n'''\n", "mine.toml:5:1"),
+        ("[nc_code]\nM00 = { code = 'Mü' }\n[m_code]\nM00 = {}\n[nc_macros]\n", "mine.toml:4:9"),
+        ("[function_variables]\nX = { format = 'ü%d' }\n[nc_macros]\n", "mine.toml:4:7"),
+    ],
+)
+def test_a_character_that_the_encoding_has_not_is_found_when_the_file_is_read(text: str, place: str) -> None:
+    head = "[parameters]\nencoding = '{}'\n"
+    with pytest.raises(ConfigurationError) as caught:
+        parse_control(head.format("ascii") + text, "mine.toml")
+    assert "the character 'ü' cannot be written in ascii" in caught.value.what
+    assert str(caught.value.position) == place
+    parse_control(head.format("utf-8") + text, "mine.toml")
+
+
+@pytest.mark.parametrize(
+    "line", ["<X=5>  ", "  <X=5>", "<X=5> \t<Y=2>", "&X*X&  ", "@1@ <X=5> ", "!-G17!   "]
+)
+def test_blanks_beside_what_writes_nothing_make_no_block(line: str) -> None:
+    used = control({"sequence_place": 1}, {"STOP": f"!*G17!\n{line}", "PROGRAM_END": "", "PROGRAM_START": ""})
+    assert posted("STOP\n", used)[0] == []

@@ -106,7 +106,7 @@ def test_a_tool_path_without_operations_is_one() -> None:
     assert [macro for macro, _ in calls_of("STOP\n")[0]] == [
         *("PROGRAM_START", "PATH_START", "STOP", "PATH_END", "PROGRAM_END")
     ]
-    assert [macro for macro, _ in calls_of("")[0]] == ["PROGRAM_START", "PROGRAM_END"]
+    assert [macro for macro, _ in calls_of("PARTNO A\n")[0]] == ["PROGRAM_START", "PROGRAM_END"]
 
 
 def test_texts_of_the_program() -> None:
@@ -138,12 +138,12 @@ def test_toolchange_is_the_tool_number_as_the_control_writes_it() -> None:
 
 
 def test_words_of_the_spindle() -> None:
-    assert words(EVERYTHING, "SPINDLE_CW") == {"S": 1200.0, "SPINDLEMODE": 97.0}
-    assert words(EVERYTHING, "SPINDLE_CCW") == {"S": 600.0, "SPINDLEMODE": 97.0}
+    assert words(EVERYTHING, "SPINDLE_CW") == {"S": 1200.0, "SPINDLEMODE": 97.0, "MAXRPM": 0.0}
+    assert words(EVERYTHING, "SPINDLE_CCW") == {"S": 600.0, "SPINDLEMODE": 97.0, "MAXRPM": 0.0}
     again = calls_of("SPINDL/RPM,500,CCLW\nSPINDL/OFF\nSPINDL/ON\n")[0][2:5]
     assert [macro for macro, _ in again] == ["SPINDLE_CCW", "SPINDLE_OFF", "SPINDLE_CCW"]
     assert again[2][1]["S"] == 500.0
-    assert words("SPINDL/SMM,180,CLW\n", "SPINDLE_CW") == {"S": 180.0, "SPINDLEMODE": 96.0}
+    assert words("SPINDL/SMM,180,CLW\n", "SPINDLE_CW") == {"S": 180.0, "SPINDLEMODE": 96.0, "MAXRPM": 0.0}
     assert words("SPINDL/SFM,600,CLW\n", "SPINDLE_CW")["S"] == pytest.approx(182.88)
     assert words("SPINDL/SFM,600,CLW\n", "SPINDLE_CW", units="inch")["S"] == pytest.approx(600.0)
     with pytest.raises(ProgramError, match="before its speed is known"):

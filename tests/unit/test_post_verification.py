@@ -9,13 +9,16 @@ import numpy as np
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.post import ControlFile, Sweep, parse_tool_path, sweep_tool_path
-from polycnc.runner import PostResult, post_file
+from polycnc.machine import MachineConfig, ToolConfig, load_machine
+from polycnc.post import ControlFile, Sweep, parse_control, parse_tool_path, shipped_text, sweep_tool_path
+from polycnc.runner import PostResult, PostVerification, post_file, run
 from polycnc.runner._post_geometry import Moves
 from support.post_controls import control
 
 TRIANGLE = "FROM/0,0,0\nRAPID\nGOTO/0,0,5\nFEDRAT/3000\nGOTO/10,0,0\nGOTO/10,10,0\nGOTO/0,0,0\nFINI\n"
-ROUND = "FROM/10,0,0\nFEDRAT/3000\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nGOTO/0,20,0\nFINI\n"
+ROUND = (
+    "FROM/10,0,0\nRAPID\nGOTO/10,0,0\nFEDRAT/3000\nCIRCLE/0,0,0,0,0,1,10\nGOTO/0,10,0\nGOTO/0,20,0\nFINI\n"
+)
 
 
 def moves_of(*sweeps: Sweep) -> Moves:
@@ -66,10 +69,10 @@ def test_distance_from_a_helix() -> None:
 
 def test_witnesses_lie_on_their_moves() -> None:
     sweeps = list(sweep_tool_path(parse_tool_path(ROUND)))
-    moves = Moves(sweeps, 6)
+    moves = Moves(sweeps, 8)
     owner, points = moves.witnesses()
-    assert np.bincount(owner).tolist() == [8, 1]
-    assert moves.distances(points, owner) == pytest.approx(np.zeros(9), abs=1e-12)
+    assert np.bincount(owner).tolist() == [1, 8, 1]
+    assert moves.distances(points, owner) == pytest.approx(np.zeros(10), abs=1e-12)
 
 
 def test_moves_of_a_hole_are_what_the_cycle_means() -> None:
@@ -191,3 +194,56 @@ def test_a_character_that_the_encoding_lacks(tmp_path: Path) -> None:
     with pytest.raises(ProgramError, match="cannot be written in ascii"):
         post_file(parse_tool_path("PPRINT Grün\n"), used, tmp_path / "part.nc")
     assert list(tmp_path.iterdir()) == []
+
+
+# A plate on a real machine: its zero at 100, 50, -300, and a tool of 120 mm, whose gauge line is what the axes move.
+OFFSETS = {"G54": {"X": 100.0, "Y": 50.0, "Z": -300.0}}
+TOOLS = {3: ToolConfig(length_mm=120.0, radius_mm=4.0)}
+PLATE = "LOADTL/3\nSPINDL/RPM,900,CLW\nRAPID\nGOTO/7,3,30\nFEDRAT/900\nGOTO/7,3,-2\nGOTO/37,3,-2\nRAPID\nGOTO/37,3,30\n"
+
+
+def real_machine(**changed: object) -> MachineConfig:
+    """Return a mill as it stands in a workshop, with travels that PLATE fits into when it is set up right."""
+    mill = load_machine("mill3")
+    limits = {"X": (0.0, 500.0), "Y": (0.0, 400.0), "Z": (-200.0, 0.0)}
+    axes = tuple(axis.model_copy(update={"soft_limits_mm": limits[axis.name]}) for axis in mill.axes)
+    return mill.model_copy(update={"axes": axes, "offsets": OFFSETS, "tools": TOOLS, **changed})
+
+
+def on(machine: MachineConfig, program: str = "fanuc-mill", text: str = PLATE) -> PostVerification:
+    """Return the proof of a plate on a machine."""
+    used: str | ControlFile = program
+    if program != "fanuc-mill":
+        used = parse_control(shipped_text("fanuc-mill").replace(*program.split("|")), "mine.toml")
+    proof = post_file(parse_tool_path(text, "plate.cl"), used, verify=True, machine=machine).verification
+    assert proof is not None
+    return proof
+
+
+def test_the_proof_is_on_the_machine_as_it_stands() -> None:
+    machine = real_machine()
+    proof = on(machine)
+    assert proof.run.alarms == []
+    assert proof.deviation_mm < 1e-4
+    assert proof.ok
+    low = proof.run.extents_mm["Z"][0]
+    assert low == pytest.approx(-300.0 + 120.0 - 2.0)  # the real run: zero, tool length, depth
+    assert proof.run.extents_mm["X"][1] == pytest.approx(137.0)
+    result = post_file(parse_tool_path(PLATE, "plate.cl"), "fanuc-mill")
+    assert result.text is not None
+    real = run(result.text, machine, "fanuc")
+    assert (proof.run.time_s, proof.run.cycles) == (real.time_s, real.cycles)
+
+
+def test_a_part_that_the_machine_cannot_reach_is_no_proof() -> None:
+    short = {3: ToolConfig(length_mm=20.0)}
+    proof = on(real_machine(tools=short))
+    assert not proof.ok
+    assert "Z" in str(proof.run.alarms[0])
+
+
+def test_a_length_that_is_not_compensated_is_found() -> None:
+    proof = on(real_machine(offsets={"G54": {"X": 100.0, "Y": 50.0, "Z": -100.0}}), "!G43!$H$$Z$|$Z$")
+    assert proof.run.alarms == []
+    assert not proof.ok
+    assert proof.off_path.mm == pytest.approx(120.0, rel=1e-3)

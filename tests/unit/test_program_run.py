@@ -7,11 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import UsageError
-from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Call, Group, ProgramText, load_dialect
-from support.programs import FIVE, MILL
+from polycnc.nc import Call, Group, ProgramText
+from support.programs import FIVE
+from support.runs import program_run, stands, to_the_end, undisturbed
 
 CONTOUR = """\
 N10 G0 X12.5 Y-7.25 Z3
@@ -19,30 +18,6 @@ N20 G1 X31 Y4.5 F1450
 N30 Y17.75
 N40 X-8.125 F900
 """
-
-
-def program_run(
-    program: str | ProgramText, config: MachineConfig = MILL, dialect: str = "din", **options: object
-) -> ProgramRun:
-    text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
-    return ProgramRun(Machine(config), text, load_dialect(dialect), options=RunOptions(**options))  # type: ignore[arg-type]
-
-
-def stands(run: ProgramRun) -> str:
-    return run.state.name
-
-
-def to_the_end(run: ProgramRun) -> int:
-    cycles = 0
-    while run.active:
-        cycles += run.advance(100_000)
-    return cycles
-
-
-def undisturbed(program: str | ProgramText, config: MachineConfig = MILL) -> tuple[int, dict[str, float]]:
-    run = program_run(program, config, stands_at_stops=False)
-    run.start()
-    return to_the_end(run), run.machine.setpoints
 
 
 # --- from start to end
@@ -307,7 +282,8 @@ def test_single_block_stops_at_the_end_of_every_block_on_its_end_point() -> None
 
 
 def test_single_block_switched_on_in_motion_stops_at_the_next_end_that_can_be_reached() -> None:
-    # Blocks of 0.5 mm at 100 mm/s: braking takes 100 ** 2 / (2 * 5000) = 1 mm.
+    # Blocks of 0.5 mm at 100 mm/s: braking takes 100 ** 2 / (2 * 5000) = 1 mm, and four times that with the part of
+    # the acceleration that is left whatever corners come.
     program = "G1 F6000 X10\n" + "".join(f"X{10 + 0.5 * n:g}\n" for n in range(1, 61))
     run = program_run(program)
     run.start()
@@ -318,7 +294,7 @@ def test_single_block_switched_on_in_motion_stops_at_the_next_end_that_can_be_re
     assert stands(run) == "STOPPED_AT_BLOCK"
     stopped = run.position["X"]
     assert stopped * 2.0 == math.floor(stopped * 2.0)
-    assert at + 1.0 < stopped < at + 3.5
+    assert at + 1.0 < stopped < at + 6.0
     run.single_block = False
     run.resume()
     to_the_end(run)

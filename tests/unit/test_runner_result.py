@@ -188,3 +188,34 @@ def test_skip_levels() -> None:
 )
 def test_time_text(seconds: float, text: str) -> None:
     assert time_text(seconds) == text
+
+
+def test_program_stops_are_passed_and_told() -> None:
+    result = polycnc.run("G1 X5 F600\nM0\nX7\nM1\nX9\nM0\n")
+    assert result.end_position_mm["X"] == 9.0
+    assert [(message.text, message.line, message.count) for message in result.messages] == [
+        ("M0: program stop, passed without stopping", 2, 2),
+        ("M1: optional stop, passed without stopping", 4, 1),
+    ]
+    assert [event.word for event in result.events] == ["M0", "M1", "M0"]
+
+
+@pytest.mark.parametrize("trace", [False, True])
+def test_a_run_may_end_at_the_first_m0(trace: bool) -> None:
+    result = polycnc.run("G1 X5 F600\nM1\nX7\nM0\nX9\n", stop_at_m0=True, trace=trace)
+    assert result.ok
+    assert result.end_position_mm["X"] == 7.0
+    assert [message.text for message in result.messages] == [
+        "M1: optional stop, passed without stopping",
+        "M0: program stop, the run stops here",
+    ]
+
+
+def test_time_per_tool_is_in_the_result_and_in_its_json() -> None:
+    result = polycnc.run("G1 X5 F600\nT3 M6\nX25 F1200\nG0 X0\n")
+    assert list(result.tool_times) == [0, 3]
+    assert sum(time.cutting_s for time in result.tool_times.values()) == pytest.approx(result.cutting_time_s)
+    assert result.tool_times[3].rapid_s == pytest.approx(result.rapid_time_s)
+    assert json.loads(json.dumps(result.as_dict()))["tool_times"]["3"]["rapid_time_s"] == pytest.approx(
+        result.rapid_time_s
+    )

@@ -7,7 +7,7 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _machine, _post, _run, _sap, _serve, _warmup
+from polycnc.cli import _check, _conformance, _debug, _machine, _post, _run, _sap, _serve, _view, _warmup
 from polycnc.cli._errors import end_on_termination, guarded
 from polycnc.cli._output import print_remarks
 
@@ -39,6 +39,12 @@ def _options(
 
 
 app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
+app.command("view", short_help="Write a page that shows a run: path, time, blocks, tools.")(
+    guarded(_view.view_command)
+)
+app.command("debug", short_help="Execute a program block by block and look at it.")(
+    guarded(_debug.debug_command)
+)
 app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
 app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))

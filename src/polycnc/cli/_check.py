@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from polycnc.cli._output import bold, print_json, say
-from polycnc.cli._run import DIALECT, MACHINE
+from polycnc.cli._run import DIALECT, MACHINE, ROOT
 
 if TYPE_CHECKING:
     from polycnc.errors import ProgramError
@@ -19,6 +19,7 @@ def check_command(
     programs: Annotated[list[Path], typer.Argument(help="The part programs.", metavar="PROGRAM")],
     machine: Annotated[str | None, MACHINE] = None,
     dialect: Annotated[str | None, DIALECT] = None,
+    root: Annotated[Path | None, ROOT] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
     """Report every error of part programs, each with its place and what to do."""
@@ -27,7 +28,7 @@ def check_command(
 
     texts = [runner.program_text(program) for program in programs]
     config = load_machine(machine)
-    found = {text.name: runner.check(text, config, dialect) for text in texts}
+    found = {text.name: runner.check(text, config, dialect, root=root) for text in texts}
     total = sum(map(len, found.values()))
     if as_json:
         print_json(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
@@ -13,6 +13,7 @@ from polycnc.cli._output import bold, bold_red, print_json, progress_bar, say, s
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
+    from polycnc.post import ArcAxis
     from polycnc.runner import PostResult, PostVerification
 
 _TOLERANCE_MM = 1e-3
@@ -56,6 +57,14 @@ def post_command(
             metavar="FILE|PRESET",
         ),
     ] = None,
+    arc_axis: Annotated[
+        str | None,
+        typer.Option(
+            help="What the axes of CIRCLE/ are for: counterclockwise (right-hand rule) or clockwise; "
+            "default: clockwise in a CLSF of NX.",
+            metavar="SENSE",
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print one JSON object instead of text; needs --output.")
     ] = False,
@@ -75,6 +84,10 @@ def post_command(
         return
     if tool_path is None:
         raise UsageError("no tool path", hint="Name the file of a tool path.")
+    if arc_axis not in (None, "auto", "clockwise", "counterclockwise"):
+        raise UsageError(
+            f"'{arc_axis}' is no sense of rotation", hint="Write --arc-axis clockwise or counterclockwise."
+        )
     if as_json and output is None:
         raise UsageError("--json needs --output", hint="Name a file for the program, with -o.")
     with progress_bar(tool_path.name) as bar:
@@ -85,6 +98,7 @@ def post_command(
             verify=verify,
             machine=machine,
             tolerance_mm=tolerance,
+            arc_axis=cast("ArcAxis | None", arc_axis),
             progress=bar,
         )
     if as_json:
@@ -136,6 +150,14 @@ def _report_proof(proof: PostVerification, tell: Callable[..., None]) -> None:
         tell(f"{what:<10} {found.mm:.6f} mm{at}")
     if proof.rapid_cuts:
         tell(f"rapids     where the tool path has feed: {proof.rapid_cuts} records")
+    if proof.arc_remark:
+        tell(proof.arc_remark, lead=bold_red("arcs       "))
+    if proof.deviation_mm <= proof.tolerance_mm and proof.arc_remark and not proof.rapid_cuts:
+        tell(
+            f": the arcs of {proof.run.program} and its tool path seem to turn the wrong way",
+            lead=bold_red("not proven"),
+        )
+        return
     verdict = bold("verified") if proof.ok else bold_red("deviates")
     tell(
         f" within {proof.tolerance_mm:g} mm" if proof.ok else f": more than {proof.tolerance_mm:g} mm",

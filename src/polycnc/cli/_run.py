@@ -29,6 +29,11 @@ DIALECT = typer.Option(
     help="The dialect: din, fanuc, bosch or a TOML file (default: by the program's extension, else din).",
     metavar="FILE|NAME",
 )
+ROOT = typer.Option(
+    "--root",
+    help="The control's folder: sub-programs, files and permanent variables (default: the program's).",
+    metavar="DIR",
+)
 _NUMBERS = (1, 2, 3)
 
 
@@ -59,6 +64,18 @@ def run_command(
             min=1,
             max=9,
         ),
+    ] = None,
+    stop_at_m0: Annotated[
+        bool, typer.Option("--stop-at-m0", help="End the run at the first M0 instead of passing it.")
+    ] = False,
+    root: Annotated[Path | None, ROOT] = None,
+    keys: Annotated[
+        Path | None,
+        typer.Option(help="The keys that are pressed when a program asks, one a line.", metavar="FILE"),
+    ] = None,
+    screen: Annotated[
+        Path | None,
+        typer.Option(help="Write what the program shows to a .txt, .svg or .png file.", metavar="FILE"),
     ] = None,
 ) -> None:
     """Run a part program on a simulated machine and say how long it takes and where it goes."""
@@ -91,8 +108,12 @@ def run_command(
                 servo=servo,
                 check=False,
                 skip_levels=skip or (),
+                stop_at_m0=stop_at_m0,
                 rows=rows if sinks else None,
                 progress=bar,
+                root=root,
+                keys=() if keys is None else runner.read_keys(keys),
+                screen=screen,
             )
         if picture is not None and plot is not None:
             runner.plot(picture.with_trace(result), plot)
@@ -100,7 +121,7 @@ def run_command(
         print_json(result.as_dict())
     else:
         _summary(result)
-        for path in (trace, plot):
+        for path in (trace, plot, screen):
             if path is not None:
                 say(f"wrote      {path}")
     sys.exit(0 if result.ok else 1)

@@ -15,6 +15,7 @@ from polycnc.cnc._alarms import (
 from polycnc.cnc._control import Control, ControlEvent
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import AfterManual, ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
 from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
 from polycnc.cnc._program_edit import ProgramEdit
@@ -24,8 +25,10 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
+from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
 from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
+from polycnc.cnc._tool_times import ToolTime
 
 __all__ = [
     "ALARMS",
@@ -38,6 +41,7 @@ __all__ = [
     "Answer",
     "AxisMotion",
     "AxisStatus",
+    "Breakpoint",
     "ChannelStatus",
     "ClearedBy",
     "Control",
@@ -45,6 +49,7 @@ __all__ = [
     "ControlData",
     "ControlError",
     "ControlEvent",
+    "ControlSnapshot",
     "Emergency",
     "Feed",
     "Found",
@@ -80,11 +85,13 @@ __all__ = [
     "SpindleMotion",
     "SpindleState",
     "Status",
+    "Step",
     "Switches",
     "Timer",
     "Timers",
     "TimersState",
     "Tool",
     "ToolTable",
+    "ToolTime",
     "first_comment",
 ]

@@ -16,20 +16,32 @@ from typing import Any, TypeAlias
 from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot, copied, nested
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import Function, PlcModel, Script
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import ProgramMemory
+from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
-from polycnc.cnc._status import Emergency, Status
-from polycnc.cnc._status_reading import read_status
+from polycnc.cnc._status import AxisStatus, Emergency, Status
+from polycnc.cnc._status_reading import read_axes, read_status
+from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.kernel import FEED_S
-from polycnc.machine import AnyAxis, Machine, MachineConfig, Reason, Store, load_machine
-from polycnc.nc import Dialect, Event, ProgramText, load_dialect
+from polycnc.machine import (
+    AnyAxis,
+    Machine,
+    MachineConfig,
+    Reason,
+    Snapshot,
+    SnapshotError,
+    Store,
+    load_machine,
+)
+from polycnc.nc import Dialect, Event, Group, MAction, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
 _MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
@@ -37,6 +49,11 @@ _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
 _FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
+
+
+_ACTIONS = {action.title: action for action in MAction}
+_STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
+_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
 
 
 class ControlEvent(IntFlag):
@@ -52,8 +69,8 @@ class ControlEvent(IntFlag):
 class Control:
     """A numerical control on a machine of its own.
 
-    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories. `script` tells how
-    the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
+    `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
     """
 
     def __init__(
@@ -86,13 +103,14 @@ class Control:
         self.manual = ManualMotion(
             self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
         )
+        self._live = self._live_config()
         self.channels = tuple(
             ControlChannel(
                 self.machine,
                 path,
                 self.dialect,
                 self.manual,
-                config=self._live_config(),
+                config=self._live,
                 library=self._sub_program,
                 dry_run_mm_min=self.data.dry_run_mm_min,
                 on_event=self._meet,
@@ -104,10 +122,11 @@ class Control:
         self._emergency = Emergency.OFF
         self._overrides = Overrides()
         self._switches = Switches()
-        self._mdi: dict[int, ProgramText] = {}
         self._relative_zero = [0.0] * len(machine_file.axes)
         self._edits: list[ProgramEdit] = []
         self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
+        surface = [code for code, name in self.dialect.g.items() if name == "constant_surface_speed"]
+        self._surface_speed = f"G{surface[0]}" if surface else ""
         self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
 
@@ -129,8 +148,9 @@ class Control:
             raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
         self.machine.change_axes(axes)
         self.manual.change_axes(axes)
+        self._live = self._live_config()
         for channel in self.channels:
-            channel.change_config(self._live_config(), self.dialect)
+            channel.change_config(self._live, self.dialect)
 
     def change_dialect(self, dialect: Dialect) -> None:
         """Let programs be read in another dialect, or with other settings of it, from now on.
@@ -142,7 +162,7 @@ class Control:
             self._check_over(channel)
         self.dialect = dialect
         for channel in self.channels:
-            channel.change_config(self._live_config(), dialect)
+            channel.change_config(self._live, dialect)
 
     @property
     def mode(self) -> Mode:
@@ -215,17 +235,20 @@ class Control:
         single_block: bool | None = None,
         optional_stop: bool | None = None,
         dry_run: bool | None = None,
+        machine_lock: bool | None = None,
         block_delete: frozenset[int] | None = None,
     ) -> None:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9.
+            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
+                interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
             "optional_stop": optional_stop,
             "dry_run": dry_run,
+            "machine_lock": machine_lock,
             "block_delete": block_delete,
         }
         wanted = replace(self._switches, **{name: each for name, each in given.items() if each is not None})
@@ -235,6 +258,10 @@ class Control:
                 f"{sorted(wanted.block_delete)} are not skip marks",
                 hint="Give numbers from 1 to 9.",
             )
+        if wanted.machine_lock != self._switches.machine_lock:
+            for channel in self.channels:
+                self._check_over(channel)
+                channel.check_rest()
         self._switches = wanted
         for channel in self.channels:
             channel.set_switches(wanted)
@@ -264,10 +291,12 @@ class Control:
         self._check_over(chosen)
         if not text.strip():
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
-        self._mdi[channel] = ProgramText.from_text(text, _MDI_NAME)
+        chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
-    def cycle_start(self, *, channel: int = 0) -> None:
-        """Begin the selected program, the MDI text, or go on where a program is interrupted.
+    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
+        """Begin the selected program or the MDI text at a line, or go on where a program is interrupted.
+
+        `step` says how far.
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
@@ -291,9 +320,15 @@ class Control:
                     f"the program that is interrupted was started in {Mode.MDI if chosen.is_mdi else Mode.AUTO}",
                     hint="Go on in that mode, or reset it.",
                 )
-            chosen.go_on(self.data.after_manual)
+            chosen.go_on(self.data.after_manual, step)
         else:
-            chosen.begin(self._to_begin(chosen, channel, is_mdi), self._switches, self._overrides, mdi=is_mdi)
+            text = self._to_begin(chosen, is_mdi)
+            if not 1 <= line <= text.content.count(b"\n") + 1:
+                raise ControlError(
+                    Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is."
+                )
+            chosen.begin(text, self._switches, self._overrides, mdi=is_mdi, step=step, line=line)
+            self._note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE
@@ -498,7 +533,7 @@ class Control:
             cutting_s=self._cutting_s() - cutting_s,
             tool=self._tool(),
         )
-        self._look(passed)
+        self._look(passed, states)
         if [channel.run_state for channel in self.channels] != states:
             self._raised |= ControlEvent.RUN_STATE
         if any(alarm not in alarms for alarm in self.alarms.active):
@@ -507,15 +542,14 @@ class Control:
             self._raised |= ControlEvent.MANUAL
         return passed
 
-    def _look(self, passed: int) -> None:
-        """Look at what the last cycle has brought."""
+    def _look(self, passed: int, states: list[RunState]) -> None:
+        """Look at what the last cycles have brought since the channels had these states."""
         alarms = self.alarms.active
         self.manual.after()
         for number, channel in enumerate(self.channels):
-            before = channel.run_state
             if channel.run is not None and not channel.returning:
                 channel.run.after_cycles(passed)
-            if before is not channel.run_state:
+            if channel.run_state is not states[number]:
                 self._note_end(channel)
             channel.look()
             self._take_answers(number, channel)
@@ -554,18 +588,30 @@ class Control:
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
         block = channel.executed
-        serials = []
-        for letter, number in functions_of(event.word):
-            if letter == "S" and block is not None:
-                self.spindle.turn(rpm=block.modal.speed)
-            serials.append(self.plc.strobe(Function(letter), number, default_s=0.0))
-        if block is not None and self.spindle.state().direction != block.modal.spindle_direction:
-            self.spindle.turn(rpm=block.modal.speed, direction=block.modal.spindle_direction)
+        if block is not None:
+            modal = block.modal
+            # Constant surface speed has no speed of its own here: the spindle keeps the last one.
+            rpm = None if modal.g.get(Group.SPINDLE_MODE) == self._surface_speed else modal.speed
+            self.spindle.turn(rpm=rpm, direction=modal.spindle_direction)
+        serials = [
+            self.plc.strobe(Function(letter), number, default_s=self._function_s(letter, number))
+            for letter, number in functions_of(event.word)
+        ]
         self._raised |= ControlEvent.FUNCTION
         waiting = [serial for serial in serials if not self.plc.finished(serial)]
         if waiting:
             self._waiting.setdefault(channel.path, []).extend(waiting)
         return bool(waiting)
+
+    def _function_s(self, letter: str, number: int) -> float:
+        """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
+        times = self.machine.config.times
+        action = _ACTIONS.get(self.dialect.m.get(f"{number}", ""))
+        if letter != "M" or action in _STOPS:
+            return 0.0
+        if action in _SPINDLE:
+            return max(0, self.spindle.reached_cycle() - self.clock.cycles) * self.clock.cycle_s
+        return times.tool_change_s if action is MAction.TOOL_CHANGE else times.auxiliary_s
 
     def waiting_functions(self, path: int) -> tuple[str, ...]:
         """Return the auxiliary functions, like "M8", that a channel waits for."""
@@ -586,6 +632,95 @@ class Control:
     def status(self) -> Status:
         """Return what the control is and does in the present cycle."""
         return read_status(self)
+
+    def axes(self) -> dict[str, AxisStatus]:
+        """Return the axes in the present cycle, as the status has them, for those who read them often."""
+        return read_axes(self)
+
+    def snapshot(self) -> ControlSnapshot:
+        """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.
+
+        Raises:
+            SnapshotError: A program is under way whose language cannot be copied.
+        """
+        under_way = any(channel.programs or not channel.at_rest for channel in self.channels)
+        runs = tuple(copied(channel.run, self._shared()) for channel in self.channels)
+        return ControlSnapshot.of(self._made_from, self.machine.snapshot(), self._moment(), runs, under_way)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this control, or without a program under way of one made alike.
+
+        Raises:
+            SnapshotError: It is of something else, or damaged; nothing has changed.
+        """
+        if not isinstance(snapshot, ControlSnapshot):
+            raise SnapshotError(
+                f"this is a snapshot of {snapshot.device}, not of a control",
+                hint="restore it where it was taken",
+            )
+        snapshot.check("control", self._made_from, ())
+        moment: ControlMoment = snapshot.moment()
+        if any(run is not None and run.machine is not self.machine for run in snapshot.runs):
+            raise SnapshotError(
+                "a program under way was part of another control", hint="restore it where it was taken"
+            )
+        runs = tuple(copied(run, self._shared()) for run in snapshot.runs) or (None,) * len(self.channels)
+        self.machine.restore(snapshot.machine)
+        for edit in self._edits:
+            edit.close()
+        self._put_back(moment, runs)
+
+    @property
+    def _made_from(self) -> str:
+        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {len(self.channels)} {self.data!r}"
+
+    def _shared(self) -> list[object]:
+        """Return what the copy of a run shares with it."""
+        return [
+            self,
+            self.machine,
+            self.dialect,
+            self.machine.config,
+            self._live,
+            *nested(self.machine.state),
+        ]
+
+    def _moment(self) -> ControlMoment:
+        return ControlMoment(
+            mode=self._mode,
+            emergency=self._emergency,
+            overrides=self._overrides,
+            switches=self._switches,
+            relative_zero=self.relative_zero,
+            raised=int(self._raised),
+            channels=tuple(channel.moment(self._waiting.get(channel.path, ())) for channel in self.channels),
+            manual=self.manual.snapshot(),
+            spindle=self.spindle.snapshot(),
+            plc=self.plc.snapshot(),
+            alarms=self.alarms.snapshot(),
+            messages=self.messages.snapshot(),
+            timers=self.timers.snapshot(),
+        )
+
+    def _put_back(self, moment: ControlMoment, runs: tuple[ProgramRun | None, ...]) -> None:
+        self._mode = moment.mode
+        self._emergency = moment.emergency
+        self._overrides = moment.overrides
+        self._switches = moment.switches
+        self._relative_zero = list(moment.relative_zero)
+        self._raised = ControlEvent(moment.raised)
+        self._waiting = {}
+        for channel, kept, run in zip(self.channels, moment.channels, runs, strict=True):
+            channel.put_back(kept, run)
+            if kept.waiting:
+                self._waiting[channel.path] = list(kept.waiting)
+        self.manual.restore(moment.manual)
+        self.spindle.restore(moment.spindle)
+        self.plc.restore(moment.plc)
+        self.alarms.restore(moment.alarms)
+        self.messages.restore(moment.messages)
+        self.timers.restore(moment.timers)
+        self._note_running()
 
     # ------------------------------------------------------------------ within
 
@@ -619,9 +754,9 @@ class Control:
                 Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset."
             )
 
-    def _to_begin(self, channel: ControlChannel, number: int, is_mdi: bool) -> ProgramText:
+    def _to_begin(self, channel: ControlChannel, is_mdi: bool) -> ProgramText:
         """Return the text that a start executes now."""
-        text = self._mdi.get(number) if is_mdi else channel.program
+        text = channel.mdi if is_mdi else channel.program
         if text is None:
             raise ControlError(
                 Refusal.NOT_FOUND,

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from polycnc.cnc._control_data import AfterManual, Overrides, Switches
+from polycnc.cnc._control_snapshot import ChannelMoment, KeptText
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunOptions, RunState
-from polycnc.kernel import give_to_point_to_point
+from polycnc.cnc._stops import Breakpoint, Step
+from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
 
@@ -40,7 +42,9 @@ class ControlChannel:
     ) -> None:
         self.path = path
         self.program: ProgramText | None = None
+        self.mdi: ProgramText | None = None
         self.run: ProgramRun | None = None
+        self.breakpoints: frozenset[Breakpoint] = frozenset()
         self.is_mdi = False
         self.broken = False  # an alarm has stopped the program: only a reset helps
         self.returning = False  # axes go back to where the program was interrupted
@@ -51,8 +55,8 @@ class ControlChannel:
         self._library = library
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
-        self._lent: tuple[float, ...] | None = None
-        self._changed = False  # the machine has other limits than the last run knew
+        self._lent: tuple[tuple[int, float], ...] | None = None  # axes and where they were
+        self._changed = False  # the machine has other limits than the run knows
 
     # ------------------------------------------------------------------ what it does
 
@@ -84,6 +88,16 @@ class ControlChannel:
         return None if self.run is None else self.run.executed
 
     @property
+    def next_block(self) -> BlockRecord | None:
+        """The block that comes next where the path stands between two blocks; None where none is known."""
+        run = self.run
+        row = self._machine.state.paths.row[self.path]
+        if run is None or row["state"] != READY:
+            return None
+        tag = run.feed.next_tag()
+        return None if tag is None else run.channel.records.block(tag)
+
+    @property
     def programs(self) -> frozenset[str]:
         """The names of the programs that are being executed, callers and called."""
         if self.run is None or not (self.active or self.interrupted or self.broken):
@@ -96,52 +110,54 @@ class ControlChannel:
     # ------------------------------------------------------------------ commands
 
     def begin(
-        self, text: ProgramText, switches: Switches, overrides: Overrides, *, mdi: bool = False
+        self,
+        text: ProgramText,
+        switches: Switches,
+        overrides: Overrides,
+        *,
+        mdi: bool,
+        step: Step,
+        line: int = 1,
     ) -> None:
-        """Begin to execute a text from where the axes stand.
+        """Begin to execute a text at a line, from where the axes stand.
 
         Raises:
             ControlError: The axes are still braking.
         """
-        self._check_rest()
-        last = self.run
-        self.run = ProgramRun(
-            self._machine,
-            text,
-            self._dialect,
-            path=self.path,
-            options=RunOptions(
-                block_delete=switches.block_delete,
-                optional_stop=switches.optional_stop,
-                single_block=switches.single_block,
-            ),
-            config=self._config,
-            library=self._library,
-            on_event=lambda event: self._on_event(self, event),
-            before=last
-            if last is not None and last.state is RunState.COMPLETED and not self._changed
-            else None,
-        )
-        self._changed = False
-        if last is not None and last.modal is not None:
-            # What was prepared and never executed is forgotten with a reset; the tool is still in the spindle.
-            self.run.channel.state.tool = last.modal.tool
+        self.check_rest()
+        if self.run is None or self._changed:
+            self._changed = False
+            self.run = ProgramRun(
+                self._machine,
+                text,
+                self._dialect,
+                path=self.path,
+                options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
+                config=self._config,
+                library=self._library,
+                on_event=lambda event: self._on_event(self, event),
+            )
+        else:
+            self.run.load(text, keeps_modal=mdi)
+        if line > 1:
+            self.run.search(line=line)
         self.is_mdi = mdi
         self._lent = None
         self.set_switches(switches)
         self.set_overrides(overrides)
-        self.run.start()
+        self.run.breakpoints = self.breakpoints
+        self._go(step)
 
-    def go_on(self, after_manual: AfterManual) -> None:
+    def go_on(self, after_manual: AfterManual, step: Step) -> None:
         """Let an interrupted program go on; axes that were moved by hand go back first, if the control does that.
 
         Raises:
             ControlError: Axes are still braking, are moved by hand, or are not where the program was interrupted.
         """
-        self._check_rest()
+        self.check_rest()
         displaced = self._displaced()
         if not displaced:
-            self._take_back()
+            self._take_back(step)
             return
         if after_manual is AfterManual.REFUSE:
             raise ControlError(
@@ -158,7 +174,7 @@ class ControlChannel:
         if self.returning and not self._manual.active:
             self.returning = False
             if not self._displaced():
-                self._take_back()
+                self._take_back(Step.RUN)
 
     def hold(self) -> None:
         """Hold the program, or the return of axes."""
@@ -194,15 +210,23 @@ class ControlChannel:
             raise ControlError(
                 Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
             )
-        self._check_rest()
+        self.check_rest()
         state = self._machine.state
+        taken = []
         for axis in range(len(state.base)):
-            if state.owner[axis] == self.path:
+            if state.owner[axis] in (self.path, OTHER_SOURCE):
                 give_to_point_to_point(state, axis)
+                taken.append((axis, float(state.base[axis])))
         if self.interrupted or self.broken:
-            self._lent = tuple(map(float, state.base))
+            self._lent = tuple(taken)
 
     # ------------------------------------------------------------------ settings
+
+    def set_breakpoints(self, breakpoints: frozenset[Breakpoint]) -> None:
+        """Set where the program stops besides."""
+        self.breakpoints = breakpoints
+        if self.run is not None:
+            self.run.breakpoints = breakpoints
 
     def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
         """Let programs that begin from now on keep other limits, and be read in this dialect."""
@@ -214,20 +238,48 @@ class ControlChannel:
         if self.run is not None:
             self.run.single_block = switches.single_block
             self.run.optional_stop = switches.optional_stop
-            self._machine.state.paths.row[self.path]["dry_feed"] = (
-                self._dry_run_mm_s if switches.dry_run else 0.0
-            )
-            self.run.feed.replan()
+            self.run.dry_run = switches.dry_run
+            self.run.machine_lock = switches.machine_lock
+            self.run.block_delete = switches.block_delete
 
     def set_overrides(self, overrides: Overrides) -> None:
         """Take over the overrides."""
         if self.run is not None:
-            self._machine.state.paths.row[self.path]["rapid_override"] = overrides.rapid
             self.run.feed_override = overrides.feed
+            self.run.rapid_override = overrides.rapid
+
+    # ------------------------------------------------------------------ state
+
+    def moment(self, waiting: Sequence[int]) -> ChannelMoment:
+        """Return what the channel holds beside its run."""
+        return ChannelMoment(
+            program=_kept(self.program),
+            mdi=_kept(self.mdi),
+            is_mdi=self.is_mdi,
+            broken=self.broken,
+            returning=self.returning,
+            lent=self._lent,
+            waiting=tuple(waiting),
+        )
+
+    def put_back(self, moment: ChannelMoment, run: ProgramRun | None) -> None:
+        """Go back to a moment, with a run that nobody else has."""
+        self.program = _text(moment.program)
+        self.mdi = _text(moment.mdi)
+        self.is_mdi = moment.is_mdi
+        self.broken = moment.broken
+        self.returning = moment.returning
+        self._lent = moment.lent
+        self.run = run
 
     # ------------------------------------------------------------------ lent axes
 
-    def _check_rest(self) -> None:
+    def check_rest(self) -> None:
+        """Refuse while the axes brake.
+
+        Raises:
+            ControlError: They do.
+        """
         if not self.at_rest:
             raise ControlError(Refusal.RUNNING, "the axes are still braking", hint="Wait until they stand.")
 
@@ -237,14 +289,30 @@ class ControlChannel:
             return {}
         names = self._machine.config.axis_names
         base = self._machine.state.base
-        return {
-            name: there for name, there, here in zip(names, self._lent, base, strict=True) if here != there
-        }
+        return {names[axis]: there for axis, there in self._lent if base[axis] != there}
 
-    def _take_back(self) -> None:
+    def _take_back(self, step: Step) -> None:
         """Take lent axes back, which are where they were, and go on."""
-        if self._lent is not None:
-            self._machine.state.owner[:] = self.path
-            self._lent = None
+        for axis, _ in self._lent or ():
+            locked = self.run is not None and self.run.machine_lock
+            self._machine.state.owner[axis] = OTHER_SOURCE if locked else self.path
+        self._lent = None
+        self._go(step)
+
+    def _go(self, step: Step) -> None:
+        """Begin or go on, as far as `step` says; a single block goes no farther than one block."""
         assert self.run is not None
-        self.run.resume()
+        {
+            Step.RUN: self.run.start,
+            Step.INTO: self.run.step_into,
+            Step.OVER: self.run.step_over,
+            Step.OUT: self.run.step_out,
+        }[step]()
+
+
+def _kept(text: ProgramText | None) -> KeptText | None:
+    return None if text is None else KeptText(text.name, text.content.decode("latin-1"))
+
+
+def _text(kept: KeptText | None) -> ProgramText | None:
+    return None if kept is None else ProgramText(kept.name, kept.content.encode("latin-1"))

@@ -101,6 +101,7 @@ class Switches:
     single_block: bool = False
     optional_stop: bool = False
     dry_run: bool = False
+    machine_lock: bool = False
     block_delete: frozenset[int] = frozenset()
 
 

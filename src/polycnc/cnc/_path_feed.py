@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 from collections import deque
+from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.kernel import NO_LIMIT, earliest_limit, free_slots, measure_queue, prepare_path, replan_path
+from polycnc.cnc._stops import Stopper, boundaries
+from polycnc.kernel import (
+    HELD,
+    NO_LIMIT,
+    RUNNING,
+    earliest_limit,
+    free_slots,
+    measure_queue,
+    prepare_path,
+    replan_path,
+)
 from polycnc.machine import Machine
 from polycnc.nc import Channel
 
@@ -18,19 +30,34 @@ _NEVER = -1
 _PIECE = 256  # segments looked at together for the end of a block
 
 
+class FeedSnapshot(NamedTuple):
+    """What a feed holds, to go back to."""
+
+    ends: tuple[int, ...]
+    seen: int
+    met_at: int | None
+    low: Floats
+    high: Floats
+
+
 class PathFeed:
     """Feed path `channel.path` of a machine from its channel.
 
     With `blocks_ahead` only so many blocks are prepared beyond the one that is executed, and the path is looked
-    at after every segment; without, as many as fit, and the path runs on what cannot change any more. `low` and
-    `high` are the box of all positions that were prepared.
+    at after every segment; without, as many as fit, and the path runs on what cannot change any more. `stopper` says
+    between which blocks it rests. `low` and `high` are the box of all positions that were prepared.
     """
 
-    def __init__(self, machine: Machine, channel: Channel, blocks_ahead: int | None) -> None:
+    def __init__(
+        self, machine: Machine, channel: Channel, blocks_ahead: int | None, stopper: Stopper
+    ) -> None:
         self.machine = machine
         self.channel = channel
+        self.stopper = stopper
         self._ahead = blocks_ahead
         self._ends: deque[int] = deque()  # segment counts at which the prepared blocks end
+        self._seen = 0  # boundaries before this count have been looked at
+        self._met_at: int | None = None  # the count at which a condition has become true
         state = machine.state
         self.row = state.paths.row[channel.path]
         self._low_water = _LOW_WATER + int(self.row["depth"])
@@ -39,31 +66,39 @@ class PathFeed:
 
     def feed(self) -> None:
         """Prepare what may be prepared, and set when the path has to be looked at again."""
+        self._forget_marks()
         self._fill()
+        self._find_stop()
         self.prepare()
         row = self.row
-        if self.channel.done or self.channel.waits:
+        if self.channel.done or self.channel.waits or self._met_at is not None:
             row["low_water"] = _NEVER
-        elif self._ahead is not None:
+        elif self._ahead is not None or self.stopper.has_conditions:
             row["low_water"] = row["planned"] - row["head"] - 1
         else:
             row["low_water"] = row["planned"] - self.target()
 
     def _fill(self) -> None:
         channel, row = self.channel, self.row
-        if self._ahead is None:
+        conditions = self.stopper.has_conditions
+        if self._ahead is None and not conditions:
             channel.fill()
         else:
             head = int(row["head"])
             while self._ends and self._ends[0] <= head:
                 self._ends.popleft()
-            while len(self._ends) <= self._ahead and not channel.done and not channel.waits:
+            ahead = _PIECE if self._ahead is None else self._ahead
+            while len(self._ends) <= ahead and not channel.done and not channel.waits:
+                if self._met_at is not None:
+                    break  # variables stay as they are
                 blocks, tail = channel.blocks, int(row["tail"])
-                channel.fill(1)
+                channel.fill(1, compiled=not conditions)
                 if row["tail"] > tail:
                     self._ends.append(int(row["tail"]))
                 elif channel.blocks == blocks:
                     break
+                if conditions and self.stopper.condition_met(channel.interpreter.last_tag):
+                    self._met_at = int(row["tail"])
         row["closed"] = channel.done
 
     def prepare(self) -> None:
@@ -110,29 +145,117 @@ class PathFeed:
             return tail
         tag = self.tags(count, count + 1)[0]
         while count < tail:
-            after = min(count + _PIECE, tail)
-            for other in self.tags(count, after):
+            for other in self.tags(count, min(count + _PIECE, tail)):
                 if other != tag:
                     return count
                 count += 1
         return count
 
-    def stop_behind(self, count: int) -> None:
-        """Let the path rest at the end of the block of segment `count`, or of the first after it where it can."""
-        state, row = self.machine.state, self.row
-        earliest = int(earliest_limit(state.seg, state.paths, self.channel.path, self.machine.config.cycle_s))
-        end = self.block_end(count)
-        while end < earliest:
-            end = self.block_end(end)
-        row["limit"] = end
-        if end < row["prepared"]:
-            row["prepared"] = end
-            self.replan()
+    def forget_records(self, executed: int) -> None:
+        """Let the records go that neither the queue nor the executed block needs; now and then is enough."""
+        channel, row = self.channel, self.row
+        if not channel.records.crowded:
+            return
+        tags = self.tags(int(row["head"]), int(row["tail"]))
+        tags += [executed, channel.interpreter.last_tag, int(row["tag"])]
+        tags += [event.tag for event in channel.writer.events.values()]
+        tags += [tag for _, tag in channel.writer.marks or ()]
+        tags += [item.tag for item in channel.writer.backlog]
+        channel.records.keep(tags)
+
+    def next_tag(self) -> int | None:
+        """Return the tag of the block that comes next, None if it has not been prepared."""
+        marks, head = self.channel.writer.marks, int(self.row["head"])
+        if marks and self.at_mark:
+            return marks[0][1]
+        return self.tags(head, head + 1)[0] if head < self.row["tail"] else None
+
+    def pass_marks(self) -> None:
+        """Forget the blocks without segments that lie before segments that have been gone along."""
+        marks, head = self.channel.writer.marks, int(self.row["head"])
+        while marks and marks[0][0] < head:
+            marks.popleft()
+
+    def take_mark(self) -> int | None:
+        """Take the block without segments that comes next; return its tag, None if a segment comes next."""
+        marks = self.channel.writer.marks
+        return marks.popleft()[1] if marks and self.at_mark else None
+
+    @property
+    def at_mark(self) -> bool:
+        """Whether a block without segments comes next."""
+        marks = self.channel.writer.marks
+        return bool(marks and marks[0][0] <= self.row["head"])
+
+    def _forget_marks(self) -> None:
+        """Forget the blocks without segments that the path has passed."""
+        marks, row = self.channel.writer.marks, self.row
+        passed = int(row["head"]) - (row["state"] not in (RUNNING, HELD))
+        while marks and marks[0][0] <= passed:
+            marks.popleft()
+
+    # ------------------------------------------------------------------ stops
 
     def go_on(self) -> None:
-        """Let the path go on behind the block at whose end it rests, or was to rest."""
-        self.row["limit"] = NO_LIMIT
+        """Go on from a stop."""
+        self._met_at = None
+        self.look_again()
+
+    def look_again(self) -> None:
+        """Look for stops anew: the stopper has changed."""
+        row = self.row
+        self._seen = 0
+        if row["limit"] != NO_LIMIT:
+            row["limit"] = NO_LIMIT
+            self.prepare()
+        self._find_stop()
+
+    def _find_stop(self) -> None:
+        """Let the path rest at the first boundary where the stopper wants that and where it still can."""
+        row = self.row
+        head, tail = int(row["head"]), int(row["tail"])
+        if self._met_at is not None:
+            self._set_limit(max(self._met_at, self._earliest()))
+        if row["limit"] != NO_LIMIT or self.stopper.idle or head >= tail:
+            return
+        first = max(head, self._seen)
+        begin = max(first - 1, head)
+        tags = self.tags(begin, tail)
+        marks = self.channel.writer.marks or deque()
+        ahead = (mark for mark in islice(marks, None) if mark[0] >= max(first, head + 1))
+        earliest = None
+        for boundary in boundaries(begin + 1, tags[1:], ahead, tags[0]):
+            if self.stopper.stops_before(boundary.tag):
+                if earliest is None:
+                    earliest = self._earliest()
+                if boundary.count >= earliest:
+                    self._set_limit(boundary.count)
+                    return
+        self._seen = tail
+
+    def _earliest(self) -> int:
+        state = self.machine.state
+        return int(earliest_limit(state.seg, state.paths, self.channel.path, self.machine.config.cycle_s))
+
+    def _set_limit(self, count: int) -> None:
+        row = self.row
+        row["limit"] = count
+        if count < row["prepared"]:
+            row["prepared"] = count
+            self.replan()
+
+    def snapshot(self) -> FeedSnapshot:
+        """Return what is known of the path besides its queue, to go back to."""
+        return FeedSnapshot(tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy())
+
+    def restore(self, saved: FeedSnapshot) -> None:
+        """Go back to a snapshot."""
+        self._ends = deque(saved.ends)
+        self._seen, self._met_at = saved.seen, saved.met_at
+        self.low[:], self.high[:] = saved.low, saved.high
 
     def clear(self) -> None:
         """Forget what was prepared; the queue has been dropped."""
         self._ends.clear()
+        self._seen = 0
+        self._met_at = None

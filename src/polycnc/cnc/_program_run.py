@@ -6,40 +6,28 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeAlias
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.cnc._path_feed import PathFeed
+from polycnc import kernel
+from polycnc.cnc._axis_alarms import axis_alarm
+from polycnc.cnc._block_search import block_line
+from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._stops import Breakpoint, Step, Stopper
+from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
-from polycnc.kernel import (
-    BLOCK,
-    FOLLOWING_ERROR,
-    HELD,
-    IDLE,
-    LIMIT_HIGH,
-    LIMIT_LOW,
-    NO_LIMIT,
-    PATH_EVENT,
-    PATH_RESTED,
-    QUEUE_LOW,
-    READY,
-    RECORDER_FULL,
-    RUNNING,
-    SWITCH_EDGE,
-    drop_queue,
-    give_to_path,
-    start_path,
-)
 from polycnc.machine import Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
     Call,
     Channel,
+    ChannelSnapshot,
     Dialect,
     Event,
     Language,
@@ -55,8 +43,14 @@ Rows: TypeAlias = Callable[[Floats, npt.NDArray[np.int64]], None]
 OnEvent: TypeAlias = Callable[[Event], bool | None]
 Until: TypeAlias = Reason | Callable[[], bool]
 
-_MASK = QUEUE_LOW | RECORDER_FULL | PATH_EVENT | PATH_RESTED | FOLLOWING_ERROR | SWITCH_EDGE
-_LIMIT_SWITCHES = (LIMIT_LOW, LIMIT_HIGH)
+_MASK = (
+    kernel.QUEUE_LOW
+    | kernel.RECORDER_FULL
+    | kernel.PATH_EVENT
+    | kernel.PATH_RESTED
+    | kernel.FOLLOWING_ERROR
+    | kernel.SWITCH_EDGE
+)
 _STANDING = {
     RunState.STOPPED_AT_BLOCK,
     RunState.PROGRAM_STOP,
@@ -65,6 +59,35 @@ _STANDING = {
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 HIGHEST_OVERRIDE = 2.0
+
+
+# Plain values that a run holds besides its channel.
+_SAVED = (
+    "optional_stop",
+    "alarm",
+    "_block_delete",
+    "_single_block",
+    "_state",
+    "_hold",
+    "_stop",
+    "_met",
+    "_dropping",
+    "_locked",
+    "_unanswered",
+    "_approach",
+    "_tool_times",
+)
+
+
+class RunSnapshot(NamedTuple):
+    """Everything that a run holds at one cycle, to go back to."""
+
+    program: ProgramText
+    channel: Channel
+    prepared: ChannelSnapshot
+    feed: FeedSnapshot
+    stopper: Stopper
+    fields: dict[str, Any]
 
 
 class ProgramRun:
@@ -113,12 +136,20 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
+        self._locked = False
+        self._tool_times = ToolTimes()
+        self._approach: tuple[tuple[float, ...], int] | None = (
+            None  # where a searched block begins, and its line
+        )
         self._unanswered = False  # an auxiliary function at which the path stands
         self._row = machine.state.paths.row[path]
         self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
-        self.feed = PathFeed(machine, self.channel, self._ahead)
+        self.stopper = Stopper(self.channel.records, Step.INTO if self._single_block else Step.RUN)
+        self.feed = PathFeed(machine, self.channel, self._ahead, self.stopper)
 
-    def _new_channel(self, program: ProgramText, before: Channel | None) -> Channel:
+    def _new_channel(
+        self, program: ProgramText, before: Channel | None, *, keeps_modal: bool = True
+    ) -> Channel:
         return Channel(
             program,
             self.dialect,
@@ -129,7 +160,10 @@ class ProgramRun:
             language=self._language,
             skip_levels=self._block_delete,
             stands_at_stops=self._options.stands_at_stops,
+            answers=self._options.answers,
+            marks=self._options.stands_at_stops,
             before=before,
+            keeps_modal=keeps_modal,
             collect_errors=self._options.collect_errors,
         )
 
@@ -146,12 +180,9 @@ class ProgramRun:
         Raises:
             UsageError: the axes are still moving, or there is an alarm.
         """
-        if self._state is RunState.ALARM:
-            raise UsageError("there is an alarm", hint="Reset it first.")
-        if self._dropping:
-            raise UsageError("the axes are still braking", hint="Let time pass until `at_rest`.")
+        self._check_start()
         if self._state in _OVER:
-            self._begin()
+            self._begin(Step.INTO if self._single_block else Step.RUN)
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
@@ -172,13 +203,95 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._state.value}", hint="Start it."
             )
-        if self._state is RunState.STOPPED_AT_BLOCK:
-            self.feed.go_on()
-        self._pass_stop()
-        self._hold = False
-        self._state = RunState.ACTIVE
-        self._set_hold()
-        self._set_limit(next_block=True)
+        self._go(Step.INTO if self._single_block else Step.RUN)
+
+    def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
+        """Select another program; with `keeps_modal` it begins with the modal state that is in force.
+
+        Raises:
+            UsageError: a program is being executed, or there is an alarm.
+        """
+        self._check_over()
+        keeps = keeps_modal and self._state is not RunState.RESET
+        self._replace_channel(program, keeps_modal=keeps)
+        self.program = program
+        self._state = RunState.READY
+
+    def mdi(self, text: str) -> None:
+        """Execute blocks that are typed in; modal words stay in force for the next (manual data input).
+
+        Raises:
+            UsageError: a program is being executed, or there is an alarm.
+        """
+        self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
+        self.start()
+
+    def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
+        """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
+
+        With `calculate` everything before is carried out without moving, and with the start the axes go straight at
+        rapid to where that block begins; else modal state and position are what they are. Return the line.
+
+        Raises:
+            UsageError: there is no such block, or the program cannot begin there; it stands at its beginning then.
+        """
+        self._check_over()
+        target = block_line(self.program, line, sequence)
+        self._replace_channel(self.program, keeps_modal=False)
+        self._state = RunState.READY
+        self._approach = None
+        if not calculate:
+            self.channel.go_to(target)
+            return target
+        state = self.machine.state
+        kernel.give_to_path(state, self.path)
+        self.channel.state.modal.position[:] = state.paths.position[self.path]
+        try:
+            found = self.channel.calculate_to(target, self._skip_queue)
+            problem = (
+                None
+                if found
+                else UsageError(
+                    f"the program ends before line {target}",
+                    hint="Search a block that is executed." if self.error is None else str(self.error),
+                )
+            )
+        except UsageError as error:
+            problem = error
+        kernel.drop_queue(state.seg, state.paths, self.path)
+        if problem is not None:
+            self._replace_channel(self.program, keeps_modal=False)
+            raise problem
+        self._approach = (tuple(self.channel.state.modal.position.tolist()), target)
+        return target
+
+    def _skip_queue(self) -> None:
+        for name in ("head", "prepared", "planned"):
+            self._row[name] = self._row["tail"]
+
+    def step_into(self) -> None:
+        """Go on to the end of the next block, into a sub-program if it calls one.
+
+        Raises:
+            UsageError: the program does not stand, and is not at its beginning.
+        """
+        self._step(Step.INTO)
+
+    def step_over(self) -> None:
+        """Go on to the end of the next block; a sub-program that it calls is run as a whole.
+
+        Raises:
+            UsageError: the program does not stand, and is not at its beginning.
+        """
+        self._step(Step.OVER)
+
+    def step_out(self) -> None:
+        """Go on to the end of the present sub-program, or of the program.
+
+        Raises:
+            UsageError: the program does not stand, and is not at its beginning.
+        """
+        self._step(Step.OUT)
 
     def answered(self) -> None:
         """Let the path go on from the auxiliary function at which it stands."""
@@ -192,7 +305,7 @@ class ProgramRun:
         """
         self.alarm = None
         self.channel.close()
-        if self._row["state"] == IDLE:
+        if self._row["state"] == kernel.IDLE:
             self._state = RunState.RESET
             return
         self._dropping = True
@@ -208,13 +321,81 @@ class ProgramRun:
 
     @single_block.setter
     def single_block(self, on: bool) -> None:
+        if on == self._single_block:
+            return
         self._single_block = on
+        self.stopper.step = Step.INTO if on else Step.RUN
         if self._state in (RunState.ACTIVE, RunState.HOLD):
-            if on:
-                self._set_limit(next_block=False)
-            else:
-                self.feed.go_on()
-                self.feed.prepare()
+            self.feed.look_again()
+
+    @property
+    def breakpoints(self) -> frozenset[Breakpoint]:
+        """Where the program stops besides."""
+        return self.stopper.breakpoints
+
+    @breakpoints.setter
+    def breakpoints(self, breakpoints: Iterable[Breakpoint]) -> None:
+        self.stopper.breakpoints = frozenset(breakpoints)
+        if self._state in (RunState.ACTIVE, RunState.HOLD):
+            self.feed.look_again()
+
+    @property
+    def block_delete(self) -> frozenset[int]:
+        """The numbers of the skip marks whose blocks are left out, among the blocks prepared from now on."""
+        return self._block_delete
+
+    @block_delete.setter
+    def block_delete(self, levels: Iterable[int]) -> None:
+        self._block_delete = self.channel.skip_levels = frozenset(levels)
+
+    @property
+    def dry_run(self) -> bool:
+        """Whether moves at feed go with the feed of a dry run."""
+        return bool(self._row["dry_feed_mm_s"] > 0.0)
+
+    @dry_run.setter
+    def dry_run(self, on: bool) -> None:
+        if on and not self._options.dry_run_mm_s > 0.0:
+            raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
+        self._row["dry_feed_mm_s"] = self._options.dry_run_mm_s if on else 0.0
+        self.feed.replan()
+
+    @property
+    def machine_lock(self) -> bool:
+        """Whether the path is executed without its axes.
+
+        Raises:
+            UsageError: on a change while the axes move.
+        """
+        return self._locked
+
+    @machine_lock.setter
+    def machine_lock(self, on: bool) -> None:
+        if on == self._locked:
+            return
+        if not self.at_rest:
+            raise UsageError("the machine lock cannot change while the axes move", hint="Hold first.")
+        if not on and self._state not in _OVER:
+            raise UsageError(
+                "the machine lock cannot be taken off within a program",
+                hint="End or reset the program first.",
+            )
+        self._locked = on
+        self._give_axes()
+
+    @property
+    def rapid_override(self) -> float:
+        """Factor of positioning speeds, 0 to 1; 0 is the lowest speed of the options (F0)."""
+        return 0.0 if self._row["rapid_top"] < np.inf else float(self._row["rapid_override"])
+
+    @rapid_override.setter
+    def rapid_override(self, factor: float) -> None:
+        _check_factor(factor, 1.0, "the rapid override")
+        lowest = self._options.rapid_f0_mm_s
+        slow = factor == 0.0 and lowest > 0.0
+        self._row["rapid_override"] = 1.0 if slow else factor
+        self._row["rapid_top"] = lowest if slow else np.inf
+        self.feed.replan()
 
     @property
     def feed_override(self) -> float:
@@ -246,7 +427,7 @@ class ProgramRun:
     @property
     def at_rest(self) -> bool:
         """Whether the path stands."""
-        return bool(self._row["state"] != RUNNING)
+        return bool(self._row["state"] != kernel.RUNNING)
 
     @property
     def error(self) -> ProgramError | None:
@@ -257,7 +438,7 @@ class ProgramRun:
     def executed_tag(self) -> int:
         """The tag of the block that is executed, or was last."""
         row = self._row
-        if self._met is not None and row["state"] == READY and row["head"] == self._met[0]:
+        if self._met is not None and row["state"] == kernel.READY and row["head"] == self._met[0]:
             return self._met[1]
         return int(row["tag"])
 
@@ -284,11 +465,16 @@ class ProgramRun:
         return self._by_axis(self.machine.state.paths.position[self.path])
 
     @property
+    def tool_times(self) -> dict[int, ToolTime]:
+        """How long each tool has cut and positioned so far; tool 0 is an empty spindle."""
+        return self._tool_times.until(self._seconds())
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
         row = self._row
         here = self.machine.state.paths.position[self.path]
-        if row["state"] not in (RUNNING, HELD):
+        if row["state"] not in (kernel.RUNNING, kernel.HELD):
             return self._by_axis(np.zeros_like(here))
         last = self.feed.block_end(int(row["head"])) - 1
         k = int(row["base"]) + last % int(row["capacity"])
@@ -326,6 +512,7 @@ class ProgramRun:
 
         For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
         """
+        self._tidy()
         self.feed.feed()
         target = self.feed.target()
         done = 0
@@ -336,6 +523,8 @@ class ProgramRun:
                 self._meet_event()
             elif cycles == 0:
                 break
+        if done == 0 and self._row["head"] >= self._row["tail"] and not self.channel.done:
+            done = self.advance(1)  # the program itself waits for something
         self._look()
         return done
 
@@ -348,6 +537,7 @@ class ProgramRun:
             return 0 if self.at_rest else cycles
         if self._state not in (RunState.ACTIVE, RunState.HOLD):
             return 0
+        self._tidy()
         self.feed.feed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
@@ -356,12 +546,12 @@ class ProgramRun:
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
         raised = int(self.machine.state.clock[0]["raised"])
-        if raised & PATH_EVENT and self._row["event"] >= 0:
+        if raised & kernel.PATH_EVENT and self._row["event"] >= 0:
             self._meet_event()
-        if raised & RECORDER_FULL:
+        if raised & kernel.RECORDER_FULL:
             self.drain()
-        if raised & (FOLLOWING_ERROR | SWITCH_EDGE):
-            self._check_alarm(raised)
+        if (found := axis_alarm(self.machine, raised)) is not None:
+            self._stop_by(*found)
         self._look()
 
     def drain(self) -> None:
@@ -370,48 +560,157 @@ class ProgramRun:
         count = int(recorder.filled[0])
         if self.rows is not None and count:
             rows = recorder.rows[:count]
-            tags = rows[:, BLOCK].astype(np.int64)
-            rows[:, BLOCK] = tags & LINE_MASK
+            tags = rows[:, kernel.BLOCK].astype(np.int64)
+            rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
 
+    # ------------------------------------------------------------------ going back
+
+    def snapshot(self) -> RunSnapshot:
+        """Return everything that this run holds, to go back to with `restore`.
+
+        The machine has a snapshot of its own: take and restore both together.
+
+        Raises:
+            UsageError: a language executes the program; where that stands cannot be kept.
+        """
+        return RunSnapshot(
+            self.program,
+            self.channel,
+            self.channel.snapshot(),
+            self.feed.snapshot(),
+            replace(self.stopper),
+            {name: getattr(self, name) for name in _SAVED},
+        )
+
+    def restore(self, saved: RunSnapshot) -> None:
+        """Go back to a snapshot of this run."""
+        self.program = saved.program
+        self.channel = self.feed.channel = saved.channel
+        self.channel.restore(saved.prepared)
+        self.feed.restore(saved.feed)
+        self.stopper.records = saved.stopper.records
+        self.stopper.step, self.stopper.depth = saved.stopper.step, saved.stopper.depth
+        self.stopper.breakpoints = saved.stopper.breakpoints
+        for name, value in saved.fields.items():
+            setattr(self, name, value)
+        self.channel.skip_levels = self._block_delete
+
     # ------------------------------------------------------------------ within
 
-    def _begin(self) -> None:
+    def _tidy(self) -> None:
+        """Forget records that nobody can ask for any more."""
+        if self.channel.records.crowded:
+            self.drain()  # rows refer to records
+            self.feed.forget_records(self.executed_tag)
+
+    def _check_over(self) -> None:
+        """Refuse what would change the program while it is executed."""
+        if self._state not in _OVER:
+            raise UsageError(f"the program is {self._state.value}", hint="Reset it, or let it end.")
+        self._check_start()
+
+    def _check_start(self) -> None:
+        if self._state is RunState.ALARM:
+            raise UsageError("there is an alarm", hint="Reset it first.")
+        if self._dropping:
+            raise UsageError("the axes are still braking", hint="Let time pass until `at_rest`.")
+
+    def _begin(self, step: Step) -> None:
         """Begin the program from where the axes stand."""
         state, path = self.machine.state, self.path
         if self._state is not RunState.READY:
-            self.channel = self.feed.channel = self._new_channel(self.program, self.channel)
-        give_to_path(state, path)
+            self._replace_channel(self.program, keeps_modal=False)
+        kernel.give_to_path(state, path)
+        self._give_axes()
         self.channel.state.modal.position[:] = state.paths.position[path]
-        start_path(state.paths, path)
+        kernel.start_path(state.paths, path)
         self._hold = False
-        self._row["limit"] = NO_LIMIT
-        self._state = RunState.ACTIVE
-        self._set_hold()
-        self._set_limit(next_block=True)
+        self._row["limit"] = kernel.NO_LIMIT
+        self._row["tag"] = 0
+        if self._approach is not None:
+            self.channel.begin_at(*self._approach)
+            self._approach = None
+        self._go(step)
+
+    def _replace_channel(self, program: ProgramText, *, keeps_modal: bool) -> None:
+        tool = self.channel.state.tool if self.modal is None else self.modal.tool  # prepared is not changed
+        self.channel = self.feed.channel = self._new_channel(program, self.channel, keeps_modal=keeps_modal)
+        self.channel.state.tool = tool
+        self.stopper.records = self.channel.records
+        self.feed.clear()
+
+    def _give_axes(self) -> None:
+        """Let the axes follow the path, or nothing while the machine is locked."""
+        state = self.machine.state
+        for axis in state.paths.axis[self.path]:
+            if axis >= 0 and state.owner[axis] in (self.path, kernel.OTHER_SOURCE):
+                state.owner[axis] = kernel.OTHER_SOURCE if self._locked else self.path
+
+    def _seconds(self) -> ToolTime:
+        totals = self.machine.state.paths.totals[self.path]
+        return ToolTime(float(totals[kernel.FEED_S]), float(totals[kernel.RAPID_S]))
 
     def _set_hold(self) -> None:
         """Hold the path while anything holds it; take it over where it moves."""
-        hold = self._hold or self._stop is not None or self._unanswered
+        stands = (
+            self._state is RunState.STOPPED_AT_BLOCK
+        )  # before a segment that is in the look-ahead already
+        hold = self._hold or stands or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
-            if self._row["state"] == RUNNING:
+            if self._row["state"] == kernel.RUNNING:
                 self.feed.replan()
 
-    def _set_limit(self, *, next_block: bool) -> None:
-        """In single block, let the path rest behind the block that runs, or comes next."""
-        if not self._single_block:
+    def _step(self, step: Step) -> None:
+        if self._state in _OVER:
+            self._check_start()
+            self._begin(step)
+        elif self._state in _STANDING or self._state is RunState.HOLD:
+            self._go(step)
+        else:
+            raise UsageError("the program is running", hint="Hold it, or let it stop at a breakpoint.")
+
+    def _go(self, step: Step) -> None:
+        """Go on from where the program stands, as far as `step` says."""
+        within = self._state is RunState.HOLD and self._row["state"] in (kernel.RUNNING, kernel.HELD)
+        record = self.executed_tag
+        self._pass_stop()
+        self._hold = False
+        self._state = RunState.ACTIVE
+        stopper = self.stopper
+        stopper.step = Step.RUN
+        self.feed.go_on()
+        self.feed.feed()
+        following = self.feed.next_tag()
+        depth_of = record if within or following is None else following
+        stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
+        if not within and self._stand_at_marks():
+            self._set_hold()
             return
-        if next_block:
-            self.feed.feed()
-        self.feed.stop_behind(int(self._row["head"]))
-        self.feed.prepare()
+        self.feed.look_again()
+        self._set_hold()
+        self._look()
+
+    def _stand_at_marks(self) -> bool:
+        """Carry out the blocks without segments that come next; return whether the program stops behind one."""
+        while (tag := self.feed.take_mark()) is not None:
+            self._met = int(self._row["head"]), tag
+            following = self.feed.next_tag()
+            if following is None:
+                self.feed.feed()
+                following = self.feed.next_tag()
+            if following is not None and self.stopper.stops_before(following):
+                self._state = RunState.STOPPED_AT_BLOCK
+                return True
+        return False
 
     def _meet_event(self) -> None:
         number = int(self._row["event"])
         event = self.channel.writer.events.pop(number)
         self._met = int(self._row["head"]), event.tag
+        self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
             self._unanswered = bool(self.on_event(event))
             self._set_hold()
@@ -435,16 +734,28 @@ class ProgramRun:
         if self._dropping:
             if self.at_rest:
                 self._drop()
-        elif self._state is RunState.ACTIVE and row["state"] == READY and not self._unanswered:
-            if row["head"] >= row["tail"] and self.channel.done:
+        elif self._state is RunState.ACTIVE and row["state"] == kernel.READY and not self._unanswered:
+            if row["head"] >= row["limit"]:
+                self._stop_at_block()
+            elif row["head"] >= row["tail"] and self.channel.done:
                 self._state = RunState.COMPLETED if self.channel.error is None else RunState.ALARM
-            elif row["head"] >= row["limit"]:
-                self._state = RunState.STOPPED_AT_BLOCK
+
+    def _stop_at_block(self) -> None:
+        """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        self.feed.pass_marks()
+        while self.feed.at_mark:
+            following = self.feed.next_tag()
+            if following is None or self.stopper.stops_before(following):
+                break
+            tag = self.feed.take_mark()
+            assert tag is not None
+            self._met = int(self._row["head"]), tag
+        self._state = RunState.STOPPED_AT_BLOCK
 
     def _drop(self) -> None:
         """Drop what is still queued; the path stands."""
         state = self.machine.state
-        drop_queue(state.seg, state.paths, self.path)
+        kernel.drop_queue(state.seg, state.paths, self.path)
         self.channel.writer.clear()
         self.feed.clear()
         self._dropping = False
@@ -453,25 +764,6 @@ class ProgramRun:
         self._unanswered = False
         self._met = None
         self._set_hold()
-
-    def _check_alarm(self, raised: int) -> None:
-        state, config = self.machine.state, self.machine.config
-        for index, axis in enumerate(config.axes):
-            if raised & FOLLOWING_ERROR and state.servo.error_tripped[index]:
-                error = float(state.servo.row[index]["following_error"])
-                self._stop_by(
-                    f"axis {axis.name}: following error {error:.4f} {axis.unit} is above its limit",
-                    "following_error",
-                )
-                return
-            if raised & SWITCH_EDGE and any(
-                state.switches.switch[index, j]["level"] for j in _LIMIT_SWITCHES
-            ):
-                at = float(state.servo.actual[index])
-                self._stop_by(
-                    f"axis {axis.name} is on a limit switch at {at:.3f} {axis.unit}", "limit_switch"
-                )
-                return
 
     def _stop_by(self, text: str, code: str) -> None:
         self.alarm = RunAlarm(text, code, self.executed_tag, self.machine.clock.cycles)

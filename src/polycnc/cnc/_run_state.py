@@ -25,8 +25,11 @@ class RunOptions:
     """Set how a program is run: what an operator has set before it starts.
 
     `block_delete` are the numbers of the skip marks whose blocks are left out. `stands_at_stops` lets M0, and with
-    `optional_stop` M1, wait for `resume`; without, they are passed. `blocks_ahead` is how many blocks are prepared
-    beyond the executed one, None as the dialect says. `single_block` stops at the end of every block.
+    `optional_stop` M1, wait for `resume`; without, they are passed, and single block and steps pass blocks that neither
+    move nor wait. `blocks_ahead` is how many blocks are prepared beyond the executed one, None as the dialect says.
+    `single_block` stops at the end of every block. With `answers` the path waits at an auxiliary function only for the
+    answer of `on_event`, not for the machine file's times. `rapid_f0_mm_s` is the path speed of a rapid override of 0
+    (0: it stands), `dry_run_mm_s` that of a dry run.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -34,6 +37,9 @@ class RunOptions:
     optional_stop: bool = False
     blocks_ahead: int | None = None
     single_block: bool = False
+    answers: bool = False
+    rapid_f0_mm_s: float = 0.0
+    dry_run_mm_s: float = 0.0
     collect_errors: bool = False
 
 

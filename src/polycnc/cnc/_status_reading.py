@@ -27,7 +27,7 @@ def read_status(control: Control) -> Status:
         mode=control.mode,
         emergency=control.emergency,
         channels=tuple(_channel(control, channel) for channel in control.channels),
-        axes=MappingProxyType(_axes(control)),
+        axes=MappingProxyType(read_axes(control)),
         spindle=control.spindle.state(),
         overrides=control.overrides,
         switches=control.switches,
@@ -67,7 +67,8 @@ def _channel(control: Control, channel: ControlChannel) -> ChannelStatus:
     )
 
 
-def _axes(control: Control) -> dict[str, AxisStatus]:
+def read_axes(control: Control) -> dict[str, AxisStatus]:
+    """Return the axes of a control at the present cycle."""
     machine = control.machine
     state, config = machine.state, machine.config
     main = control.channels[0]

@@ -59,7 +59,7 @@ from polycnc.kernel._profile_shape import (
     profile_duration,
     ramp_distance,
 )
-from polycnc.kernel._recorder import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
+from polycnc.kernel._recorder import BLOCK, FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.kernel._replan import drop_queue, earliest_limit, prepare_path, replan_path
 from polycnc.kernel._segments import (
     ARC,
@@ -85,7 +85,6 @@ from polycnc.kernel._state import (
     RECORDER_FULL,
     SOFT_LIMIT,
     SWITCH_EDGE,
-    TABLE_EMPTY,
     KernelState,
     make_state,
 )
@@ -95,8 +94,8 @@ __all__ = [
     "ADDED",
     "ARC",
     "BLOCK",
-    "FEED",
     "FEED_LENGTH",
+    "FEED_MM_S",
     "FEED_S",
     "FOLLOWING_ERROR",
     "HELD",
@@ -132,7 +131,6 @@ __all__ = [
     "SOFT_LIMIT",
     "STOP",
     "SWITCH_EDGE",
-    "TABLE_EMPTY",
     "TIME_S",
     "TOP_SPEED",
     "VELOCITY",

@@ -6,8 +6,6 @@ around `cycle`, or around its two halves where it has to see or change the setpo
 
 from __future__ import annotations
 
-from polycnc.kernel._curve import curve_cycle
-from polycnc.kernel._follower import follower_cycle
 from polycnc.kernel._interpolate import EVENT, RESTED, path_cycle, settle, skip_path
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._path import IDLE, READY
@@ -25,11 +23,9 @@ from polycnc.kernel._state import (
     RECORDER_FULL,
     SOFT_LIMIT,
     SWITCH_EDGE,
-    TABLE_EMPTY,
     KernelState,
 )
 from polycnc.kernel._switches import SOFT_INSIDE, SWITCHES_PER_AXIS, soft_limit, switches_cycle
-from polycnc.kernel._table import table_cycle
 
 
 @compiled
@@ -78,29 +74,6 @@ def _position_sources(state: KernelState, dt: float) -> None:
 
 
 @compiled
-def _coupled_sources(state: KernelState) -> None:
-    """Add tables, gears and curves, in slot order, so that a chain of couplings acts within the cycle."""
-    table = state.table
-    for k in range(table.running.shape[0]):
-        running = table.running[k]
-        if running != 0 and table_cycle(k, table) == 0:
-            state.clock[0]["raised"] |= TABLE_EMPTY
-        for column in range(table.axis.shape[1]):
-            axis = table.axis[k, column]
-            if axis >= 0:
-                state.setpoint[axis] += table.value[k, column]
-    for k in range(state.follower.slave.shape[0]):
-        state.setpoint[state.follower.slave[k]] += follower_cycle(
-            k, state.follower, state.setpoint, state.servo.actual
-        )
-    for k in range(state.curve.slave.shape[0]):
-        if state.curve.length[k] > 0:
-            state.setpoint[state.curve.slave[k]] += curve_cycle(
-                k, state.curve, state.setpoint, state.servo.actual
-            )
-
-
-@compiled
 def _follow(state: KernelState, i: int, last_setpoint: float, dt: float) -> None:
     """Let the servo of axis `i` follow its setpoint, and watch its switches and limits."""
     velocity = (state.setpoint[i] - last_setpoint) / dt
@@ -134,7 +107,6 @@ def sources_cycle(state: KernelState) -> None:
         last[i] = state.setpoint[i]
     _run_paths(state, dt)
     _position_sources(state, dt)
-    _coupled_sources(state)
 
 
 @compiled

@@ -1,4 +1,7 @@
-"""Append lines, arcs, circles, splines and waits to a path. The caller sees to free slots."""
+"""Append lines, arcs, circles, splines and waits to a path. The caller sees to free slots.
+
+Units: see `_segments`.
+"""
 
 from __future__ import annotations
 
@@ -55,15 +58,22 @@ def _keep_rapids_apart(row: Rows, path: Rows, g: int, flags: int) -> None:
 
 @entry
 def append_line(
-    seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, feed: float, flags: int, tag: int
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    limits: AxisLimits,
+    end: Floats,
+    speed_mm_s: float,
+    flags: int,
+    tag: int,
 ) -> bool:
     """Append a straight line to path `g`; False if it has no length. It may take two slots.
 
     With a path tolerance the corner before it is rounded where that is possible.
     """
-    blend_corner(seg, paths, g, limits, end, feed, tag)
+    blend_corner(seg, paths, g, limits, end, speed_mm_s, tag)
     return add_line(
-        seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, feed, flags, tag
+        seg.row, seg.start, seg.end, paths.row, paths.queued, g, limits.feed_axis, end, speed_mm_s, flags, tag
     )
 
 
@@ -77,13 +87,13 @@ def add_line(
     g: int,
     feed_axis: npt.NDArray[np.uint8],
     end: Floats,
-    feed: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> bool:
     """Do what `append_line` does without a path tolerance, from single columns of `Segments` and `Paths`."""
     k = slot_of(path, g, path[g]["tail"])
-    if not set_line(row, starts, ends, k, feed_axis, queued[g], end, feed, flags, tag):
+    if not set_line(row, starts, ends, k, feed_axis, queued[g], end, speed_mm_s, flags, tag):
         return False
     _keep_rapids_apart(row, path, g, flags)
     _appended(ends, path, queued, g, k)
@@ -101,8 +111,8 @@ def append_arc(
     axis_q: int,
     center_p: float,
     center_q: float,
-    sweep: float,
-    feed: float,
+    sweep_rad: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> bool:
@@ -110,7 +120,19 @@ def append_arc(
     k = slot(paths, g, paths.row[g]["tail"])
     start = paths.queued[g]
     if not set_arc(
-        seg, k, limits.feed_axis, start, end, axis_p, axis_q, center_p, center_q, sweep, feed, flags, tag
+        seg,
+        k,
+        limits.feed_axis,
+        start,
+        end,
+        axis_p,
+        axis_q,
+        center_p,
+        center_q,
+        sweep_rad,
+        speed_mm_s,
+        flags,
+        tag,
     ):
         return False
     _keep_rapids_apart(seg.row, paths.row, g, flags)
@@ -129,14 +151,16 @@ def append_circle3d(
     center: Floats,
     normal: Floats,
     sweep_deg: float,
-    feed: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> bool:
     """Append a circle in three axes about `center[3]` to path `g`; False if there is none (`set_circle3d`)."""
     k = slot(paths, g, paths.row[g]["tail"])
     start = paths.queued[g]
-    if not set_circle3d(seg, k, start, axis_p, axis_q, axis_r, center, normal, sweep_deg, feed, flags, tag):
+    if not set_circle3d(
+        seg, k, start, axis_p, axis_q, axis_r, center, normal, sweep_deg, speed_mm_s, flags, tag
+    ):
         return False
     _keep_rapids_apart(seg.row, paths.row, g, flags)
     _appended(seg.end, paths.row, paths.queued, g, k)
@@ -145,7 +169,7 @@ def append_circle3d(
 
 @entry
 def append_spline(
-    seg: Segments, splines: Splines, paths: Paths, g: int, index: int, feed: float, flags: int, tag: int
+    seg: Segments, splines: Splines, paths: Paths, g: int, index: int, speed_mm_s: float, flags: int, tag: int
 ) -> int:
     """Append spline `index` of the path's store, a segment per piece; return how many segments it took.
 
@@ -168,7 +192,7 @@ def append_spline(
     s = 0.0
     while s < length:
         k = slot(paths, g, paths.row[g]["tail"])
-        s = set_spline(seg, splines, k, index, s, paths.queued[g], feed, flags & ~STOP, tag)
+        s = set_spline(seg, splines, k, index, s, paths.queued[g], speed_mm_s, flags & ~STOP, tag)
         if s >= length:
             seg.row[k]["flags"] = flags
         _appended(seg.end, paths.row, paths.queued, g, k)
@@ -177,9 +201,9 @@ def append_spline(
 
 
 @entry
-def append_wait(seg: Segments, paths: Paths, g: int, duration: float, event: int, tag: int) -> None:
-    """Append a wait at rest of `duration` s that reports `event` (-1 none) when it begins."""
+def append_wait(seg: Segments, paths: Paths, g: int, duration_s: float, event: int, tag: int) -> None:
+    """Append a wait at rest of `duration_s` that reports `event` (-1 none) when it begins."""
     stop_before_next(seg, paths, g)
     k = slot(paths, g, paths.row[g]["tail"])
-    set_wait(seg, k, paths.queued[g], duration, event, tag)
+    set_wait(seg, k, paths.queued[g], duration_s, event, tag)
     _appended(seg.end, paths.row, paths.queued, g, k)

@@ -33,7 +33,7 @@ _BEFORE, _AFTER, _START, _CENTER, _NORMAL = 0, 3, 6, 9, 12
 
 @compiled
 def blend_corner(
-    seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, feed: float, tag: int
+    seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, speed_mm_s: float, tag: int
 ) -> bool:
     """Append an arc at the end of path `g` towards `end`, if its last segment is a line that may be rounded.
 
@@ -41,12 +41,12 @@ def blend_corner(
     that count in the path length.
     """
     row = paths.row[g]
-    tolerance = row["tolerance"]
+    tolerance = row["tolerance_mm"]
     if tolerance <= 0.0 or row["tail"] <= row["prepared"]:  # what has been planned cannot be shortened
         return False
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]
-    if line["kind"] != LINE or line["flags"] & (RAPID | STOP) or math.isinf(feed):
+    if line["kind"] != LINE or line["flags"] & (RAPID | STOP) or math.isinf(speed_mm_s):
         return False
     p, q, r = _three_axes(seg, k, limits, end)
     if p < 0:
@@ -69,7 +69,7 @@ def blend_corner(
     radius = cut / tangent
     if radius * turn < SMALLEST_ARC:
         return False
-    return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, feed, tag)
+    return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, speed_mm_s, tag)
 
 
 @compiled
@@ -120,32 +120,32 @@ def _append_arc(
     g: int,
     k: int,
     axes: tuple[int, int, int],
-    cut: float,
-    radius: float,
-    turn: float,
-    feed: float,
+    cut_mm: float,
+    radius_mm: float,
+    turn_rad: float,
+    speed_mm_s: float,
     tag: int,
 ) -> bool:
-    """Shorten line `k` by `cut` and append the arc of `radius` through `turn` rad that touches it there."""
+    """Shorten line `k` by `cut_mm` and append the arc of `radius_mm` through `turn_rad` that touches it there."""
     p, q, r = axes
     work = paths.blend[g]
     before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
     start, center = work[_START:_CENTER], work[_CENTER:_NORMAL]
     corner = seg.end[k]
-    start[0] = corner[p] - cut * before[0]
-    start[1] = corner[q] - cut * before[1]
-    start[2] = corner[r] - cut * before[2]
-    cosine, sine = math.cos(turn), math.sin(turn)
+    start[0] = corner[p] - cut_mm * before[0]
+    start[1] = corner[q] - cut_mm * before[1]
+    start[2] = corner[r] - cut_mm * before[2]
+    cosine, sine = math.cos(turn_rad), math.sin(turn_rad)
     for i in range(3):
-        center[i] = start[i] + radius * (after[i] - cosine * before[i]) / sine
+        center[i] = start[i] + radius_mm * (after[i] - cosine * before[i]) / sine
     arc = slot(paths, g, paths.row[g]["tail"])
     geo = seg.geo[arc]
-    if circle3d_setup(start, center, work[_NORMAL:BLEND_COLUMNS], math.degrees(turn), geo) != 0:
+    if circle3d_setup(start, center, work[_NORMAL:BLEND_COLUMNS], math.degrees(turn_rad), geo) != 0:
         return False
     line = seg.row[k]
     seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]
-    line["length"] -= cut
-    set_common(seg, arc, seg.end[k], seg.end[k], min(feed, line["feed"]), 0, tag)
+    line["length"] -= cut_mm
+    set_common(seg, arc, seg.end[k], seg.end[k], min(speed_mm_s, line["feed_mm_s"]), 0, tag)
     circle3d_point(geo, 1.0, start)
     seg.end[arc, p], seg.end[arc, q], seg.end[arc, r] = start[0], start[1], start[2]
     seg.row[arc]["kind"] = CIRCLE3D

@@ -20,7 +20,7 @@ from polycnc.kernel._segments import (
     SPLINE,
     SPLINE_FROM,
     SPLINE_INDEX,
-    SWEEP,
+    SWEEP_RAD,
     WAIT,
     WORK_POINT,
     Floats,
@@ -81,7 +81,7 @@ def _arc_point(seg: Segments, k: int, fraction: float, out: Floats) -> None:
     """
     p, q = seg.plane[k, 0], seg.plane[k, 1]
     geo = seg.geo[k]
-    half = 0.5 * geo[SWEEP] * fraction
+    half = 0.5 * geo[SWEEP_RAD] * fraction
     sine, cosine = math.sin(half), math.cos(half)
     scale = 1.0 + (geo[RADIUS_END] / geo[RADIUS_START] - 1.0) * fraction
     along = (scale - 1.0) - 2.0 * scale * sine * sine
@@ -127,7 +127,7 @@ def segment_slope(seg: Segments, k: int, i: int, s: float) -> float:
         _arc_point(seg, k, s / length, three)
         at_p, at_q = three[0] - geo[CENTER_P], three[1] - geo[CENTER_Q]
         stretch = (geo[RADIUS_END] - geo[RADIUS_START]) / (length * math.sqrt(at_p * at_p + at_q * at_q))
-        turn = geo[SWEEP] / length
+        turn = geo[SWEEP_RAD] / length
         return float(stretch * at_p - turn * at_q if seg.plane[k, 0] == i else stretch * at_q + turn * at_p)
     if kind == CIRCLE3D:
         three = seg.geo[k, WORK_POINT:]
@@ -155,7 +155,7 @@ def segment_tangent(seg: Segments, k: int, at: float, out: Floats) -> None:
         radius = geo[RADIUS_END] if at > 0.0 else geo[RADIUS_START]
         at_p = (seg.end[k, p] if at > 0.0 else seg.start[k, p]) - geo[CENTER_P]
         at_q = (seg.end[k, q] if at > 0.0 else seg.start[k, q]) - geo[CENTER_Q]
-        turn = geo[SWEEP] / length
+        turn = geo[SWEEP_RAD] / length
         stretch = (geo[RADIUS_END] - geo[RADIUS_START]) / (length * radius)
         out[p] = stretch * at_p - turn * at_q
         out[q] = stretch * at_q + turn * at_p
@@ -191,8 +191,8 @@ def _grow_by_quadrants(seg: Segments, k: int, low: Floats, high: Floats) -> None
     p, q = seg.plane[k, 0], seg.plane[k, 1]
     geo = seg.geo[k]
     begin = math.atan2(seg.start[k, q] - geo[CENTER_Q], seg.start[k, p] - geo[CENTER_P])
-    first = min(begin, begin + geo[SWEEP])
-    last = max(begin, begin + geo[SWEEP])
+    first = min(begin, begin + geo[SWEEP_RAD])
+    last = max(begin, begin + geo[SWEEP_RAD])
     radius = max(geo[RADIUS_START], geo[RADIUS_END])
     quadrant = math.ceil(first / HALF_PI)
     for _ in range(4):

@@ -3,6 +3,8 @@
 Time runs on across junctions that are passed with speed; where the path comes to rest, the last sample is the
 end point itself and the next segment begins with the next cycle. So every stretch from rest to rest takes a
 whole number of cycles.
+
+Units: those of `_segments`; `dt`, the cycle, in s.
 """
 
 from __future__ import annotations
@@ -59,26 +61,26 @@ EVENT = 3  # an event stands at the point of rest
 
 
 @compiled
-def _account_time(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
+def _account_time(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
     """Add time spent in the segment at `head`, and its highest speed, to the totals."""
     totals = paths.totals[g]
     row = seg.row[slot(paths, g, paths.row[g]["head"])]
     if row["kind"] == WAIT:
-        totals[WAIT_S] += seconds
+        totals[WAIT_S] += passed_s
     elif row["flags"] & RAPID:
-        totals[RAPID_S] += seconds
+        totals[RAPID_S] += passed_s
     else:
-        totals[FEED_S] += seconds
+        totals[FEED_S] += passed_s
         if not row["flags"] & TURN:
             totals[TOP_SPEED] = max(totals[TOP_SPEED], paths.ramps[g, SPEED_PEAK])
 
 
 @compiled
-def _leave(seg: Segments, paths: Paths, g: int, seconds: float) -> None:
-    """Go on to the next segment after `seconds` in this one."""
+def _leave(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
+    """Go on to the next segment after `passed_s` in this one."""
     path, totals = paths.row[g], paths.totals[g]
     row = seg.row[slot(paths, g, path["head"])]
-    _account_time(seg, paths, g, seconds)
+    _account_time(seg, paths, g, passed_s)
     totals[SEGMENTS] += 1.0
     if not row["flags"] & TURN:  # degrees are no path length
         totals[RAPID_LENGTH if row["flags"] & RAPID else FEED_LENGTH] += row["length"]

@@ -7,6 +7,8 @@ next corner where that is shorter, and if the ramps leave that part alone within
 ramps do not use up has that much for the corner anyway. On a curve the centripetal and the tangential part share what
 is left after the corners' fixed part: as a circle where they are a quarter turn apart (arcs), as a sum elsewhere
 (splines). See docs/explanation/motion.md.
+
+Units: those of `_segments` along the path; an axis' limits in its own unit (mm or deg) per s and s2.
 """
 
 from __future__ import annotations
@@ -33,7 +35,7 @@ from polycnc.kernel._segments import (
     SPLINE_FROM,
     SPLINE_INDEX,
     STOP,
-    SWEEP,
+    SWEEP_RAD,
     WAIT,
     WORK_POINT,
     Floats,
@@ -76,11 +78,11 @@ def feed_in_force(row: np.void, path: np.void) -> float:
 
     An override of 0 holds the path, so its segments stay planned as they are programmed.
     """
-    feed = row["feed"]
+    feed = row["feed_mm_s"]
     if row["flags"] & RAPID:
         return float(feed)
-    if path["dry_feed"] > 0.0:
-        feed = path["dry_feed"]
+    if path["dry_feed_mm_s"] > 0.0:
+        feed = path["dry_feed_mm_s"]
     return float(feed * path["override"] if path["override"] > 0.0 else feed)
 
 
@@ -130,13 +132,15 @@ def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work
 
 
 @compiled
-def _limit_curve(seg: Segments, k: int, limits: AxisLimits, feed: float, work: Floats) -> tuple[float, float]:
+def _limit_curve(
+    seg: Segments, k: int, limits: AxisLimits, asked_mm_s: float, work: Floats
+) -> tuple[float, float]:
     """Return speed cap and tangential acceleration on a curve from per-axis bounds of tangent and curvature."""
     tangent, bend = work[0], work[1]
     _curve_bounds(seg, k, tangent, bend)
     is_spline = seg.row[k]["kind"] == SPLINE
     bend_share = SPLINE_CENTRIPETAL_SHARE if is_spline else CENTRIPETAL_SHARE
-    cap = feed
+    cap = asked_mm_s
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             cap = min(cap, limits.speed[i] / tangent[i])
@@ -165,9 +169,9 @@ def _curve_bounds(seg: Segments, k: int, tangent: Floats, bend: Floats) -> None:
     if kind == ARC:
         small = min(geo[RADIUS_START], geo[RADIUS_END])
         large = max(geo[RADIUS_START], geo[RADIUS_END])
-        turn = abs(geo[SWEEP]) / row["length"]
+        turn = abs(geo[SWEEP_RAD]) / row["length"]
         # A changing radius adds a part along the radius, and as much again across it by turning.
-        spiral = 1.0 + 2.0 * (large - small) / (abs(geo[SWEEP]) * small)
+        spiral = 1.0 + 2.0 * (large - small) / (abs(geo[SWEEP_RAD]) * small)
         for j in range(2):
             tangent[seg.plane[k, j]] = spiral * turn * large
             bend[seg.plane[k, j]] = spiral * turn * turn * large
@@ -203,9 +207,9 @@ def _fitting_square(allowed: float, change: float, row: np.void) -> float:
 
 
 @compiled
-def _lasts(row: np.void, speed: float, time: float) -> bool:
-    """Tell whether a segment takes at least `time`, one of its ends being passed with `speed`."""
-    return bool(row["length"] >= (speed + 0.5 * row["full_accel"] * time) * time)
+def _lasts(row: np.void, speed: float, time_s: float) -> bool:
+    """Tell whether a segment takes at least `time_s`, one of its ends being passed with `speed`."""
+    return bool(row["length"] >= (speed + 0.5 * row["full_accel"] * time_s) * time_s)
 
 
 @compiled
@@ -363,12 +367,12 @@ def _give_way(
 
 
 @compiled
-def _given(work: Floats, side: int, speed: float, time: float) -> float:
-    """Return the part of its ramps that the line on one side gives to a corner within `time` of the next."""
+def _given(work: Floats, side: int, speed: float, time_s: float) -> float:
+    """Return the part of its ramps that the line on one side gives to a corner within `time_s` of the next."""
     share = 0.0
     for i in range(work.shape[1]):
         if work[2, i] > 0.0:
-            share = max(share, _yielded(work[2, i] * speed / time, work[side, i]))
+            share = max(share, _yielded(work[2, i] * speed / time_s, work[side, i]))
     return share
 
 

@@ -46,9 +46,12 @@ PATH_ROW = np.dtype(
         ("override", np.float64),  # factor of the programmed feeds; 0 holds moves at feed
         ("rapid_override", np.float64),  # factor of positioning speeds; 0 holds positioning
         ("rapid_top", np.float64),  # highest path speed of positioning
-        ("dry_feed", np.float64),  # path speed instead of every programmed feed, 0 = as programmed
+        ("dry_feed_mm_s", np.float64),  # path speed instead of every programmed feed, 0 = as programmed
         ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
-        ("tolerance", np.float64),  # how far the path may leave a corner between lines appended from now on
+        (
+            "tolerance_mm",
+            np.float64,
+        ),  # how far the path may leave a corner between lines appended from now on
         ("lead", np.float64),  # time into the running segment at sample 0
         (
             "entry_share",

@@ -4,6 +4,8 @@ The motor follows the commanded velocity with one time constant, optionally with
 acceleration limit; over one cycle with a held command this is solved exactly, so the result does not depend
 on how a time is cut into cycles. The load follows the motor through play. The encoder sits on either side and
 counts whole steps.
+
+Units: lengths in the axis' own unit (mm or deg), velocities per s, times in s.
 """
 
 from __future__ import annotations

@@ -2,6 +2,8 @@
 
 Layer MAIN gives the position of an axis itself, layer ADDED is summed on top of whatever else moves the axis.
 A profile begins with the cycle after it was commanded, from the position and velocity at that moment.
+
+Units: lengths in the axis' own unit (mm or deg), velocities per s, rates per s2, times in s.
 """
 
 from __future__ import annotations

@@ -7,6 +7,8 @@ chooses the side, and that choice is the time-optimal one, also with unequal rat
 
 Rates belong to the speed, not to the axis direction: `acceleration` while it grows, `deceleration` while it
 falls.
+
+Units: one of length and one of time, the caller's, as in `_profile_shape`.
 """
 
 from __future__ import annotations

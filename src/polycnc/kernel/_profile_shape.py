@@ -2,6 +2,8 @@
 
 Every phase is a polynomial in its own time. The row after the last phase holds the end state exactly as
 given, so a profile ends on its target to the last bit.
+
+Units: one of length and one of time, the caller's (mm or deg and s, counts and cycles); everything else follows.
 """
 
 from __future__ import annotations
@@ -152,8 +154,8 @@ def profile_duration(phases: npt.NDArray[np.float64], count: int) -> float:
 
 
 @compiled
-def profile_at(phases: npt.NDArray[np.float64], count: int, time_s: float) -> tuple[float, float, float]:
-    """Return position, velocity and acceleration `time_s` seconds after the start of a profile.
+def profile_at(phases: npt.NDArray[np.float64], count: int, time: float) -> tuple[float, float, float]:
+    """Return position, velocity and acceleration `time` seconds after the start of a profile.
 
     From the duration on, the answer is the stored target (at the duration itself to the last bit), moving on
     with the target velocity. Before the start it is the start.
@@ -162,8 +164,8 @@ def profile_at(phases: npt.NDArray[np.float64], count: int, time_s: float) -> tu
     begin = 0.0
     for row in range(count):
         end = begin + phases[row, DURATION]
-        if time_s < end:
-            since = time_s - begin if time_s > begin else 0.0
+        if time < end:
+            since = time - begin if time > begin else 0.0
             velocity = phases[row, VELOCITY]
             acceleration = phases[row, ACCELERATION]
             jerk = phases[row, JERK]
@@ -172,5 +174,5 @@ def profile_at(phases: npt.NDArray[np.float64], count: int, time_s: float) -> tu
             return phases[row, POSITION] + moved, velocity + gained, acceleration + since * jerk
         begin = end
     velocity = phases[count, VELOCITY]
-    since = time_s - begin if time_s > begin else 0.0
+    since = time - begin if time > begin else 0.0
     return phases[count, POSITION] + velocity * since, velocity, 0.0

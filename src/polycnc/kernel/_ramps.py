@@ -5,6 +5,9 @@ spent on building the acceleration up and down (0 rectangular, 1 triangular). So
 
 Within a cycle of a corner a segment gives up part of its acceleration. So it comes in three pieces: near its start,
 between, and near its end. A ramp that goes over several of them has a leg in each.
+
+Units: lengths in mm (deg where only rotary axes move), speeds per s, accelerations per s2, times in s; shares are parts
+of one.
 """
 
 from __future__ import annotations
@@ -140,8 +143,8 @@ def plan_ramps(
 
 
 @compiled
-def _set_one_leg(ramps: Floats, legs: int, time: float, speed: float) -> None:
-    ramps[legs] = time
+def _set_one_leg(ramps: Floats, legs: int, time_s: float, speed: float) -> None:
+    ramps[legs] = time_s
     ramps[legs + 1] = speed
     ramps[legs + 2] = 0.0
     ramps[legs + 4] = 0.0
@@ -203,11 +206,11 @@ def halting_distance(speed: float, accel: float, zone: float, share: float) -> f
 
 
 @compiled
-def plan_pause(ramps: Floats, duration: float) -> None:
-    """Fill `ramps` to stand still for `duration`."""
+def plan_pause(ramps: Floats, duration_s: float) -> None:
+    """Fill `ramps` to stand still for `duration_s`."""
     set_one_piece(ramps, 0.0, 1.0)
     plan_ramps(ramps, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-    ramps[TIME_CRUISE] = duration
+    ramps[TIME_CRUISE] = duration_s
 
 
 @compiled
@@ -218,22 +221,22 @@ def ramps_duration(ramps: Floats) -> float:
 
 @compiled
 def shaped_ramp(
-    t: float, duration: float, from_speed: float, to_speed: float, jerkrel: float
+    t: float, duration_s: float, from_speed: float, to_speed: float, jerkrel: float
 ) -> tuple[float, float]:
-    """Return distance and speed at time `t` into a ramp of `duration`."""
+    """Return distance and speed at time `t` into a ramp of `duration_s`."""
     change = to_speed - from_speed
     if jerkrel <= 0.0:
-        rise = change * (t / duration)
+        rise = change * (t / duration_s)
         return (from_speed + 0.5 * rise) * t, from_speed + rise
-    edge = duration * jerkrel / (1.0 + jerkrel)
-    peak = change / (duration - edge)
+    edge = duration_s * jerkrel / (1.0 + jerkrel)
+    peak = change / (duration_s - edge)
     jerk = peak / edge
     if t <= edge:
         return from_speed * t + jerk * t * t * t / 6.0, from_speed + 0.5 * jerk * t * t
-    left = duration - t
+    left = duration_s - t
     if left < edge:  # mirror image from the end
         back = to_speed * left - jerk * left * left * left / 6.0
-        return 0.5 * (from_speed + to_speed) * duration - back, to_speed - 0.5 * jerk * left * left
+        return 0.5 * (from_speed + to_speed) * duration_s - back, to_speed - 0.5 * jerk * left * left
     u = t - edge
     speed = from_speed + 0.5 * jerk * edge * edge
     distance = from_speed * edge + jerk * edge * edge * edge / 6.0

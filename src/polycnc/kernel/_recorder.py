@@ -12,7 +12,7 @@ from polycnc.kernel._jit import compiled
 Floats = npt.NDArray[np.float64]
 
 # Leading columns of a row; the setpoints of all axes follow, then, if wanted, their actual positions.
-TIME_S, BLOCK, FEED, IS_RAPID = 0, 1, 2, 3
+TIME_S, BLOCK, FEED_MM_S, IS_RAPID = 0, 1, 2, 3
 LEADING = 4
 
 
@@ -36,7 +36,13 @@ def is_full(recorder: Recorder) -> bool:
 
 @compiled
 def record(
-    recorder: Recorder, time_s: float, block: int, feed: float, rapid: int, setpoint: Floats, actual: Floats
+    recorder: Recorder,
+    time_s: float,
+    block: int,
+    speed_mm_s: float,
+    rapid: int,
+    setpoint: Floats,
+    actual: Floats,
 ) -> None:
     """Append the row of a cycle; a full recorder, that nobody has emptied, keeps what it has."""
     if recorder.filled[0] >= recorder.rows.shape[0]:
@@ -44,7 +50,7 @@ def record(
     row = recorder.rows[recorder.filled[0]]
     row[TIME_S] = time_s
     row[BLOCK] = block
-    row[FEED] = feed
+    row[FEED_MM_S] = speed_mm_s
     row[IS_RAPID] = rapid
     n = setpoint.shape[0]
     for i in range(n):

@@ -75,7 +75,7 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
     tail = int(path["tail"])
     if path["limit"] < tail:
         return int(path["limit"])
-    if tail > path["prepared"] and path["tolerance"] > 0.0 and path["closed"] == 0:
+    if tail > path["prepared"] and path["tolerance_mm"] > 0.0 and path["closed"] == 0:
         row = seg.row[slot(paths, g, tail - 1)]
         if row["kind"] == LINE and not row["flags"] & (RAPID | STOP):
             return tail - 1
@@ -140,6 +140,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     if path["state"] != IDLE:
         path["state"] = READY
     path["entry_share"] = 0.0
+    path["entry_zone"] = 0.0
     path["pending"] = 0
     path["limit"] = NO_LIMIT
 

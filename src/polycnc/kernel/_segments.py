@@ -2,6 +2,9 @@
 
 A slot holds one segment of any kind; the columns are shared by all paths, path `g` owning a run of slots (see
 `_path`). Speeds are along the path; the path length counts the feed axes of a segment only, the others ride along.
+
+Units: lengths in mm (deg where only rotary axes move), speeds per s, accelerations per s2, times in s; the sweep of an
+arc in rad, that of a circle in three axes in deg, which whole turns leave exact.
 """
 
 from __future__ import annotations
@@ -28,7 +31,7 @@ TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of
 
 GEO = 16
 # Geometry of an ARC.
-CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP = 0, 1, 2, 3, 4
+CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP_RAD = 0, 1, 2, 3, 4
 # Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point behind it.
 CIRCLE3D_RADIUS, CIRCLE3D_LENGTH = 10, 11
 WORK_POINT = 13
@@ -44,7 +47,7 @@ Floats = npt.NDArray[np.float64]
 SEGMENT_ROW = np.dtype(
     [
         ("length", np.float64),
-        ("feed", np.float64),  # programmed path speed, inf for rapids
+        ("feed_mm_s", np.float64),  # programmed path speed, inf for rapids
         ("end_speed", np.float64),  # prescribed speed at the end, or negative: the look-ahead decides
         ("cap", np.float64),  # highest path speed that feed and axes allow
         ("full_accel", np.float64),  # path acceleration that the axes allow
@@ -93,9 +96,11 @@ def make_segments(slots: int, axes: int, splines: Splines | None = None) -> Segm
 
 
 @compiled
-def set_common(seg: Segments, k: int, start: Floats, end: Floats, feed: float, flags: int, tag: int) -> None:
+def set_common(
+    seg: Segments, k: int, start: Floats, end: Floats, speed_mm_s: float, flags: int, tag: int
+) -> None:
     """Fill what every kind of segment has."""
-    _set_common(seg.row, seg.start, seg.end, k, start, end, feed, flags, tag)
+    _set_common(seg.row, seg.start, seg.end, k, start, end, speed_mm_s, flags, tag)
 
 
 @compiled
@@ -106,14 +111,14 @@ def _set_common(
     k: int,
     start: Floats,
     end: Floats,
-    feed: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> None:
     for i in range(start.shape[0]):
         starts[k, i] = start[i]
         ends[k, i] = end[i]
-    row[k]["feed"] = feed
+    row[k]["feed_mm_s"] = speed_mm_s
     row[k]["flags"] = flags
     row[k]["tag"] = tag
     row[k]["end_speed"] = -1.0
@@ -128,7 +133,7 @@ def set_line(
     feed_axis: npt.NDArray[np.uint8],
     start: Floats,
     end: Floats,
-    feed: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> bool:
@@ -150,7 +155,7 @@ def set_line(
         flags |= TURN
     if length < TINY:
         return False
-    _set_common(row, starts, ends, k, start, end, feed, flags, tag)
+    _set_common(row, starts, ends, k, start, end, speed_mm_s, flags, tag)
     row[k]["kind"] = LINE
     row[k]["length"] = length
     return True
@@ -167,12 +172,12 @@ def set_arc(
     axis_q: int,
     center_p: float,
     center_q: float,
-    sweep: float,
-    feed: float,
+    sweep_rad: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> bool:
-    """Fill slot `k` with an arc about (center_p, center_q) through `sweep` rad, positive from axis p to axis q.
+    """Fill slot `k` with an arc about (center_p, center_q) through `sweep_rad`, positive from axis p to axis q.
 
     The radius goes linearly from the start's to the end's, so a rounded end point is met exactly.
     """
@@ -180,7 +185,7 @@ def set_arc(
     radius_start = math.sqrt(dp * dp + dq * dq)
     ep, eq = end[axis_p] - center_p, end[axis_q] - center_q
     radius_end = math.sqrt(ep * ep + eq * eq)
-    in_plane = abs(sweep) * 0.5 * (radius_start + radius_end)
+    in_plane = abs(sweep_rad) * 0.5 * (radius_start + radius_end)
     if in_plane < TINY or radius_start < TINY or radius_end < TINY:
         return False
     counted = in_plane * in_plane
@@ -188,7 +193,7 @@ def set_arc(
         if i != axis_p and i != axis_q and feed_axis[i] != 0:
             d = end[i] - start[i]
             counted += d * d
-    set_common(seg, k, start, end, feed, flags, tag)
+    set_common(seg, k, start, end, speed_mm_s, flags, tag)
     seg.row[k]["kind"] = ARC
     seg.plane[k, 0] = axis_p
     seg.plane[k, 1] = axis_q
@@ -197,7 +202,7 @@ def set_arc(
     seg.geo[k, CENTER_Q] = center_q
     seg.geo[k, RADIUS_START] = radius_start
     seg.geo[k, RADIUS_END] = radius_end
-    seg.geo[k, SWEEP] = sweep
+    seg.geo[k, SWEEP_RAD] = sweep_rad
     return True
 
 
@@ -212,7 +217,7 @@ def set_circle3d(
     center: Floats,
     normal: Floats,
     sweep_deg: float,
-    feed: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> bool:
@@ -228,7 +233,7 @@ def set_circle3d(
     end = start.copy()
     circle3d_point(geo, 1.0, three)
     end[axis_p], end[axis_q], end[axis_r] = three[0], three[1], three[2]
-    set_common(seg, k, start, end, feed, flags, tag)
+    set_common(seg, k, start, end, speed_mm_s, flags, tag)
     seg.row[k]["kind"] = CIRCLE3D
     seg.plane[k, 0], seg.plane[k, 1], seg.plane[k, 2] = axis_p, axis_q, axis_r
     seg.row[k]["length"] = geo[CIRCLE3D_LENGTH]
@@ -241,35 +246,37 @@ def set_spline(
     splines: Splines,
     k: int,
     index: int,
-    begin: float,
+    begin_mm: float,
     start: Floats,
-    feed: float,
+    speed_mm_s: float,
     flags: int,
     tag: int,
 ) -> float:
-    """Fill slot `k` with the stretch of spline `index` from path length `begin` on; return where it ends.
+    """Fill slot `k` with the stretch of spline `index` from path length `begin_mm` on; return where it ends.
 
     A stretch is one piece of the spline, so that every piece is as fast as its own curvature allows.
     """
-    end = spline_next_cut(splines, index, begin)
+    end = spline_next_cut(splines, index, begin_mm)
     length = splines.length[index]
-    while end < length and (end - begin < TINY or length - end < TINY):  # too short for a segment of its own
+    while end < length and (
+        end - begin_mm < TINY or length - end < TINY
+    ):  # too short for a segment of its own
         end = spline_next_cut(splines, index, end)
     point = np.empty(start.shape[0])
     spline_point(splines, index, end, point)
-    set_common(seg, k, start, point, feed, flags, tag)
+    set_common(seg, k, start, point, speed_mm_s, flags, tag)
     seg.row[k]["kind"] = SPLINE
-    seg.row[k]["length"] = end - begin
+    seg.row[k]["length"] = end - begin_mm
     seg.geo[k, SPLINE_INDEX] = index
-    seg.geo[k, SPLINE_FROM] = begin
+    seg.geo[k, SPLINE_FROM] = begin_mm
     return float(end)
 
 
 @compiled
-def set_wait(seg: Segments, k: int, at: Floats, duration: float, event: int, tag: int) -> None:
+def set_wait(seg: Segments, k: int, at: Floats, duration_s: float, event: int, tag: int) -> None:
     """Fill slot `k` with a wait at rest; `event` >= 0 is reported when the path gets there."""
     set_common(seg, k, at, at, 0.0, STOP, tag)
     seg.row[k]["kind"] = WAIT
     seg.row[k]["length"] = 0.0
-    seg.geo[k, WAIT_S] = max(duration, 0.0)
+    seg.geo[k, WAIT_S] = max(duration_s, 0.0)
     seg.geo[k, WAIT_EVENT] = event

@@ -3,6 +3,8 @@
 One cycle is: the plant moves for the past cycle with the command it was given, the encoder is read, the
 filter makes the next command from setpoint minus actual. So setpoint, actual and following error of a cycle
 belong to one instant. Between these instants the filter takes the error, and its own sum, as straight lines.
+
+Units: lengths in the axis' own unit (mm or deg), velocities per s, accelerations per s2, times in s.
 """
 
 from __future__ import annotations

@@ -7,8 +7,6 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.kernel._curve import Curve, make_curve
-from polycnc.kernel._follower import Follower, make_follower
 from polycnc.kernel._limits import AxisLimits, make_limits
 from polycnc.kernel._path import Paths, make_paths
 from polycnc.kernel._plant import Plant, make_plant
@@ -18,7 +16,6 @@ from polycnc.kernel._segments import Segments, make_segments
 from polycnc.kernel._servo import Servo, make_servo
 from polycnc.kernel._spline import Splines
 from polycnc.kernel._switches import Switches, make_switches
-from polycnc.kernel._table import Table, make_table
 
 Floats = npt.NDArray[np.float64]
 
@@ -31,7 +28,6 @@ SOFT_LIMIT = 16  # a setpoint is beyond a software limit
 FOLLOWING_ERROR = 32
 RECORDER_FULL = 64
 PATH_EVENT = 128  # a path stands at an event
-TABLE_EMPTY = 256  # a running table had no row left
 
 CLOCK_ROW = np.dtype(
     [
@@ -63,9 +59,6 @@ class KernelState(NamedTuple):
     paths: Paths
     seg: Segments
     limits: AxisLimits
-    table: Table
-    follower: Follower
-    curve: Curve
     servo: Servo
     plant: Plant
     switches: Switches
@@ -79,11 +72,6 @@ def make_state(
     cycle_s: float = 0.001,
     paths: int = 1,
     segments: int = 1 << 16,
-    tables: int = 1,
-    table_rows: int = 1,
-    followers: int = 1,
-    curves: int = 1,
-    curve_points: int = 2,
     record_cycles: int = 0,
     record_actual: bool = False,
     splines: Splines | None = None,
@@ -106,9 +94,6 @@ def make_state(
         paths=make_paths(paths, segments, axes),
         seg=make_segments(segments, axes, splines),
         limits=make_limits(axes),
-        table=make_table(tables, axes, table_rows),
-        follower=make_follower(followers),
-        curve=make_curve(curves, curve_points),
         servo=make_servo(axes),
         plant=make_plant(axes),
         switches=make_switches(axes),

@@ -93,7 +93,8 @@ class SpindleConfig(StrictModel):
         description="Change of the spindle speed in a second; absent: every change takes `times.spindle_start_s`.",
     )
     reached_share: Share = Field(
-        default=0.0, description="Deviation from the commanded speed that counts as reached, as a share of it."
+        default=0.0,
+        description="Deviation from the commanded speed that counts as reached, as a share of it.",
     )
     orientation_rpm: Positive = Field(
         default=60.0, description="Speed at which the spindle is brought to an angle."

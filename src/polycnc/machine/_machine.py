@@ -38,7 +38,6 @@ class Reason(IntFlag):
     FOLLOWING_ERROR = kernel.FOLLOWING_ERROR
     RECORDER_FULL = kernel.RECORDER_FULL
     PATH_EVENT = kernel.PATH_EVENT
-    TABLE_EMPTY = kernel.TABLE_EMPTY
 
 
 @dataclass(frozen=True, slots=True)
@@ -185,12 +184,14 @@ class Machine:
         """Let the axes have these speeds, accelerations, limits and switches from now on, while they stand.
 
         Raises:
-            UsageError: Other axes than the machine has, or an axis moves.
+            UsageError: Other axes than the machine has, or a path moves them.
         """
         if [(axis.name, axis.kind) for axis in axes] != [(axis.name, axis.kind) for axis in self.config.axes]:
-            raise UsageError("these are other axes", hint=f"The axes are {', '.join(self.config.axis_names)}.")
-        if self.state.velocity.any():
-            raise UsageError("an axis moves", hint="Wait until all axes stand.")
+            raise UsageError(
+                "these are other axes", hint=f"The axes are {', '.join(self.config.axis_names)}."
+            )
+        if (self.state.paths.row["state"] == kernel.RUNNING).any():
+            raise UsageError("a path moves the axes", hint="Wait until the path has come to rest.")
         self.config = self.config.model_copy(update={"axes": axes})
         for index, axis in enumerate(axes):
             self._set_axis(index, axis.vmax, axis.amax, axis.jump, axis.kind == "linear")

@@ -244,7 +244,9 @@ class Area(MutableMapping[Key, V], Generic[V]):
 
     def all_attributes(self) -> dict[Key, dict[str, Any]]:
         """Return the attributes of all keys, with one reading and without the values."""
-        rows = self._store.query("SELECT key, attributes FROM item WHERE area = ? ORDER BY key", (self._name,))
+        rows = self._store.query(
+            "SELECT key, attributes FROM item WHERE area = ? ORDER BY key", (self._name,)
+        )
         return {key: json.loads(attributes) for key, attributes in rows}
 
     def __delitem__(self, key: Key) -> None:

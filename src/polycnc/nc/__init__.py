@@ -9,10 +9,11 @@ from polycnc.nc._block_source import (
     Language,
     Pause,
     SourceItem,
+    Statement,
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel import Channel
+from polycnc.nc._channel import Channel, ChannelSnapshot
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._calls import Library
@@ -35,6 +36,7 @@ __all__ = [
     "Call",
     "CallProgram",
     "Channel",
+    "ChannelSnapshot",
     "ChannelState",
     "Dialect",
     "Drain",
@@ -50,6 +52,7 @@ __all__ = [
     "ProgramText",
     "SourceItem",
     "Spindle",
+    "Statement",
     "Stop",
     "TextRules",
     "TextSpan",

@@ -17,7 +17,7 @@ import re
 from bisect import bisect_right
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -129,6 +129,9 @@ class _Replay(NamedTuple):
     feed: tuple[list[int], list[float]]
 
 
+_Key: TypeAlias = tuple[ProgramText, tuple[Call, ...], ModalSnapshot, tuple[int, int] | None]
+
+
 @dataclass(slots=True)
 class _Context:
     text: ProgramText
@@ -137,7 +140,7 @@ class _Context:
     begin: tuple[int, int] | None  # of a run of plain blocks: byte offset and line
     replay: _Replay | None = None
 
-    def key(self) -> tuple[object, ...]:
+    def key(self) -> _Key:
         return self.text, self.stack, self.modal, self.begin
 
 
@@ -154,21 +157,21 @@ class BlockRecords:
         self._rules = rules
         self._columns = columns  # blocks of one run of plain blocks at the most
         self._contexts: dict[int, _Context] = {}
-        self._known: dict[tuple[object, ...], int] = {}
+        self._known: dict[_Key, int] = {}
         self._next = 1
         self._enough = _FEW
-        self._last: tuple[tuple[object, ...], int] | None = None
+        self._last: tuple[_Key | None, int] = None, 0  # and what is added to a line
         self._codes = _codes(dialect)
 
     def reference(self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, line: int) -> int:
         """Return the reference of a block that leaves the modal state `modal` behind."""
-        return self._base(_Context(text, stack, modal, None)) | line
+        return self._base((text, stack, modal, None)) | line
 
     def run_base(
         self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, begin: tuple[int, int]
     ) -> int:
         """Return what is added to a line for its reference, for a run of plain blocks from `begin` on."""
-        return self._base(_Context(text, stack, modal, begin))
+        return self._base((text, stack, modal, begin))
 
     def block(self, tag: int) -> BlockRecord | None:
         """Return the record of a block; None for a tag that is no reference, or of a context since dropped."""
@@ -189,10 +192,49 @@ class BlockRecords:
             modal=self._words(context, line),
         )
 
+    def depth(self, tag: int) -> int:
+        """Return how many calls led to the block of a tag."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return 0 if context is None else len(context.stack)
+
+    def tool(self, tag: int) -> int:
+        """Return the tool in the spindle with the block of a tag, 0 where that is not known."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return 0 if context is None else context.modal.tool
+
+    def motion(self, tag: int) -> Action | None:
+        """Return what the block of a tag moves by: the drilling cycle that is on, or the latest of G0 to G3."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        if context is None:
+            return None
+        if context.modal.cycle:
+            return Action[context.modal.cycle.upper()]
+        motion = float(context.modal.whole[MOTION])
+        if context.begin is not None:
+            replay = self._replay(context, context.begin)
+            motion = _latest(replay.motion, bisect_right(replay.lines, tag & LINE_MASK) - 1, motion)
+        return _MOTION_ACTIONS.get(int(motion))
+
+    def source(self, tag: int) -> ProgramText | None:
+        """Return the text that the block of a tag stands in."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return None if context is None else context.text
+
     def program(self, tag: int) -> str | None:
         """Return the name of the program that a tag refers to."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return None if context is None else context.text.name
+
+    def snapshot(self) -> tuple[dict[int, object], int]:
+        """Return all contexts, to go back to."""
+        return dict(self._contexts), self._next
+
+    def restore(self, saved: tuple[dict[int, object], int]) -> None:
+        """Go back to a snapshot."""
+        contexts, self._next = saved
+        self._contexts = {n: each for n, each in contexts.items() if isinstance(each, _Context)}
+        self._known = {context.key(): n for n, context in self._contexts.items()}
+        self._last = None, 0
 
     # ------------------------------------------------------------------ keeping few of them
 
@@ -206,34 +248,31 @@ class BlockRecords:
         needed = {tag >> CONTEXT_SHIFT for tag in tags}
         self._contexts = {n: context for n, context in self._contexts.items() if n in needed}
         self._known = {key: n for key, n in self._known.items() if n in needed}
-        self._last = None
+        self._last = None, 0
         self._enough = max(_FEW, 2 * len(self._contexts))
 
-    def _base(self, context: _Context) -> int:
-        key = context.key()
-        if self._last is not None and self._last[0] == key:
-            return self._last[1] << CONTEXT_SHIFT
+    def _base(self, key: _Key) -> int:
+        if key == self._last[0]:
+            return self._last[1]
         number = self._known.get(key)
         if number is None:
             number = self._next
             while number in self._contexts:
                 number = number % (_CONTEXTS - 1) + 1
             self._next = number % (_CONTEXTS - 1) + 1
-            self._contexts[number] = context
+            self._contexts[number] = _Context(*key)
             self._known[key] = number
-        self._last = key, number
-        return number << CONTEXT_SHIFT
+        self._last = key, number << CONTEXT_SHIFT
+        return self._last[1]
 
     # ------------------------------------------------------------------ modal words
 
     def _words(self, context: _Context, line: int) -> ModalWords:
         modal = context.modal
-        whole = list(modal.whole)
+        whole: list[int] = np.frombuffer(modal.whole, np.int64).tolist()
         feed = modal.feed
         if context.begin is not None:
-            if context.replay is None:
-                context.replay = self._read_run(context.text, context.begin)
-            replay = context.replay
+            replay = self._replay(context, context.begin)
             block = bisect_right(replay.lines, line) - 1
             whole[MOTION] = int(_latest(replay.motion, block, whole[MOTION]))
             whole[ABSOLUTE] = int(_latest(replay.absolute, block, whole[ABSOLUTE]))
@@ -253,8 +292,13 @@ class BlockRecords:
             h=modal.length_tool,
             m=modal.m_codes,
             inch=bool(whole[INCH]),
-            zero=modal.offset,
+            zero=tuple(np.frombuffer(modal.offset).tolist()),
         )
+
+    def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:
+        if context.replay is None:
+            context.replay = self._read_run(context.text, begin)
+        return context.replay
 
     def _read_run(self, text: ProgramText, begin: tuple[int, int]) -> _Replay:
         columns = word_columns(self._columns)

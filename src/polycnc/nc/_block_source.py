@@ -17,36 +17,48 @@ block is prepared:
   return.
 - `EndSource`: `RETURN` ends the present program as an M99 would, `END` everything. `None` is a RETURN in a
   sub-program, an END in the main program.
+- `Statement`: a statement of its own line has been executed. Only for stepping and breakpoints; a source that gives
+  none is stepped from NC block to NC block.
 
 A statement is no item: a source executes as many of them as it likes inside `next`. But a source must not run
 for ever in there; one that loops without a block gives a `Pause` now and then, so that whoever runs the channel
 can break off. `next` may raise `ProgramError` with its position: the block is refused like any other.
 
-A block of words that calls (M98) or returns (M99) does the same as in a text. `close` is called exactly once,
-when the program of a source is left, however that comes about; local variables end there.
+A block of words that calls (M98) or returns (M99) does the same as in a text. A source that enters sub-programs by
+itself puts their text and the calls that led there (`calls`, the outermost first, those of the channel not among
+them) into its items, and is asked by `leave` whether a return is its own affair. `close` is called exactly once, when
+the program of a source is left, however that comes about; local variables end there.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
-from typing import Protocol, TypeAlias
+from typing import TYPE_CHECKING, Protocol, TypeAlias, runtime_checkable
 
+from polycnc.nc._block_records import Call
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
+
+if TYPE_CHECKING:
+    from polycnc.nc._channel import Channel
 
 
 @dataclass(frozen=True, slots=True)
 class WordsBlock:
     """An NC block of line `line`; `offset` is where the line begins, `message` an operator message beside it.
 
-    The `place` of each word is a byte offset in the program text: that is where errors point.
+    The `place` of each word is a byte offset in the program text: that is where errors point. `skip_level` is that of
+    a skip mark. `text` is the program it stands in, the one that the source was made for if None.
     """
 
     words: tuple[Word, ...]
     line: int
     offset: int
     message: str = ""
+    skip_level: int = 0
+    text: ProgramText | None = None
+    calls: tuple[Call, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +68,8 @@ class TextSpan:
     offset: int
     line: int
     end: int
+    text: ProgramText | None = None
+    calls: tuple[Call, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +77,17 @@ class Drain:
     """Wait until everything before has been executed; `line` is the line that asks for it."""
 
     line: int
+    text: ProgramText | None = None
+    calls: tuple[Call, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Statement:
+    """A statement on `line` that has been executed, to be stepped to."""
+
+    line: int
+    text: ProgramText | None = None
+    calls: tuple[Call, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,7 +117,7 @@ class Pause(Enum):
     PAUSE = "pause"
 
 
-SourceItem: TypeAlias = WordsBlock | TextSpan | Drain | CallProgram | EndSource | Pause
+SourceItem: TypeAlias = WordsBlock | TextSpan | Drain | Statement | CallProgram | EndSource | Pause
 
 
 class BlockSource(Protocol):
@@ -104,6 +129,10 @@ class BlockSource(Protocol):
         Raises:
             ProgramError: a statement that cannot be executed.
         """
+        ...
+
+    def leave(self) -> bool:
+        """Leave the innermost program that the source has entered by itself, False if there is none (M99)."""
         ...
 
     def close(self) -> None:
@@ -122,4 +151,13 @@ class Language(Protocol):
         Raises:
             ProgramError: the program cannot be translated.
         """
+        ...
+
+
+@runtime_checkable
+class BoundLanguage(Language, Protocol):
+    """A language that reads the state of the channel it works for."""
+
+    def attach(self, channel: Channel) -> None:
+        """Take the channel, before it begins."""
         ...

@@ -6,28 +6,35 @@ program, through the ordinary interpreter. Where a language executes a program, 
 
 from __future__ import annotations
 
-from polycnc.errors import ProgramError
+from collections import deque
+from collections.abc import Callable
+from typing import NamedTuple
+
+from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc._block_records import BlockRecords
+from polycnc.nc._block_records import BlockRecords, Call
 from polycnc.nc._block_source import (
+    BoundLanguage,
     CallProgram,
     Drain,
     EndSource,
     Language,
     Pause,
     SourceItem,
+    Statement,
     TextSpan,
     WordsBlock,
 )
 from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._calls import Back, Calls, Library, Place
-from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._calls import Back, Calls, Library, Place, Running
+from polycnc.nc.blocks._channel_state import ChannelState, SavedState
 from polycnc.nc.blocks._interpreter import Control, Interpreter
-from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._messages import Message, Messages
 from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
-from polycnc.nc.blocks._queue import QueueWriter
-from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, run_plain
+from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._queue import QueueWriter, WriterSnapshot
+from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import (
     COMMENT,
@@ -50,16 +57,36 @@ _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
 
 
+class ChannelSnapshot(NamedTuple):
+    """Hold where a channel stood, to go back to."""
+
+    state: SavedState
+    calls: tuple[Running, ...]
+    place: Place
+    text_end: int
+    calls_within: tuple[Call, ...]
+    blocks: int
+    errors: tuple[ProgramError, ...]
+    messages: dict[str, Message]
+    flags: tuple[bool, bool]
+    writer: WriterSnapshot
+    records: tuple[dict[int, object], int]
+    interpreter: tuple[int, ProgramText]
+
+
 class Channel:
     """Prepare one program for one path of a machine.
 
-    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is none), and
-    `library` gives sub-programs that are in no file. `language` executes the programs that are more than words. With
-    `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are events like any other. `records` tells
-    what block a segment belongs to. `before` is the channel that used the path until now: its modal state stays in
-    force. With `collect_errors` a refused block is noted in `errors` and left out; else preparation ends there with
-    `error`. The ordinary interpreter gives the same queue as the compiled kernel, which takes over after the first
-    `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
+    `config` has the tools and work offsets, which may change while it runs (the machine's, where there is
+    none), and `library` gives sub-programs before files are looked for. `language` executes the programs that
+    are more than words. With `stands_at_stops` preparation waits at M0 and M1 for `go_on`; else they are
+    events like any other. With `answers` the path waits at auxiliary functions for whoever runs it, not for
+    the machine file's times; with `marks` blocks that leave nothing in the queue are noted (see
+    `QueueWriter`). `records` tells what block a segment belongs to. `before` is the channel that used the
+    path until now: with `keeps_modal` its modal state stays in force. With `collect_errors` a refused block
+    is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
+    gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
+    it, and once compiling it, takes longer than they do.
     """
 
     def __init__(
@@ -74,7 +101,10 @@ class Channel:
         language: Language | None = None,
         skip_levels: frozenset[int] = frozenset(),
         stands_at_stops: bool = False,
+        answers: bool = False,
+        marks: bool = False,
         before: Channel | None = None,
+        keeps_modal: bool = True,
         collect_errors: bool = False,
         ordinary_blocks: float = ORDINARY_BLOCKS,
     ) -> None:
@@ -92,9 +122,10 @@ class Channel:
         self._ordinary_blocks = ordinary_blocks
         self._calls = Calls(program, dialect, library)
         self._place = Place(program)
-        self._text_end = len(
-            program
-        )  # what is beyond is not read: the text ends, or a language goes on there
+        self._text_end = len(program)  # what is beyond is not read
+        self._calls_within: tuple[
+            Call, ...
+        ] = ()  # those that the source of the present program made by itself
         self._chunk = word_columns(_CHUNK_BLOCKS)
         self._jump_chunk = word_columns(_JUMP_BLOCKS)
         self._words = self._chunk
@@ -109,12 +140,25 @@ class Channel:
             self.records = BlockRecords(dialect, self._scan_rules, self._tables, _CHUNK_BLOCKS)
         else:
             self.writer, self.state, self.records = before.writer, before.state, before.records
-        self._fast_work = make_fast_work(self.state.modal)
+            if not keeps_modal:
+                self.state = self._initial_state(config or machine.config)
+                self.state.tool = before.state.tool
+        self._fast_work = make_fast_work(self.state.modal, _CHUNK_BLOCKS if marks else 0)
         self.interpreter = Interpreter(
             dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
         )
         self.writer.stands_at_stops = stands_at_stops
+        self.writer.answers = answers
+        self.writer.marks = deque() if marks else None
+        if isinstance(language, BoundLanguage):
+            language.attach(self)
         self._begun = False
+        self._seeking = False
+
+    @property
+    def depth(self) -> int:
+        """How deep the present program is nested; 0 is the main program."""
+        return self._calls.depth
 
     @property
     def done(self) -> bool:
@@ -142,8 +186,11 @@ class Channel:
         """Go on behind the first stop that preparation waits for; it has been executed."""
         self.writer.stops -= 1
 
-    def fill(self, blocks: int | None = None) -> None:
-        """Prepare blocks until the queue is full, the program has ended or waits; `blocks` more at the most."""
+    def fill(self, blocks: int | None = None, *, compiled: bool = True) -> None:
+        """Prepare blocks until the queue is full, the program has ended or waits; `blocks` more at the most.
+
+        Without `compiled` every block goes through the ordinary interpreter.
+        """
         if not self._begun:
             self._begun = True
             self._begin()
@@ -160,7 +207,7 @@ class Channel:
             if self._next_block >= self._words.n_blocks:
                 if not self._next_chunk():
                     return
-            elif self.blocks >= self._ordinary_blocks and not whole[ORDINARY]:
+            elif compiled and self.blocks >= self._ordinary_blocks and not whole[ORDINARY]:
                 reason = self._plain_blocks(most)
                 if reason == QUEUE_FULL:
                     return
@@ -168,6 +215,103 @@ class Channel:
                     self._ordinary_block()
             else:
                 self._ordinary_block()
+
+    def go_to(self, line: int) -> None:
+        """Begin at a line of the main program instead of its first, with the modal state as it is.
+
+        Raises:
+            UsageError: a language executes the program.
+        """
+        place = self._target(line)
+        self._begun = True
+        self._calls.running.begun = True
+        self._jump(place, len(place.text))
+
+    def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
+        """Carry out all blocks before a line of the main program; False if the program ends before.
+
+        `drop` is called to throw away what has come into the queue. Afterwards the program goes on at the line.
+
+        Raises:
+            UsageError: a language executes the program, or radius compensation is active there.
+        """
+        place = self._target(line)
+        self._begun = self._seeking = True
+        self._text_end = place.offset
+        while not self._ended and not self._is_at(place):
+            self.fill()
+            drop()
+            self.writer.clear()
+        self._seeking = False
+        if self._ended:
+            return False
+        if self.state.compensation.active:
+            raise UsageError(
+                f"radius compensation is active at line {line}",
+                hint="Search a block before G41 or G42, or behind G40.",
+            )
+        self._jump(place, len(place.text))
+        return True
+
+    def begin_at(self, position: tuple[float, ...], line: int) -> None:
+        """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
+        modal = self.state.modal
+        start = tuple(modal.position.tolist())
+        tag = self._reference(line)
+        self.writer.put(Line(start, position, Feed(), rapid=True, exact_stop=True, line=line, tag=tag))
+        modal.position[:] = position
+
+    def _target(self, line: int) -> Place:
+        if self._language is not None and self._calls.running.source is not None:
+            raise UsageError("a block of a program with statements cannot be searched", hint="Start it anew.")
+        text = self._calls.running.begin.text
+        return Place(text, text.line_start(line), line)
+
+    def _is_at(self, place: Place) -> bool:
+        return (
+            self._calls.depth == 0
+            and self._next_block >= self._words.n_blocks
+            and self._place.offset >= place.offset
+            and not self.writer.backlog
+        )
+
+    def snapshot(self) -> ChannelSnapshot:
+        """Return where preparation stands and all that it has found, to go back to with `restore`.
+
+        The queue itself belongs to the machine.
+
+        Raises:
+            UsageError: a language executes a program.
+        """
+        return ChannelSnapshot(
+            self.state.save(),
+            self._calls.snapshot(),
+            self._here(),
+            self._text_end,
+            self._calls_within,
+            self.blocks,
+            tuple(self.errors),
+            self.messages.snapshot(),
+            (self._ended, self._begun),
+            self.writer.snapshot(),
+            self.records.snapshot(),
+            self.interpreter.snapshot(),
+        )
+
+    def restore(self, saved: ChannelSnapshot) -> None:
+        """Go back to a snapshot of this channel."""
+        self.state.restore(saved.state)
+        self._calls.restore(saved.calls)
+        self._calls_within = saved.calls_within
+        self.blocks = saved.blocks
+        self.errors[:] = saved.errors
+        self._known_errors = {str(error) for error in saved.errors}
+        self.messages.restore(saved.messages)
+        self._ended, self._begun = saved.flags
+        self.writer.restore(saved.writer)
+        self.records.restore(saved.records)
+        self.interpreter.restore(saved.interpreter)
+        self._jump(saved.place, saved.text_end)
 
     def close(self) -> None:
         """Give up the program: what a language holds for it ends."""
@@ -188,7 +332,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
-        if _START_OFFSET in config.offsets:
+        if _START_OFFSET in config.offsets or self.dialect.macros:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 
@@ -210,8 +354,14 @@ class Channel:
             return True
         if self._calls.running.source is not None:
             return self._from_source()
+        if self._seeking and self._calls.depth == 0:
+            return False
         self._leave()
         return True
+
+    def _stop_reading(self) -> None:
+        """Read no more of the present text: the source says what comes next."""
+        self._jump(Place(self._place.text, self._text_end, self._place.line), self._text_end)
 
     def _jump(self, place: Place, end: int) -> None:
         self._place = place
@@ -220,6 +370,7 @@ class Channel:
 
     def _begin(self) -> None:
         """Begin the present program, or its next round."""
+        self._calls_within = ()
         running = self._calls.running
         begin = running.begin
         if self._language is not None:
@@ -252,16 +403,19 @@ class Channel:
 
     def _source_item(self, item: SourceItem | None) -> None:
         text = self._calls.running.begin.text
+        if isinstance(item, WordsBlock | TextSpan | Drain | Statement):
+            text = item.text or text
+            self._calls_within = item.calls
+            self._place = Place(text, self._text_end, item.line)  # the end of what there is to read
         match item:
             case WordsBlock():
-                self.blocks += 1
-                flags = MESSAGE if item.message else PLAIN
-                block = Block(item.words, flags, 0, item.offset, item.offset, item.line, message=item.message)
-                self._execute(text, block)
+                self._words_block(text, item)
             case TextSpan():
                 self._jump(Place(text, item.offset, item.line), item.end)
             case Drain():
                 self.interpreter.drain(text, item.line)
+            case Statement():
+                self.interpreter.mark(item.line)
             case CallProgram():
                 self._call(text, item)
             case EndSource.END:
@@ -269,17 +423,29 @@ class Channel:
             case _:
                 self._leave()
 
+    def _words_block(self, text: ProgramText, item: WordsBlock) -> None:
+        self.blocks += 1
+        if item.skip_level in self.skip_levels:
+            return
+        flags = MESSAGE if item.message else PLAIN
+        end = text.next_line(item.offset)
+        block = Block(item.words, flags, item.skip_level, item.offset, end, item.line, message=item.message)
+        self._execute(text, block)
+
     def _call(self, text: ProgramText, call: CallProgram) -> None:
         trouble = self._calls.trouble(call.program)
         if trouble is not None:
             raise ProgramError(trouble[0], position=text.position(call.offset), hint=trouble[1])
-        back = Back(self._here(), self._text_end, call.line)
+        back = Back(self._here(), self._text_end, call.line, self._calls_within)
         if self._calls.enter(call.program, call.repeats, back, call.arguments):
             self._begin()
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self._calls.stack, self.state.snapshot(), line)
+        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+
+    def _stack(self) -> tuple[Call, ...]:
+        return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
         """Return the place of the next block."""
@@ -298,8 +464,9 @@ class Channel:
         first = self._next_block
         words = self._words
         kernel = self.machine.state
+        self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self._calls.stack, self.state.snapshot(), begin)
+        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)
@@ -316,6 +483,8 @@ class Channel:
             kernel.limits,
             self._fast_work,
         )
+        if self.writer.marks is not None:
+            self.writer.marks.extend(marked(self._fast_work))
         if self._next_block > first:
             self.blocks += self._next_block - first
             if words.first_word[self._next_block] > words.first_word[first]:
@@ -389,10 +558,14 @@ class Channel:
             case Control.END:
                 self._end()
             case Control.CALL:
-                back = Back(self._here(), self._text_end, block.line)
+                back = Back(self._here(), self._text_end, block.line, self._calls_within)
                 if self._calls.enter(outcome.program, outcome.repeats, back):
                     self._begin()
             case Control.RETURN:
+                source = self._calls.running.source
+                if source is not None and source.leave():
+                    self._stop_reading()
+                    return
                 if self._calls.depth == 0:
                     self.messages.add("a return from the main program ends it")
                 self._leave()
@@ -408,6 +581,7 @@ class Channel:
         if back is None:
             self._begin()
         else:
+            self._calls_within = back.within
             self._jump(back.place, back.end)
 
     def _end(self) -> None:

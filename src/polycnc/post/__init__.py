@@ -6,12 +6,15 @@ from polycnc.post.macros._reference import control_file_reference
 from polycnc.post.macros._run import MacroRun
 from polycnc.post.output._program import BlockMap, PostSummary, post_program
 from polycnc.post.output._writing import program_file
+from polycnc.post.tool_path._cl_reading import ArcAxis
 from polycnc.post.tool_path._source import Remark
 from polycnc.post.tool_path._sweep import Sweep, sweep_tool_path
+from polycnc.post.tool_path._tangency import Tangency
 from polycnc.post.tool_path._tool_path import ToolPath, open_tool_path, parse_tool_path
 
 __all__ = [
     "CONTROLS",
+    "ArcAxis",
     "BlockMap",
     "ControlFile",
     "MacroRun",
@@ -19,6 +22,7 @@ __all__ = [
     "PostSummary",
     "Remark",
     "Sweep",
+    "Tangency",
     "ToolPath",
     "control_file_reference",
     "load_control",

@@ -1,11 +1,12 @@
 """Run part programs: from a program and a machine to a typed result, a trace, a plot; post tool paths and prove them.
 
-What posting needs is loaded when it is first used.
+What posting and debugging need is loaded when it is first used.
 """
 
 from typing import TYPE_CHECKING, Any
 
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
+from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
 from polycnc.runner._run import check, program_text, run
 from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
@@ -13,22 +14,33 @@ from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
+    from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
 
 _LATER = {
+    "Debugger": "_debugger",
     "Deviation": "_verify_post",
+    "Place": "_debugger",
     "PostResult": "_post",
     "PostVerification": "_verify_post",
+    "View": "view",
+    "check_view_file": "view",
+    "open_in_browser": "view",
     "post_file": "_post",
     "verify_post": "_verify_post",
+    "view_program": "view",
 }
 
 __all__ = [
     "PLOT_FORMATS",
+    "SCREEN_FORMATS",
     "TRACE_FORMATS",
     "Alarm",
+    "Debugger",
     "Deviation",
+    "Place",
     "PlotCollector",
     "PostResult",
     "PostVerification",
@@ -37,20 +49,25 @@ __all__ = [
     "RunResult",
     "Trace",
     "TraceWriter",
+    "View",
     "Violation",
     "WallClock",
     "check",
     "check_plot_file",
+    "check_view_file",
     "counted",
+    "open_in_browser",
     "plot",
     "post_file",
     "program_text",
+    "read_keys",
     "read_trace",
     "run",
     "time_text",
     "trace_columns",
     "verify_post",
     "verify_trace",
+    "view_program",
 ]
 
 

@@ -10,12 +10,18 @@ import numpy.typing as npt
 
 from polycnc.cnc import ProgramRun
 from polycnc.kernel import FEED_LENGTH, FEED_S, RAPID_LENGTH, RAPID_S, TOP_SPEED, WAIT_S
+from polycnc.nc import BlockRecords
+from polycnc.runner._program_control import ProgramControl
 
 Floats = npt.NDArray[np.float64]
 Rows = Callable[[Floats], None]
+TaggedRows = Callable[[Floats, npt.NDArray[np.int64], BlockRecords], None]
 Progress = Callable[[float], None]
 
 _STEP_CYCLES = 1 << 16
+_MOVING_CYCLES = 1 << 8  # what a program asks of the control is seen this often
+_PATIENCE_S = 1.0  # nothing changes the inputs of a run: what does not hold then never will
+_GROWTH = 50  # a wait for an input is looked at ever more rarely
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,13 +36,26 @@ class Totals:
     top_speed: float
 
 
-def run_to_end(run: ProgramRun, *, every_cycle: bool, progress: Progress | None = None) -> None:
+def run_to_end(
+    run: ProgramRun,
+    *,
+    every_cycle: bool,
+    progress: Progress | None = None,
+    control: ProgramControl | None = None,
+) -> None:
     """Run until the program has ended and everything has stopped, a program stop where it stands, or an alarm.
 
     With `every_cycle` every control cycle is run, as simulated servos, limit switches and the recorder need it;
-    without, the same cycles are counted in closed form.
+    without, the same cycles are counted in closed form. A `control` that executes the program is asked again and again
+    while the path stands: time passes up to the end of its wait.
+
+    Raises:
+        ProgramError: The program waits without end.
     """
     run.start()
+    if control is not None:
+        _run_with(control, run, every_cycle=every_cycle)
+        return
     while run.active:
         if every_cycle:
             run.advance(_STEP_CYCLES)
@@ -44,6 +63,29 @@ def run_to_end(run: ProgramRun, *, every_cycle: bool, progress: Progress | None 
             run.skip()
         if progress is not None:
             progress(run.channel.progress)
+    run.drain()
+
+
+def _run_with(control: ProgramControl, run: ProgramRun, *, every_cycle: bool) -> None:
+    idle = 0
+    patience = run.machine.clock.cycles_for(_PATIENCE_S)
+    while run.active:
+        if every_cycle:
+            run.advance(1 if run.at_rest else _MOVING_CYCLES)
+        else:
+            run.skip()
+        wakes_s = control.wakes_in_s()
+        if wakes_s is None or not run.active or not run.at_rest:
+            idle = 0
+            continue
+        if wakes_s < float("inf"):
+            cycles = run.machine.clock.cycles_for(wakes_s)
+        elif idle > patience and (error := control.stuck()) is not None:
+            run.channel.close()
+            raise error
+        else:
+            cycles = idle // _GROWTH
+        idle += max(run.advance(max(cycles, 1)), 1)
     run.drain()
 
 

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from polycnc.errors import ProgramError
+from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.post import (
+    ArcAxis,
     BlockMap,
     ControlFile,
     PostSummary,
@@ -68,21 +69,33 @@ def post_file(
     verify: bool = False,
     machine: str | MachineConfig | None = None,
     tolerance_mm: float = DEFAULT_TOLERANCE_MM,
+    arc_axis: ArcAxis | None = None,
     progress: Progress | None = None,
 ) -> PostResult:
     """Turn a tool path into a program for a control, and with `verify` run it and compare both.
 
     `control` is the name of a control file that comes with polycnc, or a path. The program goes to `output`,
     which gets its name when it is complete, or into the result. `machine` stands for the one that the control
-    file names.
+    file names, `arc_axis` for what it says about the axes of CIRCLE/ in a file of APT words.
 
     Raises:
-        UsageError: no such file, control file or machine, or the program cannot be written.
+        UsageError: no such file, control file or machine, `arc_axis` for JSON, or the program cannot be written.
         ConfigurationError: the control file is wrong.
         ProgramError: the tool path cannot be posted.
     """
     chosen = control if isinstance(control, ControlFile) else load_control(control)
-    path = tool_path if isinstance(tool_path, ToolPath) else open_tool_path(tool_path)
+    if arc_axis is not None and (
+        isinstance(tool_path, ToolPath) or Path(tool_path).suffix.lower() == ".json"
+    ):
+        raise UsageError(
+            "a sense of rotation for the axes of arcs is for a file in APT words",
+            hint="Arcs in JSON are by the right-hand rule: turn 'normal' round there.",
+        )
+    path = (
+        tool_path
+        if isinstance(tool_path, ToolPath)
+        else open_tool_path(tool_path, arc_axis or chosen.parameters.arc_axis)
+    )
     block_map = BlockMap() if verify else None
     text = io.StringIO()
     with ExitStack() as stack:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.errors import AlarmError, PolycncError, ProgramError
+from polycnc.cnc import ToolTime
+from polycnc.errors import AlarmError, PolycncError, ProgramError, UsageError
+from polycnc.nc import ProgramText
+from polycnc.runner._blocks import Execution
+
+if TYPE_CHECKING:
+    from polycnc.runner.view import View
 
 Floats = npt.NDArray[np.float64]
 
@@ -61,6 +67,8 @@ class Trace:
 
     `axes` and `units` name the columns of `setpoint` [cycles, n] and `actual`, which is None without
     simulated servos. The first row is the end of the first cycle, the last row the end of the run.
+    `execution` tells the block of each row apart from its neighbours, in whatever program it stands; None in a trace
+    that was read from a file.
     """
 
     axes: tuple[str, ...]
@@ -71,6 +79,7 @@ class Trace:
     rapid: npt.NDArray[np.bool_]
     setpoint: Floats
     actual: Floats | None = None
+    execution: Execution | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.t_s)
@@ -101,8 +110,12 @@ class RunResult:
     extents_mm: dict[str, tuple[float, float]]
     alarms: list[Alarm]
     messages: list[RunMessage]
+    tool_times: dict[int, ToolTime]
     events: list[RunEvent] = field(repr=False)
+    source: ProgramText | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)
+    variables: dict[str, object] = field(default_factory=dict, repr=False)
+    """Variables of a program's language by name, after the run: permanent and global ones."""
 
     def __str__(self) -> str:
         state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"
@@ -133,6 +146,18 @@ class RunResult:
         assert isinstance(error, ProgramError | AlarmError)
         error.result = self
         raise error
+
+    def view(self) -> View:
+        """Return a page that shows the run: save it, open it, or leave it to a notebook to show.
+
+        Raises:
+            UsageError: the result has no trace, or plotly is not installed.
+        """
+        from polycnc.runner.view import view_of_trace
+
+        if self.trace is None or self.trace.execution is None:
+            raise UsageError("there is nothing to view: the result has no trace", hint="Run with trace=True.")
+        return view_of_trace(self, self.trace, self.trace.execution)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON, without the trace."""
@@ -166,8 +191,13 @@ class RunResult:
                 }
                 for alarm in self.alarms
             ],
+            "tool_times": {
+                str(tool): {"cutting_time_s": time.cutting_s, "rapid_time_s": time.rapid_s}
+                for tool, time in self.tool_times.items()
+            },
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
+            **({"variables": self.variables} if self.variables else {}),
         }
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,9 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
-from polycnc.runner._execution import Floats, Progress, Rows, run_to_end, totals
+from polycnc.nc.macro import language_for
+from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
+from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
 from polycnc.runner._trace import TraceCollector
 
@@ -31,17 +33,26 @@ def run(
     skip_levels: Iterable[int] = (),
     stop_at_m0: bool = False,
     rows: Rows | None = None,
+    tagged_rows: TaggedRows | None = None,
     progress: Progress | None = None,
+    root: str | Path | None = None,
+    keys: Iterable[str] = (),
+    screen: str | Path | None = None,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
     `program` is a path, or the text itself if it has more than one line. `machine` is a preset, a TOML file
     or a configuration (the 3-axis mill if absent), `dialect` a name (chosen by the file's extension, else
     DIN). With `trace` the result holds one row per control cycle; `rows` gets the same in pieces,
-    [cycles, columns], as it is recorded. `servo` simulates the position loops. Blocks with a skip mark `/n`
+    [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks and the records that
+    read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
     are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
     run ends at the first M0. `progress` is called now and then with the part that is done, 0 to 1;
     it goes back where sub-programs repeat.
+
+    Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
+    absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
+    `screen` (.txt, .svg or .png).
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
@@ -51,22 +62,52 @@ def run(
     text = program_text(program)
     config = load_machine(machine)
     collector = TraceCollector(config, servo) if trace else None
-    sinks = [sink for sink in (collector.add if collector else None, rows) if sink is not None]
-    every_cycle = bool(sinks) or servo or _has_limit_switches(config)
+    sinks: list[Rows] = [] if rows is None else [rows]
+    tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
+    every_cycle = bool(sinks or tagged) or servo or _has_limit_switches(config)
     if every_cycle and progress is not None:
         sinks.append(_progress_by_line(text, progress))
-    simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if sinks else 0)
+    recorded = bool(sinks or tagged)
+    simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if recorded else 0)
     events: list[RunEvent] = []
+
+    def to_all(piece: Floats, tags: npt.NDArray[np.int64]) -> None:
+        for sink in sinks:
+            sink(piece)
+        for tagged_sink in tagged:
+            tagged_sink(piece, tags, execution.channel.records)
+
+    chosen = dialect_for(text.name, dialect)
+    levels = frozenset(skip_levels)
+    surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
+    control = control_for(chosen, text, simulated, surroundings)
+    if screen is not None:
+        check_screen_file(screen)
     execution = ProgramRun(
         simulated,
         text,
-        dialect_for(text.name, dialect),
-        options=RunOptions(block_delete=frozenset(skip_levels), stands_at_stops=stop_at_m0),
-        rows=_to_all(sinks) if sinks else None,
+        chosen,
+        language=language_for(chosen) if control is None else control.language,
+        options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
+        rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, execution),
     )
-    run_to_end(execution, every_cycle=every_cycle, progress=None if every_cycle else progress)
-    result = _result(execution, events, collector)
+    stuck: ProgramError | None = None
+    if control is None:
+        run_to_end(execution, every_cycle=every_cycle, progress=None if every_cycle else progress)
+    else:
+        control.attach(execution)
+        try:
+            run_to_end(execution, every_cycle=every_cycle, control=control)
+        except ProgramError as error:
+            stuck = error
+        finally:
+            control.finish()
+        if screen is not None:
+            control.screen.save(Path(screen))
+    result = _result(execution, events, collector, stuck)
+    if control is not None:
+        result.variables.update(control.variables())
     if check:
         result.raise_for_alarms()
     return result
@@ -76,16 +117,24 @@ def check(
     program: str | Path | ProgramText,
     machine: str | Path | MachineConfig | None = None,
     dialect: str | Dialect | None = None,
+    *,
+    root: str | Path | None = None,
 ) -> list[ProgramError]:
     """Return every error of a part program, not only the first; an empty list if there is none.
+
+    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run.
 
     Raises:
         UsageError: no such file, machine or dialect.
     """
     text = program_text(program)
     simulated = Machine(load_machine(machine))
+    chosen = dialect_for(text.name, dialect)
+    control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
+    if control is not None:
+        return control.check(text)
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = ProgramRun(simulated, text, dialect_for(text.name, dialect), options=options)
+    execution = ProgramRun(simulated, text, chosen, options=options, language=language_for(chosen))
     run_to_end(execution, every_cycle=False)
     return execution.channel.errors
 
@@ -102,14 +151,6 @@ def program_text(program: str | Path | ProgramText) -> ProgramText:
         if isinstance(program, str) and " " in program:
             error.hint = "Check the name and the folder; a program text needs a newline at its end."
         raise
-
-
-def _to_all(sinks: list[Rows]) -> Callable[[Floats, npt.NDArray[np.int64]], None]:
-    def to_all(rows: Floats, _tags: npt.NDArray[np.int64]) -> None:
-        for sink in sinks:
-            sink(rows)
-
-    return to_all
 
 
 def _note(event: Event, events: list[RunEvent], execution: ProgramRun) -> None:
@@ -141,11 +182,18 @@ def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
     return Alarm("program", error.what, error.code, line, column, time_s, file, error.hint, error)
 
 
-def _result(execution: ProgramRun, events: list[RunEvent], collector: TraceCollector | None) -> RunResult:
+def _result(
+    execution: ProgramRun,
+    events: list[RunEvent],
+    collector: TraceCollector | None,
+    stuck: ProgramError | None = None,
+) -> RunResult:
     machine, channel = execution.machine, execution.channel
     config, state = machine.config, machine.state
     sums = totals(execution)
     alarms = [_program_alarm(error, machine.time_s) for error in channel.errors]
+    if stuck is not None:
+        alarms.append(_program_alarm(stuck, machine.time_s))
     if (alarm := execution.alarm) is not None:
         alarms.insert(0, Alarm("machine", alarm.text, alarm.code, line_of(alarm.tag), 0, machine.time_s))
     names = config.axis_names
@@ -170,6 +218,8 @@ def _result(execution: ProgramRun, events: list[RunEvent], collector: TraceColle
         },
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
+        tool_times=execution.tool_times,
         events=events,
+        source=execution.program,
         trace=collector.trace() if collector else None,
     )

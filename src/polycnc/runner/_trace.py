@@ -13,14 +13,16 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.errors import UsageError
-from polycnc.kernel import BLOCK, FEED, IS_RAPID, LEADING, TIME_S
+from polycnc.kernel import BLOCK, FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
+from polycnc.nc import BlockRecords
+from polycnc.runner._blocks import ExecutionCollector
 from polycnc.runner._files import check_output, complete_or_absent
 from polycnc.runner._result import Trace
 
 Floats = npt.NDArray[np.float64]
 
-_COLUMNS = (TIME_S, BLOCK, FEED)
+_COLUMNS = (TIME_S, BLOCK, FEED_MM_S)
 _COLUMN_NAMES = ("t_s", "block", "feed_mm_s")
 _AXIS_COLUMN = re.compile(r"([A-Z][0-9]*)(_actual)?_(mm|deg)")
 
@@ -46,10 +48,18 @@ class TraceCollector:
         self._config = config
         self._actual = actual
         self._pieces: list[Floats] = []
+        self._executions = ExecutionCollector()
+        self._tagged = False
 
     def add(self, rows: Floats) -> None:
         """Take a piece of the record; the recorder will write over it, so it is copied."""
         self._pieces.append(rows.copy())
+
+    def add_tagged(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
+        """Take a piece of the record, and which block each row belongs to."""
+        self.add(rows)
+        self._tagged = True
+        self._executions.add(tags, records)
 
     def trace(self) -> Trace:
         """Return everything collected."""
@@ -61,10 +71,11 @@ class TraceCollector:
             units=tuple(axis.unit for axis in self._config.axes),
             t_s=rows[:, TIME_S],
             block=rows[:, BLOCK].astype(np.int64),
-            feed_mm_s=rows[:, FEED],
+            feed_mm_s=rows[:, FEED_MM_S],
             rapid=rows[:, IS_RAPID] != 0.0,
             setpoint=rows[:, LEADING : LEADING + axes],
             actual=rows[:, LEADING + axes :] if self._actual else None,
+            execution=self._executions.execution() if self._tagged else None,
         )
 
 

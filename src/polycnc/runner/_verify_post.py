@@ -3,23 +3,27 @@
 Both ways: how far the machine goes off the tool path, and how far the tool path has points that the machine
 does not come to. Each cycle of the run is compared with the record that its block came from.
 
-The program runs on the machine as it is, for time and alarms, and once more with less acceleration, so that the
-machine's positions lie close enough together to see every corner.
+The program runs on the machine as it is, with its work offsets, tool lengths and limits, for time and alarms, and
+once more with less acceleration, so that the machine's positions lie close enough together to see every corner.
+What is compared is the tip of the tool that is in the spindle, counted from program zero: a program that does not
+compensate the length of its tool deviates by that length.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.kernel import BLOCK, IS_RAPID, LEADING
-from polycnc.machine import MachineConfig, PathConfig, TimesConfig, load_machine
-from polycnc.nc import ProgramText
-from polycnc.post import BlockMap, ToolPath, sweep_tool_path
-from polycnc.runner._execution import Progress
+from polycnc.machine import Machine, MachineConfig, PathConfig, TimesConfig, ToolConfig, load_machine
+from polycnc.nc import BlockRecords, Dialect, Group, ModalWords, ProgramText, dialect_for
+from polycnc.post import BlockMap, Sweep, Tangency, ToolPath, sweep_tool_path
+from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run
@@ -27,6 +31,8 @@ from polycnc.runner._run import run
 DEFAULT_TOLERANCE_MM = 1e-3
 _SAMPLING = 0.1  # part of the tolerance that the distance of the machine's positions may cost
 _AXES = "XYZ"
+_RECORD_CYCLES = 1 << 14
+_CONTEXT_SHIFT = 32
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +51,9 @@ class PostVerification:
 
     `off_path` is the farthest that a feed move goes off the tool path, `missed` the farthest that a point of the
     tool path stays from the machine's way, `detour_mm` how far rapids leave the straight line, which is allowed.
-    `rapid_cuts` counts records with feed that the program goes along by rapid. `run` is the run on the machine.
+    `rapid_cuts` counts records with feed that the program goes along by rapid. `kinked_arcs` of the tool path turn
+    back on the spot where straight feed moves meet them, and `smooth_arcs` do not: an arc that is read with the wrong
+    sense does, so more of the former are no proof. `run` is the run on the machine.
     """
 
     tolerance_mm: float
@@ -53,6 +61,9 @@ class PostVerification:
     missed: Deviation
     detour_mm: float
     rapid_cuts: int
+    smooth_arcs: int
+    kinked_arcs: int
+    arc_remark: str
     path_feed_mm: float
     path_rapid_mm: float
     run: RunResult
@@ -65,7 +76,12 @@ class PostVerification:
     @property
     def ok(self) -> bool:
         """Whether the program runs to its end and stays within the tolerance."""
-        return self.run.ok and not self.rapid_cuts and self.deviation_mm <= self.tolerance_mm
+        return (
+            self.run.ok
+            and not self.rapid_cuts
+            and not self.arc_remark
+            and self.deviation_mm <= self.tolerance_mm
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -77,6 +93,8 @@ class PostVerification:
             "missed": {"mm": self.missed.mm, "block": self.missed.block, "line": self.missed.line},
             "detour_mm": self.detour_mm,
             "rapid_cuts": self.rapid_cuts,
+            "smooth_arcs": self.smooth_arcs,
+            "kinked_arcs": self.kinked_arcs,
             "path_feed_mm": self.path_feed_mm,
             "path_rapid_mm": self.path_rapid_mm,
             "time_s": self.run.time_s,
@@ -97,20 +115,20 @@ def verify_post(
 ) -> PostVerification:
     """Run a posted program and compare its path with the tool path; `block_map` is what posting filled.
 
-    Work offsets, tool lengths and tool radii count as 0: the comparison is in the coordinates of the part. The
-    machine starts where the tool path does, if that says so (FROM). Rotary axes are not compared.
+    The run is that on the machine as it is. Tool radii count as 0 in the comparison, which is in the coordinates of the
+    part. Rotary axes are not compared.
 
     Raises:
         UsageError: no such machine or dialect.
     """
     config = load_machine(machine)
-    moves = Moves(sweep_tool_path(tool_path), len(block_map.line))
-    plain = config.model_copy(update={"tools": {}, "offsets": {}, "start": _start(config, moves)})
-    result = run(program, plain, dialect, check=False)
-    comparison = _Comparison(moves, block_map, plain)
+    read = dialect_for(program.name, dialect)
+    tangency = Tangency()
+    moves = Moves(_judged(sweep_tool_path(tool_path), tangency), len(block_map.line))
+    result = run(program, config, read, check=False)
+    comparison = _Comparison(moves, block_map, config, read)
     if result.ok:
-        close = _with_close_positions(plain, tolerance_mm * _SAMPLING)
-        run(program, close, dialect, check=False, rows=comparison.add, progress=progress)
+        _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress)
     lengths = moves.lengths()
     return PostVerification(
         tolerance_mm=tolerance_mm,
@@ -120,19 +138,44 @@ def verify_post(
         rapid_cuts=int(comparison.rapid_cut.sum()),
         path_feed_mm=float(lengths[~moves.rapid].sum()),
         path_rapid_mm=float(lengths[moves.rapid].sum()),
+        smooth_arcs=tangency.smooth,
+        kinked_arcs=tangency.kinked,
+        arc_remark=tangency.text() if tangency.mostly_kinked else "",
         run=result,
     )
 
 
-def _start(config: MachineConfig, moves: Moves) -> dict[str, float]:
-    """Return where the machine stands at first."""
-    start = dict(config.start)
-    if len(moves.known) and moves.known[0]:
-        for name, value in zip(_AXES, moves.start[0].tolist(), strict=True):
-            if name in config.axis_names:
-                low, high = config.axes[config.axis_index(name)].soft_limits
-                start[name] = min(max(value, low), high)
-    return start
+def _judged(sweeps: Iterator[Sweep], tangency: Tangency) -> Iterator[Sweep]:
+    """Yield the sweeps, and let `tangency` see them."""
+    for sweep in sweeps:
+        if sweep.angle > 0.0 and sweep.start is not None:
+            tangency.arc(sweep.line, sweep.start, sweep.end, sweep.center, sweep.normal)
+        else:
+            tangency.straight(sweep.start, sweep.end, not sweep.rapid)
+        yield sweep
+    tangency.settle()
+
+
+def _run_closely(
+    program: ProgramText,
+    config: MachineConfig,
+    dialect: Dialect,
+    distance_mm: float,
+    comparison: _Comparison,
+    progress: Progress | None,
+) -> None:
+    """Run a program with close positions, and compare each."""
+    machine = Machine(_with_close_positions(config, distance_mm), record_cycles=_RECORD_CYCLES)
+    lines = max(program.content.count(b"\n"), 1)
+
+    def compare(rows: Floats, tags: Indices) -> None:
+        comparison.add(rows, tags, execution.channel.records)
+        if progress is not None:
+            progress(min(float(rows[-1, BLOCK]) / lines, 1.0))
+
+    options = RunOptions(stands_at_stops=False)
+    execution = ProgramRun(machine, program, dialect, options=options, rows=compare)
+    run_to_end(execution, every_cycle=True)
 
 
 def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineConfig:
@@ -148,13 +191,51 @@ def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineC
         else axis
         for axis in config.axes
     )
-    return config.model_copy(update={"axes": axes, "path": PathConfig(), "times": TimesConfig()})
+    tools = {
+        number: tool.model_copy(update={"radius_mm": 0.0, "wear_radius_mm": 0.0})
+        for number, tool in config.tools.items()
+    }
+    changed = {"axes": axes, "path": PathConfig(), "times": TimesConfig(), "tools": tools}
+    return config.model_copy(update=changed)
+
+
+class _TipFrame:
+    """Where the tip of the tool in the spindle is on the part: what to take from the axes' positions."""
+
+    def __init__(self, config: MachineConfig, dialect: Dialect) -> None:
+        self._config = config
+        self._columns = [config.axis_names.index(name) if name in config.axis_names else -1 for name in _AXES]
+        signs = {"length_plus": 1.0, "length_minus": -1.0}
+        self._signs = {f"G{code}": signs[action] for code, action in dialect.g.items() if action in signs}
+        self._last = np.zeros(3)
+
+    def shifts(self, tags: Indices, records: BlockRecords) -> Floats:
+        """Return what to take from the X, Y, Z positions of each row."""
+        contexts = tags >> _CONTEXT_SHIFT
+        begins = np.flatnonzero(np.concatenate(([True], contexts[1:] != contexts[:-1])))
+        found = np.empty((len(begins), 3))
+        for place, begin in enumerate(begins.tolist()):
+            block = records.block(int(tags[begin]))
+            if block is not None:
+                self._last = self._shift(block.modal)
+            found[place] = self._last
+        return np.repeat(found, np.diff(np.append(begins, len(tags))), axis=0)
+
+    def _shift(self, modal: ModalWords) -> npt.NDArray[np.float64]:
+        shift = np.array([modal.zero[column] if column >= 0 else 0.0 for column in self._columns])
+        sign = self._signs.get(modal.g.get(Group.LENGTH_COMPENSATION, ""), 0.0)
+        shift[2] += self._length(modal.tool) - sign * self._length(modal.h)
+        return shift
+
+    def _length(self, number: int) -> float:
+        tool = self._config.tools.get(number, ToolConfig())
+        return tool.length_mm + tool.wear_length_mm
 
 
 class _Comparison:
     """Compare rows of a run with the moves of the tool path, as they come."""
 
-    def __init__(self, moves: Moves, block_map: BlockMap, config: MachineConfig) -> None:
+    def __init__(self, moves: Moves, block_map: BlockMap, config: MachineConfig, dialect: Dialect) -> None:
         self.off_path = Deviation()
         self.detour_mm = 0.0
         self._moves = moves
@@ -170,12 +251,13 @@ class _Comparison:
         self._at_block = np.zeros(len(self._owner), np.int64)
         names = dict(zip(config.axis_names, config.start_positions, strict=True))
         self._here = np.array([[names.get(name, 0.0) for name in _AXES]])
-        self._begin = self._here
+        self._frame = _TipFrame(config, dialect)
+        self._begin: Floats | None = None
         self._record = 0
         self._reached = np.full((records, 3), np.nan)
 
-    def add(self, rows: Floats) -> None:
-        """Take a piece of the record."""
+    def add(self, rows: Floats, tags: Indices, blocks_of: BlockRecords) -> None:
+        """Take a piece of the record; `tags` refer to the blocks of its rows."""
         points = np.zeros((len(rows), 3))
         for place, column in enumerate(self._columns):
             if column >= 0:
@@ -184,7 +266,11 @@ class _Comparison:
         records = np.minimum(np.searchsorted(self._last_block, blocks), len(self._lines) - 1)
         before = np.concatenate((self._here, points[:-1]))
         before_records = np.concatenate(([self._record], records[:-1]))
-        self._here, self._record = points[-1:], int(records[-1])
+        shifts = self._frame.shifts(tags, blocks_of)
+        self._here, self._record = points[-1:].copy(), int(records[-1])
+        points, before = points - shifts, before - shifts
+        if self._begin is None:
+            self._begin = before[:1]
         self._reached[records] = points
         moved = (points != before).any(axis=1) | (records != before_records)
         points, before, blocks = points[moved], before[moved], blocks[moved]
@@ -248,6 +334,7 @@ class _Comparison:
         known = ~np.isnan(self._reached[:, 0])
         last = np.maximum.accumulate(np.where(known, np.arange(len(known)), -1))
         records = last[self._moves.record[self._owner[still]]]
-        standing = np.where((records >= 0)[:, None], self._reached[records], self._begin)
+        begin = np.zeros((1, 3)) if self._begin is None else self._begin
+        standing = np.where((records >= 0)[:, None], self._reached[records], begin)
         ways = self._witness[still] - standing
         self._best[still] = np.sqrt((ways * ways).sum(axis=1))

@@ -5,6 +5,7 @@ from polycnc.controllers.fanuc.device import _pmc_memory as pmc
 from polycnc.controllers.fanuc.device._alarms import AlarmBit, bit_of, shown
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._state import State, read_state
 
 __all__ = [
@@ -14,6 +15,7 @@ __all__ = [
     "ParameterRow",
     "PowerMate",
     "PowerMateMode",
+    "PowerMateSnapshot",
     "State",
     "bit_of",
     "parameter_rows",

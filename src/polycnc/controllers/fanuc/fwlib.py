@@ -24,11 +24,15 @@ from polycnc.controllers.fanuc.library import (
     _diagnosis,
     _handles,
     _history,
+    _macros,
     _misc,
     _modal,
     _motion,
+    _offsets,
     _panel,
+    _parameters,
     _pmc,
+    _programs,
     _structs_a,
     _structs_b,
 )
@@ -38,12 +42,16 @@ from polycnc.controllers.fanuc.library._codes import *  # noqa: F403
 from polycnc.controllers.fanuc.library._diagnosis import *  # noqa: F403
 from polycnc.controllers.fanuc.library._handles import *  # noqa: F403
 from polycnc.controllers.fanuc.library._history import *  # noqa: F403
+from polycnc.controllers.fanuc.library._macros import *  # noqa: F403
 from polycnc.controllers.fanuc.library._misc import *  # noqa: F403
 from polycnc.controllers.fanuc.library._modal import *  # noqa: F403
 from polycnc.controllers.fanuc.library._motion import *  # noqa: F403
 from polycnc.controllers.fanuc.library._network import Node, Session
+from polycnc.controllers.fanuc.library._offsets import *  # noqa: F403
 from polycnc.controllers.fanuc.library._panel import *  # noqa: F403
+from polycnc.controllers.fanuc.library._parameters import *  # noqa: F403
 from polycnc.controllers.fanuc.library._pmc import *  # noqa: F403
+from polycnc.controllers.fanuc.library._programs import *  # noqa: F403
 from polycnc.controllers.fanuc.library._structs_a import *  # noqa: F403
 from polycnc.controllers.fanuc.library._structs_b import *  # noqa: F403
 from polycnc.controllers.library import layouts
@@ -62,11 +70,15 @@ __all__ = [
     *_diagnosis.__all__,
     *_handles.__all__,
     *_history.__all__,
+    *_macros.__all__,
     *_misc.__all__,
     *_modal.__all__,
     *_motion.__all__,
+    *_offsets.__all__,
     *_panel.__all__,
+    *_parameters.__all__,
     *_pmc.__all__,
+    *_programs.__all__,
     *_structs_a.__all__,
     *_structs_b.__all__,
     "FUNCTIONS",

@@ -222,7 +222,9 @@ def _laid_out(cls: K, bases: tuple[type, ...], table: _Table, **more: Any) -> K:
     made._fields_ = [(name, each.whole) for name, each in table.elements.items()]
     for name, each in table.elements.items():
         if each.counts:
-            field = vars(made)[name]  # getattr would keep it in a cache, from which unions do not take it away
+            field = vars(made)[
+                name
+            ]  # getattr would keep it in a cache, from which unions do not take it away
             setattr(made, name, _Array(field, cls.__name__, name, each, table.checked))
     for name, python in table.held.items():
         setattr(made, name, _Held(getattr(made, name, None), f"_{name}", python))

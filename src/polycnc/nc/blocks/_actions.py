@@ -24,6 +24,8 @@ class Group(StrEnum):
     RADIUS_COMPENSATION = "radius_compensation"
     LENGTH_COMPENSATION = "length_compensation"
     WORK_OFFSET = "work_offset"
+    ROTATION = "rotation"
+    POLAR = "polar"
     STOPPING = "stopping"
     EXACT_STOP_BLOCK = "exact_stop_block"
     RETRACT = "retract"
@@ -81,6 +83,20 @@ class Action(IntEnum):
     CYCLE_BORE_DWELL = auto()
     RETRACT_INITIAL = auto()
     RETRACT_R = auto()
+    SET_DATA = auto()
+    LOCAL_COORDINATES = auto()
+    SCALING = auto()
+    SCALING_OFF = auto()
+    MIRROR = auto()
+    MIRROR_OFF = auto()
+    ROTATION = auto()
+    ROTATION_OFF = auto()
+    POLAR = auto()
+    POLAR_OFF = auto()
+    ADDITIONAL_OFFSET = auto()
+    SKIP_MOVE = auto()
+    UNSUPPORTED = auto()
+    NOTHING = auto()
     IGNORED = auto()
 
 
@@ -108,7 +124,16 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.MACHINE_COORDINATES,
         Action.SET_POSITION,
         Action.CLEAR_SET_POSITION,
+        Action.SET_DATA,
+        Action.LOCAL_COORDINATES,
+        Action.SCALING,
+        Action.SCALING_OFF,
+        Action.MIRROR,
+        Action.MIRROR_OFF,
+        Action.SKIP_MOVE,
     ),
+    Group.ROTATION: (Action.ROTATION, Action.ROTATION_OFF),
+    Group.POLAR: (Action.POLAR, Action.POLAR_OFF),
     Group.DWELL: (Action.DWELL,),
     Group.PLANE: (Action.PLANE_XY, Action.PLANE_ZX, Action.PLANE_YZ),
     Group.UNITS: (Action.INCH, Action.METRIC),
@@ -118,11 +143,11 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
     Group.SPINDLE_MODE: (Action.CONSTANT_SURFACE_SPEED, Action.SPINDLE_RPM),
     Group.RADIUS_COMPENSATION: (Action.COMP_OFF, Action.COMP_LEFT, Action.COMP_RIGHT),
     Group.LENGTH_COMPENSATION: (Action.LENGTH_PLUS, Action.LENGTH_MINUS, Action.LENGTH_OFF),
-    Group.WORK_OFFSET: (Action.WORK_OFFSET, Action.WORK_OFFSET_OFF),
+    Group.WORK_OFFSET: (Action.WORK_OFFSET, Action.WORK_OFFSET_OFF, Action.ADDITIONAL_OFFSET),
     Group.STOPPING: (Action.EXACT_STOP, Action.CONTINUOUS),
     Group.EXACT_STOP_BLOCK: (Action.EXACT_STOP_BLOCK,),
     Group.RETRACT: (Action.RETRACT_INITIAL, Action.RETRACT_R),
-    Group.IGNORED: (Action.IGNORED,),
+    Group.IGNORED: (Action.IGNORED, Action.NOTHING, Action.UNSUPPORTED),
 }
 
 GROUP_OF: dict[Action, Group] = {action: group for group, actions in _BY_GROUP.items() for action in actions}

@@ -86,8 +86,8 @@ class Auxiliary:
     def tool_data(self, tool: int) -> ToolConfig:
         """Return the data of a tool, zeros with a message if there are none; tool 0 is no tool."""
         tools = self.state.machine.tools
-        if tool in tools:
-            return tools[tool]
+        if self.state.tables.has_tool(tool):
+            return self.state.tables.tool(tool)
         if tool and not tools:
             self.messages.add("the machine has no tool table: lengths and radii of all tools are 0 mm")
         elif tool:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
-from itertools import pairwise
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -33,11 +32,15 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Back:
-    """Say where the reading goes on after a sub-program: `end` is where that text ends; and which line called."""
+    """Say where the reading goes on after a sub-program: `end` is where that text ends; and which line called.
+
+    `within` are calls that the source of the calling program had made by itself.
+    """
 
     place: Place
     end: int
     line: int
+    within: tuple[Call, ...] = ()
 
 
 @dataclass
@@ -91,7 +94,8 @@ class Calls:
             UsageError: its file cannot be read.
         """
         deepest = self._dialect.sub_program.depth
-        if self.depth >= deepest:
+        # Calls with arguments have their own limit, which the language watches.
+        if sum(running.arguments is None for running in self._stack) > deepest:
             return (
                 f"sub-programs are nested more than {deepest} deep",
                 f"Dialect '{self._dialect.name}' allows {deepest} levels: does a sub-program call itself?",
@@ -136,6 +140,23 @@ class Calls:
         self._note_calls()
         return running.back
 
+    def snapshot(self) -> tuple[Running, ...]:
+        """Return the programs under way, to go back to.
+
+        Raises:
+            UsageError: a language executes one of them; where it stands cannot be kept.
+        """
+        if any(running.source is not None for running in self._stack):
+            raise UsageError(
+                "a program with statements is under way", hint="Take the snapshot before or after it."
+            )
+        return tuple(replace(running) for running in self._stack)
+
+    def restore(self, stack: tuple[Running, ...]) -> None:
+        """Go back to a snapshot."""
+        self._stack = [replace(running) for running in stack]
+        self._note_calls()
+
     def close(self) -> None:
         """End all programs."""
         for running in reversed(self._stack):
@@ -144,11 +165,12 @@ class Calls:
                 running.source = None
 
     def _note_calls(self) -> None:
-        self._calls = tuple(
-            Call(outer.begin.text.name, inner.back.line, inner.round)
-            for outer, inner in pairwise(self._stack)
-            if inner.back is not None
-        )
+        calls: list[Call] = []
+        for running in self._stack[1:]:
+            back = running.back
+            assert back is not None
+            calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
+        self._calls = tuple(calls)
 
     def _find(self, program: int | ProgramText) -> Place | None:
         """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
@@ -161,7 +183,8 @@ class Calls:
                 return self._labels[text.name][program]
         if self._library is not None:
             found = self._library(program)
-            return None if found is None else Place(found)
+            if found is not None:
+                return Place(found)
         main = Path(self._main.name)
         if not main.is_file():
             return None  # a text from elsewhere has no folder

@@ -12,7 +12,9 @@ from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._compensation import RadiusCompensation
 from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc.blocks._cycles import CycleWords
+from polycnc.nc.blocks._frame import Frame
 from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.blocks._tables import ProgramTables
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,14 +55,16 @@ class Plain(NamedTuple):
     compensation_tool: int | None
     length_tool: int
     m_codes: tuple[int, ...]
+    frame: Frame
+    skip_position: tuple[float, ...] | None
 
 
 class ModalSnapshot(NamedTuple):
     """Hold what was in force with one block, to be shown while it is executed; see `ChannelState`."""
 
-    whole: tuple[int, ...]
+    whole: bytes  # `Modal.whole`
     feed: float  # as programmed
-    offset: tuple[float, ...]
+    offset: bytes  # `Modal.offset`
     work: tuple[str, ...]
     spindle: Spindle
     cycle: str
@@ -90,13 +94,17 @@ class ChannelState:
     the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
     -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
     length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any.
+    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
+    mirrored, `skip_position` where the last skip move ended (machine coordinates).
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
         self.machine = machine
         self.modal = modal
-        self.coordinates = Coordinates(machine, modal)
+        self.tables = ProgramTables(machine)
+        self.coordinates = Coordinates(self.tables, modal)
+        self.frame = Frame()
+        self.skip_position: tuple[float, ...] | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
@@ -111,7 +119,7 @@ class ChannelState:
         self.axis_names: Sequence[str] = machine.axis_names
 
     def save(self) -> SavedState:
-        """Return the state to go back to when the block that comes is refused."""
+        """Return the state to go back to."""
         return SavedState(
             save_modal(self.modal),
             self.coordinates.save(),
@@ -126,7 +134,7 @@ class ChannelState:
         if saved.compensation is None:
             self.compensation.reset()
         else:
-            self.compensation = saved.compensation
+            self.compensation = saved.compensation.copy()
         for name, value in zip(Plain._fields, saved.plain, strict=True):
             setattr(self, name, value)
 
@@ -143,15 +151,17 @@ class ChannelState:
             self.compensation_tool,
             self.length_tool,
             self.m_codes,
+            self.frame,
+            self.skip_position,
         )
 
     def snapshot(self) -> ModalSnapshot:
         """Return what is in force now."""
         modal, coordinates = self.modal, self.coordinates
         return ModalSnapshot(
-            tuple(modal.whole.tolist()),
+            modal.whole.tobytes(),
             float(modal.real[FEED_NUMBER]),
-            tuple(modal.offset.tolist()),
+            modal.offset.tobytes(),
             coordinates.work,
             self.spindle,
             self.cycle.action,

@@ -7,11 +7,11 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._modal import Modal
+from polycnc.nc.blocks._tables import COMMON_OFFSET, ProgramTables
 
 Floats: TypeAlias = npt.NDArray[np.float64]
-SavedCoordinates: TypeAlias = tuple[tuple[str, ...], Floats, Floats, int]
+SavedCoordinates: TypeAlias = tuple[tuple[str, ...], Floats, Floats, Floats, int]
 
 MACHINE_ZERO = ""
 WORK_GROUPS = 3
@@ -30,22 +30,24 @@ class Coordinates:
     tool length compensation is active, else 0. The vectors are replaced, never changed in place.
     """
 
-    def __init__(self, machine: MachineConfig, modal: Modal) -> None:
-        self._machine = machine
+    def __init__(self, tables: ProgramTables, modal: Modal) -> None:
+        self._tables = tables
         self._modal = modal
-        axes = len(machine.axes)
+        axes = len(modal.position)
         self.work = (MACHINE_ZERO,) * WORK_GROUPS
         self.shift: Floats = np.zeros(axes)  # G92
+        self.local: Floats = np.zeros(axes)  # G52
         self.length: Floats = np.zeros(axes)
         self.length_sign = 0
+        self._revision = tables.revision
 
     def save(self) -> SavedCoordinates:
         """Return what to go back to; the sum in `modal.offset` is the modal state's business."""
-        return self.work, self.shift, self.length, self.length_sign
+        return self.work, self.shift, self.local, self.length, self.length_sign
 
     def restore(self, saved: SavedCoordinates) -> None:
         """Go back to a saved state."""
-        self.work, self.shift, self.length, self.length_sign = saved
+        self.work, self.shift, self.local, self.length, self.length_sign = saved
 
     def select_work_offset(self, group: int, name: str) -> None:
         """Take work offset `name` (G54, ...) of a group; MACHINE_ZERO for none."""
@@ -56,6 +58,13 @@ class Coordinates:
         """Shift program zero so that the present position of `axis` reads `value` (mm or degree)."""
         self.shift = self.shift.copy()
         self.shift[axis] += self._modal.position[axis] - self._modal.offset[axis] - value
+        self._renew()
+
+    def set_local(self, values: dict[int, float], *, add: bool = False) -> None:
+        """Put the zero of a local coordinate system into every work coordinate system (mm or degree)."""
+        self.local = self.local.copy()
+        for axis, value in values.items():
+            self.local[axis] = value + (self.local[axis] if add else 0.0)
         self._renew()
 
     def clear_shift(self) -> None:
@@ -70,9 +79,16 @@ class Coordinates:
         self.length[axis] = sign * length_mm
         self._renew()
 
+    def take_changes(self) -> None:
+        """Take over work offsets that have been changed in the table since."""
+        if self._tables.revision != self._revision:
+            self._renew()
+
     def _renew(self) -> None:
-        total = self.shift + self.length
-        for name in self.work:
+        self._revision = self._tables.revision
+        total = self.shift + self.local + self.length
+        names = (COMMON_OFFSET, *self.work) if self._tables.has_offset(COMMON_OFFSET) else self.work
+        for name in names:
             if name != MACHINE_ZERO:
-                total = total + self._machine.work_offset(name)
+                total = total + self._tables.work_offset(name)
         self._modal.offset[:] = total

@@ -111,6 +111,19 @@ class CycleBlocks:
             raise self.fail(
                 f"{code} with inverse time feed (G93)", "Select G94 or G95 first.", self.motion.place()
             )
+        frame = self.state.frame
+        if frame.factor(axes[2]) != 1.0:
+            raise self.fail(
+                f"{code} with a scaled or mirrored drilling axis is not supported yet",
+                "Scale the axes of the plane only (I, J).",
+                self.motion.place(),
+            )
+        if frame.active and not whole[ABSOLUTE] and cycle.words.repeats > 1:
+            raise self.fail(
+                f"{code}: a row of holes on a turned, scaled or polar frame is not supported yet",
+                "Write each hole in a block of its own.",
+                self.motion.place(),
+            )
         values = self.motion.axis_words()
         start = self.motion.start
         hole = self.motion.target(values)

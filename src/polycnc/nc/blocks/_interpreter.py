@@ -8,6 +8,7 @@ or end.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
@@ -20,6 +21,7 @@ from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
+from polycnc.nc.blocks._frames import Frames
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import (
     FEED_MODE,
@@ -47,6 +49,14 @@ _MOTIONS = {
     Action.LINEAR: MOTION_LINEAR,
     Action.ARC_CW: MOTION_ARC_CW,
     Action.ARC_CCW: MOTION_ARC_CCW,
+}
+_FRAME_ACTIONS = {
+    Action.SET_DATA,
+    Action.LOCAL_COORDINATES,
+    Action.SCALING,
+    Action.SCALING_OFF,
+    Action.MIRROR,
+    Action.MIRROR_OFF,
 }
 _NUMBERS = "NO:"  # block and program numbers
 _AXIS_LETTERS = "XYZABCUVW"
@@ -128,6 +138,7 @@ class Interpreter:
         self._auxiliary = Auxiliary(state, messages, self._motion, self.fail)
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
         self._non_modal = NonModal(state, self._motion, self.fail)
+        self._frames = Frames(state, dialect, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
@@ -138,6 +149,7 @@ class Interpreter:
         """
         self._text, self._block = text, block
         self.messages.begin(block.line)
+        self.state.coordinates.take_changes()
         saved = self.state.save()
         try:
             outcome, items = self._execute(block)
@@ -149,8 +161,7 @@ class Interpreter:
             raise
         if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
             self._queue.set_tolerance(self.state.path_tolerance_mm)
-        for item in items:
-            self._queue.put(item)
+        self._queue.put_block(items)
         return outcome
 
     def finish(self) -> None:
@@ -199,6 +210,16 @@ class Interpreter:
                 return each.place
         return words[0].place if words else self._block.offset
 
+    def _count(self, code: str) -> int:
+        """Return in how many blocks of the present program text a G code stands."""
+        pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
+        return len(
+            {
+                self._text.content.rfind(b"\n", 0, found.start())
+                for found in re.finditer(pattern, self._text.content)
+            }
+        )
+
     def _placed(self, error: CompensationError) -> ProgramError:
         """Add the place to an error of radius compensation, which knows its line only."""
         here = self._block is not None and error.line == self._block.line
@@ -217,7 +238,7 @@ class Interpreter:
         if block.flags & MESSAGE and block.message:
             self.messages.add(f"MSG: {block.message}")
         line = block.line
-        words = sort_words(block, self.dialect, self.fail)
+        words = sort_words(block, self.dialect, self.fail, self._count)
         self._refuse_contradictions(words)
         self._motion.begin(words)
         for letter in _NUMBERS:
@@ -231,6 +252,9 @@ class Interpreter:
         change_compensation = modes.radius_compensation(words, line)
         modes.set_work_offset(words)
         modes.set_others(words)
+        for group in (Group.ROTATION, Group.POLAR):
+            if g := words.g.get(group):
+                self._frames.set_modal(g, words)
         items += self._move(words, line)
         self._refuse_unused(words)
         if words.m:
@@ -238,17 +262,46 @@ class Interpreter:
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
         self._note_position(items)
-        return outcome, self._compensated(self._tagged(items, line), change_compensation)
+        return outcome, self._compensated(
+            self._tagged(items, line, words_stand=bool(block.words)), change_compensation
+        )
 
-    def _tagged(self, items: list[QueueItem], line: int) -> list[QueueItem]:
-        """Return the items with the reference of the block's record, another one than the block just before has."""
+    def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
+        """Return the items with the reference of the block's record, another one than the block just before has.
+
+        A block with words and without items is noted as such.
+        """
         if not items:
+            if words_stand:
+                self.mark(line)
             return items
+        tag = self._next_tag(line)
+        return [item.tagged(tag) for item in items]
+
+    def _next_tag(self, line: int) -> int:
         tag = self._reference(line)
         if tag == self._last_tag:
             tag ^= AGAIN
         self._last_tag = tag
-        return [item.tagged(tag) for item in items]
+        return tag
+
+    def snapshot(self) -> tuple[int, ProgramText]:
+        """Return what one block leaves for the next besides the state, to go back to."""
+        return self._last_tag, self._held_text
+
+    def restore(self, saved: tuple[int, ProgramText]) -> None:
+        """Go back to a snapshot."""
+        self._last_tag, self._held_text = saved
+
+    @property
+    def last_tag(self) -> int:
+        """The reference of the last block that was executed."""
+        return self._last_tag
+
+    def mark(self, line: int) -> None:
+        """Note a block that does nothing on the path, to be stepped to."""
+        if self._queue.marks is not None:
+            self._queue.mark(self._next_tag(line))
 
     def _compensated(self, items: list[QueueItem], change: Callable[[], None] | None) -> list[QueueItem]:
         """Return what of the items the queue gets now; radius compensation may hold moves back."""
@@ -263,7 +316,12 @@ class Interpreter:
             if moves:
                 self._held_text = self._text
         whole = self.state.modal.whole
-        whole[ORDINARY] = stage.active or self._cycles.active or whole[FEED_MODE] != FEED_PER_MINUTE
+        whole[ORDINARY] = (
+            stage.active
+            or self._cycles.active
+            or whole[FEED_MODE] != FEED_PER_MINUTE
+            or self.state.frame.active
+        )
         return items
 
     def _check_path(self, items: list[QueueItem]) -> None:
@@ -327,6 +385,9 @@ class Interpreter:
                 )
             return []
         if g := words.g.get(Group.NON_MODAL):
+            if g.action in _FRAME_ACTIONS:
+                self._frames.carry_out(g, words)
+                return []
             return list(self._non_modal.carry_out(g, motion, line))
         if self._cycles.active:
             return self._cycles.expand(words, line)

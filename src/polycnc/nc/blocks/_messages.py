@@ -49,6 +49,15 @@ class Messages:
                 self._found[text] = old
         self._undo.clear()
 
+    def snapshot(self) -> dict[str, Message]:
+        """Return all messages, to go back to."""
+        return dict(self._found)
+
+    def restore(self, found: dict[str, Message]) -> None:
+        """Go back to a snapshot."""
+        self._found = dict(found)
+        self._undo.clear()
+
     def all(self) -> list[Message]:
         """Return all messages in the order in which they first came up."""
         return list(self._found.values())

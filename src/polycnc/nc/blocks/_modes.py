@@ -36,6 +36,7 @@ from polycnc.nc.blocks._modal import (
     set_plane,
 )
 from polycnc.nc.blocks._moves import Wait
+from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, additional_offset
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
@@ -190,11 +191,23 @@ class Modes:
         if g.action is Action.WORK_OFFSET_OFF:
             self.state.coordinates.select_work_offset(group, MACHINE_ZERO)
             return
-        name = f"G{g.code}"
+        if g.action is Action.ADDITIONAL_OFFSET:
+            name = additional_offset(self._additional_number(words))
+        else:
+            name = f"G{g.code}"
         offsets = self.state.machine.offsets
-        if name not in offsets and (offsets or name != _DEFAULT_WORK_OFFSET):
+        if not self.state.tables.has_offset(name) and (offsets or name != _DEFAULT_WORK_OFFSET):
             self.messages.add(f"{name}: the machine has no such work offset; zero is used")
         self.state.coordinates.select_work_offset(group, name)
+
+    def _additional_number(self, words: BlockWords) -> int:
+        word = words.take("P")
+        if word is None:
+            return 1
+        number = whole_number(word, "an additional work offset", self.fail, ADDITIONAL_OFFSETS)
+        if number == 0:
+            raise self.fail("there is no G54.1 P0", "Write P1 and up.", word)
+        return number
 
     def set_others(self, words: BlockWords) -> None:
         """Carry out stopping, absolute or incremental, and retract level; note what has no effect."""
@@ -211,6 +224,10 @@ class Modes:
         if retract := g.get(Group.RETRACT):
             state.cycle = replace(state.cycle, retract_to_initial=retract.action is Action.RETRACT_INITIAL)
         for ignored in words.ignored:
+            if ignored.action is Action.NOTHING:
+                words.take("P")
+                words.take("Q")
+                continue
             self.messages.add(f"G{ignored.code} has no effect here and is ignored")
 
     def _set_path_tolerance(self, words: BlockWords) -> None:

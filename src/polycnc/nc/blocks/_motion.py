@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Group
@@ -22,6 +22,7 @@ from polycnc.nc.blocks._arcs import (
 )
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._frame import Polar
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import (
     ABSOLUTE,
@@ -118,6 +119,8 @@ class MotionBuilder:
         modal = self.state.modal
         point: list[float] = modal.position.tolist()
         absolute = bool(modal.whole[ABSOLUTE])
+        if self.state.frame.active and not machine_coordinates and axis_values:
+            return self._framed_target(axis_values, absolute)
         for index, value in axis_values.items():
             if machine_coordinates:
                 point[index] = self.turned(index, value, point[index])
@@ -126,6 +129,47 @@ class MotionBuilder:
             else:
                 point[index] += value
         return tuple(point)
+
+    def _framed_target(self, axis_values: dict[int, float], absolute: bool) -> Point:
+        """Return the same where positions are turned, scaled, mirrored or polar."""
+        modal = self.state.modal
+        frame = self.state.frame
+        point: list[float] = modal.position.tolist()
+        offset: list[float] = modal.offset.tolist()
+        programmed = frame.back([a - b for a, b in zip(point, offset, strict=True)])
+        changed = set(axis_values)
+        plane = int(modal.whole[AXIS_P]), int(modal.whole[AXIS_Q])
+        if frame.polar is not None and NO_AXIS not in plane and changed & set(plane):
+            polar = self._polar(frame.polar, axis_values, programmed, absolute)
+            self.state.frame = replace(frame, polar=polar)
+            programmed[plane[0]], programmed[plane[1]] = polar.point()
+            changed |= set(plane)
+            others = {axis: value for axis, value in axis_values.items() if axis not in plane}
+        else:
+            others = axis_values
+        for axis, value in others.items():
+            programmed[axis] = value if absolute else programmed[axis] + value
+        turn = frame.rotation
+        if turn is not None and changed & {turn.p, turn.q}:
+            changed |= {turn.p, turn.q}
+        found = frame.forward(programmed)
+        for axis in changed:
+            wanted = found[axis] + offset[axis]
+            point[axis] = self.turned(axis, wanted, point[axis]) if absolute else wanted
+        return tuple(point)
+
+    def _polar(
+        self, polar: Polar, axis_values: dict[int, float], programmed: list[float], absolute: bool
+    ) -> Polar:
+        modal = self.state.modal
+        p, q = int(modal.whole[AXIS_P]), int(modal.whole[AXIS_Q])
+        if p in axis_values:
+            center = (0.0, 0.0) if absolute else (programmed[p], programmed[q])
+            polar = replace(polar, center=center, radius=axis_values[p])
+        if q in axis_values:
+            angle = axis_values[q] / float(modal.scale[q])  # degrees, whatever the unit of lengths
+            polar = replace(polar, angle_deg=angle if absolute else polar.angle_deg + angle)
+        return polar
 
     def turned(self, axis: int, wanted: float, position: float) -> float:
         """Return where an axis goes for position `wanted`: the short way if positions repeat."""
@@ -283,6 +327,15 @@ class MotionBuilder:
                 "an arc has both a radius R and a centre", "Write one of them.", self.words.first("R")
             )
         start = self.start
+        frame = self.state.frame
+        if frame.active:
+            clockwise ^= frame.turns_over(p, q)
+            if center and abs(frame.factor(p)) != abs(frame.factor(q)):
+                raise self.fail(
+                    "an arc with a centre between axes of different scale", "Write it with R.", self.place()
+                )
+            if radius is not None:
+                radius *= max(abs(frame.factor(p)), abs(frame.factor(q)))
         center_p, center_q, sweep = self._circle(start, end, p, q, center, radius, clockwise)
         extra = TWO_PI * (self._turns() - 1)
         sweep = sweep - extra if clockwise else sweep + extra
@@ -338,10 +391,14 @@ class MotionBuilder:
         if radius is not None:
             found = arc_by_radius(*ends, radius * float(modal.scale[p]), clockwise, tolerance)
         else:
-            at = [
-                self._center(axis, center.get(letter), start)
-                for axis, letter in zip((p, q), CENTER_LETTERS[int(modal.whole[PLANE])], strict=True)
-            ]
+            letters = CENTER_LETTERS[int(modal.whole[PLANE])]
+            if self.state.frame.active:
+                at = self._framed_center([center.get(letter, 0.0) for letter in letters], start, p, q)
+            else:
+                at = [
+                    self._center(axis, center.get(letter), start)
+                    for axis, letter in zip((p, q), letters, strict=True)
+                ]
             found = arc_by_center(*ends, at[0], at[1], clockwise, tolerance, float(modal.real[ARC_RELATIVE]))
         status, center_p, center_q, sweep, off = found
         if status != ARC_OK:
@@ -350,6 +407,17 @@ class MotionBuilder:
                 what.format(off=off), hint, self.words.first(*("R" if radius is not None else "IJK"))
             )
         return center_p, center_q, sweep
+
+    def _framed_center(self, center: list[float], start: Point, p: int, q: int) -> list[float]:
+        modal = self.state.modal
+        u, v = (value * float(modal.scale[axis]) for value, axis in zip(center, (p, q), strict=True))
+        if not modal.whole[ARC_ABSOLUTE]:
+            u, v = self.state.frame.vector(p, q, u, v)
+            return [start[p] + u, start[q] + v]
+        point = self.state.frame.back((modal.position - modal.offset).tolist())
+        point[p], point[q] = u, v
+        found = self.state.frame.forward(point)
+        return [found[axis] + float(modal.offset[axis]) for axis in (p, q)]
 
     def _center(self, axis: int, value: float | None, start: Point) -> float:
         modal = self.state.modal

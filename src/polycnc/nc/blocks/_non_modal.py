@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._modal import MOTION_LINEAR, MOTION_RAPID
 from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._moves import Feed, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._words import Fail, GWord
 
 _CANCEL_FIRST = "Cancel it with G40 first."
@@ -22,7 +23,7 @@ class NonModal:
     motion: MotionBuilder
     fail: Fail
 
-    def carry_out(self, g: GWord, motion: int, line: int) -> list[Line]:
+    def carry_out(self, g: GWord, motion: int, line: int) -> Sequence[QueueItem]:
         """Return the moves of a block with such a function; `motion` is the motion in force.
 
         Raises:
@@ -38,6 +39,8 @@ class NonModal:
                 return self._reference_return(g, line)
             case Action.MACHINE_COORDINATES:
                 return self._machine_move(g, motion, line)
+            case Action.SKIP_MOVE:
+                return self._skip_move(g, line)
             case _:
                 raise self.fail(f"G{g.code} cannot be carried out", "Take it out.", g.word)
         return []
@@ -46,8 +49,22 @@ class NonModal:
         if active:
             raise self.fail(f"G{g.code} while radius compensation is active", _CANCEL_FIRST, g.word)
 
+    def _skip_move(self, g: GWord, line: int) -> list[QueueItem]:
+        """Go straight at feed until the skip signal comes, at the latest to the end; what follows waits for it."""
+        self._refuse_compensation(g, self.state.side != 0 or self.state.compensation.active)
+        values = self.motion.axis_words()
+        if not values:
+            raise self.fail(f"G{g.code} without an axis", "Say how far to go at the most.", g.word)
+        move = replace(self.motion.line(self.motion.target(values), False, line), exact_stop=True)
+        self.state.skip_position = move.end
+        return [move, Wait(0.0, line, stop=Stop.DRAIN)]
+
     def _set_position(self, g: GWord) -> None:
         self._refuse_compensation(g, self.state.compensation.active)
+        if self.state.frame.active:
+            raise self.fail(
+                f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
+            )
         values = self.motion.axis_words()
         if not values:
             raise self.fail(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,13 +29,25 @@ NO_EVENT = -1
 class Event:
     """Something that the path has come to: an auxiliary function by its words, or a point where it may stand.
 
-    `line` and `tag` are the block's line and the reference of its record.
+    `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
+    that the function takes, where the queue does not wait for it (`QueueWriter.answers`).
     """
 
     word: str
     line: int
     stop: Stop | None = None
+    default_s: float = 0.0
     tag: int = field(default=0, compare=False)
+
+
+class WriterSnapshot(NamedTuple):
+    """What a writer holds, to go back to."""
+
+    events: dict[int, Event]
+    stops: int
+    next_event: int
+    backlog: tuple[QueueItem, ...]
+    marks: tuple[tuple[int, int], ...] | None
 
 
 @dataclass
@@ -42,7 +55,9 @@ class QueueWriter:
     """Append items to path `path` of the kernel; what finds no room waits in `backlog`.
 
     `events` holds what the path has yet to come to, by number. `stops` counts those among them behind which
-    preparation waits: drains, and with `stands_at_stops` program stops.
+    preparation waits: drains, and with `stands_at_stops` program stops. With `answers` the path does not wait at
+    auxiliary functions by itself: whoever runs it holds it until they are answered. `marks` takes the blocks that
+    leave nothing in the queue: the segment count that they stand before, and their tag.
     """
 
     seg: Segments
@@ -52,12 +67,27 @@ class QueueWriter:
     backlog: deque[QueueItem] = field(default_factory=deque)
     events: dict[int, Event] = field(default_factory=dict)
     stands_at_stops: bool = False
+    answers: bool = False
     stops: int = 0
+    marks: deque[tuple[int, int]] | None = None
     _next_event: int = 0
 
     def set_tolerance(self, tolerance_mm: float) -> None:
         """Set how far the path may leave the corners of lines appended from now on."""
-        self.paths.row[self.path]["tolerance"] = tolerance_mm
+        self.paths.row[self.path]["tolerance_mm"] = tolerance_mm
+
+    def put_block(self, items: list[QueueItem]) -> None:
+        """Append what a block gives; one that gives nothing after all, a move without length, is marked."""
+        if self.marks is None:
+            for item in items:
+                self.put(item)
+            return
+        row = self.paths.row[self.path]
+        before = int(row["tail"])
+        for item in items:
+            self.put(item)
+        if items and row["tail"] == before and not self.backlog:
+            self.mark(items[0].tag)
 
     def put(self, item: QueueItem) -> None:
         """Append one line, arc or wait, behind what waits for room."""
@@ -77,6 +107,26 @@ class QueueWriter:
         self.backlog.clear()
         self.events.clear()
         self.stops = 0
+        if self.marks is not None:
+            self.marks.clear()
+
+    def snapshot(self) -> WriterSnapshot:
+        """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
+        marks = None if self.marks is None else tuple(self.marks)
+        return WriterSnapshot(dict(self.events), self.stops, self._next_event, tuple(self.backlog), marks)
+
+    def restore(self, saved: WriterSnapshot) -> None:
+        """Go back to a snapshot."""
+        self.events = dict(saved.events)
+        self.stops = saved.stops
+        self._next_event = saved.next_event
+        self.backlog = deque(saved.backlog)
+        self.marks = None if saved.marks is None else deque(saved.marks)
+
+    def mark(self, tag: int) -> None:
+        """Note a block that has been carried out without anything for the queue."""
+        if self.marks is not None:
+            self.marks.append((int(self.paths.row[self.path]["tail"]), tag))
 
     def _append(self, item: QueueItem) -> None:
         match item:
@@ -117,13 +167,15 @@ class QueueWriter:
 
     def _put_wait(self, item: Wait) -> None:
         words = item.events or (("",) if item.stop is not None else ())
+        answered = self.answers and bool(item.events)
         for word in words:
             self._append_wait(0.0, self._next_event, item.tag)
-            self.events[self._next_event] = Event(word, item.line, item.stop, item.tag)
+            time_s = item.duration_s if answered and word is words[-1] else 0.0
+            self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag)
             self._next_event += 1
         if item.stop is Stop.DRAIN or (item.stop is not None and self.stands_at_stops):
             self.stops += 1
-        if item.duration_s > 0.0 or not words:
+        if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
 
     def _append_wait(self, duration_s: float, event: int, tag: int) -> None:

@@ -13,6 +13,7 @@ from polycnc.nc.text._scan_plain import Block, Word
 Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
+_NOT_YET = "What it does would be left out: take it out, or post the program without it."
 _OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 
@@ -94,8 +95,8 @@ def code_text(value: float) -> str:
     return f"{value:.0f}" if value.is_integer() and abs(value) < 1e16 else f"{value:.10g}"
 
 
-def sort_words(block: Block, dialect: Dialect, fail: Fail) -> BlockWords:
-    """Sort the words of `block`.
+def sort_words(block: Block, dialect: Dialect, fail: Fail, count: Callable[[str], int]) -> BlockWords:
+    """Sort the words of `block`; `count` tells in how many blocks of the program a G code stands.
 
     Raises:
         ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
@@ -103,7 +104,7 @@ def sort_words(block: Block, dialect: Dialect, fail: Fail) -> BlockWords:
     words = BlockWords()
     for word in block.words:
         if word.letter == "G" and word.index is None:
-            _add_g(word, words, dialect, fail)
+            _add_g(word, words, dialect, fail, count)
         elif word.letter == "M" and word.index is None:
             _add_m(word, words, dialect, fail)
         else:
@@ -111,7 +112,7 @@ def sort_words(block: Block, dialect: Dialect, fail: Fail) -> BlockWords:
     return words
 
 
-def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
+def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: Callable[[str], int]) -> None:
     action = dialect.g_action(word.value)
     code = code_text(word.value)
     if action is None:
@@ -119,6 +120,10 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
     group = GROUP_OF[action]
     entry = GWord(word, code, action)
     if group is Group.IGNORED:
+        if action is Action.UNSUPPORTED:
+            blocks = count(code)
+            where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
+            raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
         words.ignored.append(entry)
         return
     if group in words.g:

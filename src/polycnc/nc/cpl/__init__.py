@@ -22,7 +22,7 @@ from polycnc.nc.cpl._host import (
 from polycnc.nc.cpl._permanent import PermanentMemory
 from polycnc.nc.cpl._program import Linker, Program, compile_program, holds_cpl
 from polycnc.nc.cpl._run import Execution, Run, undeclared
-from polycnc.nc.cpl._strings import CharacterField, text_of
+from polycnc.nc.cpl._strings import CharacterField, Section, text_of
 
 __all__ = [
     "BLOCKED",
@@ -45,6 +45,7 @@ __all__ = [
     "PermanentMemory",
     "Program",
     "Run",
+    "Section",
     "Step",
     "SubProgram",
     "Waiting",

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, TextSpan, WordsBlock
+from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, Statement, TextSpan, WordsBlock
 from polycnc.nc.cpl._host import Host, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
 from polycnc.nc.cpl._run import Arguments, Execution
@@ -80,6 +80,16 @@ class CplSource:
         self._waiting: _Wait | None = None
         self._answer: object = None
 
+    @property
+    def waits(self) -> bool:
+        """Whether a WAIT for a condition or a time is under way."""
+        return self._waiting is not None and self._waiting.begun
+
+    @property
+    def wait_ends_ms(self) -> int | None:
+        """When a WAIT under way ends at the latest, in ms of CLOCK; None if there is none or it has no duration."""
+        return None if self._waiting is None else self._waiting.ends_ms
+
     def next(self) -> SourceItem | None:
         """Return what comes next.
 
@@ -107,10 +117,14 @@ class CplSource:
                     if wait.condition is not None or wait.duration_ms is not None:
                         self._waiting = _Wait(wait, self._language.milliseconds)
                     return Drain(wait.line)
-                case Step():
-                    pass
+                case Step() as step:
+                    return Statement(step.line)
                 case _:
                     return Pause.PAUSE
+
+    def leave(self) -> bool:
+        """Leave returns to the channel, which has entered every sub-program."""
+        return False
 
     def close(self) -> None:
         """End the program."""
@@ -143,6 +157,18 @@ class _Wait:
         self._wait = wait
         self._milliseconds = milliseconds
         self._began: int | None = None
+
+    @property
+    def begun(self) -> bool:
+        """Whether the queue has been drained."""
+        return self._began is not None
+
+    @property
+    def ends_ms(self) -> int | None:
+        """When it ends at the latest; None if it has no duration or has not begun."""
+        if self._began is None or self._wait.duration_ms is None:
+            return None
+        return self._began + self._wait.duration_ms
 
     def answer(self) -> int | None:
         """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet."""

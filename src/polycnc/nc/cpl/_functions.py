@@ -15,7 +15,8 @@ class Function:
 
     `count` is the least and the most of its arguments, `results` the places of those that are variables which it
     sets (from `results[0]` on, if `listed`). What `listed` functions get tells its type, and a semicolon may end it.
-    `own` functions are CPL's, the others are the control's. A `waiting` one may have to wait for its answer.
+    `own` functions are CPL's, the others are the control's. A `waiting` one may have to wait for its answer;
+    a `named` one gets the names of its variables too, as `names`.
     """
 
     name: str
@@ -28,6 +29,7 @@ class Function:
     listed: bool = False
     settable: bool = False
     command: bool = False
+    named: bool = False
 
 
 def _rows() -> list[Function]:
@@ -89,7 +91,16 @@ def _rows() -> list[Function]:
             waiting=True,
         ),
         f("MCOPS", "I", (2, 6), "MCOPS(function,channel[,P1[,P2[,P3[,P4]]]])", waiting=True),
-        f("MMC", "I", (1, 20), "MMC(variable{,variable})", results=(0,), listed=True, waiting=True),
+        f(
+            "MMC",
+            "I",
+            (1, 20),
+            "MMC(variable{,variable})",
+            results=(0,),
+            listed=True,
+            waiting=True,
+            named=True,
+        ),
     ]
     files = [
         f("OPENW", "I", (2, 5), "OPENW(number,name[,length][,remark][,record length])", command=True),

@@ -70,6 +70,20 @@ class Execution:
             self.line = event[0]
         return event
 
+    @property
+    def statement_line(self) -> int:
+        """The line of the statement that is executed, or was last."""
+        frame = self._generator.gi_frame
+        if frame is None:
+            return self.line
+        return self.program.source.line_of(self.program.traced.places[frame.f_lineno - 1])
+
+    def error_here(self, what: str, hint: str = "") -> ProgramError:
+        """Return an error at the statement that is executed, or was last."""
+        line = max(self.statement_line, 1)
+        source = self.program.source
+        return source.error(Flaw(source.begin(line), what, hint))
+
     def close(self) -> None:
         """End the program."""
         self._generator.close()
@@ -299,7 +313,8 @@ _SCOPE: dict[str, object] = {
     "arc_tangent": _numbers.arc_tangent, "root": _root, "whole": _numbers.whole, "nearest": _numbers.nearest,
     "to_bcd": _numbers.to_bcd, "from_bcd": _numbers.from_bcd, "text_of": _text_of, "put": _strings.put,
     "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,
-    "dimension_field": dimension_field, "middle": _strings.middle, "trimmed": _strings.trimmed,
+    "dimension_field": dimension_field, "middle": _strings.middle, "section": _strings.section,
+    "trimmed": _strings.trimmed,
     "length": _strings.length, "position": _strings.position, "code": _strings.code,
     "character": _strings.character, "written": _strings.written, "number": _strings.number,
     "added": _strings.added, "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept,

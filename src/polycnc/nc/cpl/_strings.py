@@ -62,6 +62,25 @@ class Part:
         self.length = length
 
 
+class Section:
+    """A part of a character field that a command fills: from character `start` on, `length` of them."""
+
+    __slots__ = ("_start", "field", "length")
+
+    def __init__(self, field: CharacterField, start: int, length: int) -> None:
+        self.field = field
+        self._start = start
+        self.length = length
+
+    def write(self, text: str) -> None:
+        """Write a text over it.
+
+        Raises:
+            Fault: The field has fewer characters before it.
+        """
+        self.field.overwrite(self._start, self.length, text)
+
+
 Stored: TypeAlias = CharacterField | Part | str | None
 
 
@@ -141,6 +160,17 @@ def middle(value: Stored, start: object, number: object = None) -> Stored:
         length = min(length, value.length - begin)
         return Part(value.field, value.begin + begin, length) if length > 0 else None
     return (value or "")[begin : begin + length] or None
+
+
+def section(target: Stored, start: object, number: object = None) -> Section:
+    """Return a part of a text to be set (MID$ as a variable of INP#).
+
+    Raises:
+        Fault: The target has no dimension, or the place is outside.
+    """
+    if not isinstance(target, CharacterField):
+        raise Fault(INADMISSIBLE_STRING, "dimension it with DIM before")
+    return Section(target, _place(start), target.size if number is None else _place(number))
 
 
 def trimmed(value: Stored, side: object = None) -> Stored:

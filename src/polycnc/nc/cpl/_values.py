@@ -186,6 +186,9 @@ class Values:
         """Return the arguments of a call of the control, one by one."""
         function = FUNCTIONS[call.function]
         parts = [self._argument(function, place, tree) for place, tree in enumerate(call.arguments)]
+        if function.named:
+            names = tuple(tree.variable.name for tree in call.arguments if isinstance(tree, Name))
+            parts.append(f"names={names!r}")
         return [*parts, "open=True"] if call.open else parts
 
     def _argument(self, function: Function, place: int, tree: Expression | None) -> str:
@@ -193,6 +196,8 @@ class Values:
             return "OMITTED"
         from_list = function.listed and function.results and place >= function.results[0]
         if place in function.results or from_list:
+            if from_list and isinstance(tree, Call) and tree.function == "MID$":
+                return self._section(tree)
             return self._result(tree)
         if isinstance(tree, Name) and not tree.indices and self.fields.get(tree.variable.name):
             return self._use(tree.variable, tree.at)
@@ -200,6 +205,14 @@ class Values:
         if function.listed and place >= 1:
             return f"Item({typed.kind!r}, {self.rounded(typed).text})"
         return self.rounded(typed).text
+
+    def _section(self, call: Call) -> str:
+        """Return a part of a character field that a command sets."""
+        first, *others = call.arguments
+        places = [self.integer(tree) for tree in others if tree is not None]
+        if not isinstance(first, Name) or len(places) != len(others):
+            raise Flaw(call.at, "MID$ sets a part of a character field", "MID$(A$,start[,number])")
+        return f"section({', '.join((self.stored(first), *places))})"
 
     def _result(self, tree: Expression) -> str:
         if isinstance(tree, Call) and tree.function == "MID$":

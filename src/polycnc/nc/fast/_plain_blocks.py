@@ -77,8 +77,8 @@ _NUMBER = 1
 _LENGTH = 2
 
 # Columns of `said`: what a block says, and the letters of each sort as bits.
-_MOTION, _ABSOLUTE, _SEEN, _AXES, _CENTERS, _RADIUS = range(6)
-_SAID_COLUMNS = 6
+_MOTION, _ABSOLUTE, _SEEN, _AXES, _CENTERS, _RADIUS, _MARKED = range(7)
+_SAID_COLUMNS = 7
 
 _LETTERS = 26
 _A = ord("A")
@@ -103,10 +103,11 @@ class FastWork(NamedTuple):
     value: Floats  # [26]
     said: Ints
     target: Floats  # [n]
+    marks: Ints  # [blocks, 2] of blocks with words and without motion: segment count before which they stand, tag
 
 
-def make_fast_work(modal: Modal) -> FastWork:
-    """Allocate the scratch for the axes of `modal`."""
+def make_fast_work(modal: Modal, marks: int = 0) -> FastWork:
+    """Allocate the scratch for the axes of `modal`; `marks` is the most blocks of one call, or 0 for no marks."""
     role = np.full(_LETTERS, _UNKNOWN, np.int8)
     role[[_N, _F]] = _NUMBER
     role[[_I, _J, _K, _R]] = _LENGTH
@@ -120,7 +121,13 @@ def make_fast_work(modal: Modal) -> FastWork:
             axis_letter[axis] = letter
             said[_AXES] |= 1 << letter
     said[_RADIUS] &= ~said[_AXES]  # on a machine with an axis R it is that axis
-    return FastWork(role, axis_letter, np.zeros(_LETTERS), said, np.zeros(len(modal.position)))
+    target = np.zeros(len(modal.position))
+    return FastWork(role, axis_letter, np.zeros(_LETTERS), said, target, np.zeros((marks, 2), np.int64))
+
+
+def marked(work: FastWork) -> list[tuple[int, int]]:
+    """Return the marks of the last call."""
+    return [(count, tag) for count, tag in work.marks[: work.said[_MARKED]].tolist()]
 
 
 @entry
@@ -141,6 +148,7 @@ def run_plain(
 
     `base` is added to the line of a block for its reference.
     """
+    work.said[_MARKED] = 0
     if modal.whole[ORDINARY] != 0:
         return block, NOT_PLAIN
     return _run(words, block, n_blocks, base, tables, modal, seg, paths, g, limits, work)
@@ -190,6 +198,8 @@ def _run(
             feed = feed_number * inch
             if whole[FEED_MODE] != FEED_PER_MINUTE or feed <= 0.0:
                 return block, NOT_PLAIN
+        tag = base + int(words.line[block])
+        moves = False
         circular = seen & (said[_CENTERS] | said[_RADIUS])
         if (seen & said[_AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
@@ -217,14 +227,14 @@ def _run(
                 and _only_rotary(modal.rotary, modal.position, work.target)
             ):
                 speed = feed_number / 60.0
-            tag = base + int(words.line[block])
+            moves = True
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
                     return block, NOT_PLAIN
-            elif path[g]["tolerance"] > 0.0:
-                append_line(seg, paths, g, limits, work.target, speed, flags, tag)
+            elif path[g]["tolerance_mm"] > 0.0:
+                moves = append_line(seg, paths, g, limits, work.target, speed, flags, tag)
             else:
-                add_line(
+                moves = add_line(
                     seg.row,
                     seg.start,
                     seg.end,
@@ -239,6 +249,10 @@ def _run(
                 )
             for i in range(work.target.shape[0]):
                 modal.position[i] = work.target[i]
+        if not moves and work.marks.shape[0] > 0 and first < after:
+            work.marks[said[_MARKED], 0] = path[g]["tail"]
+            work.marks[said[_MARKED], 1] = tag
+            said[_MARKED] += 1
         whole[MOTION] = motion
         whole[ABSOLUTE] = said[_ABSOLUTE]
         modal.real[FEED], modal.real[FEED_NUMBER] = feed, feed_number

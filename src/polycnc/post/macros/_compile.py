@@ -16,7 +16,7 @@ from polycnc.post.macros._blocks import Piece, by_order, escaped, is_empty_test,
 from polycnc.post.macros._elements import Assignment, Code, Element, Initialisation, Numbering, Text, Word
 from polycnc.post.macros._expression import Condition, Name, python_condition, python_value
 from polycnc.post.macros._format import NumberFormat
-from polycnc.post.macros._macro import If, Line, Statement, elements_of
+from polycnc.post.macros._macro import If, Line, Statement, elements_of, without_margins
 from polycnc.post.macros._symbols import (
     ENDOFLINE,
     LINE_TEXTS,
@@ -121,7 +121,7 @@ class _Writer:
     def _line(self, line: Line) -> None:
         pieces: list[Piece] = []
         self._temporaries = 0
-        for element in line.elements:
+        for element in without_margins(line.elements):
             self.out.place = (line.number, element.at)
             try:
                 pieces += self._element(element)

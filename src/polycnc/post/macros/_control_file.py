@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from importlib import resources
@@ -13,11 +13,13 @@ from typing import Any
 from polycnc.errors import ConfigurationError, SourcePosition, UsageError
 from polycnc.language import Flaw
 from polycnc.machine import KeyPath, Locator, parse_toml, validate
+from polycnc.nc import load_dialect
 from polycnc.post.macros._compile import Style, TracedMacro, compile_macro, used_words
-from polycnc.post.macros._control_parameters import SECTIONS, ControlTables, Parameters
+from polycnc.post.macros._control_parameters import CODECS, SECTIONS, ControlTables, Parameters
 from polycnc.post.macros._control_symbols import ControlFlaw, read_symbols
+from polycnc.post.macros._elements import Assignment, Text
 from polycnc.post.macros._format import read_format
-from polycnc.post.macros._macro import read_macro
+from polycnc.post.macros._macro import If, Statement, read_macro
 from polycnc.post.macros._run import MacroRun, Write
 from polycnc.post.macros._symbols import Symbols
 
@@ -39,10 +41,15 @@ class ControlFile:
     _symbols: Symbols = field(repr=False)
     _style: Style = field(repr=False)
     _places: _MacroPlaces = field(repr=False)
+    _texts: Mapping[str, str] = field(repr=False)
 
     def has(self, macro: str) -> bool:
         """Tell whether the file has a macro."""
         return macro in self._macros
+
+    def uses(self, macro: str, word: str) -> bool:
+        """Tell whether the text of a macro names a word."""
+        return re.search(rf"\b{word}\b", self._texts.get(macro, ""), re.IGNORECASE) is not None
 
     def start(self, write: Write) -> MacroRun:
         """Return a run for one output program; every block goes to `write` as a line with a line feed."""
@@ -85,10 +92,21 @@ def parse_control(text: str, file: str = "control file") -> ControlFile:
         symbols = read_symbols(tables)
     except ControlFlaw as flaw:
         raise ConfigurationError(flaw.what, hint=flaw.hint, position=locator.position(flaw.at)) from None
+    _check_dialect(tables, locator)
+    _check_characters(tables, locator)
     places = _MacroPlaces(text, locator, tables.nc_macros)
     style = _style(tables.parameters)
-    macros = _compiled(tables.nc_macros, symbols, style, places)
-    return ControlFile(file, tables.parameters, frozenset(symbols.variables), macros, symbols, style, places)
+    macros = _compiled(tables.nc_macros, symbols, style, places, tables.parameters.encoding)
+    return ControlFile(
+        file,
+        tables.parameters,
+        frozenset(symbols.variables),
+        macros,
+        symbols,
+        style,
+        places,
+        tables.nc_macros,
+    )
 
 
 def shipped_text(name: str) -> str:
@@ -155,7 +173,7 @@ def _style(parameters: Parameters) -> Style:
 
 
 def _compiled(
-    texts: Mapping[str, str], symbols: Symbols, style: Style, places: _MacroPlaces
+    texts: Mapping[str, str], symbols: Symbols, style: Style, places: _MacroPlaces, encoding: str
 ) -> dict[str, TracedMacro]:
     flaws: list[tuple[str, Flaw]] = []
     read = {name: read_macro(text) for name, text in texts.items()}
@@ -163,12 +181,70 @@ def _compiled(
     macros: dict[str, TracedMacro] = {}
     for name, (statements, unread) in read.items():
         compiled, unknown = compile_macro(name, statements, symbols, style, used, sound=not unread)
-        flaws += [(name, flaw) for flaw in (*unread, *unknown)]
+        flaws += [(name, flaw) for flaw in (*unread, *unknown, *_unwritable(statements, encoding))]
         if compiled is not None:
             macros[name] = compiled
     if flaws:
         raise _all_flaws(flaws, places)
     return macros
+
+
+def _check_dialect(tables: ControlTables, locator: Locator) -> None:
+    """Refuse a dialect that there is not: the program could not be verified."""
+    try:
+        load_dialect(tables.parameters.dialect)
+    except UsageError as error:
+        raise ConfigurationError(
+            error.what, hint=error.hint, position=locator.position(("parameters", "dialect"))
+        ) from None
+
+
+def _check_characters(tables: ControlTables, locator: Locator) -> None:
+    """Refuse characters outside of macros that the encoding of the program has not."""
+    parameters = tables.parameters
+    texts: dict[KeyPath, str] = {
+        ("parameters", "separator"): parameters.separator,
+        ("parameters", "sequence_format"): parameters.sequence_format,
+    }
+    texts |= {("nc_code", key, "code"): entry.code for key, entry in tables.nc_code.items() if entry.code}
+    variables = tables.function_variables
+    texts |= {("function_variables", key, "format"): entry.format for key, entry in variables.items()}
+    for key, text in texts.items():
+        if character := _lacking(text, parameters.encoding):
+            what, hint = _cannot_be_written(character[0], parameters.encoding)
+            raise ConfigurationError(what, hint=hint, position=locator.position(key))
+
+
+def _unwritable(statements: Iterable[Statement], encoding: str) -> Iterator[Flaw]:
+    """Yield a flaw for each text of a macro with a character that the encoding of the program has not."""
+    for statement in statements:
+        if isinstance(statement, If):
+            for branch in statement.branches:
+                yield from _unwritable(branch.body, encoding)
+            continue
+        for element in statement.elements:
+            text = element.value if isinstance(element, Assignment) else getattr(element, "text", None)
+            if isinstance(text, str) and (character := _lacking(text, encoding)):
+                what, hint = _cannot_be_written(character[0], encoding)
+                quote = 1 if isinstance(element, Text) and element.quoted else 0
+                at = element.at + (character[1] + quote if isinstance(element, Text) else 0)
+                yield Flaw(at, what, hint, line=statement.number)
+
+
+def _lacking(text: str, encoding: str) -> tuple[str, int] | None:
+    """Return the first character that an encoding has not, and its place."""
+    try:
+        text.encode(CODECS[encoding])
+    except UnicodeEncodeError as error:
+        return text[error.start], error.start
+    return None
+
+
+def _cannot_be_written(character: str, encoding: str) -> tuple[str, str]:
+    return (
+        f"the character '{character}' cannot be written in {encoding}",
+        "use another one, or another 'encoding'",
+    )
 
 
 def _all_flaws(flaws: list[tuple[str, Flaw]], places: _MacroPlaces) -> ConfigurationError:

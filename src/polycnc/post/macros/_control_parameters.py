@@ -10,6 +10,9 @@ from polycnc.machine import StrictModel, problem
 from polycnc.post.macros._format import FormatError, Zeros, read_format
 from polycnc.post.macros._parameters import MotionParameters
 
+CODECS = {"utf-8": "utf-8", "ascii": "ascii", "shift-jis": "cp932"}
+"""The codec of each encoding of a program."""
+
 
 def _one_line(text: str) -> str:
     if "\n" in text or "\r" in text:

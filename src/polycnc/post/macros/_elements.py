@@ -22,6 +22,7 @@ class Text:
     at: int
     text: str
     order: int = 0
+    quoted: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +91,7 @@ def read_elements(line: str) -> tuple[Element, ...]:
         reader = _READERS.get(line[at])
         if reader is None:
             end = _PLAIN.match(line, at).end()  # type: ignore[union-attr]
-            elements.append(Text(at, line[at:end]))
+            elements.append(Text(at, line[at:end], quoted=False))
         else:
             element, end = reader(line, at)
             elements.append(element)

@@ -41,7 +41,7 @@ _MOVE = (*_POINT, *_ROTARY, *_TOOL_AXIS, *_START)
 _FEED = ("F", "FEEDMODE")
 _ARC = (*_POINT, *_START, "I", "J", "K", "R", "PLANE", "SWEEP", *_FEED)
 _HOLE = (*_POINT, *_START, "SURFACE", "R", "OUT", "RETRACT", "HOLE", *_FEED)
-_SPINDLE = ("S", "SPINDLEMODE")
+_SPINDLE = ("S", "SPINDLEMODE", "MAXRPM")
 _TOOL = ("T", "TOOLCHANGE", "TOOLNAME", "TOOLDIAMETER", "TOOLLENGTH", "H", "D")
 
 WORDS: tuple[WordRow, ...] = (
@@ -75,6 +75,8 @@ WORDS: tuple[WordRow, ...] = (
     WordRow("PITCH", "number", "pitch of the thread: feed per revolution"),
     WordRow("S", "number", "spindle speed, or surface speed, as SPINDLEMODE says"),
     WordRow("SPINDLEMODE", "number", "97: S is revolutions per minute; 96: m per minute, in inch feet per minute"),
+    WordRow("MAXRPM", "number", "highest speed that is allowed with a surface speed, 0 if none is given (an addition "
+            "to the manual's words)"),
     WordRow("T", "number", "tool number"),
     WordRow("TOOLCHANGE", "text", "the tool number as the control writes it: T in its own format"),
     WordRow("TOOLNAME", "text", "name of the tool"),

@@ -20,6 +20,11 @@ class MotionParameters(StrictModel):
     dialect: str = Field(default="din", description="Dialect in which the virtual machine reads the program.")
     machine: str = Field(default="mill3", description="Machine on which `--verify` runs the program.")
     extension: str = Field(default=".nc", description="File extension of a program, if none is named.")
+    arc_axis: Literal["auto", "counterclockwise", "clockwise"] = Field(
+        default="auto",
+        description="What the axis of CIRCLE/ in a tool path is for: arcs by the right-hand rule, or against it; "
+        '"auto": against it in a CLSF of NX.',
+    )
     units: Literal["mm", "inch"] = Field(default="mm", description="Units in which lengths are written.")
     decimals: Annotated[int, Field(ge=0, le=9)] = Field(
         default=3, description="Decimals of positions; centres of arcs are reckoned from rounded positions."

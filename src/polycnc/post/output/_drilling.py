@@ -6,93 +6,70 @@ import math
 
 from polycnc.post.output._motion import Motion
 from polycnc.post.output._output import Output
-from polycnc.post.tool_path._cycles import MOST_PECKS, Levels, hole_steps, level_of, levels_of, without_pecks
-from polycnc.post.tool_path._records import UPRIGHT, Cycle, CycleOff, Goto, Vector
+from polycnc.post.tool_path._course import Hole
+from polycnc.post.tool_path._cycles import MOST_PECKS, hole_steps, without_pecks
+from polycnc.post.tool_path._records import UPRIGHT, Cycle
 
 _SAME_LEVEL_MM = 1e-9
 
 
 class Drilling:
-    """The cycle in force, and what the control knows of it."""
+    """What the control knows of the cycle in force."""
 
     def __init__(self, output: Output, motion: Motion) -> None:
-        self.cycle: Cycle | None = None
         self.holes = 0
         self.rpm = 0.0
         self.spindle_sense = "cw"
         self._output = output
         self._motion = motion
-        self._last: Cycle | None = None
-        self._initial: Vector | None = None
         self._hole = 0
         self._returns_to: float | None = None
 
     def begin(self, record: Cycle) -> None:
         """Take a cycle for the points that follow."""
-        self.finish()
-        self.cycle = self._last = record
-        self._initial = self._motion.position
+        self.close()
         if (
             record.kind in ("deep", "chip_break")
             and (record.depth + record.clearance) / record.peck > MOST_PECKS
         ):
             raise self._output.fail(record.line, "a hole with too many pecks", "Give a larger STEP.")
 
-    def end_or_resume(self, record: CycleOff) -> None:
-        """End the cycle, or take the last one up again."""
-        if not record.on:
-            self.finish()
-        elif self._last is None:
-            raise self._output.fail(record.line, "CYCLE/ON without a cycle before", "Write the cycle itself.")
-        else:
-            self.begin(self._last)
-
-    def finish(self) -> None:
-        """End the cycle if there is one."""
-        self._close()
-        self.cycle = None
-
-    def hole(self, record: Goto) -> None:
+    def hole(self, act: Hole) -> None:
         """Drill at a point."""
-        cycle, motion = self.cycle, self._motion
-        assert cycle is not None
-        point = (record.x, record.y, record.z)
-        axis = record.axis or motion.axis
-        here = motion.position
-        initial = level_of(self._initial, point, axis)
-        levels = levels_of(cycle, level_of(here, point, axis), initial)
         self.holes += 1
-        motion.set_rapid_off()
         by_macro = (
             self._output.parameters.cycles == "macros"
-            and self._output.control.has(self._macro(cycle))
-            and math.dist(axis, UPRIGHT) < 1e-6
+            and self._output.control.has(self._macro(act.cycle))
+            and math.dist(act.axis, UPRIGHT) < 1e-6
         )
         if by_macro:
-            self._by_macro(record, cycle, point, levels, here)
+            self._by_macro(act)
         else:
-            self._by_moves(record, cycle, point, axis, levels, here)
+            self._by_moves(act)
 
     def _macro(self, cycle: Cycle) -> str:
         return f"CYCLE_{cycle.kind.upper()}"
 
-    def _by_macro(
-        self, record: Goto, cycle: Cycle, point: Vector, levels: Levels, here: Vector | None
-    ) -> None:
+    def _by_macro(self, act: Hole) -> None:
+        line, here, point, axis, cycle, levels = act
         x, y, surface = point
         motion = self._motion
+        if axis != motion.axis:  # the tool turns above the hole, before the control's cycle
+            self.close()
+            motion.straight(line, (x, y, surface + levels.travel), axis, True)
+            here = motion.position
         to_initial = levels.out > levels.start + _SAME_LEVEL_MM
         out = surface + levels.out
         other_way = self._hole > 0 and (self._returns_to is None) == to_initial
         if other_way or (to_initial and self._differs(out)):
-            self._close()
+            self.close()
         if to_initial and not self._hole:
             # The control leaves to the level before the cycle: go there first.
             if here is not None and here[2] < out:
-                motion.straight(record.line, (here[0], here[1], out), None, True)
+                motion.straight(line, (here[0], here[1], out), axis, True)
             elif here is None or here[2] > out:
-                motion.straight(record.line, (x, y, surface + levels.travel), record.axis, True)
-                motion.straight(record.line, (x, y, out), None, True)
+                motion.straight(line, (x, y, surface + levels.travel), axis, True)
+                motion.straight(line, (x, y, out), axis, True)
         start = motion.position or (x, y, out)
         self._hole += 1
         self._returns_to = out if to_initial else None
@@ -112,7 +89,7 @@ class Drilling:
             "P": cycle.dwell_s,
             "Q": cycle.peck * scale,
         }
-        words.update(self._feed_words(record.line, cycle))
+        words.update(self._feed_words(line, cycle))
         self._output.call(self._macro(cycle), words)
         steps = hole_steps(without_pecks(cycle), point, UPRIGHT, motion.position, levels, 0.0, 0.0)
         motion.travelled(steps, (x, y, out))
@@ -135,19 +112,12 @@ class Drilling:
         pitch = feed if per_revolution else feed / self.rpm
         return {"F": pitch * self.rpm * scale, "FEEDMODE": 94.0, "PITCH": pitch * scale, "S": self.rpm}
 
-    def _by_moves(
-        self,
-        record: Goto,
-        cycle: Cycle,
-        point: Vector,
-        axis: Vector,
-        levels: Levels,
-        here: Vector | None,
-    ) -> None:
-        self._close()
+    def _by_moves(self, act: Hole) -> None:
+        self.close()
+        line, here, point, axis, cycle, levels = act
         motion, parameters = self._motion, self._output.parameters
         kept = motion.feed, motion.per_revolution
-        words = self._feed_words(record.line, cycle)
+        words = self._feed_words(line, cycle)
         motion.feed = words["F"] / self._output.scale
         motion.per_revolution = words["FEEDMODE"] == 95.0
         turns = {"cw": "SPINDLE_CW", "ccw": "SPINDLE_CCW"}
@@ -157,17 +127,17 @@ class Drilling:
         steps = hole_steps(cycle, point, axis, here, levels, parameters.chip_break_mm, parameters.reentry_mm)
         for step in steps:
             if step.kind in ("rapid", "feed"):
-                motion.straight(record.line, step.point, record.axis, step.kind == "rapid")
+                motion.straight(line, step.point, axis, step.kind == "rapid")
             elif step.kind == "dwell":
-                self._output.state("DWELL", record.line, {"DWELL": cycle.dwell_s, "DWELLREV": 0.0})
+                self._output.state("DWELL", line, {"DWELL": cycle.dwell_s, "DWELLREV": 0.0})
             else:
                 macro = turns["ccw" if step.kind == "reverse" else "cw"]
-                self._output.state("SPINDLE_OFF", record.line)
-                self._output.state(macro, record.line, spindle)
+                self._output.state("SPINDLE_OFF", line)
+                self._output.state(macro, line, spindle)
         motion.feed, motion.per_revolution = kept
 
-    def _close(self) -> None:
-        """Tell the control that its cycle is over, if it runs one."""
+    def close(self) -> None:
+        """Tell the control that its cycle is over, if it runs one; the next hole of a cycle calls it anew."""
         if self._hole:
             self._output.frame("CYCLE_OFF")
             self._motion.moved_by_macro()

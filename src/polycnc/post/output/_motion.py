@@ -7,9 +7,11 @@ from collections.abc import Iterable
 
 from polycnc.post.output._output import Output
 from polycnc.post.output._rotary import table_angles
-from polycnc.post.tool_path._arcs import TWO_PI, Arc, cuts, sweep_of
+from polycnc.post.tool_path._arcs import Arc, cuts
+from polycnc.post.tool_path._course import Straight, Turn
 from polycnc.post.tool_path._cycles import Step
-from polycnc.post.tool_path._records import UPRIGHT, Circle, Delta, Feed, From, Goto, Home, Rapid, Vector
+from polycnc.post.tool_path._records import UPRIGHT, Feed, Vector
+from polycnc.post.tool_path._tangency import Tangency
 
 _TILTED = 1e-6
 _FLAT_MM = 1e-7
@@ -25,13 +27,12 @@ class Motion:
         self.per_revolution = False
         self.feed_mm = self.rapid_mm = 0.0
         self.arcs = 0
+        self.tangency = Tangency()
         self._output = output
         self._call = output.call
         self._parameters = output.parameters
         self._scale = output.scale
-        self._rapid = False
         self._must_write = True
-        self._home: Vector | None = None
         self._tilt = self._turn = 0.0
         self._rotary: dict[str, float] = {}
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
@@ -39,14 +40,6 @@ class Motion:
     def set_feed(self, record: Feed) -> None:
         """Take the feed of later moves."""
         self.feed, self.per_revolution = record.value, record.per_revolution
-
-    def set_rapid(self, record: Rapid) -> None:
-        """Make the next move a rapid."""
-        self._rapid = True
-
-    def set_rapid_off(self) -> None:
-        """Forget a RAPID that stood before a hole: a cycle says itself which of its moves are rapids."""
-        self._rapid = False
 
     def travelled(self, steps: Iterable[Step], end: Vector) -> None:
         """Take the position behind a hole that a macro drilled, and the lengths of its steps."""
@@ -61,40 +54,19 @@ class Motion:
         self.position = end
         self._must_write = False
 
-    def set_position(self, record: From) -> None:
-        """Take where the tool stands."""
-        self.position = self._home = (record.x, record.y, record.z)
-        if record.axis is not None:
-            self.axis = record.axis
+    def set_position(self, position: Vector | None) -> None:
+        """Take where the tool stands; its axis is written with the next move."""
+        self.position = position
 
     def moved_by_macro(self) -> None:
         """Know that the machine may stand elsewhere: the next move is written, wherever it goes."""
         self._must_write = True
 
-    def behind(self, record: Delta) -> Vector:
-        """Return the end point of a move by a distance."""
-        if self.position is None:
-            raise self._output.fail(
-                record.line, "a move by a distance from an unknown point", "Write FROM or GOTO before it."
-            )
-        x, y, z = self.position
-        if record.along_axis:
-            i, j, k = self.axis
-            return x + i * record.x, y + j * record.x, z + k * record.x
-        return x + record.x, y + record.y, z + record.z
-
-    def go_home(self, record: Home) -> None:
-        """Go to where FROM was."""
-        if self._home is None:
-            raise self._output.fail(record.line, "GOHOME without a FROM", "Write FROM at the beginning.")
-        self._rapid = True
-        self.goto(Goto(record.line, *self._home))
-
-    def goto(self, record: Goto) -> None:
-        """Move straight to a point."""
-        line, x, y, z, axis = record
-        rapid, self._rapid = self._rapid, False
-        self.straight(line, (x, y, z), axis, rapid)
+    def move(self, act: Straight) -> None:
+        """Go straight to a point."""
+        line, _, end, axis, rapid = act
+        self.tangency.straight(act.start, end, not rapid)
+        self.straight(line, end, axis, rapid)
 
     def straight(self, line: int, end: Vector, axis: Vector | None, rapid: bool) -> None:
         """Move straight to a point, by rapid or with the feed."""
@@ -140,15 +112,15 @@ class Motion:
             raise self._output.fail(line, "a feed move without a feed", "Write FEDRAT before it.")
         return self.feed * self._scale, 95.0 if self.per_revolution else 94.0
 
-    def circle(self, record: Circle) -> None:
+    def circle(self, act: Turn) -> None:
         """Move along an arc: in pieces as the parameters say, or in lines."""
-        line, start = record.line, self.position
-        self._rapid = False
-        if start is None:
-            raise self._output.fail(line, "an arc without a start point", "Write FROM or GOTO before it.")
-        end = (record.x, record.y, record.z)
-        sweep = sweep_of(start, end, record.center, record.normal) + TWO_PI * (record.turns - 1)
-        whole = Arc(start, end, record.center, record.normal, sweep)
+        line = act.line
+        if act.axis != self.axis:
+            raise self._output.fail(
+                line, "the tool axis changes with an arc", "Write a GOTO with the new axis before it."
+            )
+        self.tangency.arc(line, act.start, act.end, act.center, act.normal)
+        whole = Arc(act.start, act.end, act.center, act.normal, act.angle)
         self.feed_mm += whole.length
         self.arcs += 1
         before = self.feed_mm

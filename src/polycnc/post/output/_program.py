@@ -15,7 +15,9 @@ from polycnc.post.macros._control_file import ControlFile
 from polycnc.post.output._drilling import Drilling
 from polycnc.post.output._motion import Motion
 from polycnc.post.output._output import Output
+from polycnc.post.tool_path._course import Act, Course, CourseError, Hole, Straight, Turn
 from polycnc.post.tool_path._records import (
+    Axis,
     Circle,
     Compensation,
     Coolant,
@@ -30,6 +32,7 @@ from polycnc.post.tool_path._records import (
     Home,
     Path,
     Rapid,
+    Retract,
     Spindle,
     Stop,
     Text,
@@ -111,6 +114,8 @@ def post_program(
         block_map.add(output.blocks, 0)
     output.flush()
     motion = driver.motion
+    if motion.tangency.mostly_kinked:
+        output.remark(motion.tangency.first_kink, motion.tangency.text())
     return PostSummary(
         blocks=output.blocks,
         records=records,
@@ -130,6 +135,7 @@ class _Driver:
         self.output = output
         self.motion = Motion(output)
         self.drilling = Drilling(output, self.motion)
+        self.course = Course()
         self.tools = 0
         self._part = self._machine = ""
         self._path = ""
@@ -138,6 +144,10 @@ class _Driver:
         self._shape = ToolShape(0, "", 0.0, 0.0)
         self._tool_number = 0
         self._turning: Spindle | None = None
+        # With the number of tool changes before them: what came before the last one must be said again.
+        self._spindle_words: tuple[str, dict[str, float | str], int] | None = None
+        self._coolant_mode: tuple[str, int] = ("off", 0)
+        self._resumes = False
 
     def handlers(self) -> dict[type[Any], Callable[[Any], None]]:
         """Return the function for each kind of record."""
@@ -148,14 +158,16 @@ class _Driver:
             Tool: self._working(self._tool),
             Spindle: self._working(self._spindle),
             Feed: self.motion.set_feed,
-            Rapid: self.motion.set_rapid,
-            From: self.motion.set_position,
+            Rapid: self._note,
+            From: self._stands,
+            Axis: self._note,
             Goto: self._goto,
-            Delta: self._working(self._delta),
-            Home: self._working(self._home),
-            Circle: self._working(self._circle),
-            Cycle: self._working(self.drilling.begin),
-            CycleOff: self._working(self.drilling.end_or_resume),
+            Delta: self._working(self._move),
+            Home: self._working(self._move),
+            Retract: self._working(self._move),
+            Circle: self._working(self._move),
+            Cycle: self._working(self._cycle),
+            CycleOff: self._working(self._cycle_off),
             Coolant: self._working(self._coolant),
             Compensation: self._working(self._compensation),
             Dwell: self._working(self._dwell),
@@ -166,7 +178,7 @@ class _Driver:
     def end(self) -> None:
         """End the program."""
         self._begin()
-        self.drilling.finish()
+        self.drilling.close()
         self._end_path()
         self.output.frame("PROGRAM_END")
 
@@ -200,7 +212,7 @@ class _Driver:
     def _end_path(self) -> None:
         if self._in_path:
             self._in_path = False
-            self.drilling.finish()
+            self.drilling.close()
             self.output.frame("PATH_END", self._path_words())
 
     def _path_words(self) -> dict[str, float | str]:
@@ -225,6 +237,7 @@ class _Driver:
             if record.kind == "comment":
                 self.output.frame("COMMENT", {"COMMENT": text})
             else:
+                self.drilling.close()
                 self.output.state("INSERT", record.line, {"COMMENT": record.text})
 
     def _tool_shape(self, record: ToolShape) -> None:
@@ -237,7 +250,9 @@ class _Driver:
         )
 
     def _tool(self, record: Tool) -> None:
-        self.drilling.finish()
+        self._take(record)
+        self.drilling.close()
+        self._resumes = True
         self._tool_shape(ToolShape(record.line, record.name, None, record.length))
         self.tools += 1
         self._tool_number = record.number
@@ -256,8 +271,9 @@ class _Driver:
         self.motion.moved_by_macro()
 
     def _spindle(self, record: Spindle) -> None:
-        self.drilling.finish()
+        self.drilling.close()
         if record.sense == "off":
+            self._spindle_words = None
             self.output.state("SPINDLE_OFF", record.line)
             return
         before = self._turning
@@ -276,51 +292,91 @@ class _Driver:
         words: dict[str, float | str] = {
             "S": self._spindle_number(speed, surface),
             "SPINDLEMODE": 96.0 if surface else 97.0,
+            "MAXRPM": record.max_rpm,
         }
-        self.output.state("SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW", record.line, words)
+        macro = "SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW"
+        if record.max_rpm and not self.output.control.uses(macro, "MAXRPM"):
+            self.output.remark(
+                record.line,
+                f"the highest speed is not written: {macro} of the control file does not use MAXRPM",
+            )
+        self._spindle_words = (macro, words, self.tools)
+        self.output.state(macro, record.line, words)
 
     def _spindle_number(self, speed: float, surface: bool) -> float:
         """Return the number of S: revolutions per minute, or the surface speed in m or feet per minute."""
         in_feet = surface and self.output.parameters.units == "inch"
         return speed / 0.3048 if in_feet else speed
 
+    def _take(self, record: Any) -> Act | None:
+        """Return what a record makes the tool do."""
+        try:
+            return self.course.take(record)
+        except CourseError as error:
+            raise self.output.fail(error.line, error.what, error.hint) from None
+
+    def _note(self, record: Rapid | Axis) -> None:
+        self._take(record)
+
     def _goto(self, record: Goto) -> None:
         if not self._in_path:
             self._begin_path()
-        if self.drilling.cycle is None:
-            self.motion.goto(record)
-        else:
-            self.drilling.hole(record)
+        self._move(record)
 
-    def _delta(self, record: Delta) -> None:
-        target = self.motion.behind(record)
-        self._goto(Goto(record.line, *target))
+    def _move(self, record: Any) -> None:
+        act = self._take(record)
+        if self._resumes:
+            self._resume(record.line)
+        if isinstance(act, Straight):
+            self.drilling.close()
+            self.motion.move(act)
+        elif isinstance(act, Hole):
+            self.drilling.hole(act)
+            self.motion.tangency.straight(None, act.point, False)
+        elif isinstance(act, Turn):
+            self.motion.circle(act)
 
-    def _home(self, record: Home) -> None:
-        self.drilling.finish()
-        self.motion.go_home(record)
+    def _stands(self, record: From) -> None:
+        self._take(record)
+        self.motion.set_position(self.course.here)
 
-    def _circle(self, record: Circle) -> None:
-        if self.drilling.cycle is not None:
-            raise self.output.fail(
-                record.line, "an arc within a drilling cycle", "Write CYCLE/OFF before it."
-            )
-        self.motion.circle(record)
+    def _cycle(self, record: Cycle) -> None:
+        self._take(record)
+        self.drilling.begin(record)
+
+    def _cycle_off(self, record: CycleOff) -> None:
+        self._take(record)
+        self.drilling.close()
+
+    def _resume(self, line: int) -> None:
+        """Give back what a tool change took away: the spindle turns and the coolant flows as before."""
+        self._resumes = False
+        if self._spindle_words is not None and self._spindle_words[2] < self.tools:
+            macro, words, _ = self._spindle_words
+            self._spindle_words = (macro, words, self.tools)
+            self.output.state(macro, line, words)
+        if self._coolant_mode[0] != "off" and self._coolant_mode[1] < self.tools:
+            self._coolant_mode = (self._coolant_mode[0], self.tools)
+            self.output.state(f"COOLANT_{self._coolant_mode[0].upper()}", line)
 
     def _coolant(self, record: Coolant) -> None:
+        self._coolant_mode = (record.mode, self.tools)
         self.output.state(f"COOLANT_{record.mode.upper()}", record.line)
 
     def _compensation(self, record: Compensation) -> None:
+        self.drilling.close()
         words: dict[str, float | str] = {}
         if record.side != "off":
             words["D"] = float(self._tool_number if record.d is None else record.d)
         self.output.state(f"COMP_{record.side.upper()}", record.line, words)
 
     def _dwell(self, record: Dwell) -> None:
+        self.drilling.close()
         words: dict[str, float | str] = {"DWELL": record.seconds, "DWELLREV": record.revolutions}
         self.output.state("DWELL", record.line, words)
 
     def _stop(self, record: Stop) -> None:
+        self.drilling.close()
         self.output.state("OPTIONAL_STOP" if record.optional else "STOP", record.line)
 
 

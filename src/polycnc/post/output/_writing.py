@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import TextIO
 
 from polycnc.errors import UsageError
-from polycnc.post.macros._control_parameters import Parameters
+from polycnc.post.macros._control_parameters import CODECS, Parameters
 
 _LINE_ENDS = {"lf": "\n", "crlf": "\r\n"}
-_CODECS = {"utf-8": "utf-8", "ascii": "ascii", "shift-jis": "cp932"}
 
 
 @contextmanager
@@ -30,7 +29,7 @@ def program_file(path: str | Path, parameters: Parameters) -> Iterator[TextIO]:
         raise UsageError(f"{path} is a folder", hint="give the name of a file")
     try:
         file = open(  # noqa: SIM115 (closed below, before the file gets its name)
-            partial, "w", encoding=_CODECS[parameters.encoding], newline=_LINE_ENDS[parameters.line_end]
+            partial, "w", encoding=CODECS[parameters.encoding], newline=_LINE_ENDS[parameters.line_end]
         )
     except OSError as error:
         raise UsageError(

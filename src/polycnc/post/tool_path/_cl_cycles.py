@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from polycnc.post.tool_path._cl_statement import Statement
-from polycnc.post.tool_path._records import Cycle, CycleKind
+from polycnc.post.tool_path._records import LARGEST_MM, Cycle, CycleKind
 from polycnc.units import MM_PER_INCH
 
 _KINDS: dict[str, CycleKind] = {
@@ -21,6 +21,7 @@ _KINDS: dict[str, CycleKind] = {
     "CBORE": "dwell",
     "DEEP": "deep",
     "DEEPHL": "deep",
+    "DEEP2": "deep",
     "BRKCHP": "chip_break",
     "TAP": "tap",
     "BORE": "bore",
@@ -46,7 +47,9 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
             f"Known are {', '.join(_KINDS)}.",
             first,
         )
-    kind = named[-1] if named[0] == "drill" else named[0]
+    kind = "tap" if "tap" in named else named[-1] if named[0] == "drill" else named[0]
+    if "BACK" in words:
+        raise statement.fail("a cycle that cuts from below", "Let the CAM system write its moves as points.")
     values, bare, feed, per_revolution = _split(statement, scale, units)
     depth = values.get("DEPTH", values.get("FEDTO"))
     if depth is None and bare:
@@ -67,6 +70,14 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
     if kind == "drill" and dwell > 0.0:
         kind = "dwell"
     peck = next((values[word] for word in _PECKS if word in values), bare.pop(0) if bare else 0.0)
+    if kind == "drill" and any(word in values for word in _PECKS):
+        kind = "deep"
+    elif kind == "tap" and any(word in values for word in _PECKS):
+        raise statement.fail(
+            "a thread tapped in pecks", "Let the CAM system write a tap that goes down at once."
+        )
+    if any(abs(value) > LARGEST_MM for value in (depth, start, out, peck)):
+        raise statement.fail("a level further than any machine", "Check the numbers of the cycle.")
     if kind in ("deep", "chip_break") and not peck > 0.0:
         raise statement.fail(
             "a cycle with pecks that does not say how deep they are", "Write STEP and a length."
@@ -74,7 +85,7 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
     bottom = abs(depth)
     if not start > -bottom:
         raise statement.fail("a cycle whose feed begins below its depth", "Check CLEAR, RAPTO and DEPTH.")
-    leave = None if out == 0.0 and "RETURN" in values else max(out, start)
+    leave = None if (out == 0.0 and "RETURN" in values) or "AUTO" in words else max(out, start)
     return Cycle(statement.line, kind, bottom, start, leave, feed, per_revolution, peck, dwell)
 
 
@@ -99,6 +110,8 @@ def _split(
                 feed = statement.number("a feed") * factor
         elif token.text == "TPI":
             feed, per_revolution = MM_PER_INCH / statement.number("threads per inch"), True
+        elif token.text == "RTRCTO" and (after := statement.peek()) is not None and after.text == "AUTO":
+            continue
         elif token.text in _NUMBERED:
             value = statement.number(f"a number behind {token.text}")
             values[token.text] = value if token.text == "DWELL" else value * scale

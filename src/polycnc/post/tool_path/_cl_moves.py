@@ -8,9 +8,24 @@ from collections.abc import Iterator
 from polycnc.post.tool_path._arcs import across, cross, dot
 from polycnc.post.tool_path._cl_reading import PendingCircle, Reading
 from polycnc.post.tool_path._cl_statement import Statement
-from polycnc.post.tool_path._records import UPRIGHT, Delta, From, Home, Rapid, Record, Vector
+from polycnc.post.tool_path._records import (
+    LARGEST_MM,
+    MOST_TURNS,
+    UPRIGHT,
+    Axis,
+    Delta,
+    From,
+    Home,
+    Rapid,
+    Record,
+    Retract,
+    Vector,
+)
 
-_LARGEST_MM = 1e9
+
+def _near(reading: Reading, statement: Statement, *numbers: float) -> None:
+    if not all(abs(number * reading.scale) <= LARGEST_MM for number in numbers):
+        raise statement.fail("a position further than any machine", "Check the numbers.")
 
 
 def _unit(statement: Statement, vector: Vector) -> Vector:
@@ -34,8 +49,7 @@ def _position(reading: Reading, statement: Statement) -> tuple[Vector, Vector | 
             f"Write it like {statement.major}/10,20,5.",
             statement.peek(),
         )
-    if not all(abs(number) < _LARGEST_MM for number in numbers[:3]):
-        raise statement.fail("a position further than any machine", "Check the numbers.")
+    _near(reading, statement, *numbers[:3])
     axis = _unit(statement, (numbers[3], numbers[4], numbers[5])) if len(numbers) == 6 else None
     return (numbers[0], numbers[1], numbers[2]), axis
 
@@ -56,6 +70,10 @@ def start_from(reading: Reading, statement: Statement) -> Iterator[Record]:
 def delta(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read GODLTA."""
     numbers = [number * reading.scale for number in statement.numbers()]
+    if not all(abs(number) <= LARGEST_MM for number in numbers):
+        raise statement.fail("a distance further than any machine", "Check the numbers.")
+    if len(numbers) in (1, 3):
+        reading.moves += 1
     if len(numbers) == 1:
         yield Delta(statement.line, numbers[0], 0.0, 0.0, along_axis=True)
         reading.position = None
@@ -71,13 +89,92 @@ def delta(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def home(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read GOHOME."""
-    reading.position = None
-    yield Home(statement.line)
+    """Read GOHOME, with its point or without."""
+    reading.moves += 1
+    if statement.peek() is None:
+        reading.position = None
+        yield Home(statement.line)
+        return
+    (x, y, z), axis = _position(reading, statement)
+    if axis is not None:
+        yield Axis(statement.line, axis)
+    reading.position = (x * reading.scale, y * reading.scale, z * reading.scale)
+    yield Home(statement.line, reading.position)
+
+
+def tool_axis(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read TLAXIS: the tool axis of the points that follow."""
+    numbers = statement.numbers()
+    if len(numbers) != 3 or statement.peek() is not None:
+        raise statement.fail(
+            "TLAXIS with something else than a direction",
+            "Write three numbers, like TLAXIS/0,0,1, or let the CAM system write the axis with each GOTO.",
+            statement.peek(),
+        )
+    yield Axis(statement.line, _unit(statement, (numbers[0], numbers[1], numbers[2])))
+
+
+def clearance_plane(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read CLEARP: the level to which RETRCT goes."""
+    reading.clearance_z = _level(reading, statement)
+    return iter(())
+
+
+def retract(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read RETRCT: up to the clearance plane."""
+    if statement.peek() is not None:
+        z = _level(reading, statement)
+    elif reading.clearance_z is None:
+        raise statement.fail(
+            "RETRCT without a clearance plane",
+            "Write CLEARP/XYPLAN,z before it, or a RAPID and GOTO instead.",
+        )
+    else:
+        z = reading.clearance_z
+    reading.moves += 1
+    if reading.position is not None:
+        x, y, height = reading.position
+        reading.position = (x, y, max(height, z))
+    yield Retract(statement.line, z)
+
+
+def _level(reading: Reading, statement: Statement) -> float:
+    """Return the height of a plane: XYPLAN,z, or a, b, c, d of a plane across Z."""
+    first = statement.peek()
+    if first is not None and first.text == "XYPLAN":
+        next(iter(statement))
+    numbers = statement.numbers()
+    flat = len(numbers) == 4 and numbers[:2] == [0.0, 0.0] and numbers[2] == 1.0
+    if statement.peek() is not None or not (flat or (len(numbers) == 1 and first and first.text == "XYPLAN")):
+        raise statement.fail(
+            f"{statement.major} with something else than a height",
+            f"Write {statement.major}/XYPLAN,z; other planes need a RAPID and GOTO.",
+            first,
+        )
+    _near(reading, statement, numbers[-1])
+    return numbers[-1] * reading.scale
+
+
+def coordinate_system(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read MSYS or CSYS: the first one is that of the program, another one is refused."""
+    numbers = tuple(statement.numbers())
+    if reading.frame is None or not numbers:
+        reading.frame = numbers or reading.frame
+    elif len(numbers) != len(reading.frame) or any(
+        abs(a - b) > 1e-6 for a, b in zip(numbers, reading.frame, strict=True)
+    ):
+        raise statement.fail(
+            f"{statement.major} changes the coordinate system within the tool path",
+            "Post each coordinate system on its own, or let the CAM system write all operations in one.",
+        )
+    return iter(())
 
 
 def circle(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read CIRCLE or MOVARC; the arc comes with the point behind it."""
+    """Read CIRCLE or MOVARC; the arc comes with the point behind it.
+
+    The axis is by the right-hand rule, in a CLSF of NX it is for a clockwise direction.
+    """
     numbers = statement.numbers()
     if len(numbers) not in (4, 6) and len(numbers) < 7:
         raise statement.fail(
@@ -85,12 +182,19 @@ def circle(reading: Reading, statement: Statement) -> Iterator[Record]:
             "Write it like CIRCLE/10,20,0,0,0,1,5.",
         )
     x, y, z = (number * reading.scale for number in numbers[:3])
+    if not all(abs(number * reading.scale) <= LARGEST_MM for number in (*numbers[:3], *numbers[6:7])):
+        raise statement.fail(
+            "a circle further away or larger than any machine", "Check its centre and radius."
+        )
     normal = (numbers[3], numbers[4], numbers[5]) if len(numbers) >= 6 else UPRIGHT
     turns = statement.value_of("TIMES", "a number of turns") or 1.0
     angle = statement.value_of("ANGLE", "an angle")
-    reading.circle = PendingCircle(
-        statement, (x, y, z), _unit(statement, normal), angle, max(1, round(turns))
-    )
+    if not (abs(turns) <= MOST_TURNS and abs(angle or 0.0) <= 360.0 * MOST_TURNS):
+        raise statement.fail("an arc of too many turns", f"Write at most {MOST_TURNS} turns in one arc.")
+    normal = _unit(statement, normal)
+    if reading.turns_clockwise(statement):
+        normal = (-normal[0], -normal[1], -normal[2])
+    reading.circle = PendingCircle(statement, (x, y, z), normal, angle, max(1, round(turns)))
     return iter(())
 
 
@@ -119,6 +223,8 @@ def follow_circle(reading: Reading, statement: Statement) -> Iterator[Record]:
             "a move along a circle without its circle, its end or its direction",
             "Write INDIRV/..., then TLON,GOFWD/(CIRCLE/x,y,z,r),ON,(LINE/x,y,z,x,y,z).",
         )
+    if not all(abs(number) <= LARGEST_MM for number in (*circle[:3], circle[-1], *line)):
+        raise statement.fail("a circle further away or larger than any machine", "Check its numbers.")
     center = (circle[0], circle[1], circle[2])
     normal = UPRIGHT
     if len(circle) == 7:

@@ -7,41 +7,73 @@ A point is read on a short way of its own; every other statement goes through `S
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 
-from polycnc.post.tool_path._cl_reading import Reading
+from polycnc.errors import ProgramError
+from polycnc.post.tool_path._cl_reading import ArcAxis, Reading
 from polycnc.post.tool_path._cl_statement import Piece, Statement
-from polycnc.post.tool_path._cl_words import HANDLERS, IGNORED, LEFT_OUT_MOTION, TEXTS
-from polycnc.post.tool_path._records import Circle, Goto, Record
+from polycnc.post.tool_path._cl_words import CLSF_WORDS, HANDLERS, HINTS, IGNORED, LEFT_OUT_MOTION, TEXTS
+from polycnc.post.tool_path._records import LARGEST_MM, Circle, End, Goto, Record
 from polycnc.post.tool_path._source import Remarks, Source, decoded
 
+_CREO = re.compile(r"(->\s*)(?=(CUTTER|CSYS)\b)", re.IGNORECASE)
 
-def read_cl(source: Source, remarks: Remarks) -> Iterator[Record]:
+
+def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Iterator[Record]:
     """Yield the records of an APT tool path; what is left out goes to `remarks`.
 
+    `arc_axis` says what the axes of arcs are for; "auto" by the kind of file.
+
     Raises:
-        ProgramError: a statement without its numbers, an arc without an end point, an unknown motion.
+        ProgramError: a statement without its numbers, an arc without an end point, an unknown motion, or no tool
+            path at all.
     """
-    reading = Reading(remarks)
+    reading = Reading(remarks, arc_axis)
     pieces: list[Piece] = []
     for number, raw in enumerate(source.lines(), 1):
-        if not pieces and (rest := _behind_goto(raw)):
+        if not pieces and not reading.resumes and (rest := _behind_goto(raw)):
             point = _point(reading, number, rest)
             if point is not None:
                 yield point
                 continue
         text = decoded(raw)
-        part = text.partition("$$")[0].rstrip()
+        part = _statement_of(text).rstrip()
         continued = part.endswith("$")
         if part.strip() or pieces:
             pieces.append(Piece(number, text, part[:-1] if continued else part))
         if pieces and not continued:
-            yield from _statement(source, reading, pieces)
+            for record in _statement(source, reading, pieces):
+                if record.__class__ is End:
+                    _check_recognised(source, reading)
+                yield record
             pieces = []
     if pieces:
         yield from _statement(source, reading, pieces)
     if reading.circle is not None:
         raise reading.circle.statement.fail("an arc without an end point", "Write a GOTO behind it.")
+    _check_recognised(source, reading)
+
+
+def _check_recognised(source: Source, reading: Reading) -> None:
+    """Refuse what is no tool path: nothing in it is known, or nothing moves and most is unknown."""
+    if reading.moves or (reading.known and reading.unknown <= reading.known):
+        return
+    raise ProgramError(
+        "this is no tool path: "
+        + ("hardly anything" if reading.known else "nothing")
+        + " in it is an APT word",
+        position=source.position(1),
+        hint="Give CL data (APT, CLSF) as the CAM system writes it, not a program for a control.",
+    )
+
+
+def _statement_of(text: str) -> str:
+    """Return a line without its remark; in `$$->` Creo writes statements, of which the size of the tool is one."""
+    before, mark, remark = text.partition("$$")
+    if mark and not before.strip() and (found := _CREO.match(remark)):
+        return remark[found.end(1) :]
+    return before
 
 
 def _behind_goto(raw: bytes) -> bytes:
@@ -55,6 +87,7 @@ def _behind_goto(raw: bytes) -> bytes:
 def _point(reading: Reading, line: int, rest: bytes) -> Goto | Circle | None:
     """Return the move of a plain GOTO; None if the line must be read the long way, for its errors too."""
     numbers = rest.split(b",")
+    largest = LARGEST_MM / reading.scale
     try:
         if len(numbers) == 3:
             x, y, z = map(float, numbers)
@@ -65,7 +98,7 @@ def _point(reading: Reading, line: int, rest: bytes) -> Goto | Circle | None:
             axis = i / length, j / length, k / length
     except (ValueError, ZeroDivisionError):
         return None
-    if not -1e9 < x + y + z < 1e9 or b"_" in rest:
+    if not (abs(x) <= largest and abs(y) <= largest and abs(z) <= largest) or b"_" in rest:
         return None
     return reading.point(line, x, y, z, axis)
 
@@ -75,12 +108,26 @@ def _statement(source: Source, reading: Reading, pieces: list[Piece]) -> Iterato
     statement = Statement(source.name, pieces)
     major = text[1].upper() if text is not None else statement.major
     handler = HANDLERS.get(major)
+    if reading.resumes and major != "CUTCOM":
+        yield reading.resume(statement)
+    if major in CLSF_WORDS and not reading.clsf_word:
+        if reading.right_handed and reading.arc_axis == "auto":
+            raise statement.fail(
+                f"{major} is of an NX CLSF, but the arc on line {reading.right_handed} was read by the right-hand rule",
+                "Say with --arc-axis which way the axes of CIRCLE/ are meant: clockwise as NX writes them, or "
+                "counterclockwise.",
+            )
+        reading.clsf_word = major
     if handler is not None:
+        reading.known += 1
         yield from handler(reading, statement)
     elif major in LEFT_OUT_MOTION:
         raise statement.fail(
             f"{major} moves the tool or its coordinates in a way that is not known here",
-            "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead.",
+            HINTS.get(major, "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead."),
         )
-    elif major not in IGNORED:
+    elif major in IGNORED:
+        reading.known += 1
+    else:
+        reading.unknown += 1
         reading.remarks.add(statement.line, f"{major} is not known and was left out")

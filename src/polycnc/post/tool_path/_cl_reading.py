@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
 from polycnc.post.tool_path._arcs import off_circle, sweep_of
 from polycnc.post.tool_path._cl_statement import Statement
-from polycnc.post.tool_path._records import Circle, Goto, Record, Vector
+from polycnc.post.tool_path._records import MOST_TURNS, Circle, Compensation, Goto, Record, Tool, Vector
 from polycnc.post.tool_path._source import Remarks
+
+ArcAxis: TypeAlias = Literal["auto", "counterclockwise", "clockwise"]
+"""What the axis of CIRCLE/ is for: arcs by the right-hand rule, or against it; "auto" by the kind of file."""
 
 
 @dataclass(slots=True)
@@ -29,15 +32,72 @@ class Reading:
     """What reading a tool path must remember: units, the last point, an arc that waits for its end."""
 
     remarks: Remarks
+    arc_axis: ArcAxis = "auto"
     scale: float = 1.0
     circle: PendingCircle | None = None
     position: Vector | None = None
     direction: Vector | None = None
+    clsf_word: str = ""
+    """The first word that only the CLSF of NX has, empty if there was none."""
+    right_handed: int = 0
+    """The line of the first CIRCLE/ that was read by the right-hand rule because nothing said otherwise, 0 if none."""
+    frame: tuple[float, ...] | None = None
+    """The coordinate system as it was first given (MSYS, CSYS)."""
+    clearance_z: float | None = None
+    side: Compensation | None = None
+    """The last CUTCOM with a side, for CUTCOM/ON."""
+    resumes: bool = False
+    """Whether CUTCOM/ON waits for its side, which comes with the next statement or is the last one."""
+    cycle_on: bool = False
+    tool: Tool | None = None
+    """The last tool change."""
+    cycle_began: int = 0
+    """How many moves came before the last CYCLE."""
+    units_said: bool = False
+    known: int = 0
+    unknown: int = 0
+    moves: int = 0
+
+    def resume(self, statement: Statement) -> Compensation:
+        """Return the compensation that CUTCOM/ON takes up again.
+
+        Raises:
+            ProgramError: there was none.
+        """
+        self.resumes = False
+        if self.side is None:
+            raise statement.fail(
+                "CUTCOM/ON without a side before or behind it", "Write CUTCOM/LEFT or CUTCOM/RIGHT."
+            )
+        return self.side._replace(line=statement.line)
+
+    def check_units(self, statement: Statement) -> None:
+        """Refuse a feed in inches in a CLSF that does not say the unit of its lengths, which would be read as mm.
+
+        Raises:
+            ProgramError: it is so.
+        """
+        if self.clsf_word and not self.units_said and statement.words() & {"IPM", "IPR"}:
+            raise statement.fail(
+                "a feed in inches in a CLSF that does not say the unit of its lengths",
+                "Write UNITS/INCHES or UNITS/MM as its first line.",
+            )
+
+    def turns_clockwise(self, statement: Statement) -> bool:
+        """Return whether the axis of this CIRCLE/ or MOVARC/ is for a clockwise direction."""
+        if self.arc_axis != "auto":
+            return self.arc_axis == "clockwise"
+        if statement.major != "CIRCLE":
+            return False
+        if not self.clsf_word and not self.right_handed:
+            self.right_handed = statement.line
+        return bool(self.clsf_word)
 
     def point(self, line: int, x: float, y: float, z: float, axis: Vector | None = None) -> Goto | Circle:
         """Return the move to a point."""
         if self.scale != 1.0:
             x, y, z = x * self.scale, y * self.scale, z * self.scale
+        self.moves += 1
         if self.circle is not None:
             circle, self.circle = self.circle, None
             return self.arc(circle, (x, y, z))
@@ -51,6 +111,7 @@ class Reading:
             ProgramError: there is no start point, or start and end lie on different circles.
         """
         start, statement = self.position, circle.statement
+        self.moves += 1
         if start is None:
             raise statement.fail("an arc without a start point", "Write a GOTO or FROM before it.")
         if off := off_circle(start, end, circle.center, circle.normal):
@@ -62,6 +123,8 @@ class Reading:
         if circle.angle_deg is not None:
             sweep = sweep_of(start, end, circle.center, circle.normal)
             turns = max(1, round((abs(circle.angle_deg) - math.degrees(sweep)) / 360.0) + 1)
+        if turns > MOST_TURNS:
+            raise statement.fail(f"an arc of {turns} turns", f"Write at most {MOST_TURNS} turns in one arc.")
         self.position = end
         return Circle(statement.line, *end, circle.center, circle.normal, turns)
 

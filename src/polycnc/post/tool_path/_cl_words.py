@@ -37,7 +37,7 @@ IGNORED = frozenset(
             "REMARK",
             "PAINT",
             "DISPLY",
-            "MSYS",
+            "SELECT",
             "HEADER",
             "INTOL",
             "OUTTOL",
@@ -46,7 +46,7 @@ IGNORED = frozenset(
             "CUT",
             "CLPRNT",
         ),
-        *("NOPOST", "PLABEL", "LEADER", "REWIND", "CATPROCESS", "AUTOPS", "TLONPS", "TLOFPS", "PSIS", "CSYS"),
+        *("NOPOST", "PLABEL", "LEADER", "REWIND", "CATPROCESS", "AUTOPS", "TLONPS", "TLOFPS", "PSIS"),
     )
 )
 """Words that say nothing to a control."""
@@ -55,9 +55,37 @@ LEFT_OUT_MOTION = frozenset(
     (
         *("ARC", "GO", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN", "THREAD", "INDEX", "ROTABL"),
         *("ROTATE", "ROTHED", "TRACUT", "COPY", "TRANS", "ORIGIN", "DNTCUT", "SPLINE", "NURBS", "GOCLER"),
+        *(
+            "SAFPOS",
+            "SET",
+            "HOMEPT",
+            "LCS",
+            "CALSUB",
+            "OFSTNO",
+            "OFSETL",
+            "PIVOTZ",
+            "POCKET",
+            "SCURV",
+            "MATRIX",
+        ),
     )
 )
 """Words that move the tool or its coordinates and are not known: leaving them out would cut another part."""
+
+HINTS = {
+    "NURBS": "In NX set 'Motion Output' of the operation to 'Line' or to 'Circular'.",
+    "SPLINE": "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead.",
+    "SAFPOS": "Write the way to the safe position as RAPID and GOTO.",
+    "HOMEPT": "Write FROM/x,y,z, or give the point with GOHOME/x,y,z.",
+    "SET": "Write the number of the length offset with the tool, like LOADTL/3,ADJUST,13.",
+    "OFSTNO": "Write the number of the length offset with the tool, like LOADTL/3,ADJUST,13.",
+    "OFSETL": "Write the number of the length offset with the tool, like LOADTL/3,ADJUST,13.",
+    "CALSUB": "Let the CAM system write out what the sub-program does.",
+}
+"""What to do instead, where it is something else than points and arcs."""
+
+CLSF_WORDS = frozenset(("TOOLPATH", "TLDATA", "MSYS", "PAINT", "END-OF-PATH"))
+"""Words that only the CLSF of NX has; its axes of arcs are for a clockwise direction."""
 
 _FEED_UNITS = {
     "MMPM": (1.0, False),
@@ -73,7 +101,10 @@ def _text(kind: Literal["part", "comment", "insert"]) -> Handler:
         found = TEXTS.match(statement.pieces[0].part)
         first = found[2] if found else ""
         text = "".join([first, *(piece.part for piece in statement.pieces[1:])])
-        yield Text(statement.line, kind, text.strip())
+        text = text.strip()
+        if len(text) > 1 and text[0] == text[-1] and text[0] in "'\"" and kind != "insert":
+            text = text[1:-1].strip()
+        yield Text(statement.line, kind, text)
 
     return read
 
@@ -87,12 +118,18 @@ def _nothing(reading: Reading, statement: Statement) -> Iterator[Record]:
     return iter(())
 
 
+_TOOL_KINDS = frozenset(
+    ("MILL", "DRILL", "TAP", "REAM", "BORE", "TURN", "LATHE", "CBORE", "CSINK", "FACE", "TCUTTER")
+)
+
+
 def _machine(reading: Reading, statement: Statement) -> Iterator[Record]:
     yield Text(statement.line, "machine", statement.rest.split(",")[0].strip())
 
 
 def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.units_said = True
     if words & {"MM", "MILLIMETERS"}:
         reading.scale = 1.0
     elif words & {"INCH", "INCHES", "IN"}:
@@ -100,7 +137,7 @@ def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
     elif words & {"CM", "CENTIMETERS"}:
         reading.scale = 10.0
     else:
-        raise statement.fail("UNITS without a unit", "Write UNITS/MM or UNITS/INCHES.")
+        raise statement.fail(f"{statement.major} without a unit", "Write UNITS/MM or UNITS/INCHES.")
     return iter(())
 
 
@@ -129,19 +166,26 @@ def _cutter(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
-    if (token := statement.peek()) is not None and token.text == "TOOL":
+    """Read a tool change; the tool that is in the spindle with the same offsets is not changed again."""
+    if (token := statement.peek()) is not None and token.text in ("TOOL", "TURRET"):
         next(iter(statement))
     number = statement.number("a tool number")
     if number != int(number) or number < 0:
         raise statement.fail(
             f"a tool number must be a whole number, not {number:g}", "Write it like LOADTL/3."
         )
+    if statement.major == "TOOLNO" and (kind := statement.peek()) is not None and kind.text in _TOOL_KINDS:
+        return  # CATIA describes the tool; LOADTL changes it
     length = statement.value_of("LENGTH", "a length")
+    more = statement.numbers()
     offset = statement.value_of("ADJUST", "an offset number")
     if offset is None:
         offset = statement.value_of("OSETNO", "an offset number")
     radius = statement.value_of("CUTCOM", "an offset number")
-    yield Tool(
+    if len(more) == 3 and statement.peek() is None:  # of ISO 4343: pocket, length, number of the offset
+        length = more[1] if length is None else length
+        offset = more[2] if offset is None else offset
+    change = Tool(
         statement.line,
         int(number),
         None,
@@ -149,14 +193,23 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
         None if offset is None else int(offset),
         None if radius is None else int(radius),
     )
+    if reading.tool is None or change != reading.tool._replace(line=change.line):
+        reading.tool = change
+        yield change
+    elif reading.cycle_on:
+        yield CycleOff(statement.line)
+    reading.cycle_on = False
 
 
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
-    speed = next((n for token in statement if (n := token.number) is not None), None)
-    for word in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
-        if word in words and statement.value_of(word, "a number") == speed:
-            raise statement.fail(f"SPINDL names {word} before its speed", "Write the speed first.")
+    highest = statement.value_of("MAXRPM", "a highest speed") or 0.0
+    speed = None
+    for token in statement:
+        if token.text in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
+            statement.numbers()
+        elif speed is None:
+            speed = token.number
     sense: Literal["cw", "ccw", "off", "on"] = "on"
     if "OFF" in words:
         sense = "off"
@@ -167,11 +220,12 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     surface = bool(words & {"SFM", "SMM"})
     if speed is not None and "SFM" in words:
         speed *= 12.0 * MM_PER_INCH / 1000.0
-    yield Spindle(statement.line, sense, speed, surface)
+    yield Spindle(statement.line, sense, speed, surface, highest)
 
 
 def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    reading.check_units(statement)
     if "RAPID" in words:
         yield Rapid(statement.line)
         return
@@ -189,11 +243,20 @@ def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
-    if "OFF" in words or "NOMORE" in words:
+    reading.cycle_on = True
+    first = statement.peek()
+    alone = first is not None and len(words) == 1
+    if alone and first is not None and first.text in ("INIT", "CLEAR"):
+        # SolidWorks CAM announces a cycle with INIT; CLEAR ends one that has had its points.
+        if first.text == "CLEAR" and reading.moves > reading.cycle_began:
+            yield CycleOff(statement.line)
+    elif "OFF" in words or "NOMORE" in words:
         yield CycleOff(statement.line)
     elif "ON" in words:
         yield CycleOff(statement.line, on=True)
     else:
+        reading.check_units(statement)
+        reading.cycle_began = reading.moves
         yield read_cycle(statement, reading.scale, _FEED_UNITS)
 
 
@@ -212,6 +275,9 @@ def _coolant(reading: Reading, statement: Statement) -> Iterator[Record]:
 def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
     side: Literal["left", "right", "off"] = "off"
+    reading.resumes = words == {"ON"}
+    if reading.resumes:
+        return
     if "OFF" in words:
         side = "off"
     elif "LEFT" in words:
@@ -221,17 +287,33 @@ def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
     else:
         raise statement.fail("CUTCOM without a side", "Write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF.")
     number = next((n for token in statement if (n := token.number) is not None), None)
-    yield Compensation(statement.line, side, None if number is None else int(number))
+    compensation = Compensation(statement.line, side, None if number is None else int(number))
+    if side != "off":
+        reading.side = compensation
+    yield compensation
 
 
 def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:
     value = next((n for token in statement if (n := token.number) is not None), None)
     if value is None or value < 0.0:
-        raise statement.fail("DELAY needs a time", "Write it in seconds, like DELAY/1.5, or as DELAY/5,REV.")
+        word = statement.major
+        raise statement.fail(
+            f"{word} needs a time", f"Write it in seconds, like {word}/1.5, or as {word}/5,REV."
+        )
     if "REV" in statement.words():
         yield Dwell(statement.line, revolutions=value)
     else:
         yield Dwell(statement.line, seconds=value)
+
+
+def _mode(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read MODE: absolute milling or turning is what is read anyway."""
+    for token in statement:
+        if token.text not in ("MILL", "TURN", "ABSOL"):
+            raise statement.fail(
+                f"MODE/{token.text} is not known", "Let the CAM system write absolute points.", token
+            )
+    return iter(())
 
 
 def _stop(optional: bool) -> Handler:
@@ -253,6 +335,10 @@ HANDLERS: dict[str, Handler] = {
     "TPRINT": _tool_name,
     "MACHIN": _machine,
     "UNITS": _units,
+    "UNIT": _units,
+    "MODE": _mode,
+    "MSYS": _cl_moves.coordinate_system,
+    "CSYS": _cl_moves.coordinate_system,
     "TOOLPATH": _tool_path,
     "END-OF-PATH": _end_of_path,
     "TLDATA": _tool_data,
@@ -268,6 +354,9 @@ HANDLERS: dict[str, Handler] = {
     "FROM": _cl_moves.start_from,
     "GODLTA": _cl_moves.delta,
     "GOHOME": _cl_moves.home,
+    "TLAXIS": _cl_moves.tool_axis,
+    "CLEARP": _cl_moves.clearance_plane,
+    "RETRCT": _cl_moves.retract,
     "CIRCLE": _cl_moves.circle,
     "MOVARC": _cl_moves.circle,
     "INDIRV": _cl_moves.direction,
@@ -276,6 +365,7 @@ HANDLERS: dict[str, Handler] = {
     "COOLNT": _coolant,
     "CUTCOM": _compensation,
     "DELAY": _dwell,
+    "DWELL": _dwell,
     "STOP": _stop(False),
     "OPSTOP": _stop(True),
     "END": _end,

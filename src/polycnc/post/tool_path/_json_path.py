@@ -16,13 +16,13 @@ from polycnc.errors import ProgramError
 from polycnc.machine import StrictModel
 from polycnc.post.tool_path import _records as records
 from polycnc.post.tool_path._arcs import dot, off_circle
-from polycnc.post.tool_path._records import Record
+from polycnc.post.tool_path._records import LARGEST_MM, MOST_TURNS, Record
 from polycnc.post.tool_path._source import Remarks, Source
 from polycnc.units import MM_PER_INCH
 
-Coordinate = Annotated[float, Field(gt=-1e9, lt=1e9)]
+Coordinate = Annotated[float, Field(ge=-LARGEST_MM, le=LARGEST_MM)]
 Triple: TypeAlias = tuple[Coordinate, Coordinate, Coordinate]
-Length = Annotated[float, Field(gt=0, lt=1e9)]
+Length = Annotated[float, Field(gt=0, le=LARGEST_MM)]
 
 
 class DoPath(StrictModel):
@@ -111,7 +111,7 @@ class DoArc(StrictModel):
     to: Triple = Field(description="The end point.")
     center: Triple = Field(description="The centre.")
     normal: Triple = Field(default=records.UPRIGHT, description="The axis it turns about.")
-    turns: Annotated[int, Field(ge=1, le=100_000)] = Field(
+    turns: Annotated[int, Field(ge=1, le=MOST_TURNS)] = Field(
         default=1, description="How often it comes to the end point."
     )
 

@@ -9,6 +9,12 @@ from typing import Literal, NamedTuple, TypeAlias
 
 Vector: TypeAlias = tuple[float, float, float]
 
+LARGEST_MM = 1e6
+"""No machine has a position, centre or radius further away: a kilometre."""
+
+MOST_TURNS = 100_000
+"""No thread has more turns in one arc."""
+
 UPRIGHT: Vector = (0.0, 0.0, 1.0)
 """The tool axis of a machine without rotary axes: from the tip to the holder."""
 
@@ -51,12 +57,16 @@ class Tool(NamedTuple):
 
 
 class Spindle(NamedTuple):
-    """Speed and sense of the spindle; None where it stays as it is. `surface`: the speed is m/min."""
+    """Speed and sense of the spindle; None where it stays as it is. `surface`: the speed is m/min.
+
+    `max_rpm` is the highest speed that is allowed with it, 0 if none is given.
+    """
 
     line: int
     sense: Literal["cw", "ccw", "off", "on"]
     speed: float | None = None
     surface: bool = False
+    max_rpm: float = 0.0
 
 
 class Feed(NamedTuple):
@@ -104,9 +114,24 @@ class Delta(NamedTuple):
 
 
 class Home(NamedTuple):
-    """A rapid to where FROM was."""
+    """A rapid to a point, or with None to where FROM was."""
 
     line: int
+    point: Vector | None = None
+
+
+class Retract(NamedTuple):
+    """A rapid along Z up to a level; from above it, nothing."""
+
+    line: int
+    z: float
+
+
+class Axis(NamedTuple):
+    """The tool axis from here on; nothing moves."""
+
+    line: int
+    axis: Vector
 
 
 class Circle(NamedTuple):
@@ -186,6 +211,6 @@ class End(NamedTuple):
 
 
 Record: TypeAlias = (
-    Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Circle | Cycle
-    | CycleOff | Coolant | Compensation | Dwell | Stop | End
+    Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis | Circle
+    | Cycle | CycleOff | Coolant | Compensation | Dwell | Stop | End
 )  # fmt: skip

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 from polycnc.errors import SourcePosition
 from polycnc.post.tool_path._cl_reader import read_cl
+from polycnc.post.tool_path._cl_reading import ArcAxis
 from polycnc.post.tool_path._json_path import read_json
 from polycnc.post.tool_path._records import Record
 from polycnc.post.tool_path._source import Remarks, Source
@@ -37,17 +39,21 @@ class ToolPath:
         return self._source.position(line)
 
 
-def open_tool_path(path: str | Path) -> ToolPath:
+def open_tool_path(path: str | Path, arc_axis: ArcAxis = "auto") -> ToolPath:
     """Return the tool path of a file: JSON if its name ends with .json, else APT words.
+
+    `arc_axis` says what the axis of CIRCLE/ is for: "counterclockwise" by the right-hand rule, "clockwise" against it,
+    "auto" clockwise in a CLSF of NX (TOOL PATH/, TLDATA/, MSYS/, PAINT/) and else counterclockwise. JSON is always
+    by the right-hand rule.
 
     Raises:
         UsageError: there is no such file.
     """
-    reader = read_json if Path(path).suffix.lower() == ".json" else read_cl
+    reader = read_json if Path(path).suffix.lower() == ".json" else partial(read_cl, arc_axis=arc_axis)
     return ToolPath(Source.from_path(path), reader)
 
 
-def parse_tool_path(text: str, name: str = "<text>") -> ToolPath:
-    """Return the tool path of a text: JSON if it begins with a brace, else APT words."""
-    reader = read_json if text.lstrip().startswith("{") else read_cl
+def parse_tool_path(text: str, name: str = "<text>", arc_axis: ArcAxis = "auto") -> ToolPath:
+    """Return the tool path of a text: JSON if it begins with a brace, else APT words; `arc_axis` as for files."""
+    reader = read_json if text.lstrip().startswith("{") else partial(read_cl, arc_axis=arc_axis)
     return ToolPath(Source.from_text(text, name), reader)

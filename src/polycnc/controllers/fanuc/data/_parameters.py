@@ -9,6 +9,7 @@ from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterR
 from polycnc.machine import Store
 
 NO_AXIS = 0
+AXES = 1010  # the number of axes, which is that of the control
 _AREA = "fanuc.parameters"
 
 
@@ -48,9 +49,12 @@ class Parameters:
             for axis in (range(1, axes + 1) if row.per_axis else (NO_AXIS,))
         }
         self._values.update(defaults)
-        for key, value in self._area.load().items():
+        kept = self._area.load()
+        if not kept:  # a new memory: what the control is told to be goes into it
+            self._area.save({_key(number, axis): value for (number, axis), value in defaults.items()})
+        for key, value in kept.items():
             number, axis = map(int, str(key).split("."))
-            if (number, axis) in self._values:
+            if (number, axis) in self._values and number != AXES:
                 self._values[number, axis] = value
 
     def value(self, number: int, axis: int = NO_AXIS) -> int:
@@ -73,7 +77,7 @@ class Parameters:
             for each in there:
                 bound = self.bound.get(each.row.number)
                 if bound is None:
-                    self._area[f"{each.row.number}.{each.axis}"] = each.value
+                    self._area[_key(each.row.number, each.axis)] = each.value
                 else:
                     bound.set(each.axis, each.value)
         for each in there:
@@ -99,3 +103,7 @@ class Parameters:
     def settings(self) -> tuple[ParameterRow, ...]:
         """The parameters that can be put in on the setting screen."""
         return tuple(row for row in self.rows.values() if Attribute.SETTING in row.attributes)
+
+
+def _key(number: int, axis: int) -> str:
+    return f"{number}.{axis}"

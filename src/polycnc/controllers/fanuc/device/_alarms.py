@@ -11,6 +11,8 @@ from enum import IntFlag
 from polycnc.cnc import Alarm, AlarmKind, AlarmRow, ClearedBy
 
 PREFIX = "alarm "
+NAME_ALARM = 252
+"""Ruling: parameter 1020 gives an axis no name that it can have; it gets a free one."""
 
 
 class AlarmBit(IntFlag):

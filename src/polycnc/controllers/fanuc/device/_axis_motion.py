@@ -57,6 +57,15 @@ class _Path:
     until: int = 0  # the cycle at which a dwell ends
 
 
+@dataclass(frozen=True, slots=True)
+class AxisMotionState:
+    """Buffers, flags and coordinates, to go back to."""
+
+    shift: tuple[int, ...]
+    paths: tuple[tuple[tuple[tuple[int, Block], ...], bool, int], ...]
+    finished: tuple[bool, ...]
+
+
 class AxisMotion:
     """Execute direct commands on the machine of a Power Mate."""
 
@@ -80,6 +89,20 @@ class AxisMotion:
                     self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
             path.blocks.clear()
             path.begun = False
+
+    def snapshot(self) -> AxisMotionState:
+        """Return everything, to go back to."""
+        return AxisMotionState(
+            tuple(self._shift),
+            tuple((tuple(path.blocks), path.begun, path.until) for path in self._paths),
+            tuple(self.finished),
+        )
+
+    def restore(self, state: AxisMotionState) -> None:
+        """Go back to a snapshot; the control behind has gone back by itself."""
+        self._shift = list(state.shift)
+        self._paths = [_Path(deque(blocks), begun, until) for blocks, begun, until in state.paths]
+        self.finished = list(state.finished)
 
     # ------------------------------------------------------------------ what is known
 

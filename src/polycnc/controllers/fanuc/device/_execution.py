@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from polycnc.cnc import ControlError, Refusal, RunState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
-from polycnc.controllers.fanuc.device._programs import name_of, number_of
-from polycnc.nc import BlockRecord, ProgramText
+from polycnc.controllers.fanuc.device._programs import number_of
+from polycnc.nc import BlockRecord
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
@@ -32,19 +32,6 @@ class Execution:
 
     def __init__(self, power_mate: PowerMate) -> None:
         self._power_mate = power_mate
-
-    def prepare_start(self) -> None:
-        """Give the control what a start is to begin with: in MEM the selected program from its cursor."""
-        power_mate = self._power_mate
-        if power_mate.mode is not PowerMateMode.MEM or not power_mate.selected:
-            return
-        text = power_mate.programs.read(power_mate.selected)
-        name = name_of(power_mate.selected)
-        if power_mate.cursor:
-            lines = text.split(b"\n")
-            text = b"\n" * power_mate.cursor + b"\n".join(lines[power_mate.cursor :])
-            name = f"{name}@{power_mate.cursor}"  # not the program of the memory as a whole
-        power_mate.control.select_program(ProgramText(name, text))
 
     # ------------------------------------------------------------------ numbers
 

@@ -7,6 +7,7 @@ from datetime import datetime
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
+from polycnc.cnc import Alarm
 from polycnc.controllers.fanuc.device._alarms import bit_of
 
 if TYPE_CHECKING:
@@ -52,6 +53,7 @@ class Histories:
         self._monitored = {int(entry): Monitored(**each) for entry, each in self._signals.load().items()}
         self._shown: dict[tuple[str, int], int] = {}
         self.stopped = False
+        self._active: tuple[Alarm, ...] = ()
 
     # ------------------------------------------------------------------ sampling
 
@@ -84,8 +86,15 @@ class Histories:
                 self._note({"kind": Kind.SIGNAL, "letter": letter, "at": address, "old": old, "new": new})
                 return
 
-    def sample(self) -> None:
-        """Look at what has happened: alarms, and F signals, which change by themselves."""
+    def sample(self, *, force: bool = True) -> None:
+        """Look at what has happened: alarms, and F signals, which change by themselves.
+
+        Not forced it looks at the alarms that are on, which is quick.
+        """
+        active = self._power_mate.control.alarms.active
+        if not force and active == self._active and not self._watches_f:
+            return
+        self._active = active
         seen = self._state.get("seen", 0)
         for entry in self._source.read(after=seen):
             self._state["seen"] = entry.number
@@ -114,6 +123,10 @@ class Histories:
         if not self.stopped:
             self._operations.append({**content, "kind": int(content["kind"])})
             self._operations.trim(_KEEP_OPERATIONS)
+
+    @property
+    def _watches_f(self) -> bool:
+        return any(each.letter == "F" for each in self._monitored.values())
 
     # ------------------------------------------------------------------ reading
 

@@ -79,3 +79,13 @@ def default_names(axes: int, rotary: Sequence[int | str]) -> tuple[tuple[str, bo
     return tuple(
         (next(turning), True) if number in numbers else (next(linear), False) for number in range(1, axes + 1)
     )
+
+
+def usable_names(codes: Sequence[int], rotary: Sequence[bool]) -> tuple[str, ...]:
+    """Return names for axes from the codes of their letters; one that is none or is taken gets a free name."""
+    letters = [chr(code) if chr(code) in LINEAR_NAMES + ROTARY_NAMES else "" for code in codes]
+    names = [letter if letter not in letters[:k] else "" for k, letter in enumerate(letters)]
+    for k, turns in enumerate(rotary):
+        if not names[k]:
+            names[k] = next(name for name in (ROTARY_NAMES if turns else LINEAR_NAMES) if name not in names)
+    return tuple(names)

@@ -48,7 +48,7 @@ class MdiProgram:
         if len(stream.programs) != 1 or len(stream.programs[0][1]) < 2:
             raise TransferError(Fault.NUMBER)
         blocks = tuple(block.decode("ascii") for block in stream.programs[0][1][1:])
-        self._hand_over(blocks, 0)
+        self._hand_over(blocks)
         self.blocks, self.start = blocks, 0
 
     def set_start(self, block: int) -> None:
@@ -59,10 +59,8 @@ class MdiProgram:
         """
         if not 0 <= block < len(self.blocks):
             raise KeyError(block)
-        self._hand_over(self.blocks, block)
+        self._hand_over(self.blocks)
         self.start = block
 
-    def _hand_over(self, blocks: tuple[str, ...], start: int) -> None:
-        """Give the text to the control; blocks before the start are empty lines, so line numbers stay."""
-        lines = ("",) * start + blocks[start:]
-        self._power_mate.control.set_mdi("\n".join(lines) + "\n")
+    def _hand_over(self, blocks: tuple[str, ...]) -> None:
+        self._power_mate.control.set_mdi("\n".join(blocks) + "\n")

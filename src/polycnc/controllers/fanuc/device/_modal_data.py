@@ -159,7 +159,8 @@ class ModalData:
         axis = names.index(name) + 1 if name in names else 1
         decimals = power_mate.input_scale(axis).decimals
         if "." in text or (is_length and power_mate.parameters.bit(3401, 0)):
-            return round(float(text) * 10**decimals)
+            increments: float = float(text) * 10.0**decimals
+            return round(increments)
         return int(digits)
 
 

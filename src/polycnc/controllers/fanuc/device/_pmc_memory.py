@@ -75,7 +75,7 @@ class PmcMemory:
     def write(self, letter: str, first: int, data: bytes) -> None:
         """Write bytes to addresses that exist and are not protected; G signals act at once, in ascending order."""
         if letter in _DURABLE:
-            values = dict(enumerate(data, first))
+            values: dict[int | str, int] = dict(enumerate(data, first))
             self._areas[letter].save(values)
             self._kept[letter].update(values)
             return
@@ -92,6 +92,14 @@ class PmcMemory:
     def clear(self) -> None:
         """Forget what does not outlast switching off."""
         self._volatile.clear()
+
+    def snapshot(self) -> dict[tuple[str, int], int]:
+        """Return what does not outlast switching off, to go back to."""
+        return dict(self._volatile)
+
+    def restore(self, state: dict[tuple[str, int], int]) -> None:
+        """Go back to a snapshot."""
+        self._volatile = dict(state)
 
     def _put(self, letter: str, address: int, value: int) -> None:
         old = self._volatile.get((letter, address), 0)

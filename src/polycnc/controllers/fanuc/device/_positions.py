@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
-from polycnc.cnc import Status
+from polycnc.cnc import AxisStatus, Status
+from polycnc.controllers.fanuc.data._increment import Scale, scale
 from polycnc.nc import Group, ModalWords
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
+
+Axes: TypeAlias = Status | Mapping[str, AxisStatus]
 
 _START_OFFSET = "G54"
 _LENGTH_AXIS = "Z"
@@ -39,21 +43,21 @@ class Positions:
     def __init__(self, power_mate: PowerMate) -> None:
         self._power_mate = power_mate
 
-    def read(self, status: Status | None = None) -> tuple[AxisPositions, ...]:
-        """Return the positions of all axes in the present cycle.
+    def read(self, of: Axes | None = None) -> tuple[AxisPositions, ...]:
+        """Return the positions of all axes in the present cycle, or in that of a status.
 
         Acceleration is planned before the path is interpolated on this control, so nothing is delayed by it.
         """
-        power_mate = self._power_mate
-        status = status or power_mate.status()
-        zero = self._zero(status)
+        axes = self._axes(of)
+        shift = self._shift(tuple(axes))
+        scales = self._scales()
         found = []
-        for axis, each in enumerate(status.axes.values(), 1):
-            program, machine = power_mate.input_scale(axis), power_mate.output_scale(axis)
+        for axis, each in enumerate(axes.values(), 1):
+            program, machine = scales[each.unit]
             found.append(
                 AxisPositions(
-                    absolute=program.counts(each.machine - zero[axis - 1])
-                    + power_mate.axis_motion.shift(axis),
+                    absolute=program.counts(each.work + shift.get(each.name, 0.0))
+                    + self._power_mate.axis_motion.shift(axis),
                     machine=machine.counts(each.machine),
                     relative=program.counts(each.relative),
                     distance=program.counts(each.to_go),
@@ -63,11 +67,24 @@ class Positions:
             )
         return tuple(found)
 
-    def feed(self, status: Status | None = None) -> int:
+    def _axes(self, of: Axes | None) -> Mapping[str, AxisStatus]:
+        if of is None:
+            return self._power_mate.control.axes()
+        return of.axes if isinstance(of, Status) else of
+
+    def _scales(self) -> dict[str, tuple[Scale, Scale]]:
+        """Return the scales of input and output by the unit of an axis."""
+        power_mate = self._power_mate
+        increment, inch = power_mate.increment, (power_mate.inch_input, power_mate.inch_output)
+        turning = scale(increment, linear=False, inch=False)
+        program, machine = (scale(increment, linear=True, inch=each) for each in inch)
+        return {"mm": (program, machine), "deg": (turning, turning)}
+
+    def feed(self, of: Axes | None = None) -> int:
         """Return the actual feed: mm/min, with inch input 0.01 inch/min; of rotary axes alone deg/min."""
-        status = status or self._power_mate.status()
+        axes = self._axes(of)
         speeds = {
-            kind: math.hypot(*(axis.velocity for axis in status.axes.values() if axis.unit == kind))
+            kind: math.hypot(*(axis.velocity for axis in axes.values() if axis.unit == kind))
             for kind in ("mm", "deg")
         }
         if speeds["mm"] > 0.0:
@@ -82,18 +99,15 @@ class Positions:
                 power_mate.axis_name(axis), power_mate.input_scale(axis).value(value)
             )
 
-    def _zero(self, status: Status) -> list[float]:
-        """Return where program zero lies without the tool length (machine coordinates)."""
-        power_mate = self._power_mate
-        names = tuple(status.axes)
-        modal = status.channel.modal
-        if modal is None:
-            offset = power_mate.control.offsets.get(_START_OFFSET, {})
-            return [offset.get(name, 0.0) for name in names]
-        zero = list(modal.zero)
-        if _LENGTH_AXIS in names:
-            zero[names.index(_LENGTH_AXIS)] -= self._length(modal)
-        return zero
+    def _shift(self, names: tuple[str, ...]) -> dict[str, float]:
+        """Return what absolute positions have beside work positions: the tool length; before any block G54."""
+        control = self._power_mate.control
+        block = control.channels[0].executed
+        if block is not None:
+            return (
+                {_LENGTH_AXIS: self._length(block.modal)} if control.tools and _LENGTH_AXIS in names else {}
+            )
+        return {name: -value for name, value in control.offsets.get(_START_OFFSET, {}).items()}
 
     def _length(self, modal: ModalWords) -> float:
         sign = {"G43": 1.0, "G44": -1.0}.get(modal.g.get(Group.LENGTH_COMPENSATION, ""), 0.0)

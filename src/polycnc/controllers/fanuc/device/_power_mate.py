@@ -5,7 +5,7 @@ It is a control without a vendor (`cnc.Control`) with this one's modes, alarms, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,11 +27,23 @@ from polycnc.controllers.fanuc.data._macro_variables import CommonRange, MacroVa
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
-from polycnc.controllers.fanuc.device._alarms import POWER_MATE_ALARMS, PREFIX, AlarmBit, alarm_bits
+from polycnc.controllers.fanuc.device._alarms import (
+    NAME_ALARM,
+    POWER_MATE_ALARMS,
+    PREFIX,
+    AlarmBit,
+    alarm_bits,
+)
 from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
 from polycnc.controllers.fanuc.device._execution import Execution
 from polycnc.controllers.fanuc.device._history import Histories
-from polycnc.controllers.fanuc.device._machine_file import AxisSetting, axis_of, default_names, machine_of
+from polycnc.controllers.fanuc.device._machine_file import (
+    AxisSetting,
+    axis_of,
+    default_names,
+    machine_of,
+    usable_names,
+)
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
 from polycnc.controllers.fanuc.device._modal_data import ModalData
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
@@ -40,6 +52,7 @@ from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
 from polycnc.controllers.fanuc.device._signals import Signals
+from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
 from polycnc.machine import AnyAxis, Clock, Machine, Store
@@ -99,7 +112,9 @@ class PowerMate:
         self.options = options if isinstance(options, bool) else frozenset(options)
         self.store = memory if isinstance(memory, Store) else Store(memory)
         self.protection_keys: frozenset[int] = frozenset()
+        self.parameters_writable = True
         self.transfer: Transfer | None = None
+        self.local_variables: Callable[[], Mapping[int, float | None]] = dict
         self._script = script
         self._servo = servo
         self._sizes = characters, most_programs
@@ -129,7 +144,7 @@ class PowerMate:
         self.configuration = Configuration()
         bind(self)
         self.parameters.on_change = self._parameters_changed
-        self.control = self._switched_on({})
+        self.control = self._switched_on(None)
         if self.selected not in self.programs:
             self.unselect()
         self._begin_signals()
@@ -198,7 +213,7 @@ class PowerMate:
         wanted = mode_of(mode)
         self.control.select_mode(CONTROL_MODES[wanted])
         self._mode = wanted
-        self.signals.apply_overrides()
+        self.signals.mode_changed()
 
     def select_program(self, number: int) -> None:
         """Select a program for MEM and EDIT.
@@ -240,9 +255,8 @@ class PowerMate:
         channel = self.control.channels[0]
         if self._mode is PowerMateMode.RMT and not channel.interrupted:
             raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
-        if not channel.active and not channel.interrupted:
-            self.execution.prepare_start()
-        self.control.cycle_start()
+        start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
+        self.control.cycle_start(line=start + 1)
         self._cursor = 0
 
     def feed_hold(self) -> None:
@@ -310,6 +324,10 @@ class PowerMate:
         keys = _ALL_KEYS if key is None else frozenset({key})
         self.protection_keys = self.protection_keys | keys if on else self.protection_keys - keys
 
+    def local_variable(self, number: int) -> float | None:
+        """Return local variable #1 to #33 of the macro that is being executed; None is vacant, as without a macro."""
+        return self.local_variables().get(number)
+
     def start_compare(self) -> None:
         """Begin to compare what `take` of the transfer gets with the registered programs, as on the screen.
 
@@ -321,7 +339,9 @@ class PowerMate:
         self.transfer = Transfer(self, compare=True)
 
     def raise_alarm(self, number: int, text: str = "", *, axis: int | None = None) -> None:
-        """Put an alarm on: 0 to 255 and 5000 to 5999 P/S, 300 APC, 400 servo, 500 overtravel, 700 overheat, 1000 external.
+        """Put an alarm on by its number.
+
+        From 300 on it is APC, from 400 servo, from 500 overtravel, from 700 overheat, from 1000 external, else P/S.
 
         Raises:
             UsageError: The number is none, or there is no such axis.
@@ -349,7 +369,7 @@ class PowerMate:
         self._skip, self._skip_positions, self._cursor = False, (), 0
         self.mdi.clear()
         self._inch = self.parameters.bit(0, 2)
-        self.control = self._switched_on(old.machine.actual)
+        self.control = self._switched_on(old.machine)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self._mode = PowerMateMode.MEM
         if self.selected:
@@ -362,11 +382,14 @@ class PowerMate:
         """Let up to `cycles` control cycles pass; return how many did, see `cnc.Control.advance`."""
         if self._stale:
             self._take_over()
+        channel = self.control.channels[0]
+        active = channel.active
         done = self._pass(cycles, until)
-        block = self.control.channels[0].executed
-        if block is not None and done and block.modal.inch is not self._inch:
-            self._inch = block.modal.inch
+        block = channel.executed if active else None
+        if block is not None and block.modal.inch is not self._inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
+        if self._stale:
+            self._take_over()
         return done
 
     def _pass(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
@@ -384,12 +407,49 @@ class PowerMate:
             if over or self.control.raised & events or (passed < step and not busy) or not passed:
                 break
         self.axis_motion.look()
-        self.history.sample()
+        self.history.sample(force=False)
         return done
 
     def status(self) -> Status:
         """Return what the control is and does in the present cycle."""
         return self.control.status()
+
+    def snapshot(self) -> PowerMateSnapshot:
+        """Return the state of the present cycle; what is durable is not in it."""
+        return PowerMateSnapshot(
+            control=self.control.snapshot(),
+            mode=self._mode,
+            cursor=self._cursor,
+            mdi=self.mdi.blocks,
+            mdi_start=self.mdi.start,
+            skip=self._skip,
+            skip_positions=self._skip_positions,
+            protection_keys=self.protection_keys,
+            parameters_writable=self.parameters_writable,
+            inch=self._inch,
+            signals=self.signals.snapshot(),
+            axis_motion=self.axis_motion.snapshot(),
+            pmc=self.pmc.snapshot(),
+            sampling_stopped=self.history.stopped,
+        )
+
+    def restore(self, snapshot: PowerMateSnapshot) -> None:
+        """Go back to a snapshot; what is durable stays as it is.
+
+        Raises:
+            SnapshotError: It is of another control, or axes have other limits now; nothing has changed.
+        """
+        self.control.restore(snapshot.control)
+        self._mode, self._cursor = snapshot.mode, snapshot.cursor
+        self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
+        self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
+        self.protection_keys = snapshot.protection_keys
+        self.parameters_writable = snapshot.parameters_writable
+        self._inch = snapshot.inch
+        self.signals.restore(snapshot.signals)
+        self.axis_motion.restore(snapshot.axis_motion)
+        self.pmc.restore(snapshot.pmc)
+        self.history.stopped = snapshot.sampling_stopped
 
     def close(self) -> None:
         """Switch off: save the timers and close the memory."""
@@ -411,13 +471,18 @@ class PowerMate:
             return CommonRange.LARGE
         return CommonRange.MIDDLE if self.has_option("macro_variables_300") else CommonRange.SMALL
 
-    def _switched_on(self, start: dict[str, float]) -> Control:
-        """Return the control as it is when power comes on; positions are those of absolute encoders."""
+    def _switched_on(self, before: Machine | None) -> Control:
+        """Return the control as it is when power comes on; encoders are absolute."""
         axes = self._axes()
         characters, most_programs = self._sizes
-        known = {axis.name for axis in axes}
+        names = [axis.name for axis in axes]
+        start = (
+            dict.fromkeys(names, 0.0)
+            if before is None
+            else dict(zip(names, before.actual.values(), strict=True))
+        )
         control = Control(
-            machine_of(axes, {name: at for name, at in start.items() if name in known}),
+            machine_of(axes, start),
             memory=self.store,
             dialect=self._dialect(),
             script=self._script,
@@ -434,6 +499,11 @@ class PowerMate:
             ),
         )
         control.change_axes(axes)
+        for axis, name in enumerate(names, 1):
+            if self.parameters.value(1020, axis) != ord(name):
+                control.put_alarm(
+                    f"{PREFIX}{NAME_ALARM}", axis=name, detail=f"PARAMETER 1020 OF AXIS {axis}: {name}"
+                )
         return control
 
     def _dialect(self) -> Dialect:
@@ -450,9 +520,11 @@ class PowerMate:
     def _axes(self) -> tuple[AnyAxis, ...]:
         """Return the axes as the parameters describe them."""
         value = self.parameters.value
+        numbers = range(1, self.axes + 1)
+        turning = [self.parameters.bit(1006, 0, axis) for axis in numbers]
+        names = usable_names([value(1020, axis) for axis in numbers], turning)
         made = []
-        for axis in range(1, self.axes + 1):
-            rotary = self.parameters.bit(1006, 0, axis)
+        for axis, name, rotary in zip(numbers, names, turning, strict=True):
             units = scale(self.increment, linear=not rotary, inch=self.inch_output)
             vmax = self._speed(value(1420, axis), units)
             high, low = value(1320, axis), value(1321, axis)
@@ -460,7 +532,7 @@ class PowerMate:
             made.append(
                 axis_of(
                     AxisSetting(
-                        name=chr(value(1020, axis) or ord("?")),
+                        name=name,
                         rotary=rotary,
                         vmax=vmax,
                         amax=vmax / (value(1620, axis) / 1000.0),

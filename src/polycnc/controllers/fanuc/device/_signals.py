@@ -7,10 +7,10 @@ state only: reading an address shows what holds, whoever has set it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from polycnc.cnc import ControlError, Emergency, Mode, Motion, RunState
+from polycnc.cnc import ControlError, Emergency, Mode, Motion, Overrides, RunState
 from polycnc.controllers.fanuc.device._alarms import shown
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 
@@ -56,6 +56,19 @@ _FUNCTION_BYTES = {"M": 10, "S": 22, "T": 26, "B": 30}
 _INTERRUPTED = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
 
 
+@dataclass(frozen=True, slots=True)
+class SignalState:
+    """The signals that are given, to go back to."""
+
+    given: dict[int, int]
+    feed: int
+    rapid: int
+    jog: float
+    battery_low: bool
+    torque_mode: int
+    torque_override: tuple[int, ...]
+
+
 class Signals:
     """Read and give the operation signals of a Power Mate; `battery_low` is a condition that a test can set."""
 
@@ -85,6 +98,27 @@ class Signals:
         """Let all signals be as they are when the power comes on."""
         self._given: dict[int, int] = {4: 0, 7: 0, 8: _SP | _ESP, 126: 0}
         self._feed, self._rapid, self._jog = 100, 0, 100.0
+        self._applied = Overrides()
+
+    def snapshot(self) -> SignalState:
+        """Return what is given, to go back to."""
+        return SignalState(
+            dict(self._given),
+            self._feed,
+            self._rapid,
+            self._jog,
+            self.battery_low,
+            self.torque_mode,
+            tuple(self._torque_override),
+        )
+
+    def restore(self, state: SignalState) -> None:
+        """Go back to a snapshot; the control behind has gone back by itself."""
+        self._given = dict(state.given)
+        self._feed, self._rapid, self._jog = state.feed, state.rapid, state.jog
+        self.battery_low, self.torque_mode = state.battery_low, state.torque_mode
+        self._torque_override = list(state.torque_override)
+        self._applied = self._power_mate.control.overrides
 
     # ------------------------------------------------------------------ G addresses
 
@@ -100,9 +134,9 @@ class Signals:
             case 10 | 11:
                 return self._jog_complement >> (8 * (address - 10)) & 0xFF
             case 12:
-                return 255 - self._feed
+                return 255 - self.feed_override
             case 14:
-                return given & ~3 | self._rapid
+                return given & ~3 | self.rapid_override
             case 43:
                 return given & ~(_MD | _DNCI | _ZRN) | _MODE_SIGNALS.get(power_mate.mode, _HANDLE)
             case 44:
@@ -133,20 +167,24 @@ class Signals:
     @property
     def feed_override(self) -> int:
         """The feed override that is given (%); the control feeds at most at 200 %."""
+        self._adopt()
         return self._feed
 
     def set_feed_override(self, percent: int) -> None:
         """Give a feed override, 0 to 254 %; 255 is all signals off: 0 %."""
+        self._adopt()
         self._feed = 0 if percent == 255 else percent
         self.apply_overrides()
 
     @property
     def rapid_override(self) -> int:
         """The rapid override: 0 100 %, 1 50 %, 2 25 %, 3 F0 (parameter 1421)."""
+        self._adopt()
         return self._rapid
 
     def set_rapid_override(self, code: int) -> None:
         """Give a rapid override by its code."""
+        self._adopt()
         self._rapid = code
         self.apply_overrides()
 
@@ -157,6 +195,7 @@ class Signals:
 
     def set_jog_override(self, percent: float) -> None:
         """Give an override of jogging (%), in steps of 0.01 %."""
+        self._adopt()
         self._jog = percent
         self.apply_overrides()
 
@@ -173,8 +212,25 @@ class Signals:
         feed = min(self._feed, _MOST_FEED) / 100.0
         interlock = bool(self._given.get(126))
         control.set_overrides(feed=0.0 if interlock else feed, rapid=0.0 if interlock else rapid)
-        if not interlock and power_mate.mode in _JOGS:
-            control.manual.set_overrides(feed=self._jog / 100.0)
+        self._applied = control.overrides
+        self.mode_changed()
+
+    def mode_changed(self) -> None:
+        """Let manual motion have the override of its mode: that of jogging, or the feed override."""
+        power_mate, control = self._power_mate, self._power_mate.control
+        by_hand = power_mate.mode in _JOGS and not self._given.get(126)
+        control.manual.set_overrides(feed=self._jog / 100.0 if by_hand else control.overrides.feed)
+
+    def _adopt(self) -> None:
+        """Take over overrides that were set at the control itself."""
+        there = self._power_mate.control.overrides
+        if there == self._applied:
+            return
+        if there.feed != self._applied.feed:
+            self._feed = round(100.0 * there.feed)
+        if there.rapid != self._applied.rapid:
+            self._rapid = next((code for code, share in RAPID_STEPS.items() if share == there.rapid), F0)
+        self._applied = there
 
     def torque_override(self, axis: int) -> float:
         """Return how much of its torque an axis (from 1) may give (%)."""
@@ -285,6 +341,7 @@ class Signals:
         for axis in range(1, self._power_mate.axes + 1):
             if new >> axis - 1 & 1:
                 self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
+        self._adopt()
         self.apply_overrides()
 
     # ------------------------------------------------------------------ F addresses

@@ -114,14 +114,14 @@ def cnc_rddynamic(
     check_length(length, _DYNAMIC_HEADER + 16 * (most if axis == ALL_AXES else 1))
     check_axis(axis, link.device.axes)
     device = link.read("cnc_rddynamic", axis)
-    status = device.status()
+    axes = device.control.axes()
     data = ODBDY() if device.max_axis > len(ODBDY_D().pos.faxis.absolute) else ODBDY_D()
     data.axis = axis
     data.alarm = int(device.alarm_bits)
     data.prgnum, data.prgmnum = device.execution.numbers
     data.seqnum = device.execution.sequence
-    data.actf = device.positions.feed(status)
-    for k, each in enumerate(device.positions.read(status)):
+    data.actf = device.positions.feed(axes)
+    for k, each in enumerate(device.positions.read(axes)):
         values = (each.absolute, each.machine, each.relative, 2 * each.distance)
         names = ("absolute", "machine", "relative", "distance")
         if axis == ALL_AXES:

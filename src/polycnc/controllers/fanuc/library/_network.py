@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Hashable
 from dataclasses import dataclass
 
@@ -66,11 +67,18 @@ class Link:
             raise Refused(self.node.fault)
 
 
+_LOCK = threading.RLock()
+
+
 class Session(AnySession):
-    """A program that has loaded the library."""
+    """A program that has loaded the library; calls of all programs are carried out one at a time.
+
+    Several programs may have the same control on their bus, so a lock for each would not do.
+    """
 
     def __init__(self) -> None:
         super().__init__()
+        self.lock = _LOCK
         self.nodes: dict[int, Node] = {}
         self.default_node = DEFAULT_NODE
         self.open: Handles[Link] = Handles(EW.EW_HANDLE, 1, 0xFFFF)

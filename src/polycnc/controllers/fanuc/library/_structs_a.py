@@ -329,4 +329,24 @@ STRUCTURES_A = (
     IODBPSD, ODBPARAIF, ODBM, IODBMR, ODBMVINF, ODBNODE,
 )  # fmt: skip
 
-__all__ = [each.__name__ for each in STRUCTURES_A]
+__all__ = [
+    "IDBWRR",
+    "IODBMR",
+    "IODBPSD",
+    "IODBTO",
+    "ODBACT",
+    "ODBAXIS",
+    "ODBDY",
+    "ODBM",
+    "ODBMDIP",
+    "ODBMVINF",
+    "ODBNC",
+    "ODBNODE",
+    "ODBPARAIF",
+    "ODBPRO",
+    "ODBSEQ",
+    "ODBTLINF",
+    "ODBTOFS",
+    "ODBUP",
+    "PRGDIR",
+]

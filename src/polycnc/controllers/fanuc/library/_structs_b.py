@@ -479,4 +479,26 @@ STRUCTURES_B = (
     ODBDGN, OPMSG, IODBSGNL, IODBGNRL, IODBRDNA, IODBPMC, ODBPMCINF,
 )  # fmt: skip
 
-__all__ = ["MSG_SIZE", *(each.__name__ for each in STRUCTURES_B)]
+__all__ = [
+    "ALMINFO",
+    "IODBGNRL",
+    "IODBPMC",
+    "IODBRDNA",
+    "IODBSGNL",
+    "IODBSIG",
+    "MSG_SIZE",
+    "ODBAHIS",
+    "ODBALM",
+    "ODBDGN",
+    "ODBEXEC",
+    "ODBFIN",
+    "ODBHIS",
+    "ODBMDL",
+    "ODBOPDI",
+    "ODBPMCINF",
+    "ODBPOS",
+    "ODBST",
+    "ODBSYS",
+    "ODBSYSC",
+    "OPMSG",
+]

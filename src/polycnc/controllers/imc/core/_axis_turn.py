@@ -2,24 +2,7 @@
 
 from __future__ import annotations
 
-from polycnc.controllers.imc.core._addresses import (
-    ACCELLIM,
-    BICIRAXIS,
-    CIRAXIS,
-    CIRPOS,
-    CIRSWAP,
-    CURPOS_FRACTION,
-    CURVEL,
-    ENA,
-    ENCP_FRACTION,
-    ERROR,
-    PCS,
-    POS_FRACTION,
-    RUN,
-    SMOOTH,
-    VEL,
-    VELLIM,
-)
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._commands import take_commands
 from polycnc.controllers.imc.core._errors import halt_axis
 from polycnc.controllers.imc.core._follow import follow_step
@@ -71,7 +54,7 @@ def _take_over_smooth(s: CardState, i: int, wanted: int) -> None:
 def smoothed(s: CardState, i: int, step: int) -> int:
     """Return the increment of the composite: the mean of the last `smooth` increments, without losing anything."""
     axis = s.axis[i]
-    wanted = get_u16(s.memory, i, SMOOTH)
+    wanted = get_u16(s.memory, i, addr.SMOOTH)
     if wanted != axis["smooth"] and axis["lag"] == 0 and axis["recent"] == 0:
         _take_over_smooth(s, i, wanted)
     span = axis["smooth"]
@@ -91,21 +74,21 @@ def smoothed(s: CardState, i: int, step: int) -> int:
 def _wrap_ring(s: CardState, i: int) -> None:
     """Keep a ring axis within its ring: the coordinates go back by a turn, the motion does not notice."""
     m = s.memory
-    size = get32(m, i, CIRPOS) * ONE
+    size = get32(m, i, addr.CIRPOS) * ONE
     if size <= 0:
         return
-    position = get48(m, i, CURPOS_FRACTION)
+    position = get48(m, i, addr.CURPOS_FRACTION)
     turn = 0
     if position >= size:
         turn = 1
-    elif position <= -size or (position < 0 and m[i, BICIRAXIS] == 0):
+    elif position <= -size or (position < 0 and m[i, addr.BICIRAXIS] == 0):
         turn = -1
     if turn == 0:
         return
-    put48(m, i, CURPOS_FRACTION, position - turn * size)
-    put48(m, i, POS_FRACTION, wrap48(get48(m, i, POS_FRACTION) - turn * size))
-    put48(m, i, ENCP_FRACTION, wrap48(get48(m, i, ENCP_FRACTION) - turn * size))
-    put16(m, i, CIRSWAP, get16(m, i, CIRSWAP) + turn)
+    put48(m, i, addr.CURPOS_FRACTION, position - turn * size)
+    put48(m, i, addr.POS_FRACTION, wrap48(get48(m, i, addr.POS_FRACTION) - turn * size))
+    put48(m, i, addr.ENCP_FRACTION, wrap48(get48(m, i, addr.ENCP_FRACTION) - turn * size))
+    put16(m, i, addr.CIRSWAP, get16(m, i, addr.CIRSWAP) + turn)
 
 
 @compiled
@@ -113,13 +96,13 @@ def _check(s: CardState, i: int, before: int, velocity: int) -> None:
     """Take the axis out of run if it is faster than it may be, or changes its speed faster; no mask helps."""
     m = s.memory
     error = 0
-    if abs(velocity) > get32(m, i, VELLIM):
+    if abs(velocity) > get32(m, i, addr.VELLIM):
         error |= VEL_LIMIT
-    if abs(velocity - before) > get32(m, i, ACCELLIM):
+    if abs(velocity - before) > get32(m, i, addr.ACCELLIM):
         error |= ACC_LIMIT
     if error:
-        put16(m, i, ERROR, get_u16(m, i, ERROR) | error)
-        put16(m, i, RUN, 0)
+        put16(m, i, addr.ERROR, get_u16(m, i, addr.ERROR) | error)
+        put16(m, i, addr.RUN, 0)
         s.card[0]["attention"] |= AXIS_ERROR
         halt_axis(s, i)
 
@@ -128,7 +111,7 @@ def _check(s: CardState, i: int, before: int, velocity: int) -> None:
 def axis_turn(s: CardState, i: int) -> None:
     """Let axis `i` plan this cycle, and add what it moves to its command."""
     m, axis = s.memory, s.axis[i]
-    before0, before1 = get32(m, i, VEL), get32(m, i, PCS + VEL)
+    before0, before1 = get32(m, i, addr.VEL), get32(m, i, addr.PCS + addr.VEL)
     first, second = s.system[0, i], s.system[1, i]
     if (
         first["mode"] == IDLE
@@ -137,8 +120,8 @@ def axis_turn(s: CardState, i: int) -> None:
         and before1 == 0
         and axis["lag"] == 0
         and axis["recent"] == 0
-        and get32(m, i, CURVEL) == 0
-        and get_u16(m, i, SMOOTH) == axis["smooth"]
+        and get32(m, i, addr.CURVEL) == 0
+        and get_u16(m, i, addr.SMOOTH) == axis["smooth"]
     ):
         return
     total = 0
@@ -149,13 +132,13 @@ def axis_turn(s: CardState, i: int) -> None:
         total += step
     axis["given"] = 0
     velocity = smoothed(s, i, total)
-    before = get32(m, i, CURVEL)
-    put32(m, i, CURVEL, clip32(velocity))
+    before = get32(m, i, addr.CURVEL)
+    put32(m, i, addr.CURVEL, clip32(velocity))
     if velocity != 0:
-        put48(m, i, CURPOS_FRACTION, moved(s, get48(m, i, CURPOS_FRACTION), velocity))
-        if m[i, ENA] != 0:
+        put48(m, i, addr.CURPOS_FRACTION, moved(s, get48(m, i, addr.CURPOS_FRACTION), velocity))
+        if m[i, addr.ENA] != 0:
             axis["machine"] += velocity
-        if m[i, CIRAXIS] != 0:
+        if m[i, addr.CIRAXIS] != 0:
             _wrap_ring(s, i)
     _check(s, i, before, velocity)
 

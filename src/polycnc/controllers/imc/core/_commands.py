@@ -2,34 +2,7 @@
 
 from __future__ import annotations
 
-from polycnc.controllers.imc.core._addresses import (
-    CLEAR,
-    DIST,
-    DO_CLEAR,
-    DO_ENGEAR,
-    DO_GO_MCS,
-    DO_GO_PCS,
-    DO_GOHOME,
-    DO_RUN,
-    DO_SETHOME,
-    DO_STARTSYN,
-    DO_TGVEL_MCS,
-    DO_TGVEL_PCS,
-    ENASYN,
-    ENGEAR,
-    ERROR,
-    GO,
-    GOHOME,
-    HIGHVEL,
-    HOMESEQ,
-    PCS,
-    RUN,
-    SETHOME,
-    SHIFTMASTER,
-    STARTSYN,
-    TGPOS,
-    TGVEL,
-)
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._errors import drop_couplings, halt_axis, is_blocked, take_over
 from polycnc.controllers.imc.core._follow import begin_gear, begin_sync, end_sync, leave_gear
 from polycnc.controllers.imc.core._homing import HOME_NEGATIVE, begin_homing
@@ -66,26 +39,26 @@ def _is_given(s: CardState, i: int, layer: int, bit: int) -> bool:
 def _may_couple(s: CardState, i: int, bit: int) -> bool:
     """Tell whether a coupled motion may begin; one that may not shows as refused, unless it is kept for later."""
     m = s.memory
-    if m[i, RUN] != 0 and not is_blocked(s, i, 0):
+    if m[i, addr.RUN] != 0 and not is_blocked(s, i, 0):
         if not _is_given(s, i, 0, bit):
             return True
         if s.axis[i]["commands"] >> bit & 1:
             return False
-    put16(m, i, ENGEAR if bit == DO_ENGEAR else STARTSYN, 0)
+    put16(m, i, addr.ENGEAR if bit == addr.DO_ENGEAR else addr.STARTSYN, 0)
     return False
 
 
 @compiled
 def _refuse(s: CardState, i: int, layer: int) -> None:
     """Forget a move that cannot be."""
-    put16(s.memory, i, layer * PCS + GO, 0)
-    put32(s.memory, i, layer * PCS + DIST, 0)
+    put16(s.memory, i, layer * addr.PCS + addr.GO, 0)
+    put32(s.memory, i, layer * addr.PCS + addr.DIST, 0)
 
 
 @compiled
 def _go(s: CardState, i: int, layer: int, bit: int) -> None:
-    m, o, row = s.memory, layer * PCS, s.system[layer, i]
-    if m[i, o + GO] == 0:
+    m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
+    if m[i, o + addr.GO] == 0:
         synchronous = layer == 0 and s.axis[i]["sync_share"] >= 0.0
         if synchronous:
             drop_couplings(s, i)
@@ -96,34 +69,36 @@ def _go(s: CardState, i: int, layer: int, bit: int) -> None:
         if not s.axis[i]["commands"] >> bit & 1:
             _refuse(s, i, layer)
         return
-    distance = get32(m, i, o + DIST)
+    distance = get32(m, i, o + addr.DIST)
     before = row["mode"]
-    if m[i, RUN] == 0 or is_blocked(s, i, 1 if distance > 0 else (-1 if distance < 0 else _way(s, i, layer))):
+    if m[i, addr.RUN] == 0 or is_blocked(
+        s, i, 1 if distance > 0 else (-1 if distance < 0 else _way(s, i, layer))
+    ):
         _refuse(s, i, layer)
         return
     if layer == 0:
         take_over(s, i)
     if not begin_move(s, layer, i):
-        put16(m, i, ERROR, get_u16(m, i, ERROR) | TGPOS_RANGE)
+        put16(m, i, addr.ERROR, get_u16(m, i, addr.ERROR) | TGPOS_RANGE)
         if before in (GEAR, SYNC):
             start_velocity(s, layer, i, 0)
         return
-    if layer == 1 and distance != 0 and m[i, SHIFTMASTER] == 0:
-        put32(m, i, TGPOS, wrap32(get32(m, i, TGPOS) + distance))
+    if layer == 1 and distance != 0 and m[i, addr.SHIFTMASTER] == 0:
+        put32(m, i, addr.TGPOS, wrap32(get32(m, i, addr.TGPOS) + distance))
 
 
 @compiled
 def _way(s: CardState, i: int, layer: int) -> int:
     """Return the direction of an absolute move."""
-    o = layer * PCS
-    left = get32(s.memory, i, o + TGPOS) - get32(s.memory, i, o + TGPOS - 2)
+    o = layer * addr.PCS
+    left = get32(s.memory, i, o + addr.TGPOS) - get32(s.memory, i, o + addr.TGPOS - 2)
     return 1 if left > 0 else (-1 if left < 0 else 0)
 
 
 @compiled
 def _target_velocity(s: CardState, i: int, layer: int, bit: int) -> None:
-    target = get32(s.memory, i, layer * PCS + TGVEL)
-    if s.memory[i, RUN] == 0 or _is_given(s, i, layer, bit):
+    target = get32(s.memory, i, layer * addr.PCS + addr.TGVEL)
+    if s.memory[i, addr.RUN] == 0 or _is_given(s, i, layer, bit):
         return
     if is_blocked(s, i, 1 if target > 0 else -1) and target != 0:
         return
@@ -137,18 +112,18 @@ def _target_velocity(s: CardState, i: int, layer: int, bit: int) -> None:
 @compiled
 def _home(s: CardState, i: int) -> None:
     m = s.memory
-    if m[i, GOHOME] == 0:
+    if m[i, addr.GOHOME] == 0:
         if s.axis[i]["home"] != 0:
             s.axis[i]["home"] = 0
             start_velocity(s, 0, i, 0)
         return
-    way = -1 if get_u16(m, i, HOMESEQ) & HOME_NEGATIVE else 1
+    way = -1 if get_u16(m, i, addr.HOMESEQ) & HOME_NEGATIVE else 1
     given = s.system[0, i]["mode"] == GIVEN
-    if m[i, RUN] == 0 or is_blocked(s, i, way) or given or get32(m, i, HIGHVEL) == 0:
-        put16(m, i, GOHOME, 0)
+    if m[i, addr.RUN] == 0 or is_blocked(s, i, way) or given or get32(m, i, addr.HIGHVEL) == 0:
+        put16(m, i, addr.GOHOME, 0)
         return
     take_over(s, i)
-    put16(m, i, GOHOME, -1)
+    put16(m, i, addr.GOHOME, -1)
     begin_homing(s, i)
 
 
@@ -156,9 +131,9 @@ def _home(s: CardState, i: int) -> None:
 def _sync(s: CardState, i: int) -> None:
     m = s.memory
     running = s.axis[i]["sync_share"] >= 0.0
-    wanted = m[i, STARTSYN] != 0 and m[i, ENASYN] != 0
+    wanted = m[i, addr.STARTSYN] != 0 and m[i, addr.ENASYN] != 0
     if wanted and not running:
-        if _may_couple(s, i, DO_STARTSYN):
+        if _may_couple(s, i, addr.DO_STARTSYN):
             begin_sync(s, i)
     elif running and not wanted:
         end_sync(s, i)
@@ -173,25 +148,25 @@ def take_commands(s: CardState, i: int) -> None:
     commands = axis["commands"]
     axis["commands"] = 0
     axis["armed"] = min(axis["armed"], 1)
-    if commands >> DO_CLEAR & 1 and m[i, CLEAR] != 0:
+    if commands >> addr.DO_CLEAR & 1 and m[i, addr.CLEAR] != 0:
         clear_axis(s, i)
-        put16(m, i, CLEAR, 0)
-    if commands >> DO_SETHOME & 1 and m[i, SETHOME] != 0:
+        put16(m, i, addr.CLEAR, 0)
+    if commands >> addr.DO_SETHOME & 1 and m[i, addr.SETHOME] != 0:
         set_origin_here(s, i)
-    if commands >> DO_RUN & 1 and m[i, RUN] == 0:
+    if commands >> addr.DO_RUN & 1 and m[i, addr.RUN] == 0:
         halt_axis(s, i)
-    if commands >> DO_ENGEAR & 1:
-        if m[i, ENGEAR] == 0:
+    if commands >> addr.DO_ENGEAR & 1:
+        if m[i, addr.ENGEAR] == 0:
             leave_gear(s, i)
-        elif _may_couple(s, i, DO_ENGEAR):
+        elif _may_couple(s, i, addr.DO_ENGEAR):
             begin_gear(s, i)
-    if commands >> DO_STARTSYN & 1:
+    if commands >> addr.DO_STARTSYN & 1:
         _sync(s, i)
-    if commands >> DO_GOHOME & 1:
+    if commands >> addr.DO_GOHOME & 1:
         _home(s, i)
     for layer in range(2):
-        velocity = DO_TGVEL_MCS if layer == 0 else DO_TGVEL_PCS
-        go = DO_GO_MCS if layer == 0 else DO_GO_PCS
+        velocity = addr.DO_TGVEL_MCS if layer == 0 else addr.DO_TGVEL_PCS
+        go = addr.DO_GO_MCS if layer == 0 else addr.DO_GO_PCS
         if commands >> velocity & 1:
             _target_velocity(s, i, layer, velocity)
         if commands >> go & 1:

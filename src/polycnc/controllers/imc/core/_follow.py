@@ -8,26 +8,7 @@ present velocity and arrives at rest, or to a velocity, straight.
 
 from __future__ import annotations
 
-from polycnc.controllers.imc.core._addresses import (
-    ACCEL,
-    DECEL,
-    ENASYN,
-    GEAROUTMOD,
-    GEAROUTVEL,
-    GEARRATIO,
-    GEARSRC,
-    MASTER,
-    POS_FRACTION,
-    SLAVEABS,
-    SLAVEDIST,
-    STARTSYN,
-    SYNSRC,
-    SYNSRCVAR,
-    SYNTYPE,
-    TGVEL,
-    TICKS,
-    VEL,
-)
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._planner import ramped, start_velocity, to_units
 from polycnc.controllers.imc.core._state import GEAR, IDLE, SYNC, VELOCITY, CardState
 from polycnc.controllers.imc.core._words import (
@@ -49,8 +30,8 @@ _ONE_32 = 1 << 32
 @compiled
 def source_velocity(s: CardState, i: int) -> int:
     """Return the increment that the gear of axis `i` follows."""
-    at = get_u16(s.memory, i, GEARSRC)
-    row = row_of(s, at, get_u16(s.memory, i, MASTER))
+    at = get_u16(s.memory, i, addr.GEARSRC)
+    row = row_of(s, at, get_u16(s.memory, i, addr.MASTER))
     return get32(s.memory, row, at) if row >= 0 and at + 1 < s.memory.shape[1] else 0
 
 
@@ -64,7 +45,7 @@ def begin_gear(s: CardState, i: int) -> None:
     axis["locked"] = 0
     axis["rest"] = 0
     axis["sync_share"] = -1.0
-    if s.memory[i, ENASYN] == 0:
+    if s.memory[i, addr.ENASYN] == 0:
         row["mode"] = GEAR
 
 
@@ -78,13 +59,13 @@ def leave_gear(s: CardState, i: int) -> None:
     end_sync(s, i)
     if s.system[0, i]["mode"] != GEAR:  # it waits for its synchronous motion to start
         return
-    velocity = get32(s.memory, i, VEL)
-    if s.memory[i, GEAROUTMOD] != 0:
-        velocity = get32(s.memory, i, GEAROUTVEL)
+    velocity = get32(s.memory, i, addr.VEL)
+    if s.memory[i, addr.GEAROUTMOD] != 0:
+        velocity = get32(s.memory, i, addr.GEAROUTVEL)
     elif axis["locked"] != 0:
-        velocity = clip32(scaled(source_velocity(s, i), get48(s.memory, i, GEARRATIO))[0])
-        put32(s.memory, i, VEL, velocity)  # a locked slave has that speed now
-    put32(s.memory, i, TGVEL, velocity)
+        velocity = clip32(scaled(source_velocity(s, i), get48(s.memory, i, addr.GEARRATIO))[0])
+        put32(s.memory, i, addr.VEL, velocity)  # a locked slave has that speed now
+    put32(s.memory, i, addr.TGVEL, velocity)
     start_velocity(s, 0, i, velocity)
 
 
@@ -92,34 +73,34 @@ def leave_gear(s: CardState, i: int) -> None:
 def begin_sync(s: CardState, i: int) -> None:
     """Start the synchronous motion whose source has been noted when startsyn was written."""
     axis, m = s.axis[i], s.memory
-    span = get32(m, i, SYNSRCVAR)
+    span = get32(m, i, addr.SYNSRCVAR)
     axis["sync_share"] = 0.0
     axis["sync_way"] = 0
     axis["sync_part"] = 0.0
-    axis["sync_velocity"] = get32(m, i, VEL) / 65536.0
+    axis["sync_velocity"] = get32(m, i, addr.VEL) / 65536.0
     if axis["engaged"] != 0:
         s.system[0, i]["mode"] = GEAR
         return
     s.system[0, i]["mode"] = SYNC
-    distance = get32(m, i, SLAVEDIST) * 65536
-    if m[i, SLAVEABS] != 0:
-        distance -= get48(m, i, POS_FRACTION)
+    distance = get32(m, i, addr.SLAVEDIST) * 65536
+    if m[i, addr.SLAVEABS] != 0:
+        distance -= get48(m, i, addr.POS_FRACTION)
     axis["sync_distance"] = distance / 65536.0
-    axis["sync_slope"] = axis["sync_velocity"] * span if get_u16(m, i, SYNSRC) == TICKS else 0.0
+    axis["sync_slope"] = axis["sync_velocity"] * span if get_u16(m, i, addr.SYNSRC) == addr.TICKS else 0.0
 
 
 @compiled
 def end_sync(s: CardState, i: int) -> None:
     """Leave synchronous motion, complete or not."""
     s.axis[i]["sync_share"] = -1.0
-    put16(s.memory, i, STARTSYN, 0)
-    put16(s.memory, i, ENASYN, 0)
+    put16(s.memory, i, addr.STARTSYN, 0)
+    put16(s.memory, i, addr.ENASYN, 0)
 
 
 @compiled
 def _share(s: CardState, i: int) -> float:
     """Return which part of the pacing change has been covered, from 0 on."""
-    span = get32(s.memory, i, SYNSRCVAR)
+    span = get32(s.memory, i, addr.SYNSRCVAR)
     if span <= 0:
         return 1.0
     return abs(wrap32(sync_source(s, i) - s.axis[i]["sync_from"])) / span
@@ -164,14 +145,14 @@ def _led_in(s: CardState, i: int, source: int, ratio: int) -> int:
 @compiled
 def _gear_step(s: CardState, i: int) -> int:
     axis, m = s.axis[i], s.memory
-    source, ratio = source_velocity(s, i), get48(m, i, GEARRATIO)
+    source, ratio = source_velocity(s, i), get48(m, i, addr.GEARRATIO)
     if axis["sync_share"] >= 0.0:
         return _led_in(s, i, source, ratio)
     step, fraction = scaled(source, ratio)
     if axis["locked"] == 0 or ratio != axis["ratio"]:
         axis["locked"] = 0
-        velocity = get32(m, i, VEL)
-        accel, decel = get32(m, i, ACCEL), get32(m, i, DECEL)
+        velocity = get32(m, i, addr.VEL)
+        accel, decel = get32(m, i, addr.ACCEL), get32(m, i, addr.DECEL)
         reached = ramped(velocity, step, accel, decel)
         if reached != step:
             return reached
@@ -204,13 +185,13 @@ def _sync_step(s: CardState, i: int) -> int:
     before = axis["sync_share"]
     now = max(_share(s, i), before)
     axis["sync_share"] = now
-    if m[i, SYNTYPE] != 0:
+    if m[i, addr.SYNTYPE] != 0:
         step = _position_step(s, i, now)
         if now >= 1.0:
             row["mode"] = IDLE
             end_sync(s, i)
         return step
-    target = get32(m, i, TGVEL)
+    target = get32(m, i, addr.TGVEL)
     if now >= 1.0:
         row["mode"] = VELOCITY
         row["target"] = target

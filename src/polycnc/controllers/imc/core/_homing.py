@@ -8,17 +8,9 @@ from __future__ import annotations
 
 import math
 
-from polycnc.controllers.imc.core._addresses import (
-    CURVEL,
-    GOHOME,
-    HIGHVEL,
-    HOMED,
-    HOMESEQ,
-    HOMESTPOS,
-    INDEX_NUM,
-    LOWVEL,
-    TGPOS,
-)
+import numpy as np
+
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._origin import set_origin_at
 from polycnc.controllers.imc.core._planner import begin_move, start_velocity
 from polycnc.controllers.imc.core._state import IDLE, CardState
@@ -44,7 +36,29 @@ AGAIN = 5
 COUNT = 6
 ENDING = 7
 
-_PASSES = (0, 0, 0, 1, 0, 2)  # by phase: comings back to the edge before it
+# Columns of PHASES. An edge ends a run unless as many returns as are asked for came before it: then it is the origin,
+# or the index pulses from it on are counted.
+ON_EDGE = 0  # the phase that follows the edge
+ON_REST = 1  # the phase that follows standstill
+RETURNS = 2  # comings back to the edge before
+LEAVES = 3  # 1: the edge is the one by which the axis leaves the switch again
+SPEED = 4  # register of the speed, 0 stands
+WAY = 5  # 1 in the direction of the search, -1 back
+
+# fmt: off
+PHASES = np.array([
+    # on edge       on rest       returns  leaves  speed                  way
+    (NOT_HOMING,    NOT_HOMING,         0,      0, 0,                       0),  # NOT_HOMING
+    (FIRST_STOP,    NOT_HOMING,         0,      0, addr.HIGHVEL,            1),  # SEEK
+    (NOT_HOMING,    RETURN,             0,      0, 0,                       0),  # FIRST_STOP
+    (SECOND_STOP,   NOT_HOMING,         1,      1, addr.LOWVEL,            -1),  # RETURN
+    (NOT_HOMING,    AGAIN,              0,      0, 0,                       0),  # SECOND_STOP
+    (NOT_HOMING,    NOT_HOMING,         2,      0, addr.LOWVEL,             1),  # AGAIN
+    (NOT_HOMING,    NOT_HOMING,         0,      0, addr.HIGHVEL,            1),  # COUNT
+    (NOT_HOMING,    NOT_HOMING,         0,      0, 0,                       0),  # ENDING
+], np.int64)
+# fmt: on
+PHASES.setflags(write=False)
 
 _ORIGIN_BIT = 4  # of `inverted`, and of aio: terminal 2
 
@@ -59,25 +73,29 @@ def home_sequence(
 
 
 @compiled
-def _run(s: CardState, i: int, speed: int, forward: bool) -> None:
-    """Run at a speed in the direction of the search, or back."""
-    negative = (get_u16(s.memory, i, HOMESEQ) & HOME_NEGATIVE) != 0
-    speed = abs(speed)
-    start_velocity(s, 0, i, speed if forward != negative else -speed)
+def _begin(s: CardState, i: int, phase: int) -> None:
+    """Begin a phase: run at its speed in the direction of the search, or back, or come to rest."""
+    s.axis[i]["home"] = phase
+    register = PHASES[phase, SPEED]
+    if register == 0:
+        start_velocity(s, 0, i, 0)
+        return
+    speed = abs(get32(s.memory, i, register))
+    negative = (get_u16(s.memory, i, addr.HOMESEQ) & HOME_NEGATIVE) != 0
+    start_velocity(s, 0, i, speed if (PHASES[phase, WAY] > 0) != negative else -speed)
 
 
 @compiled
 def begin_homing(s: CardState, i: int) -> None:
     """Start to search the origin as homeseq says."""
     axis, m = s.axis[i], s.memory
-    sequence = get_u16(m, i, HOMESEQ)
+    sequence = get_u16(m, i, addr.HOMESEQ)
     if not sequence & (HOME_SWITCH | HOME_INDEX):
-        put16(m, i, GOHOME, 0)
+        put16(m, i, addr.GOHOME, 0)
         return
-    put16(m, i, HOMED, 0)
+    put16(m, i, addr.HOMED, 0)
     axis["home_count"] = 0
-    axis["home"] = SEEK if sequence & HOME_SWITCH else COUNT
-    _run(s, i, get32(m, i, HIGHVEL), True)
+    _begin(s, i, SEEK if sequence & HOME_SWITCH else COUNT)
 
 
 @compiled
@@ -103,7 +121,7 @@ def _count(s: CardState, state: KernelState, i: int, beyond: float) -> bool:
         if math.isfinite(beyond) and (at - beyond) * way <= 0.0:
             continue
         axis["home_count"] += 1
-        if axis["home_count"] >= get_u16(s.memory, i, INDEX_NUM):
+        if axis["home_count"] >= get_u16(s.memory, i, addr.INDEX_NUM):
             axis["home_edge"] = at
             return True
     return False
@@ -115,8 +133,8 @@ def _found(s: CardState, state: KernelState, i: int) -> None:
     axis, m = s.axis[i], s.memory
     set_origin_at(s, i, state.servo.actual[i] - axis["home_edge"])
     axis["home"] = ENDING
-    if get_u16(m, i, HOMESEQ) & HOME_GO_TO:
-        put32(m, i, TGPOS, get32(m, i, HOMESTPOS))
+    if get_u16(m, i, addr.HOMESEQ) & HOME_GO_TO:
+        put32(m, i, addr.TGPOS, get32(m, i, addr.HOMESTPOS))
         begin_move(s, 0, i)
     else:
         start_velocity(s, 0, i, 0)
@@ -125,14 +143,12 @@ def _found(s: CardState, state: KernelState, i: int) -> None:
 @compiled
 def _turn_back(s: CardState, state: KernelState, i: int, phase: int, returns: int) -> bool:
     """Carry out a phase that is ended by an edge; True if it was the last edge."""
-    axis = s.axis[i]
-    rising = (get_u16(s.memory, i, HOMESEQ) & HOME_RISING) != 0
-    if not _edge(s, state, i, rising != (phase == RETURN)):
+    rising = (get_u16(s.memory, i, addr.HOMESEQ) & HOME_RISING) != 0
+    if not _edge(s, state, i, rising != (PHASES[phase, LEAVES] != 0)):
         return False
-    if returns <= _PASSES[phase]:
+    if returns <= PHASES[phase, RETURNS]:
         return True
-    axis["home"] = phase + 1  # stop, then come back
-    start_velocity(s, 0, i, 0)
+    _begin(s, i, PHASES[phase, ON_EDGE])
     return False
 
 
@@ -143,10 +159,10 @@ def homing_cycle(s: CardState, state: KernelState, i: int) -> None:
     phase = axis["home"]
     if phase == NOT_HOMING:
         return
-    sequence = get_u16(m, i, HOMESEQ)
+    sequence = get_u16(m, i, addr.HOMESEQ)
     beyond = math.inf
     found = False
-    if phase in (SEEK, RETURN, AGAIN):
+    if phase in (SEEK, RETURN, AGAIN):  # an edge ends them
         if not _turn_back(s, state, i, phase, min((sequence & HOME_RETURNS) >> _RETURNS_SHIFT, 2)):
             return
         if sequence & HOME_INDEX:
@@ -158,17 +174,16 @@ def homing_cycle(s: CardState, state: KernelState, i: int) -> None:
         found = _count(s, state, i, beyond)
     if found:
         _found(s, state, i)
-    elif axis["home"] != COUNT and s.system[0, i]["mode"] == IDLE and get32(m, i, CURVEL) == 0:
+    elif axis["home"] != COUNT and s.system[0, i]["mode"] == IDLE and get32(m, i, addr.CURVEL) == 0:
         _after_rest(s, i, phase)
 
 
 @compiled
 def _after_rest(s: CardState, i: int, phase: int) -> None:
     """Go on where the axis has come to rest: back, or that was it."""
-    axis, m = s.axis[i], s.memory
-    if phase == ENDING:
-        axis["home"] = NOT_HOMING
-        put16(m, i, GOHOME, 0)
-        return
-    axis["home"] = phase + 1
-    _run(s, i, get32(m, i, LOWVEL), phase == SECOND_STOP)
+    following = PHASES[phase, ON_REST]
+    if following == NOT_HOMING:
+        s.axis[i]["home"] = NOT_HOMING
+        put16(s.memory, i, addr.GOHOME, 0)
+    else:
+        _begin(s, i, following)

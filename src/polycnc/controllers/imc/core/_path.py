@@ -4,19 +4,7 @@ from __future__ import annotations
 
 import math
 
-from polycnc.controllers.imc.core._addresses import (
-    FEEDRATE,
-    HPAUSE,
-    MOVEINPATH,
-    PATHACC,
-    PATHAXISNUM,
-    PATHMOVING,
-    PATHVEL,
-    SEGENDVEL,
-    SEGTGVEL,
-    SPACE,
-    STARTPATH,
-)
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._instructions import HEADER, POINTS
 from polycnc.controllers.imc.core._planner import REST_SLACK, to_units
 from polycnc.controllers.imc.core._state import GIVEN, IDLE, PFIFO1, CardState
@@ -45,9 +33,9 @@ _SPEED_COUNTS_ON = 3  # X, Y and Z
 def _feed(s: CardState, g: int) -> float:
     """Return the override that acts on space `g`."""
     n = s.axis.shape[0]
-    if s.memory[n, HPAUSE] != 0:
+    if s.memory[n, addr.HPAUSE] != 0:
         return 0.0
-    return max(get32(s.memory, n, g * SPACE + FEEDRATE), 0) / 65536.0
+    return max(get32(s.memory, n, g * addr.SPACE + addr.FEEDRATE), 0) / 65536.0
 
 
 @compiled
@@ -68,7 +56,7 @@ def _point_length(s: CardState, f: int, at: int, count: int) -> float:
 def _points_ahead(s: CardState, g: int, enough: float) -> float:
     """Return the length of the points that wait at the head of the queue, not looking further than `enough`."""
     f = PFIFO1 + g
-    count = get_u16(s.memory, s.axis.shape[0], g * SPACE + PATHAXISNUM)
+    count = get_u16(s.memory, s.axis.shape[0], g * addr.SPACE + addr.PATHAXISNUM)
     mask, at, tail = s.ring.shape[1] - 1, s.fifo[f]["head"], s.fifo[f]["tail"]
     length = 0.0
     while count > 0 and at < tail and s.ring[f, at & mask] == POINTS:
@@ -84,14 +72,14 @@ def _points_ahead(s: CardState, g: int, enough: float) -> float:
 @compiled
 def _plan(s: CardState, g: int) -> None:
     """Plan the rest of the segment from its present place and speed, which were reached `lead` cycles ago."""
-    m, n, o, row = s.memory, s.axis.shape[0], g * SPACE, s.space[g]
+    m, n, o, row = s.memory, s.axis.shape[0], g * addr.SPACE, s.space[g]
     phases = s.phases[2 * n + g]
     feed = 0.0 if row["stopping"] != 0 else _feed(s, g)
     row["feed"] = feed
     weight = row["weight"]
-    accel = get32(m, n, o + PATHACC) / 65536.0 * weight
-    top = feed * weight * get32(m, n, o + SEGTGVEL) / 65536.0
-    end = min(feed * weight * max(get32(m, n, o + SEGENDVEL), 0) / 65536.0, top)
+    accel = get32(m, n, o + addr.PATHACC) / 65536.0 * weight
+    top = feed * weight * get32(m, n, o + addr.SEGTGVEL) / 65536.0
+    end = min(feed * weight * max(get32(m, n, o + addr.SEGENDVEL), 0) / 65536.0, top)
     if row["points"] != 0 and end < top and accel > 0.0:
         ahead = _points_ahead(s, g, (top * top - end * end) / (2.0 * accel))
         end = min(math.sqrt(end * end + 2.0 * accel * ahead), top)
@@ -113,18 +101,18 @@ def _plan(s: CardState, g: int) -> None:
 @compiled
 def _leave(s: CardState, g: int) -> None:
     """Let the axes of space `g` go, and its segment."""
-    row, n, o = s.space[g], s.axis.shape[0], g * SPACE
+    row, n, o = s.space[g], s.axis.shape[0], g * addr.SPACE
     for i in range(n):
         if row["mask"] >> i & 1:
-            put16(s.memory, i, MOVEINPATH[g], 0)
+            put16(s.memory, i, addr.MOVEINPATH[g], 0)
             if s.system[0, i]["mode"] == GIVEN and s.axis[i]["by"] == g:
                 s.system[0, i]["mode"] = IDLE
     row["mask"] = 0
     row["active"] = 0
     row["speed"] = 0.0
     row["stopping"] = 0
-    put16(s.memory, n, o + PATHMOVING, 0)
-    put32(s.memory, n, o + PATHVEL, 0)
+    put16(s.memory, n, o + addr.PATHMOVING, 0)
+    put32(s.memory, n, o + addr.PATHVEL, 0)
 
 
 @compiled
@@ -132,7 +120,9 @@ def stop_space(s: CardState, g: int, at_once: bool) -> None:
     """Stop interpolation in space `g`, along the path unless `at_once`; the space is switched off then."""
     row = s.space[g]
     if at_once or row["active"] == 0:
-        put16(s.memory, s.axis.shape[0], g * SPACE + STARTPATH, 0)  # the next cycle lets the axes go
+        put16(
+            s.memory, s.axis.shape[0], g * addr.SPACE + addr.STARTPATH, 0
+        )  # the next cycle lets the axes go
     elif row["stopping"] == 0:
         row["stopping"] = 1
         row["stale"] = 1
@@ -174,8 +164,8 @@ def _rest_space(s: CardState, g: int) -> None:
     """Let space `g` be at rest behind its last segment, and its axes go once they have taken what they were given."""
     n = s.axis.shape[0]
     s.space[g]["speed"] = 0.0
-    put16(s.memory, n, g * SPACE + PATHMOVING, 0)
-    put32(s.memory, n, g * SPACE + PATHVEL, 0)
+    put16(s.memory, n, g * addr.SPACE + addr.PATHMOVING, 0)
+    put32(s.memory, n, g * addr.SPACE + addr.PATHVEL, 0)
     for i in range(n):
         if s.space[g]["mask"] >> i & 1 and s.axis[i]["given"] != 0:
             return
@@ -186,7 +176,7 @@ def _rest_space(s: CardState, g: int) -> None:
 def begin_space_cycle(s: CardState, g: int) -> bool:
     """Begin the control cycle of space `g`; False if it is switched off."""
     row = s.space[g]
-    if s.memory[s.axis.shape[0], g * SPACE + STARTPATH] == 0:
+    if s.memory[s.axis.shape[0], g * addr.SPACE + addr.STARTPATH] == 0:
         if row["mask"] != 0:
             _leave(s, g)
         return False
@@ -219,7 +209,7 @@ def end_space_cycle(s: CardState, g: int) -> None:
             _rest_space(s, g)
     elif row["stopping"] != 0 and row["speed"] == 0.0:
         row["stopping"] = 0
-        put16(s.memory, n, g * SPACE + STARTPATH, 0)  # the next cycle lets the axes go
+        put16(s.memory, n, g * addr.SPACE + addr.STARTPATH, 0)  # the next cycle lets the axes go
     else:
-        put16(s.memory, n, g * SPACE + PATHMOVING, FLAG)
-        put32(s.memory, n, g * SPACE + PATHVEL, clip32(to_units(row["speed"] / row["weight"])))
+        put16(s.memory, n, g * addr.SPACE + addr.PATHMOVING, FLAG)
+        put32(s.memory, n, g * addr.SPACE + addr.PATHVEL, clip32(to_units(row["speed"] / row["weight"])))

@@ -9,22 +9,7 @@ from __future__ import annotations
 
 import math
 
-from polycnc.controllers.imc.core._addresses import (
-    ACCEL,
-    DECEL,
-    DIST,
-    GO,
-    HALTMODE,
-    HALTSTEP,
-    HPAUSE,
-    MAXVEL,
-    PCS,
-    POS_FRACTION,
-    SLOPE,
-    TGPOS,
-    TRACK,
-    VEL,
-)
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._state import GIVEN, IDLE, MOVE, RELEASED, VELOCITY, CardState
 from polycnc.controllers.imc.core._words import (
     FLAG,
@@ -69,17 +54,17 @@ def moved(s: CardState, position: int, step: int) -> int:
 @compiled
 def advance_system(s: CardState, layer: int, i: int, step: int) -> None:
     """Move a coordinate system by `step`, which is its velocity in this cycle."""
-    m, o = s.memory, layer * PCS
-    put32(m, i, o + VEL, clip32(step))
+    m, o = s.memory, layer * addr.PCS
+    put32(m, i, o + addr.VEL, clip32(step))
     s.system[layer, i]["velocity"] = clip32(step)
     if step != 0:
-        put48(m, i, o + POS_FRACTION, moved(s, get48(m, i, o + POS_FRACTION), step))
+        put48(m, i, o + addr.POS_FRACTION, moved(s, get48(m, i, o + addr.POS_FRACTION), step))
 
 
 @compiled
 def _plan_move(s: CardState, layer: int, i: int) -> None:
     """Plan the way that is left of a move, from the velocity in memory; a move that cannot be is over."""
-    m, o, row = s.memory, layer * PCS, s.system[layer, i]
+    m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
     k = layer * s.axis.shape[0] + i
     row["left"] -= row["done"]
     row["done"] = 0
@@ -89,19 +74,19 @@ def _plan_move(s: CardState, layer: int, i: int) -> None:
     count = plan_profile(
         s.phases[k],
         0.0,
-        get32(m, i, o + VEL) / 65536.0,
+        get32(m, i, o + addr.VEL) / 65536.0,
         row["left"] / 65536.0,
         0.0,
-        get32(m, i, o + MAXVEL) / 65536.0,
-        get32(m, i, o + ACCEL) / 65536.0,
-        get32(m, i, o + DECEL) / 65536.0,
+        get32(m, i, o + addr.MAXVEL) / 65536.0,
+        get32(m, i, o + addr.ACCEL) / 65536.0,
+        get32(m, i, o + addr.DECEL) / 65536.0,
         0.0,
         SHORT_OVERSHOOT,
     )
     row["phases"] = count
     if count < 0:
         row["mode"] = IDLE
-        put16(m, i, o + GO, 0)
+        put16(m, i, o + addr.GO, 0)
         return
     row["duration"] = profile_duration(s.phases[k], count)
 
@@ -112,7 +97,7 @@ def start_velocity(s: CardState, layer: int, i: int, target: int) -> None:
     row = s.system[layer, i]
     row["target"] = target
     row["mode"] = VELOCITY
-    put16(s.memory, i, layer * PCS + GO, 0)
+    put16(s.memory, i, layer * addr.PCS + addr.GO, 0)
 
 
 @compiled
@@ -121,8 +106,8 @@ def rest_system(s: CardState, layer: int, i: int) -> None:
     row = s.system[layer, i]
     row["mode"] = IDLE
     row["velocity"] = 0
-    put16(s.memory, i, layer * PCS + GO, 0)
-    put32(s.memory, i, layer * PCS + VEL, 0)
+    put16(s.memory, i, layer * addr.PCS + addr.GO, 0)
+    put32(s.memory, i, layer * addr.PCS + addr.VEL, 0)
 
 
 @compiled
@@ -147,21 +132,21 @@ def ramped(velocity: int, target: int, accel: int, decel: int) -> int:
 
 @compiled
 def _is_paused(s: CardState, i: int) -> bool:
-    return bool(s.memory[s.axis.shape[0], HPAUSE] != 0 or s.memory[i, HALTSTEP] != 0)
+    return bool(s.memory[s.axis.shape[0], addr.HPAUSE] != 0 or s.memory[i, addr.HALTSTEP] != 0)
 
 
 @compiled
 def _paused_velocity(s: CardState, i: int, velocity: int, decel: int) -> int:
     """Return the velocity on the way to a pause."""
-    at_once = s.memory[i, HALTSTEP] != 0 and s.memory[i, HALTMODE] == 0
+    at_once = s.memory[i, addr.HALTSTEP] != 0 and s.memory[i, addr.HALTMODE] == 0
     return 0 if at_once else ramped(velocity, 0, 0, decel)
 
 
 @compiled
 def _velocity_cycle(s: CardState, layer: int, i: int) -> int:
-    m, o, row = s.memory, layer * PCS, s.system[layer, i]
-    velocity = get32(m, i, o + VEL)
-    accel, decel = get32(m, i, o + ACCEL), get32(m, i, o + DECEL)
+    m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
+    velocity = get32(m, i, o + addr.VEL)
+    accel, decel = get32(m, i, o + addr.ACCEL), get32(m, i, o + addr.DECEL)
     if velocity == 0 and (row["target"] == 0 or accel <= 0):
         row["mode"] = IDLE
         return 0
@@ -173,8 +158,8 @@ def _velocity_cycle(s: CardState, layer: int, i: int) -> int:
 @compiled
 def _track_cycle(s: CardState, layer: int, i: int) -> None:
     """Let a tracking move follow its target."""
-    m, o, row = s.memory, layer * PCS, s.system[layer, i]
-    target = get32(m, i, o + TGPOS)
+    m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
+    target = get32(m, i, o + addr.TGPOS)
     if target != row["followed"]:
         row["left"] += (target - row["followed"]) * ONE
         row["followed"] = target
@@ -183,14 +168,14 @@ def _track_cycle(s: CardState, layer: int, i: int) -> None:
 
 @compiled
 def _move_cycle(s: CardState, layer: int, i: int) -> int:
-    m, o, row = s.memory, layer * PCS, s.system[layer, i]
-    velocity = get32(m, i, o + VEL)
+    m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
+    velocity = get32(m, i, o + addr.VEL)
     if _is_paused(s, i):
         row["paused"] = 1
-        step = _paused_velocity(s, i, velocity, get32(m, i, o + DECEL))
+        step = _paused_velocity(s, i, velocity, get32(m, i, o + addr.DECEL))
         row["done"] += step
         return step
-    tracks = m[i, o + TRACK] != 0
+    tracks = m[i, o + addr.TRACK] != 0
     if tracks:
         _track_cycle(s, layer, i)
     if row["stale"] != 0 or row["paused"] != 0 or velocity != row["velocity"]:
@@ -205,7 +190,7 @@ def _move_cycle(s: CardState, layer: int, i: int) -> int:
         at = to_units(position)
     elif not tracks:
         row["mode"] = IDLE
-        put16(m, i, o + GO, 0)
+        put16(m, i, o + addr.GO, 0)
     step = at - row["done"]
     row["done"] = at
     return int(step)
@@ -214,21 +199,21 @@ def _move_cycle(s: CardState, layer: int, i: int) -> int:
 @compiled
 def begin_move(s: CardState, layer: int, i: int) -> bool:
     """Begin the move that the registers describe; False if its target is beyond 32 bits."""
-    m, o, row = s.memory, layer * PCS, s.system[layer, i]
-    position = get48(m, i, o + POS_FRACTION)
-    distance = get32(m, i, o + DIST)
+    m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
+    position = get48(m, i, o + addr.POS_FRACTION)
+    distance = get32(m, i, o + addr.DIST)
     if distance != 0:
         target = position + distance * ONE
-        put32(m, i, o + DIST, 0)
+        put32(m, i, o + addr.DIST, 0)
         if not -_TOP <= target < _TOP:
-            put16(m, i, o + GO, 0)
+            put16(m, i, o + addr.GO, 0)
             return False
-        put32(m, i, o + TGPOS, target >> 16)
+        put32(m, i, o + addr.TGPOS, target >> 16)
         row["left"] = distance * ONE
     else:
-        row["left"] = get32(m, i, o + TGPOS) * ONE - position
+        row["left"] = get32(m, i, o + addr.TGPOS) * ONE - position
     row["done"] = 0
-    row["followed"] = get32(m, i, o + TGPOS)
+    row["followed"] = get32(m, i, o + addr.TGPOS)
     row["mode"] = MOVE
     row["stale"] = 1
     return True
@@ -252,4 +237,4 @@ def system_step(s: CardState, layer: int, i: int) -> int:
 @compiled
 def show_slope(s: CardState, layer: int, i: int, before: int, step: int) -> None:
     """Show whether the velocity changes."""
-    put16(s.memory, i, layer * PCS + SLOPE, FLAG if step != before else 0)
+    put16(s.memory, i, layer * addr.PCS + addr.SLOPE, FLAG if step != before else 0)

@@ -2,52 +2,13 @@
 
 from __future__ import annotations
 
-from polycnc.controllers.imc.core._addresses import (
-    CAPFIFO,
-    CAPFIFOCNT,
-    CAPPOS,
-    COUNTS,
-    DO_CAPTURE,
-    DO_CLEAR,
-    DO_CLEAR_BITS,
-    DO_CLEAR_FIFO,
-    DO_CLEARIMC,
-    DO_CLRCAP,
-    DO_CLRENCS,
-    DO_EVENTS,
-    DO_GO_MCS,
-    DO_GO_PCS,
-    DO_GOHOME,
-    DO_POPCAP,
-    DO_SETHOME,
-    DO_STARTSYN,
-    DO_SYNSRCVAR,
-    DO_TGVEL_MCS,
-    DO_TGVEL_PCS,
-    DO_ZERO,
-    ENCP_FRACTION,
-    ENCS_FRACTION,
-    EVENTS,
-    MOTION,
-    MOVING,
-    PCS,
-    PROFILING,
-    REFUSE,
-    RUN,
-    STORE,
-    SYNAXIS,
-    SYNSRC,
-    SYNTYPE,
-    SYSTEM_MOVING,
-    TGVEL,
-    WAIT_TIMES,
-)
+from polycnc.controllers.imc.core import _addresses as addr
 from polycnc.controllers.imc.core._parameters import WORDS
 from polycnc.controllers.imc.core._state import CAPTURES, QUEUES, CardState
 from polycnc.controllers.imc.core._words import FLAG, get32, get48, get_u16, put16, put32, put48, wrap32
 from polycnc.kernel import compiled, entry
 
-_PCS_MOVING = PCS + SYSTEM_MOVING
+_PCS_MOVING = addr.PCS + addr.SYSTEM_MOVING
 
 
 @compiled
@@ -64,8 +25,8 @@ def row_of(s: CardState, at: int, axis: int) -> int:
 @compiled
 def sync_source(s: CardState, i: int) -> int:
     """Return the parameter that paces the synchronous motion of axis `i`."""
-    at = get_u16(s.memory, i, SYNSRC)
-    row = row_of(s, at, get_u16(s.memory, i, SYNAXIS))
+    at = get_u16(s.memory, i, addr.SYNSRC)
+    row = row_of(s, at, get_u16(s.memory, i, addr.SYNAXIS))
     return get32(s.memory, row, at) if row >= 0 and at + 1 < WORDS else 0
 
 
@@ -79,9 +40,9 @@ def empty_fifo(s: CardState, f: int) -> None:
     n = s.axis.shape[0]
     for k in range(QUEUES):
         if k == f:
-            put16(s.memory, n, COUNTS[k], 0)
+            put16(s.memory, n, addr.COUNTS[k], 0)
             if 0 < k < QUEUES - 1:
-                put32(s.memory, n, WAIT_TIMES[k], 0)
+                put32(s.memory, n, addr.WAIT_TIMES[k], 0)
 
 
 @compiled
@@ -100,64 +61,64 @@ def show_captures(s: CardState, i: int) -> None:
     """Bring the registers of the capture buffer up to date."""
     row = s.axis[i]
     waiting = row["captured"] - row["fetched"]
-    put16(s.memory, i, CAPFIFOCNT, waiting)
-    put32(s.memory, i, CAPFIFO, s.capture[i, row["fetched"] % CAPTURES] if waiting > 0 else 0)
+    put16(s.memory, i, addr.CAPFIFOCNT, waiting)
+    put32(s.memory, i, addr.CAPFIFO, s.capture[i, row["fetched"] % CAPTURES] if waiting > 0 else 0)
 
 
 @compiled
 def _command(s: CardState, i: int, action: int, value: int) -> None:
     """Note what an axis has to do in its next turn; what begins a motion shows in the flags at once."""
     row = s.axis[i]
-    if value != 0 or action in (DO_TGVEL_MCS, DO_TGVEL_PCS):  # the last one counts
-        if action in (DO_GO_MCS, DO_TGVEL_MCS):
-            row["commands"] &= ~(1 << DO_GO_MCS | 1 << DO_TGVEL_MCS)
-        elif action in (DO_GO_PCS, DO_TGVEL_PCS):
-            row["commands"] &= ~(1 << DO_GO_PCS | 1 << DO_TGVEL_PCS)
+    if value != 0 or action in (addr.DO_TGVEL_MCS, addr.DO_TGVEL_PCS):  # the last one counts
+        if action in (addr.DO_GO_MCS, addr.DO_TGVEL_MCS):
+            row["commands"] &= ~(1 << addr.DO_GO_MCS | 1 << addr.DO_TGVEL_MCS)
+        elif action in (addr.DO_GO_PCS, addr.DO_TGVEL_PCS):
+            row["commands"] &= ~(1 << addr.DO_GO_PCS | 1 << addr.DO_TGVEL_PCS)
     row["commands"] |= 1 << action
-    if action in (DO_CLEAR, DO_SETHOME):
+    if action in (addr.DO_CLEAR, addr.DO_SETHOME):
         s.card[0]["hold"] = 1
-    if action == DO_SYNSRCVAR:
+    if action == addr.DO_SYNSRCVAR:
         row["armed"] = 2
-    if action == DO_STARTSYN:
+    if action == addr.DO_STARTSYN:
         row["sync_from"] = sync_source(s, i)
-    if DO_GO_MCS <= action <= DO_GOHOME and value != 0 and s.memory[i, RUN] != 0:
-        second = action in (DO_GO_PCS, DO_TGVEL_PCS)
-        put16(s.memory, i, _PCS_MOVING if second else SYSTEM_MOVING, FLAG)
-        put16(s.memory, i, PROFILING, FLAG)
-        put16(s.memory, i, MOVING, FLAG)
-        put16(s.memory, i, MOTION, FLAG)
+    if addr.DO_GO_MCS <= action <= addr.DO_GOHOME and value != 0 and s.memory[i, addr.RUN] != 0:
+        second = action in (addr.DO_GO_PCS, addr.DO_TGVEL_PCS)
+        put16(s.memory, i, _PCS_MOVING if second else addr.SYSTEM_MOVING, FLAG)
+        put16(s.memory, i, addr.PROFILING, FLAG)
+        put16(s.memory, i, addr.MOVING, FLAG)
+        put16(s.memory, i, addr.MOTION, FLAG)
 
 
 @compiled
 def _write_axis_word(s: CardState, i: int, at: int, action: int, value: int) -> None:
     row, m = s.axis[i], s.memory
-    if action == DO_CAPTURE:
-        position = get48(m, i, ENCP_FRACTION) >> 16
-        put32(m, i, CAPPOS, position)
+    if action == addr.DO_CAPTURE:
+        position = get48(m, i, addr.ENCP_FRACTION) >> 16
+        put32(m, i, addr.CAPPOS, position)
         keep_capture(s, i, position)
-    elif action == DO_POPCAP:
+    elif action == addr.DO_POPCAP:
         if row["fetched"] < row["captured"]:
             row["fetched"] += 1
         show_captures(s, i)
-    elif action == DO_CLRCAP:
+    elif action == addr.DO_CLRCAP:
         row["fetched"] = row["captured"]
         show_captures(s, i)
-    elif action == DO_ZERO:
+    elif action == addr.DO_ZERO:
         put16(m, i, at, 0)
-    elif action == DO_CLRENCS:
-        put48(m, i, ENCS_FRACTION, 0)
+    elif action == addr.DO_CLRENCS:
+        put48(m, i, addr.ENCS_FRACTION, 0)
 
 
 @compiled
 def _write_card_word(s: CardState, at: int, action: int, value: int) -> None:
     n = s.axis.shape[0]
-    if action == DO_EVENTS:
+    if action == addr.DO_EVENTS:
         if value == 0:
             s.card[0]["events"] = 0
-        put16(s.memory, n, EVENTS, s.card[0]["events"])
+        put16(s.memory, n, addr.EVENTS, s.card[0]["events"])
         return
     for f in range(QUEUES):
-        if action == DO_CLEARIMC or COUNTS[f] == at:
+        if action == addr.DO_CLEARIMC or addr.COUNTS[f] == at:
             empty_fifo(s, f)
 
 
@@ -168,16 +129,16 @@ def write_word(s: CardState, at: int, axis: int, value: int) -> None:
     if row < 0:
         return
     action = int(s.word[at, 1])
-    if action == STORE:
+    if action == addr.STORE:
         put16(s.memory, row, at, value)
-    elif action < REFUSE:
+    elif action < addr.REFUSE:
         put16(s.memory, row, at, value)
         _command(s, row, action, value)
-    elif action == DO_CLEAR_BITS:
+    elif action == addr.DO_CLEAR_BITS:
         put16(s.memory, row, at, get_u16(s.memory, row, at) & ~value)
-    elif action in (DO_CLEAR_FIFO, DO_CLEARIMC, DO_EVENTS):
+    elif action in (addr.DO_CLEAR_FIFO, addr.DO_CLEARIMC, addr.DO_EVENTS):
         _write_card_word(s, at, action, value)
-    elif action != REFUSE:
+    elif action != addr.REFUSE:
         _write_axis_word(s, row, at, action, value)
 
 
@@ -193,7 +154,7 @@ def _is_goal(s: CardState, axis: int, value: int) -> bool:
     row = s.axis[axis]
     armed = row["armed"]
     row["armed"] = 0
-    if armed == 0 or row["engaged"] != 0 or s.memory[axis, SYNTYPE] != 0:
+    if armed == 0 or row["engaged"] != 0 or s.memory[axis, addr.SYNTYPE] != 0:
         return False
     return bool(armed == 2 or wrap32(value) != 0)
 
@@ -201,7 +162,7 @@ def _is_goal(s: CardState, axis: int, value: int) -> bool:
 @compiled
 def write_words(s: CardState, at: int, axis: int, words: int, value: int) -> None:
     """Write `words` words of a parameter, low word first."""
-    if at == TGVEL and words == 2 and _is_goal(s, axis, value):
+    if at == addr.TGVEL and words == 2 and _is_goal(s, axis, value):
         put32(s.memory, axis, at, value)
         return
     for k in range(words):

@@ -1,0 +1,47 @@
+"""``polycnc view``: a run as a page that moves."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from polycnc.cli._output import bold_red, progress_bar, say, say_error
+from polycnc.cli._run import DIALECT, MACHINE
+
+
+def view_command(
+    program: Annotated[Path, typer.Argument(help="The part program.", metavar="PROGRAM")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            help="The page, an .html file (default: the program's name with .html, here).",
+            metavar="FILE",
+        ),
+    ] = None,
+    open_page: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
+    machine: Annotated[str | None, MACHINE] = None,
+    dialect: Annotated[str | None, DIALECT] = None,
+) -> None:
+    """Run a part program and write a page that shows it: path, time, blocks, tools, speed."""
+    from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program
+
+    inputs = [program, *(Path(each) for each in (machine, dialect) if each is not None)]
+    text = program_text(program)
+    target = check_view_file(
+        output or Path(program.stem + ".html"), inputs, replaces_views_only=output is None
+    )
+    with progress_bar(program.name) as bar:
+        view = view_program(text, machine, dialect, progress=bar)
+    view.save(target)
+    say(f"time       {time_text(view.result.time_s)}")
+    say(f"wrote      {target}")
+    for alarm in view.result.alarms:
+        say(str(alarm), lead=bold_red("alarm: "))
+    if open_page and not open_in_browser(target):
+        say_error(f"no browser was found; open {target} yourself.")
+    sys.exit(0 if view.result.ok else 1)

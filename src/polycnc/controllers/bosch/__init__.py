@@ -1,0 +1,6 @@
+"""Bosch Rexroth Typ3 osa and PNC: what their part programs can ask of the control (Manual 003)."""
+
+from polycnc.controllers.bosch._macoda import NEW_NUMBERS, present_number
+from polycnc.controllers.bosch._pnc import Pnc
+
+__all__ = ["NEW_NUMBERS", "Pnc", "present_number"]

@@ -1,0 +1,87 @@
+"""The root of a control on a real directory: names become paths that never leave it (Manual 003, 6.1.1)."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+from pathlib import Path
+
+from polycnc.nc.cpl import Fault
+
+LONGEST_NAME = 30
+_NAME = re.compile(r"[A-Za-z0-9_.$ -]+")
+RESERVED = "cpl.store"
+"""The file in which permanent variables are kept; programs do not see it."""
+
+
+class Directory:
+    """Find files by the names that programs use. A path with or without / at its front begins at the root.
+
+    Capitals and small letters are different. Neither `..` nor a link leads out of the root.
+    """
+
+    def __init__(self, root: str | Path) -> None:
+        self.root = Path(root).resolve()
+
+    def path(self, name: str | None) -> Path:
+        """Return the path that a name stands for, whether there is such a file or not.
+
+        Raises:
+            Fault: The name is none, or leads out of the root.
+        """
+        parts = [part for part in (name or "").split("/") if part]
+        if not parts or (name or "").endswith("/"):
+            raise Fault("INVALID FILE NAME", "a name of 1 to 30 letters, digits, '.' and '_' is needed")
+        for part in parts:
+            if part in (".", "..") or not _NAME.fullmatch(part):
+                raise Fault(
+                    "INVALID FILE NAME",
+                    f"'{part}' is no name: letters, digits, '.' and '_' are, but neither '.' nor '..'",
+                )
+        if len(parts[-1]) > LONGEST_NAME:
+            raise Fault("INVALID FILE NAME", f"a name has at most {LONGEST_NAME} characters")
+        path = self.root.joinpath(*parts)
+        if parts == [RESERVED]:
+            raise Fault("INVALID FILE NAME", f"{RESERVED} is the control's own file")
+        resolved = path.resolve()
+        if not resolved.is_relative_to(self.root):
+            raise Fault("INVALID FILE NAME", f"'{name}' is a link that leads out of the control's directory")
+        return resolved
+
+    def text(self, name: str) -> str | None:
+        """Return the text of a program, None if there is no such file.
+
+        Raises:
+            Fault: The name leads out of the root.
+        """
+        path = self.path(name)
+        if not is_file(path):
+            return None
+        content = path.read_bytes().partition(b"\x03")[0].removeprefix(b"\xef\xbb\xbf")
+        try:
+            return content.decode("utf-8")
+        except UnicodeDecodeError:
+            return content.decode("latin-1")
+
+    def access(self, name: str | None) -> int:
+        """Return -1 if there is no such file, else its rights: 1 to execute, 2 to write, 4 to read, 8 a directory.
+
+        Raises:
+            Fault: The name is none, or leads out of the root.
+        """
+        path = self.path(name)
+        if not path.exists():
+            return -1
+        rights = ((os.X_OK, 1), (os.W_OK, 2), (os.R_OK, 4))
+        allowed = path.stat().st_mode
+        bits = sum(bit for right, bit in rights if os.access(path, right) and allowed & right * 0o111)
+        return bits + (8 if path.is_dir() else 0)
+
+
+def is_file(path: Path) -> bool:
+    """Tell whether a path is an ordinary file: pipes and devices would hold the program up."""
+    try:
+        return stat.S_ISREG(path.stat().st_mode)
+    except OSError:
+        return False

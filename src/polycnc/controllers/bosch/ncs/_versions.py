@@ -1,0 +1,58 @@
+"""Versions of data: what tells a caller that data are still those that it has (Manual 003, MCODS)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from polycnc.controllers.bosch.ncs._codes import NcsError
+from polycnc.controllers.bosch.ncs._data_services import DATA_SERVICES, Asked, Values
+from polycnc.controllers.bosch.ncs._image import Image
+
+Key: TypeAlias = tuple[int, int, tuple[int | None, ...]]
+LARGEST = 2**24 - 1
+"""Versions fit into a REAL variable without rounding."""
+
+
+@dataclass(slots=True)
+class Ledger:
+    """The version of each of the data that were ever asked for; no two data share one."""
+
+    last: int = 0
+    entries: dict[Key, tuple[object, int]] = field(default_factory=dict)
+
+    def read(self, image: Image, key: Key) -> tuple[Values, int]:
+        """Return data and their version.
+
+        Raises:
+            NcsError: There are none.
+        """
+        number, channel, extra = key
+        values = DATA_SERVICES[number].read(Asked(image, channel, extra))
+        stamp = _stamp(image, number, channel, values)
+        entry = self.entries.get(key)
+        if entry is None or entry[0] != stamp:
+            self.last = self.last % LARGEST + 1
+            entry = self.entries[key] = (stamp, self.last)
+        return values, entry[1]
+
+    def look(self, image: Image) -> None:
+        """Note what changed of the data asked for before, in every cycle: they may change back."""
+        for key in list(self.entries):
+            try:
+                self.read(image, key)
+            except NcsError:
+                del self.entries[key]
+
+
+def _stamp(image: Image, number: int, channel: int, values: Values) -> object:
+    refresh = DATA_SERVICES[number].refresh
+    if refresh == "Z":
+        return image.cycle
+    if refresh == "S":
+        if channel in image.channels:
+            return image.channels[channel].blocks
+        return tuple(each.blocks for each in image.channels.values())
+    if refresh == "R":
+        return None
+    return values if isinstance(values, str) else tuple(values)

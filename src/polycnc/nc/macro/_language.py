@@ -1,0 +1,561 @@
+"""Custom macros as the language of a channel: programs are compiled once and give their blocks one after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Generator, Iterator
+from dataclasses import dataclass
+from typing import Any, NoReturn
+
+from polycnc.errors import ProgramError
+from polycnc.language import Flaw, Frame, frame_of
+from polycnc.nc._block_source import (
+    CallProgram,
+    EndSource,
+    Pause,
+    SourceItem,
+    TextSpan,
+    WordsBlock,
+)
+from polycnc.nc._channel import Channel
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks._modal import INCH
+from polycnc.nc.macro._calls import Arguments, MacroCalls
+from polycnc.nc.macro._compile import Code, compile_program, names
+from polycnc.nc.macro._functions import asin, atan2, rounded
+from polycnc.nc.macro._reader import LARGEST_LABEL, LineReader
+from polycnc.nc.macro._shape import RETURNS_TO, extent, parse, shape, special
+from polycnc.nc.macro._system import SystemVariables
+from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, MacroVariables, Value, checked
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan_plain import Word, scan_block
+
+LONGEST_LOOP_PAUSES = 2_500
+"""So many pauses (of 20,000 jumps each) in a row without a block are a loop without end."""
+_COMMON_LAST = 999
+_ALARM_BASE = 3000
+_LARGEST_ALARM = 999
+_WHOLE = frozenset("DHLMNOPST")
+_FEED_DECIMALS = 1e-4
+_INCH_INCREMENT = 0.1
+_G_INCREMENT = 0.1
+_NOT_A_MOVE = (4.0, 10.0, 28.0, 29.0, 30.0, 52.0, 65.0, 66.0, 67.0, 68.0, 50.0, 51.0, 92.0, 50.1, 51.1)
+_PLAIN_CALLS = MacroCalls()
+
+
+@dataclass(frozen=True, slots=True)
+class _Modal:
+    """A call behind every move: program, repetitions and arguments, and where G66 stands."""
+
+    program: int
+    repeats: int
+    values: dict[int, Value]
+
+
+@dataclass
+class _Compiled:
+    """A program: its code, or what is wrong with it."""
+
+    text: ProgramText
+    code: Code | None
+    errors: list[ProgramError]
+    name: str
+    number: int
+
+
+class MacroLanguage:
+    """Execute programs with custom macros.
+
+    `variables` may be shared with whoever else reads and writes them, `system` are the control's own variables,
+    `calls` the codes that call programs. With `nat` ASIN and ATAN give -90 to 90 and -180 to 180 degrees. With
+    `main_repeats` M99 in the main program begins it anew instead of ending it. With `endless_loops` a loop may go
+    round without a block for ever, pausing now and then; else that is an error after 50,000,000 rounds.
+    """
+
+    def __init__(
+        self,
+        variables: MacroVariables | None = None,
+        *,
+        system: SystemVariables | None = None,
+        calls: MacroCalls | None = None,
+        nat: bool = False,
+        main_repeats: bool = False,
+        endless_loops: bool = False,
+    ) -> None:
+        self.variables = variables or MacroVariables()
+        self.system = system or SystemVariables()
+        self.calls = calls or _PLAIN_CALLS
+        self.nat = nat
+        self.main_repeats = main_repeats
+        self.longest_loop_pauses = None if endless_loops else LONGEST_LOOP_PAUSES
+        self.modal: _Modal | None = None
+        self.pending: int | None = None
+        self.codes_off = 0
+        self._channel: Channel | None = None
+        self._compiled: dict[tuple[int, int, bool], _Compiled | None] = {}
+        self._returns: dict[int, bool] = {}
+        self._latin: dict[int, tuple[ProgramText, str, bytes]] = {}
+        self._names = names()
+        if nat:
+            self._names["f_ASIN"] = lambda value: asin(value, True)
+        self._names["f_ATAN2"] = lambda value, below: atan2(value, below, nat)
+
+    def attach(self, channel: Channel) -> None:
+        """Work for a channel: its positions, modal state and tables are what system variables read."""
+        self._channel = channel
+        self.system.attach(channel)
+        self.modal = self.pending = None
+        self.codes_off = 0
+        self._compiled.clear()
+        self._latin.clear()
+        self._returns.clear()
+
+    @property
+    def channel(self) -> Channel:
+        """The channel that the language works for."""
+        assert self._channel is not None
+        return self._channel
+
+    def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> MacroSource | None:
+        """Return a source for the program that begins at byte `offset`, None where plain text needs none."""
+        given = arguments if isinstance(arguments, Arguments) else None
+        needed = given is not None or self.modal is not None
+        key = (id(text), offset, self.codes_off > 0 or (given is not None and given.by_code))
+        if key not in self._compiled:
+            self._compiled[key] = self._compile(text, offset, line, key[2], force=False)
+        compiled = self._compiled[key]
+        if compiled is None:
+            if not needed:
+                return None
+            compiled = self._compile(text, offset, line, key[2], force=True)
+            assert compiled is not None
+        return MacroSource(self, compiled, given)
+
+    def _compile(
+        self, text: ProgramText, offset: int, line: int, plain: bool, *, force: bool
+    ) -> _Compiled | None:
+        calls = _PLAIN_CALLS if plain else self.calls
+        if id(text) not in self._latin:
+            if not force and not special(calls, restarts=self.main_repeats).may_hold(text.content.upper()):
+                return None
+            decoded, folded = text.content.decode("latin-1"), text.content.upper()
+            self._latin[id(text)] = (text, decoded, folded)
+            found = next(RETURNS_TO.lines(decoded, folded, 0, len(decoded)), None)
+            self._returns[id(text)] = found is not None
+        _, whole, folded = self._latin[id(text)]
+        returns = self._returns[id(text)]
+        wanted = special(calls, restarts=self.main_repeats, returns=returns)
+        if not force and next(wanted.lines(whole, folded, offset, len(whole)), None) is None:
+            return None
+        begin, first_line, end = extent(whole, offset, line)
+        if not force and next(wanted.lines(whole, folded, begin, end), None) is None:
+            return None
+        reader = LineReader(whole, calls, repeats=self.main_repeats)
+        parts, flaws = parse(whole, wanted.lines(whole, folded, begin, end), begin, first_line, end, reader)
+        name = f"<macro {id(text)} {offset} {plain}>"
+        code = None
+        if not flaws:
+            made, flaws = shape(whole, parts, returns=returns)
+            if not flaws:
+                increment = self.channel.dialect.increment
+                code, flaws = compile_program(made, self, increment, name)
+        errors = [_error(text, flaw) for flaw in flaws]
+        return _Compiled(text, code, errors, name, _program_number(whole, offset))
+
+    # ------------------------------------------------------------------ what the compiler asks
+
+    def kind(self, number: int) -> str | None:
+        """Return the sort of a variable that is none of the system's, None if there is none."""
+        return self.variables.kind(number)
+
+    def has(self, number: int) -> bool:
+        """Tell whether there is a system variable."""
+        return self.system.has(number)
+
+    def waits(self, number: int) -> bool:
+        """Tell whether reading a system variable waits for all blocks before."""
+        return self.system.waits(number)
+
+    def bindings(self) -> dict[str, object]:
+        """Return the functions and operators as compiled programs call them."""
+        return self._names
+
+
+class MacroSource:
+    """One execution of one program."""
+
+    def __init__(self, language: MacroLanguage, compiled: _Compiled, arguments: Arguments | None) -> None:
+        self._language = language
+        self._compiled = compiled
+        self._errors = list(compiled.errors)
+        self._pauses = 0
+        self._by_code = arguments is not None and arguments.by_code
+        self._has_level = arguments is not None and arguments.values is not None
+        self._outer_modal = language.modal
+        self._is_modal_call = arguments is not None and arguments.modal
+        self._closed = False
+        self.main = language.channel.depth == 0
+        self.modal: _Modal | None
+        if self._is_modal_call:
+            language.modal = None
+        if self._by_code:
+            language.codes_off += 1
+        if arguments is not None and arguments.values is not None:
+            language.variables.enter(arguments.values)
+        self._inch = 1.0
+        nothing: tuple[SourceItem, ...] = ()
+        self._generator: Generator[Any, None, None] = (item for item in nothing)
+        if compiled.code is not None:
+            self._generator = self._start(compiled.code)
+
+    def next(self) -> SourceItem | None:
+        """Return what comes next, None at the end of the program.
+
+        Raises:
+            ProgramError: a statement that cannot be executed.
+        """
+        if self._errors:
+            raise self._errors.pop(0)
+        try:
+            item: SourceItem | None = next(self._generator, None)
+        except (MacroError, ArithmeticError, TypeError, ValueError) as error:
+            self._explain(error)
+        if item is Pause.PAUSE:
+            self._pauses += 1
+            limit = self._language.longest_loop_pauses
+            if limit is not None and self._pauses > limit:
+                raise self._endless()
+        else:
+            self._pauses = 0
+        return item
+
+    def leave(self) -> bool:
+        """Leave nothing: programs that are called are those of the channel."""
+        return False
+
+    def close(self) -> None:
+        """End the program: its local variables are gone."""
+        if self._closed:
+            return
+        self._closed = True
+        self._generator.close()
+        language = self._language
+        if self._has_level:
+            language.variables.leave()
+        if self._by_code:
+            language.codes_off -= 1
+        if self._is_modal_call:
+            language.modal = self._outer_modal
+
+    # ------------------------------------------------------------------ the program's own calls
+
+    def _start(self, code: Code) -> Generator[Any, None, None]:
+        language = self._language
+        variables, system = language.variables, language.system
+        common, ranges = variables.common, variables.ranges
+        local = variables.local
+        system.program_number = self._compiled.number
+
+        def get(number: int) -> Value:
+            if 0 <= number <= LOCALS:
+                return local[number]
+            for first, last in ranges:
+                if first <= number <= last:
+                    return common[number]
+            system.modal_call = language.modal is not None
+            return system.read(number)
+
+        def put(number: int, value: Value) -> None:
+            if number > _COMMON_LAST:
+                system.write(number, value)
+            elif 1 <= number <= LOCALS:
+                local[number] = value if value is None else checked(value)
+            else:
+                variables.set(number, value)
+
+        names: dict[str, object] = {
+            **language.bindings(),
+            "PAUSE": Pause.PAUSE,
+            "RETURN": EndSource.RETURN,
+            "S": code.spans,
+            "T": code.texts,
+            "get": get,
+            "put": put,
+            "number": _number,
+            "waits": system.waits,
+            "checked": checked,
+            "negative": _negative,
+            "adp": self._with_point,
+            "alarm": _alarm,
+            "stop": _stop,
+            "label": _label,
+            "find": self._find,
+            "into_loop": _into_loop,
+            "block": self._block,
+            "call": self._call,
+            "sub": self._sub,
+            "modal": self._modal_call,
+        }
+        program = code.traced.load(names)["program"]
+        result: Generator[Any, None, None] = program(local, common, _Host(self))
+        return result
+
+    def skips(self, level: int) -> bool:
+        return level in self._language.channel.skip_levels
+
+    def increment(self, letter: str) -> float:
+        if letter in _WHOLE:
+            return 1.0
+        if letter == "G":
+            return _G_INCREMENT
+        if letter == "F":
+            return _FEED_DECIMALS
+        channel = self._language.channel
+        inch = _INCH_INCREMENT if channel.state.modal.whole[INCH] else 1.0
+        return channel.dialect.numbers.least_input * inch
+
+    def _with_point(self, value: float) -> float:
+        """Return what an argument without a decimal point is with one (ADP)."""
+        increment = self._language.channel.dialect.increment
+        return value / increment if increment else value
+
+    def _block(self, index: int, values: tuple[Value, ...]) -> WordsBlock:
+        code = self._compiled.code
+        assert code is not None
+        spec = code.blocks[index]
+        following = iter(values)
+        words = []
+        for word in spec.words:
+            if word.value is not None:
+                words.append(Word(word.letter, word.value, word.at, word.point))
+                continue
+            value = next(following)
+            if value is not None:
+                words.append(Word(word.letter, _nearest(value, self.increment(word.letter)), word.at, True))
+        return WordsBlock(tuple(words), spec.line, spec.offset, skip_level=spec.skip)
+
+    def behind(self, index: int) -> Iterator[SourceItem]:
+        """Give the call behind a block of words, if it moves."""
+        code = self._compiled.code
+        assert code is not None
+        spec = code.blocks[index]
+        if spec.skip and self.skips(spec.skip):
+            return
+        letters = [(word.letter, word.value or 0.0) for word in spec.words]
+        yield from self._modal_item(letters, spec.line, spec.offset)
+
+    def span(self, index: int) -> Iterator[SourceItem]:
+        """Give plain text line by line, with the call behind every move."""
+        code = self._compiled.code
+        assert code is not None
+        whole = code.spans[index]
+        assert isinstance(whole, TextSpan)
+        channel, text = self._language.channel, self._compiled.text
+        rules = channel.dialect.text_rules()
+        offset, line = whole.offset, whole.line
+        while offset < whole.end:
+            end = min(text.next_line(offset), whole.end)
+            yield TextSpan(offset, line, end)
+            block = scan_block(text, offset, line, rules)
+            if not (block.skip_level and self.skips(block.skip_level)):
+                letters = [(word.letter, word.value) for word in block.words]
+                yield from self._modal_item(letters, line, offset)
+            offset, line = end, line + 1
+
+    def _modal_item(self, letters: list[tuple[str, float]], line: int, offset: int) -> Iterator[SourceItem]:
+        modal = self._language.modal
+        axes = self._language.channel.state.axis_names
+        moves = any(letter in axes for letter, _ in letters)
+        if (
+            modal is None
+            or not moves
+            or any(letter == "G" and code in _NOT_A_MOVE for letter, code in letters)
+        ):
+            return
+        self._check_level()
+        yield CallProgram(
+            modal.program, line, offset, modal.repeats, Arguments(dict(modal.values), modal=True)
+        )
+
+    def _check_level(self) -> None:
+        if self._language.variables.level >= LEVELS:
+            raise MacroError(
+                f"macros are nested more than {LEVELS} deep", "Does a macro call itself?", "PS0122"
+            )
+
+    def _call(self, index: int, program: float, repeats: float, values: tuple[Value, ...]) -> CallProgram:
+        code = self._compiled.code
+        assert code is not None
+        self._check_level()
+        spec = code.calls[index]
+        arguments = Arguments(dict(zip(spec.numbers, values, strict=True)), by_code=spec.by_code)
+        return CallProgram(_program(program), spec.line, spec.offset, _repeats(repeats), arguments)
+
+    def _sub(self, index: int, program: float, repeats: float) -> CallProgram:
+        code = self._compiled.code
+        assert code is not None
+        spec = code.calls[index]
+        return CallProgram(
+            _program(program), spec.line, spec.offset, _repeats(repeats), Arguments(None, by_code=True)
+        )
+
+    def _modal_call(self, index: int, program: float, repeats: float, values: tuple[Value, ...]) -> _Modal:
+        code = self._compiled.code
+        assert code is not None
+        numbers = code.calls[index].numbers
+        return _Modal(_program(program), _repeats(repeats), dict(zip(numbers, values, strict=True)))
+
+    def _find(self, number: int, offset: int) -> tuple[int, int]:
+        code = self._compiled.code
+        assert code is not None
+        label = code.shape.find(number, offset)
+        if label is None:
+            raise MacroError(
+                f"there is no block N{number} in this program", "Check the block number.", "PS0128"
+            )
+        return label.region.number, label.region.targets[label.part]
+
+    # ------------------------------------------------------------------ errors
+
+    def _endless(self) -> ProgramError:
+        frame = getattr(self._generator, "gi_frame", None)
+        code = self._compiled.code
+        assert code is not None
+        at = 0 if frame is None else code.traced.places[frame.f_lineno - 1]
+        return _error(
+            self._compiled.text,
+            Flaw(at, "this loop goes on without end", "Nothing that it waits for can change here."),
+        )
+
+    def _explain(self, error: Exception) -> NoReturn:
+        code = self._compiled.code
+        assert code is not None
+        known = {self._compiled.name: code.traced}
+        frame: Frame[int] | None = frame_of(error, known.get)
+        if frame is None:
+            raise error
+        what, hint, number = _meaning(error)
+        raise _error(self._compiled.text, Flaw(frame.place, what, hint, code=number)) from error
+
+
+class _Host:
+    """What a compiled program sees of its source."""
+
+    def __init__(self, source: MacroSource) -> None:
+        self._language = source._language
+        self.main = source.main
+        self.skips = source.skips
+        self.span = source.span
+        self.behind = source.behind
+        self._increment = source.increment
+
+    @property
+    def modal(self) -> _Modal | None:
+        """The call behind every move."""
+        return self._language.modal
+
+    @modal.setter
+    def modal(self, modal: _Modal | None) -> None:
+        self._language.modal = modal
+
+    @property
+    def pending(self) -> int | None:
+        """The block that a called program wants its caller to go on with."""
+        return self._language.pending
+
+    def back_to(self, label: int) -> None:
+        """Let the caller go on with a block."""
+        self._language.pending = label
+
+    def taken(self) -> int | None:
+        """Return the block to go on with, and forget it."""
+        label, self._language.pending = self._language.pending, None
+        return label
+
+    def increments(self, value: float) -> float:
+        """Return a value in whole increments of a length (ROUND in an address)."""
+        return _nearest(value, self._increment("X"))
+
+
+def _nearest(value: float, increment: float) -> float:
+    """Return the nearest multiple of an increment, as it would be written in decimal digits."""
+    if abs(value) > 1e12:
+        return value
+    per_unit = round(1.0 / increment)
+    return rounded(value * per_unit + (1e-9 if value >= 0.0 else -1e-9)) / per_unit
+
+
+def _number(value: float) -> int:
+    if not -0.5 < value < 1e6:
+        raise MacroError(f"there is no variable #{value:g}", "See the table of variables.", "PS0115")
+    return int(rounded(value))
+
+
+def _negative(value: Value) -> Value:
+    return None if value is None else -value
+
+
+def _alarm(value: float, text: str) -> NoReturn:
+    if not 0 <= value <= _LARGEST_ALARM:
+        raise MacroError(f"#3000={value:g}: alarms are numbered 0 to 999", "Write 0 to 999.", "PS0119")
+    raise MacroError(
+        text or f"macro alarm {int(value)}",
+        "The program has raised this alarm.",
+        f"MC{_ALARM_BASE + int(value)}",
+    )
+
+
+def _stop(value: float, line: int, offset: int, text: str) -> WordsBlock:
+    return WordsBlock((Word("M", 0.0, offset, False),), line, offset, text or f"macro message {value:g}")
+
+
+def _label(value: float) -> int:
+    if not 0 <= value <= LARGEST_LABEL:
+        raise MacroError(f"{value:g} is no block number", "Check the value.", "PS0128")
+    return int(rounded(value))
+
+
+def _into_loop(number: int) -> NoReturn:
+    raise MacroError(
+        f"block N{number} is inside a loop", "Jump out of loops or inside them, never into one.", "PS0128"
+    )
+
+
+def _program(value: float) -> int:
+    number = rounded(value)
+    if not 0 < number <= LARGEST_LABEL:
+        raise MacroError(f"{value:g} is no program number", "Check P.", "PS0076")
+    return int(number)
+
+
+def _repeats(value: float) -> int:
+    number = rounded(value)
+    if not 0 <= number <= 9999:
+        raise MacroError(f"{value:g} is no number of repetitions", "Write L1 to L9999.", "PS0119")
+    return int(number)
+
+
+def _meaning(error: Exception) -> tuple[str, str, str]:
+    if isinstance(error, MacroError):
+        return error.what, error.hint, error.code
+    if isinstance(error, ZeroDivisionError):
+        return "a division by zero", "Check the divisor.", "PS0112"
+    return "this cannot be calculated", "Check the values.", "PS0119"
+
+
+def _error(text: ProgramText, flaw: Flaw) -> ProgramError:
+    return ProgramError(flaw.what, code=flaw.code, position=text.position(flaw.at), hint=flaw.hint)
+
+
+def _program_number(text: str, offset: int) -> int:
+    digits = text[offset : offset + 200].lstrip("% \t\r\n:Oo")[:8]
+    number = ""
+    for char in digits:
+        if not char.isdigit() or not char.isascii():
+            break
+        number += char
+    return int(number) if number else 0
+
+
+def language_for(dialect: Dialect) -> MacroLanguage | None:
+    """Return the language of a dialect for one run, None if it has none."""
+    return MacroLanguage() if dialect.macros else None

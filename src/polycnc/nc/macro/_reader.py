@@ -1,0 +1,589 @@
+"""Read the statements of custom macros, line by line; errors carry the control's alarm numbers."""
+
+from __future__ import annotations
+
+import re
+
+from polycnc.language import END as TEXT_END
+from polycnc.language import Flaw, Infix, Lexicon, Operators, Prefix, Tokens, read_expression, real_value
+from polycnc.nc.macro._calls import ABC, ARGUMENTS_I, FIRST_REPEATED, IJK, MOST_REPEATS, MacroCalls
+from polycnc.nc.macro._functions import FUNCTIONS
+from polycnc.nc.macro._syntax import (
+    Address,
+    Assignment,
+    Cancel,
+    End,
+    Expression,
+    Function,
+    Goto,
+    If,
+    Line,
+    MacroCall,
+    Number,
+    Restart,
+    Statement,
+    SubCall,
+    Variable,
+    While,
+    Words,
+)
+
+MOST_BRACKETS = 5
+LOOPS = 3
+LARGEST_LABEL = 99_999_999
+COMPARISONS = {"EQ": "==", "NE": "!=", "GT": ">", "LT": "<", "GE": ">=", "LE": "<="}
+_LARGEST_NUMBER = 1e15
+_FORMAT = "PS0114"
+_STATEMENT = "PS0125"
+_BLANKS = r"[ \t\x00\x0b\x0c\x11-\x14\x1a\x7f]"
+_WORDS = (
+    "WHILE", "GOTO", "THEN", "IF", "DO", "END", "DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN", "POW", "ADP", "PRM",
+    *COMPARISONS, "AND", "XOR", "OR", "MOD", *sorted(FUNCTIONS, key=len, reverse=True),
+)  # fmt: skip
+_LEXICON = Lexicon(
+    (
+        ("number", r"[0-9]+\.?[0-9]*|\.[0-9]+"),
+        ("word", "(?i:" + "|".join(_WORDS) + ")"),
+        ("letter", "[A-Za-z]"),
+        ("mark", r"[\[\]#=+\-*/,]"),
+    ),
+    skip=rf"(?:{_BLANKS}|\([^)\r\n]*\))*",
+    folded=("word", "letter"),
+    unfinished={
+        "(": ("the comment is not closed", "Write ')' at its end, on the same line."),
+    },
+)
+_OPERATORS = Operators(
+    infix={
+        **{name: Infix(1, single=True) for name in COMPARISONS},
+        "+": Infix(2), "-": Infix(2), "OR": Infix(2), "XOR": Infix(2),
+        "*": Infix(3), "/": Infix(3), "AND": Infix(3), "MOD": Infix(3),
+    },
+    prefix={"-": Prefix(4), "+": Prefix(4)},
+)  # fmt: skip
+_COMMENT = re.compile(r"\(([^)\r\n]*)\)")
+_UNSUPPORTED = {
+    "DPRNT": "output to a device", "BPRNT": "output to a device", "POPEN": "output to a device",
+    "PCLOS": "output to a device", "SETVN": "naming variables", "PRM": "reading parameters",
+}  # fmt: skip
+_MACRO_CALL, _MODAL_CALL, _MODAL_CALL_EACH, _CANCEL_MODAL = 65.0, 66.0, 66.1, 67.0
+_RETURN = 99.0
+
+
+class LineReader:
+    """Read lines of `text` (one character a byte). `calls` are codes that call programs, None in such a program."""
+
+    def __init__(self, text: str, calls: MacroCalls, *, repeats: bool) -> None:
+        self._text = text
+        self._calls = calls
+        self._repeats = repeats
+
+    def read(self, offset: int, end: int, line: int) -> Line:
+        """Read the line from `offset` up to its newline at `end`.
+
+        Raises:
+            Flaw: It is no statement.
+        """
+        text = self._text
+        try:
+            reader = _Statements(Tokens(_LEXICON, text, offset, end), text, offset, end)
+            reader.calls, reader.repeats = self._calls, self._repeats
+            return reader.line(line)
+        except Flaw as flaw:
+            flaw.code = flaw.code or _FORMAT
+            raise
+
+
+class _Statements:
+    """Read one line."""
+
+    calls = MacroCalls()
+    repeats = False
+
+    def __init__(self, tokens: Tokens, text: str, offset: int, end: int) -> None:
+        self._tokens = tokens
+        self._text = text
+        self._offset = offset
+        self._end = end
+        self._brackets = 0
+
+    def line(self, number: int) -> Line:
+        skip, label = self._skip(0), None
+        tokens = self._tokens
+        if tokens.token.word == "O" and tokens.token.kind == "letter":
+            tokens.step()
+            self._digits("the program number")
+        if tokens.token.word == "N" and tokens.token.kind == "letter":
+            tokens.step()
+            label = self._digits("the block number")
+            skip = self._skip(skip)
+        statements: list[Statement] = []
+        while tokens.token.kind != TEXT_END:
+            if statements and not (isinstance(statements[-1], Assignment) and tokens.token.word == "#"):
+                raise self._mixed(statements[-1])
+            statements.append(self._statement())
+        if statements and isinstance(statements[0], (While, End)) and skip:
+            raise Flaw(statements[0].at, "a loop cannot be skipped", "Take the '/' out.", code=_STATEMENT)
+        return Line(number, self._offset, label, skip, tuple(statements))
+
+    def _mixed(self, before: Statement) -> Flaw:
+        token = self._tokens.token
+        if token.kind == "letter":
+            return Flaw(
+                token.at,
+                "a macro statement and NC words in one block",
+                "Write them in two blocks.",
+                code="PS0127",
+            )
+        return Flaw(token.at, f"the statement does not go on with {token}", "Check it.", code=_STATEMENT)
+
+    def _skip(self, level: int) -> int:
+        tokens = self._tokens
+        if level or tokens.token.word != "/":
+            return level
+        tokens.step()
+        if tokens.token.kind == "number" and tokens.token.text in "123456789":
+            return int(tokens.step().text)
+        return 1
+
+    def _digits(self, what: str) -> int:
+        token = self._tokens.token
+        if token.kind != "number" or "." in token.text:
+            raise Flaw(token.at, f"{what} is missing before {token}", "Write digits.", code="PS0128")
+        return self._label(real_value(token), self._tokens.step().at)
+
+    @staticmethod
+    def _label(value: float, at: int) -> int:
+        if not 0 <= value <= LARGEST_LABEL or value != int(value):
+            raise Flaw(
+                at,
+                f"{value:g} is not a block number",
+                f"Write a whole number up to {LARGEST_LABEL}.",
+                code="PS0128",
+            )
+        return int(value)
+
+    # ------------------------------------------------------------------ statements
+
+    def _statement(self) -> Statement:
+        tokens = self._tokens
+        token = tokens.token
+        if token.word == "#":
+            return self._assignment()
+        if token.kind == "word":
+            if token.word in _UNSUPPORTED:
+                raise Flaw(
+                    token.at,
+                    f"{token.word} ({_UNSUPPORTED[token.word]}) is not supported yet",
+                    "Take it out.",
+                    code=_STATEMENT,
+                )
+            match token.word:
+                case "IF":
+                    return self._if()
+                case "GOTO":
+                    return self._goto()
+                case "WHILE":
+                    return self._while()
+                case "DO":
+                    tokens.step()
+                    return While(token.at, self._loop(), None)
+                case "END":
+                    tokens.step()
+                    return End(token.at, self._loop())
+        if token.kind == "letter":
+            return self._words()
+        raise Flaw(token.at, f"{token} begins no statement", "Check the block.", code=_STATEMENT)
+
+    def _assignment(self) -> Assignment:
+        at = self._tokens.token.at
+        target = self._variable()
+        if self._tokens.token.word != "=":
+            raise Flaw(
+                self._tokens.token.at,
+                f"'=' is missing before {self._tokens.token}",
+                "Write an assignment like #1=10.",
+                code=_STATEMENT,
+            )
+        self._tokens.step()
+        value = self._expression()
+        return Assignment(at, target, value, self._comment())
+
+    def _comment(self) -> str:
+        found = _COMMENT.search(self._text, self._tokens.behind, self._end)
+        return "" if found is None else found[1].strip()
+
+    def _if(self) -> If:
+        tokens = self._tokens
+        at = tokens.step().at
+        condition = self._condition("IF")
+        word = tokens.token.word
+        if word == "GOTO":
+            return If(at, condition, self._goto())
+        if word != "THEN":
+            raise Flaw(
+                tokens.token.at,
+                f"GOTO or THEN is missing before {tokens.token}",
+                "Write IF [...] GOTO 10, or IF [...] THEN #1=0.",
+                code=_STATEMENT,
+            )
+        tokens.step()
+        if tokens.token.word == "GOTO":
+            return If(at, condition, self._goto())
+        if tokens.token.word != "#":
+            raise Flaw(
+                tokens.token.at,
+                "behind THEN only an assignment may stand",
+                "Write IF [...] GOTO and jump over the block.",
+                code=_STATEMENT,
+            )
+        return If(at, condition, self._assignment())
+
+    def _condition(self, word: str) -> Expression:
+        token = self._tokens.token
+        if token.word != "[":
+            raise Flaw(
+                token.at,
+                f"'[' is missing behind {word}",
+                f"Write {word} [#1 EQ 0] ...",
+                code=_STATEMENT,
+            )
+        return self._bracket()
+
+    def _goto(self) -> Goto:
+        at = self._tokens.step().at
+        token = self._tokens.token
+        if token.kind == "number":
+            number = Number(token.at, float(self._digits("the block number")))
+            return Goto(at, number)
+        if token.word not in ("#", "["):
+            raise Flaw(
+                token.at, f"the block number is missing before {token}", "Write GOTO 10.", code=_STATEMENT
+            )
+        return Goto(at, self._expression(operand_only=True))
+
+    def _while(self) -> While:
+        tokens = self._tokens
+        at = tokens.step().at
+        condition = self._condition("WHILE")
+        if tokens.token.word != "DO":
+            raise Flaw(
+                tokens.token.at,
+                f"DO is missing before {tokens.token}",
+                "Write WHILE [...] DO 1.",
+                code=_STATEMENT,
+            )
+        tokens.step()
+        return While(at, self._loop(), condition)
+
+    def _loop(self) -> int:
+        token = self._tokens.token
+        if token.kind != "number" or token.text not in ("1", "2", "3"):
+            raise Flaw(
+                token.at,
+                f"{token} is not the number of a loop",
+                f"Loops are numbered 1 to {LOOPS}.",
+                code="PS0126",
+            )
+        return int(self._tokens.step().text)
+
+    # ------------------------------------------------------------------ words
+
+    def _words(self) -> Statement:
+        words: list[Address] = []
+        tokens = self._tokens
+        at = tokens.token.at
+        while tokens.token.kind == "letter":
+            letter = tokens.step()
+            if tokens.token.word == "=":
+                raise Flaw(
+                    tokens.token.at,
+                    f"'=' behind the address {letter.word}",
+                    f"Write {letter.word}#1, or {letter.word}[...].",
+                    code=_STATEMENT,
+                )
+            words.append(Address(letter.at, letter.word, self._expression(operand_only=True)))
+        return self._sorted(at, words)
+
+    def _sorted(self, at: int, words: list[Address]) -> Statement:
+        for index, word in enumerate(words):
+            code = _constant(word.value)
+            if word.letter == "G" and code is not None:
+                if code in (_MACRO_CALL, _MODAL_CALL, _MODAL_CALL_EACH):
+                    return self._macro_call(code, index, words)
+                if code == _CANCEL_MODAL:
+                    return Cancel(word.at, tuple(words[:index] + words[index + 1 :]))
+                if code in self.calls.g:
+                    return self._by_code(word, self.calls.g[code], index, words)
+            if word.letter == "M" and code is not None:
+                if code == _RETURN:
+                    return self._return(word, words)
+                if int(code) in self.calls.m and code == int(code):
+                    return self._by_code(word, self.calls.m[int(code)], index, words)
+                if int(code) in self.calls.m_sub and code == int(code):
+                    return self._sub_call(word, self.calls.m_sub[int(code)], words)
+            if word.letter == "T" and self.calls.t is not None:
+                return self._sub_call(word, self.calls.t, words, word.value)
+        return Words(at, tuple(words))
+
+    def _return(self, word: Address, words: list[Address]) -> Statement:
+        target = next((each for each in words if each.letter == "P"), None)
+        others = [each for each in words if each is not word and each is not target]
+        if target is None:
+            return Restart(word.at) if self.repeats and not others else Words(words[0].at, tuple(words))
+        if others:
+            raise Flaw(
+                others[0].at,
+                "M99 P and other words in one block",
+                "Write them in a block before.",
+                code=_STATEMENT,
+            )
+        return Goto(word.at, target.value, returns=True)
+
+    def _macro_call(self, code: float, index: int, words: list[Address]) -> MacroCall:
+        word = words[index]
+        if code == _MODAL_CALL_EACH:
+            raise Flaw(
+                word.at,
+                "G66.1 is not supported yet",
+                "Call the macro with G65 in each block.",
+                code=_STATEMENT,
+            )
+        program = repeats = None
+        arguments = []
+        for each in words[index + 1 :]:
+            if each.letter == "P" and program is None:
+                program = each.value
+            elif each.letter == "L" and repeats is None:
+                repeats = each.value
+            else:
+                arguments.append(each)
+        if program is None:
+            raise Flaw(
+                word.at,
+                f"G{code:g} without P",
+                f"Write G{code:g} P and the number of the macro.",
+                code="PS0076",
+            )
+        if index:
+            raise Flaw(
+                words[0].at,
+                f"words before G{code:g}",
+                f"G{code:g} comes first: all other words are arguments.",
+                code=_STATEMENT,
+            )
+        check_arguments(arguments)
+        return MacroCall(word.at, program, repeats, tuple(arguments), modal=code == _MODAL_CALL)
+
+    def _by_code(self, word: Address, program: int, index: int, words: list[Address]) -> MacroCall:
+        before = words[:index]
+        repeats = next((each.value for each in words if each.letter == "L"), None)
+        rest = [each for each in words[index + 1 :] if each.letter != "L"]
+        if word.letter == "M" and before:
+            raise Flaw(
+                before[0].at,
+                f"words before M{_constant(word.value):g}",
+                "An M code that calls a macro comes first.",
+                code=_STATEMENT,
+            )
+        check_arguments([each for each in rest if each.letter not in "GP"])
+        arguments = [each for each in rest if each.letter not in "G"]
+        return MacroCall(
+            word.at,
+            Number(word.at, float(program)),
+            repeats,
+            tuple(each for each in arguments if each.letter in ARGUMENTS_I),
+            tuple(before),
+            by_code=True,
+        )
+
+    def _sub_call(
+        self, word: Address, program: int, words: list[Address], tool: Expression | None = None
+    ) -> SubCall:
+        repeats = next((each.value for each in words if each.letter == "L"), None)
+        others = tuple(each for each in words if each is not word and each.letter != "L")
+        return SubCall(word.at, program, repeats, others, tool)
+
+    # ------------------------------------------------------------------ expressions
+
+    def _expression(self, operand_only: bool = False) -> Expression:
+        if operand_only:
+            if self._tokens.token.word in ("+", "-"):
+                return read_expression(self._tokens, _OPERATORS, self._plain_operand, 4)
+            return self._plain_operand()
+        return read_expression(self._tokens, _OPERATORS, self._operand)
+
+    def _plain_operand(self) -> Expression:
+        token = self._tokens.token
+        if token.kind == "number" or token.word in ("#", "["):
+            return self._operand()
+        if token.kind == "word" and (token.word in FUNCTIONS or token.word in ("POW", "ADP")):
+            raise Flaw(
+                token.at,
+                f"{token.word} right behind an address",
+                f"Write brackets around it: [{token.word}[...]].",
+                code=_FORMAT,
+            )
+        raise Flaw(
+            token.at, f"a number is missing before {token}", "Write a number, #1 or [...].", code=_FORMAT
+        )
+
+    def _operand(self) -> Expression:
+        tokens = self._tokens
+        token = tokens.token
+        if token.kind == "number":
+            value = real_value(token, _LARGEST_NUMBER)
+            tokens.step()
+            return Number(token.at, value, "." in token.text)
+        if token.word == "#":
+            return self._variable()
+        if token.word == "[":
+            return self._bracket()
+        if token.kind == "word" and token.word in FUNCTIONS:
+            return self._function()
+        if token.word == "POW":
+            tokens.step()
+            return Function(token.at, "POW", self._list(2))
+        if token.word == "ADP":
+            tokens.step()
+            (argument,) = self._list(1)
+            if not isinstance(argument, Variable) or not 1 <= argument.number <= 33:
+                raise Flaw(token.at, "ADP takes a local variable", "Write ADP[#1].", code=_FORMAT)
+            return Function(token.at, "ADP", (argument,))
+        if token.word in _UNSUPPORTED:
+            raise Flaw(token.at, f"{token.word} is not supported yet", "Take it out.", code=_FORMAT)
+        raise Flaw(
+            token.at,
+            f"a value is missing before {token}",
+            "Write a number, a variable, a function or brackets.",
+            code=_FORMAT,
+        )
+
+    def _variable(self) -> Variable:
+        tokens = self._tokens
+        at = tokens.step().at
+        token = tokens.token
+        if token.kind == "number":
+            if "." in token.text:
+                raise Flaw(
+                    token.at,
+                    f"{token} is no number of a variable",
+                    "Write it without a point.",
+                    code="PS0115",
+                )
+            number = real_value(token, _LARGEST_NUMBER)
+            tokens.step()
+            return Variable(at, int(number))
+        if token.word == "[":
+            return Variable(at, -1, self._bracket())
+        raise Flaw(
+            token.at,
+            f"the number of the variable is missing before {token}",
+            "Write #1, or #[...] with an expression.",
+            code=_FORMAT,
+        )
+
+    def _function(self) -> Function:
+        tokens = self._tokens
+        name = tokens.step()
+        (argument,) = self._list(1)
+        if name.word == "ATAN":
+            if tokens.token.word == "/" and self._bracket_follows():
+                tokens.step()
+                return Function(name.at, "ATAN2", (argument, self._bracket()))
+            if tokens.token.word == ",":
+                raise Flaw(tokens.token.at, "ATAN with a comma", "Write ATAN[...]/[...].", code=_FORMAT)
+        return Function(name.at, name.word, (argument,))
+
+    def _bracket_follows(self) -> bool:
+        return self._text[self._tokens.next_at : self._end].lstrip(" \t").startswith("[")
+
+    def _bracket(self) -> Expression:
+        return self._list(1)[0]
+
+    def _list(self, count: int) -> tuple[Expression, ...]:
+        tokens = self._tokens
+        token = tokens.token
+        if token.word != "[":
+            raise Flaw(token.at, f"'[' is missing before {token}", "Write brackets.", code=_FORMAT)
+        if self._brackets >= MOST_BRACKETS:
+            raise Flaw(
+                token.at,
+                f"more than {MOST_BRACKETS} brackets inside each other",
+                "Keep a part in a variable.",
+                code="PS0118",
+            )
+        self._brackets += 1
+        tokens.step()
+        found = [self._expression()]
+        while len(found) < count and tokens.token.word == ",":
+            tokens.step()
+            found.append(self._expression())
+        if tokens.token.word != "]" or len(found) < count:
+            missing = "']'" if len(found) == count else "','"
+            raise Flaw(
+                tokens.token.at,
+                f"{missing} is missing before {tokens.token}",
+                "Check the brackets.",
+                code=_FORMAT,
+            )
+        tokens.step()
+        self._brackets -= 1
+        return tuple(found)
+
+
+def check_arguments(arguments: list[Address]) -> None:
+    """Refuse what cannot be an argument.
+
+    Raises:
+        Flaw: An address that has no local variable, or one that stands twice in the first form.
+    """
+    argument_numbers(arguments)
+
+
+def argument_numbers(arguments: list[Address] | tuple[Address, ...]) -> list[int]:
+    """Return the local variable of each argument.
+
+    I, J and K that repeat, or stand out of their order, are the second form; a number given twice counts last.
+
+    Raises:
+        Flaw: An address that has no local variable, more repetitions than there are variables.
+    """
+    numbers = []
+    seen: set[str] = set()
+    row, last = 0, -1
+    repeated = _repeats(arguments)
+    for word in arguments:
+        letter = word.letter
+        if letter not in ARGUMENTS_I:
+            raise Flaw(
+                word.at,
+                f"{letter} cannot be an argument of a macro",
+                "G, L, N, O and P have no local variable.",
+                code="PS0129" if letter == "G" else "PS0119",
+            )
+        if repeated and letter in IJK:
+            place = IJK.index(letter)
+            if place <= last:
+                row += 1
+            last = place
+            if row >= MOST_REPEATS:
+                raise Flaw(
+                    word.at, f"{letter} for the 11th time", "I, J and K repeat up to 10 times.", code="PS0129"
+                )
+            numbers.append(FIRST_REPEATED + 3 * row + place)
+            continue
+        if letter in seen:
+            raise Flaw(word.at, f"the argument {letter} stands twice", "Write it once.", code="PS0129")
+        seen.add(letter)
+        numbers.append(ABC.get(letter, ARGUMENTS_I[letter]))
+    return numbers
+
+
+def _repeats(arguments: list[Address] | tuple[Address, ...]) -> bool:
+    letters = [word.letter for word in arguments if word.letter in IJK]
+    return len(set(letters)) < len(letters)
+
+
+def _constant(value: Expression) -> float | None:
+    return value.value if isinstance(value, Number) else None

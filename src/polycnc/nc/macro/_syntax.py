@@ -1,0 +1,165 @@
+"""What a program with macro statements consists of: lines of statements, and stretches of plain text between them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from polycnc.language import Tree
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number as it stands."""
+
+    at: int
+    value: float
+    point: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A variable by its number, or by an expression that gives the number."""
+
+    at: int
+    number: int
+    index: Expression | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function and what it is applied to."""
+
+    at: int
+    name: str
+    arguments: tuple[Expression, ...]
+
+
+Expression: TypeAlias = Tree[Number | Variable | Function]
+
+
+@dataclass(frozen=True, slots=True)
+class Assignment:
+    """`#1=...`; `text` is the comment behind it, which is the text of an alarm or a message."""
+
+    at: int
+    target: Variable
+    value: Expression
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Goto:
+    """`GOTO n`, or M99 P n; `target` is the block number."""
+
+    at: int
+    target: Expression
+    returns: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class If:
+    """`IF [...] GOTO n` or `IF [...] THEN #1=...`."""
+
+    at: int
+    condition: Expression
+    then: Assignment | Goto
+
+
+@dataclass(frozen=True, slots=True)
+class While:
+    """`WHILE [...] DO m`, `DO m` without a condition."""
+
+    at: int
+    loop: int
+    condition: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """`END m`."""
+
+    at: int
+    loop: int
+
+
+@dataclass(frozen=True, slots=True)
+class Address:
+    """A word of an NC block: its letter and the expression of its number, `missing` an address without one."""
+
+    at: int
+    letter: str
+    value: Expression
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """An NC block with something to calculate."""
+
+    at: int
+    words: tuple[Address, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class MacroCall:
+    """`G65 P...` (`modal` False) or `G66 P...`, or a code that calls `program`; `arguments` as they stand."""
+
+    at: int
+    program: Expression
+    repeats: Expression | None
+    arguments: tuple[Address, ...]
+    before: tuple[Address, ...] = ()
+    modal: bool = False
+    by_code: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SubCall:
+    """An M or T code that calls a sub-program without arguments, behind the other words of its block."""
+
+    at: int
+    program: int
+    repeats: Expression | None
+    words: tuple[Address, ...]
+    tool: Expression | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Cancel:
+    """`G67`, behind the other words of its block."""
+
+    at: int
+    words: tuple[Address, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Restart:
+    """M99 in a main program that repeats."""
+
+    at: int
+
+
+Statement: TypeAlias = Assignment | Goto | If | While | End | Words | MacroCall | SubCall | Cancel | Restart
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """One line of statements: its number, where it begins, its block number and the level of its skip mark."""
+
+    line: int
+    offset: int
+    label: int | None
+    skip: int
+    statements: tuple[Statement, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Lines of plain text from byte `offset` to byte `end`."""
+
+    line: int
+    offset: int
+    end: int
+
+
+Part: TypeAlias = Line | Span

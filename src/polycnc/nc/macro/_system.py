@@ -1,0 +1,274 @@
+"""The system variables of custom macros: what the control and the machine are doing, by number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import datetime
+
+from polycnc.nc._channel import Channel
+from polycnc.nc.blocks._modal import (
+    ABSOLUTE,
+    EXACT_STOP,
+    FEED_MODE,
+    FEED_NUMBER,
+    INCH,
+    MOTION,
+    PLANE,
+)
+from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
+from polycnc.nc.macro._variables import MacroError, Value, no_variable
+
+_AXES = 8
+_SINGLE_BLOCK, _FEED_CONTROL, _SETTINGS, _MIRRORS = 3003, 3004, 3005, 3007
+_TIMER_MS, _TIMER_H, _DATE, _TIME = 3001, 3002, 3011, 3012
+_PARTS, _PARTS_REQUIRED = 3901, 3902
+_STORED = frozenset({_SINGLE_BLOCK, _FEED_CONTROL, _SETTINGS, _PARTS, _PARTS_REQUIRED})
+_TIMERS = frozenset({_TIMER_MS, _TIMER_H, _DATE, _TIME})
+_BLOCK_END, _MACHINE, _WORK, _SKIP, _LENGTH, _DEVIATION = 5001, 5021, 5041, 5061, 5081, 5101
+_POSITIONS = (_BLOCK_END, _MACHINE, _WORK, _SKIP, _LENGTH, _DEVIATION)
+_FEED_MODES = (94.0, 95.0, 93.0)
+_PLANES = (17.0, 18.0, 19.0)
+_TOOL_FIELDS = ("wear_length_mm", "length_mm", "wear_radius_mm", "radius_mm")
+_ADDITIONAL, _ADDITIONAL_LONG = 7001, 14001
+_MODAL, _EXECUTED = 4000, 4200
+_CYCLES = {
+    "cycle_chip_break": 73.0, "cycle_tap_left": 74.0, "cycle_fine_bore": 76.0, "cycle_drill": 81.0,
+    "cycle_dwell": 82.0, "cycle_deep": 83.0, "cycle_tap": 84.0, "cycle_bore": 85.0, "cycle_bore_stop": 86.0,
+    "cycle_back_bore": 87.0, "cycle_bore_manual": 88.0, "cycle_bore_dwell": 89.0,
+}  # fmt: skip
+_MODAL_NUMBERS = frozenset(
+    {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 22, 107, 109, 111, 113, 115, 119, 120, 130}
+)
+
+
+class SystemVariables:
+    """Read and write the system variables of the channel that a language is attached to.
+
+    `clock` gives date and time; without it they are those of the machine's clock. A control with more
+    variables derives from this and asks here for the rest.
+    """
+
+    def __init__(self, clock: Callable[[], datetime] | None = None) -> None:
+        self._clock = clock
+        self._channel: Channel | None = None
+        self._stored: dict[int, Value] = {}
+        self._timers: dict[int, tuple[float, float]] = {}
+        self.modal_call = False
+        self.program_number = 0
+
+    def attach(self, channel: Channel) -> None:
+        """Work for a channel."""
+        self._channel = channel
+
+    @property
+    def channel(self) -> Channel:
+        """The channel."""
+        assert self._channel is not None
+        return self._channel
+
+    def has(self, number: int) -> bool:
+        """Tell whether there is a variable."""
+        return (
+            number in _STORED
+            or number in _TIMERS
+            or number == _MIRRORS
+            or self._position(number) is not None
+            or self._tool(number) is not None
+            or self._offset(number) is not None
+            or (number - _MODAL in _MODAL_NUMBERS or number - _EXECUTED in _MODAL_NUMBERS)
+        )
+
+    def waits(self, number: int) -> bool:
+        """Tell whether reading or writing waits until all blocks before have been executed."""
+        place = self._position(number)
+        if place is not None:
+            return place[0] not in (_BLOCK_END, _LENGTH)
+        return (
+            number in _TIMERS or number in (_PARTS, _PARTS_REQUIRED) or number - _EXECUTED in _MODAL_NUMBERS
+        )
+
+    def read(self, number: int) -> Value:
+        """Return a variable.
+
+        Raises:
+            MacroError: There is none of this number.
+        """
+        if number in _STORED:
+            return self._stored.get(number, 0.0)
+        if number in _TIMERS:
+            return self._time(number)
+        if number == _MIRRORS:
+            frame = self.channel.state.frame
+            return float(sum(1 << axis for axis in frame.mirrors))
+        if (place := self._position(number)) is not None:
+            return self._read_position(*place)
+        if (tool := self._tool(number)) is not None:
+            return self._length(float(getattr(self.channel.state.tables.tool(tool[0]), tool[1])))
+        if (offset := self._offset(number)) is not None:
+            return self.channel.state.tables.work_offset(offset[0])[offset[1]] / self._scale(offset[1])
+        for base in (_MODAL, _EXECUTED):
+            if number - base in _MODAL_NUMBERS:
+                return self._modal(number - base)
+        raise no_variable(number)
+
+    def write(self, number: int, value: Value) -> None:
+        """Set a variable; a vacant value counts as 0.
+
+        Raises:
+            MacroError: There is none of this number, or it can only be read.
+        """
+        new = 0.0 if value is None else value
+        if number in _STORED:
+            self._stored[number] = new
+        elif number in (_TIMER_MS, _TIMER_H):
+            self._timers[number] = (self.channel.machine.time_s, new)
+        elif (tool := self._tool(number)) is not None:
+            inch = 25.4 if self.channel.state.modal.whole[INCH] else 1.0
+            self.channel.state.tables.set_tool(tool[0], **{tool[1]: new * inch})
+        elif (offset := self._offset(number)) is not None:
+            state = self.channel.state
+            state.tables.set_offset(offset[0], {offset[1]: new * self._scale(offset[1])})
+            state.coordinates.take_changes()
+        elif self.has(number):
+            raise MacroError(f"#{number} can only be read", "Write another variable.", "PS0116")
+        else:
+            raise no_variable(number)
+
+    # ------------------------------------------------------------------ where a number leads
+
+    def _axes(self) -> int:
+        return len(self.channel.state.axis_names)
+
+    def _position(self, number: int) -> tuple[int, int] | None:
+        for base in _POSITIONS:
+            if base <= number < base + min(_AXES, self._axes()):
+                return base, number - base
+        return None
+
+    def _tool(self, number: int) -> tuple[int, str] | None:
+        if 2001 <= number <= 2400:
+            group, tool = divmod(number - 2001, 200)
+            return tool + 1, _TOOL_FIELDS[group]
+        group, tool = divmod(number - 10_000, 1000)
+        if 0 <= group < len(_TOOL_FIELDS) and tool:
+            return tool, _TOOL_FIELDS[group]
+        return None
+
+    def _offset(self, number: int) -> tuple[str, int] | None:
+        axes = self._axes()
+        if 5201 <= number <= 5340:
+            group, axis = divmod(number - 5201, 20)
+            found = COMMON_OFFSET if group == 0 else f"G{53 + group}", axis
+        elif 2500 <= number <= 2899 and number % 100 <= 6:
+            axis, group = divmod(number - 2500, 100)
+            found = COMMON_OFFSET if group == 0 else f"G{53 + group}", axis
+        elif _ADDITIONAL <= number < _ADDITIONAL + 48 * 20:
+            group, axis = divmod(number - _ADDITIONAL, 20)
+            found = additional_offset(group + 1), axis
+        elif _ADDITIONAL_LONG <= number < _ADDITIONAL_LONG + 300 * 20:
+            group, axis = divmod(number - _ADDITIONAL_LONG, 20)
+            found = additional_offset(group + 1), axis
+        else:
+            return None
+        return found if found[1] < min(axes, _AXES) else None
+
+    # ------------------------------------------------------------------ values
+
+    def _scale(self, axis: int) -> float:
+        return float(self.channel.state.modal.scale[axis])
+
+    def _length(self, length_mm: float) -> float:
+        return length_mm / 25.4 if self.channel.state.modal.whole[INCH] else length_mm
+
+    def _time(self, number: int) -> float:
+        now_s = self.channel.machine.time_s
+        if number in (_TIMER_MS, _TIMER_H):
+            begun_s, value = self._timers.get(number, (0.0, 0.0))
+            unit_s = 0.001 if number == _TIMER_MS else 3600.0
+            return value + (now_s - begun_s) / unit_s
+        now = self._clock() if self._clock else self.channel.machine.clock.now
+        if number == _DATE:
+            return float(now.year * 10_000 + now.month * 100 + now.day)
+        return float(now.hour * 10_000 + now.minute * 100 + now.second)
+
+    def _read_position(self, base: int, axis: int) -> float:
+        state = self.channel.state
+        modal = state.modal
+        scale = self._scale(axis)
+        length = float(state.coordinates.length[axis])
+        zero = float(modal.offset[axis]) - length
+        machine = self.channel.machine.state
+        match base:
+            case 5001:
+                return (float(modal.position[axis]) - float(modal.offset[axis])) / scale
+            case 5021:
+                return float(machine.setpoint[axis]) / scale
+            case 5041:
+                return (float(machine.setpoint[axis]) - zero) / scale
+            case 5061:
+                skipped = state.skip_position
+                at = float(machine.setpoint[axis]) if skipped is None else skipped[axis]
+                return (at - zero) / scale
+            case 5081:
+                return length / scale
+            case _:
+                return (float(machine.setpoint[axis]) - float(machine.servo.actual[axis])) / scale
+
+    def _modal(self, number: int) -> Value:
+        state = self.channel.state
+        whole = state.modal.whole
+        coordinates, frame = state.coordinates, state.frame
+        work = coordinates.work[0]
+        match number:
+            case 1:
+                return float(max(int(whole[MOTION]), 0))
+            case 2:
+                return _PLANES[int(whole[PLANE])]
+            case 3:
+                return 90.0 if whole[ABSOLUTE] else 91.0
+            case 5:
+                return _FEED_MODES[int(whole[FEED_MODE])]
+            case 6:
+                return 20.0 if whole[INCH] else 21.0
+            case 7:
+                return {1: 41.0, -1: 42.0}.get(state.side, 40.0)
+            case 8:
+                return {1: 43.0, -1: 44.0}.get(coordinates.length_sign, 49.0)
+            case 9:
+                return _CYCLES.get(state.cycle.action, 80.0)
+            case 10:
+                return 98.0 if state.cycle.retract_to_initial else 99.0
+            case 11:
+                return 51.0 if frame.scaled else 50.0
+            case 12:
+                return 66.0 if self.modal_call else 67.0
+            case 13:
+                return 96.0 if state.spindle.surface_speed else 97.0
+            case 14:
+                return 54.1 if ".P" in work else float(work[1:] or 53)
+            case 15:
+                return 61.0 if whole[EXACT_STOP] else 64.0
+            case 16:
+                return 68.0 if frame.rotated else 69.0
+            case 17:
+                return 16.0 if frame.polar else 15.0
+            case 22:
+                return 51.1 if frame.mirrors else 50.1
+            case 107:
+                return float(state.compensation_tool or 0)
+            case 109:
+                return float(state.modal.real[FEED_NUMBER])
+            case 111:
+                return float(state.length_tool)
+            case 113:
+                return float(state.m_codes[-1]) if state.m_codes else 0.0
+            case 115:
+                return float(self.program_number)
+            case 119:
+                return state.spindle.speed
+            case 120:
+                return float(state.selected_tool)
+            case 130:
+                return float(work.partition(".P")[2] or 0)
+            case _:
+                return 0.0

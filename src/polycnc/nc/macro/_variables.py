@@ -1,0 +1,158 @@
+"""The variables of custom macros: local, common and permanent, each with a number, each a float or vacant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final, Literal, TypeAlias
+
+Value: TypeAlias = float | None
+"""What a variable holds: None is vacant (`<null>` on the control's screen)."""
+MacroType: TypeAlias = Literal["a", "b", "c"]
+Kind: TypeAlias = Literal["null", "local", "common", "permanent"]
+
+LOCALS = 33
+LEVELS = 4
+"""How deep macros may be nested below the main program, each level with its own local variables."""
+LARGEST = 1e47
+"""Variables hold numbers below this (the control's range is about +-10**47)."""
+
+_RANGES: Final[Mapping[str, tuple[tuple[int, int], ...]]] = {
+    "a": ((100, 149), (500, 531)),
+    "b": ((100, 199), (500, 999)),
+    "c": ((100, 199), (500, 699)),
+}
+_FIRST_PERMANENT = 500
+_SIZE = 1000
+
+
+class MacroError(Exception):
+    """A statement that cannot be executed: what is wrong, what to do, and the control's alarm number."""
+
+    def __init__(self, what: str, hint: str = "", code: str = "") -> None:
+        super().__init__(what)
+        self.what = what
+        self.hint = hint
+        self.code = code
+
+
+class MacroVariables:
+    """Hold the variables of one control; `common` is the macro type that the control has.
+
+    Type "a" has #100 to #149 and #500 to #531, "b" #100 to #199 and #500 to #999, "c" #100 to #199 and #500 to
+    #699. Programs write the lists directly, so `revision` counts only what came through `set` and `restore`.
+    """
+
+    def __init__(self, common: MacroType = "b") -> None:
+        self.ranges = _RANGES[common]
+        self.revision = 0
+        self.common: list[Value] = [None] * _SIZE
+        self._levels: list[list[Value]] = [_vacant()]
+
+    @property
+    def level(self) -> int:
+        """How deep macros are nested now: 0 is the main program."""
+        return len(self._levels) - 1
+
+    @property
+    def local(self) -> list[Value]:
+        """The local variables of the macro that runs; the index is the number."""
+        return self._levels[-1]
+
+    def locals_of(self, level: int) -> list[Value]:
+        """Return the local variables of a level; the index is the number."""
+        return self._levels[level]
+
+    def enter(self, values: Mapping[int, Value]) -> None:
+        """Begin a macro with these local variables."""
+        level = _vacant()
+        for number, value in values.items():
+            level[number] = value
+        self._levels.append(level)
+
+    def leave(self) -> None:
+        """End the macro that was entered last: its local variables are gone."""
+        if len(self._levels) > 1:
+            self._levels.pop()
+
+    def kind(self, number: int) -> Kind | None:
+        """Return what sort of variable a number is, None if this control has none (or it is a system variable)."""
+        if number == 0:
+            return "null"
+        if 1 <= number <= LOCALS:
+            return "local"
+        if any(first <= number <= last for first, last in self.ranges):
+            return "permanent" if number >= _FIRST_PERMANENT else "common"
+        return None
+
+    def get(self, number: int) -> Value:
+        """Return a variable.
+
+        Raises:
+            MacroError: There is none of this number.
+        """
+        if 1 <= number <= LOCALS:
+            return self._levels[-1][number]
+        if number and self.kind(number) is None:
+            raise no_variable(number)
+        return self.common[number]
+
+    def set(self, number: int, value: Value) -> None:
+        """Give a variable a value, None to make it vacant.
+
+        Raises:
+            MacroError: There is none of this number, it is #0, or the value is beyond the control's range.
+        """
+        kind = self.kind(number)
+        if kind is None:
+            raise no_variable(number)
+        if kind == "null":
+            raise MacroError("#0 is always vacant and cannot be written", "Write another variable.", "PS0116")
+        if value is not None:
+            value = checked(float(value))
+        if kind == "local":
+            self._levels[-1][number] = value
+        else:
+            self.common[number] = value
+        self.revision += 1
+
+    def clear_common(self) -> None:
+        """Make #100 to #199 vacant, as switching the control on does."""
+        self.common[:_FIRST_PERMANENT] = [None] * _FIRST_PERMANENT
+
+    def clear_locals(self) -> None:
+        """Leave all macros and make the local variables of the main program vacant, as a reset does."""
+        self._levels[:] = [_vacant()]
+
+    def permanent(self) -> dict[int, float]:
+        """Return the variables from #500 on that are not vacant, to be kept."""
+        return {
+            number: value
+            for number, value in enumerate(self.common)
+            if number >= _FIRST_PERMANENT and value is not None
+        }
+
+    def restore(self, values: Mapping[int, float]) -> None:
+        """Take over what `permanent` gave; all other variables from #500 on become vacant."""
+        self.common[_FIRST_PERMANENT:] = [None] * (_SIZE - _FIRST_PERMANENT)
+        for number, value in values.items():
+            self.set(number, value)
+
+
+def no_variable(number: int) -> MacroError:
+    """Return the error for a number that is no variable."""
+    return MacroError(f"there is no variable #{number}", "See the table of variables.", "PS0115")
+
+
+def checked(value: float) -> float:
+    """Return a value that a variable can hold.
+
+    Raises:
+        MacroError: It is too large, or no number.
+    """
+    if not -LARGEST < value < LARGEST:
+        raise MacroError("the value is too large for a variable", "Variables hold up to 1e47.", "PS0111")
+    return value
+
+
+def _vacant() -> list[Value]:
+    return [None] * (LOCALS + 1)

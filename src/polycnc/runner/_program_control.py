@@ -1,0 +1,128 @@
+"""The control that executes the language of a program, where it holds more than NC blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+from polycnc.cnc import ProgramRun
+from polycnc.errors import ProgramError, UsageError
+from polycnc.machine import Machine
+from polycnc.nc import Dialect, Language, ProgramText
+from polycnc.runner._files import check_output
+
+
+class Screen(Protocol):
+    """What a control shows, to be kept in a file."""
+
+    def save(self, path: Path) -> None:
+        """Write the screen to a file, in the format that its name ends with."""
+
+
+class ProgramControl(Protocol):
+    """What executes the statements of one program."""
+
+    @property
+    def language(self) -> Language:
+        """The language for the channel of the run."""
+
+    @property
+    def screen(self) -> Screen:
+        """What the program has put on the screen."""
+
+    def attach(self, run: ProgramRun) -> None:
+        """Take the run whose channel executes the program."""
+
+    def check(self, program: ProgramText) -> list[ProgramError]:
+        """Return everything that is wrong with a program without running it."""
+
+    def wakes_in_s(self) -> float | None:
+        """Return when the WAIT of the program ends at the latest (s from now, may be inf), None if it is in none."""
+
+    def stuck(self) -> ProgramError | None:
+        """Return the error of a program that waits for what will not come."""
+
+    def finish(self) -> None:
+        """End everything that does not outlive a program, and keep what does."""
+
+    def variables(self) -> dict[str, object]:
+        """Return the variables that outlive the program's lines, by name."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """Where a program runs: the control's root, the keys that are pressed, the blocks that are left out."""
+
+    root: Path
+    keys: tuple[str, ...] = ()
+    skip_levels: frozenset[int] = frozenset()
+
+
+def control_for(
+    dialect: Dialect, program: ProgramText, machine: Machine, surroundings: Surroundings
+) -> ProgramControl | None:
+    """Return the control that executes a program's language, None if it holds NC blocks only."""
+    make = _CONTROLS.get(dialect.language)
+    return None if make is None else make(program, machine, surroundings)
+
+
+def root_of(program: str | Path | ProgramText, root: str | Path | None) -> Path:
+    """Return the root of the control: a folder that is given, else that of the program.
+
+    Raises:
+        UsageError: There is no such folder.
+    """
+    if root is None:
+        name = program.name if isinstance(program, ProgramText) else str(program)
+        is_text = "\n" in name or "\r" in name
+        return Path.cwd() if is_text else Path(name).parent
+    if not Path(root).is_dir():
+        raise UsageError(f"no such folder: {root}", hint="Make it first; it holds the files of the control.")
+    return Path(root)
+
+
+def read_keys(path: str | Path) -> tuple[str, ...]:
+    """Read the keys that are pressed, one a line.
+
+    Raises:
+        UsageError: The file cannot be read.
+    """
+    try:
+        lines = Path(path).read_text("utf-8").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"no keys can be read from {path}: {error}", hint="Write one key a line.") from None
+    return tuple(line if line == " " else line.strip() for line in lines if line)
+
+
+def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> ProgramControl | None:
+    from polycnc.nc.cpl import holds_cpl
+
+    if not holds_cpl(program.content):
+        return None
+    from polycnc.controllers.bosch import Pnc
+
+    return Pnc(
+        surroundings.root,
+        machine.clock,
+        program=program.name,
+        keys=surroundings.keys,
+        skip_levels=surroundings.skip_levels,
+    )
+
+
+_CONTROLS: dict[str, Callable[[ProgramText, Machine, Surroundings], ProgramControl | None]] = {"cpl": _cpl}
+"""The controls by the language that a dialect names."""
+
+
+SCREEN_FORMATS = (".txt", ".svg", ".png")
+
+
+def check_screen_file(path: str | Path) -> None:
+    """Check that a screen can be kept under a name.
+
+    Raises:
+        UsageError: No format has this ending, or the place is wrong.
+    """
+    check_output(path, SCREEN_FORMATS, "a screen")

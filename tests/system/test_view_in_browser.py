@@ -1,0 +1,177 @@
+"""The page of `polycnc view` in a real browser: what a user sees and does, against the trace of the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+import polycnc
+from support.browser import browser
+from support.command import polycnc as command
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+WAIT_MS = 90_000
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    with browser() as running:
+        yield running
+
+
+class Opened:
+    """A view in the browser, and the trace of the same run."""
+
+    def __init__(self, chromium: Any, folder: Path, part: str, machine: str, **page: Any) -> None:
+        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html")
+        result = polycnc.run(EXAMPLES / part, machine, trace=True)
+        assert result.trace is not None
+        self.trace = result.trace
+        self.requests: list[str] = []
+        self.errors: list[str] = []
+        self.page = chromium.new_page(**{"viewport": {"width": 1280, "height": 800}, **page})
+        self.page.on("request", lambda request: self.requests.append(request.url))
+        self.page.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.page.goto((folder / "part.html").as_uri())
+        self.page.wait_for_selector("html[data-ready=yes]", timeout=WAIT_MS)
+
+    def cell(self, name: str) -> str:
+        return str(self.page.locator(f'#readout dd[data-of="{name}"]').inner_text())
+
+    @property
+    def time_s(self) -> float:
+        return float(self.cell("time").split()[0])
+
+    def slide(self, part: float) -> None:
+        """Drag the thumb of the slider with the mouse."""
+        slider = self.page.locator("#slider").bounding_box()
+        now = float(self.page.locator("#slider").evaluate("s => s.value / s.max"))
+        inner = slider["width"] - 16.0  # the thumb is 16 wide
+        y = slider["y"] + slider["height"] / 2.0
+        self.page.mouse.move(slider["x"] + 8.0 + now * inner, y)
+        self.page.mouse.down()
+        self.page.mouse.move(slider["x"] + 8.0 + part * inner, y, steps=3)
+        self.page.mouse.up()
+
+    def marker(self) -> list[float]:
+        """Return where the tool is drawn: x, y and z of the picture."""
+        found = self.page.evaluate(
+            "() => ['x', 'y', 'z'].map((n) => document.getElementById('tool').data[0][n][0])"
+        )
+        return [float(value) for value in found]
+
+    def row_at(self) -> int:
+        return int(np.searchsorted(self.trace.t_s, self.time_s))
+
+    def assert_agrees(self, drawn: tuple[int | None, int | None, int | None]) -> None:
+        """Compare readout, picture and lit line with the trace; the clock of the page is read to 1 ms."""
+        row = self.row_at()
+        near = slice(max(row - 1, 0), row + 2)
+        for i, (axis, marked) in enumerate(zip(self.trace.axes, self.trace.units, strict=True)):
+            assert marked == "mm"
+            shown = float(self.cell(axis).split()[0])
+            low, high = np.min(self.trace.setpoint[near, i]), np.max(self.trace.setpoint[near, i])
+            assert low - 0.006 <= shown <= high + 0.006, axis
+            if i in drawn:
+                assert self.marker()[drawn.index(i)] == pytest.approx(shown, abs=6e-4)
+        lit = self.page.locator(".row.lit b").inner_text()
+        assert int(lit) == int(self.cell("line"))
+        assert int(lit) in self.trace.block[near].tolist()
+
+    def close(self) -> None:
+        assert [url for url in self.requests if not url.startswith(("file:", "blob:", "data:"))] == []
+        assert len([url for url in self.requests if url.startswith("file:")]) == 1
+        assert self.errors == []
+        self.page.close()
+
+
+@pytest.mark.parametrize(
+    ("part", "machine", "drawn"),
+    [("bracket.nc", "mill3", (0, 1, 2)), ("lathe_shaft.nc", "lathe2", (1, None, 0))],
+    ids=["mill", "lathe"],
+)
+def test_slide_play_and_click(
+    chromium: Any, tmp_path: Path, part: str, machine: str, drawn: tuple[int | None, int | None, int | None]
+) -> None:
+    view = Opened(chromium, tmp_path, part, machine)
+    end_s = float(view.trace.t_s[-1])
+    for share in (0.829, 0.437, 0.171):
+        view.slide(share)
+        assert view.time_s == pytest.approx(share * end_s, abs=0.02 * end_s)
+        view.assert_agrees(drawn)
+
+    view.page.locator("#rate").select_option("2")
+    before = view.time_s
+    view.page.locator("#play").click()
+    view.page.wait_for_function(
+        "t => document.getElementById('slider').value > t", arg=before + 0.4, timeout=WAIT_MS
+    )
+    view.page.keyboard.press("Space")  # the play button has the focus: it stops
+    stopped = view.time_s
+    assert before + 0.4 < stopped <= end_s
+    view.page.wait_for_timeout(100)
+    assert view.time_s == stopped
+    view.assert_agrees(drawn)
+
+    line = int(view.trace.block[len(view.trace) // 3])
+    view.page.locator("#listing").evaluate("(e, top) => { e.scrollTop = top; }", max(line - 4, 0) * 20)
+    view.page.locator(".row", has=view.page.locator(f"b:text-is('{line}')")).click()
+    assert view.cell("line") == str(line)
+    first = np.flatnonzero(view.trace.block == line)
+    assert any(abs(view.time_s - view.trace.t_s[row]) < 0.0021 for row in first)
+    view.assert_agrees(drawn)
+    view.close()
+
+
+def _tool_on_screen(shot: bytes, accent: tuple[int, int, int]) -> tuple[int, int]:
+    """Return the pixel in the middle of the tool: its colour all around, which is wider than a line."""
+    pixels = np.rint(imread(BytesIO(shot))[:, :, :3] * 255.0).astype(int)
+    alike = np.all(np.abs(pixels - np.array(accent)) < 12, axis=2)
+    filled = np.cumsum(np.cumsum(np.pad(alike, ((1, 0), (1, 0))), axis=0), axis=1)
+    side = 11
+    count = filled[side:, side:] - filled[:-side, side:] - filled[side:, :-side] + filled[:-side, :-side]
+    rows, columns = np.nonzero(count >= side * side - 8)
+    assert len(rows)
+    return int(columns.mean()) + side // 2, int(rows.mean()) + side // 2
+
+
+def test_a_click_on_the_path_goes_to_its_block(chromium: Any, tmp_path: Path) -> None:
+    """Where the tool is drawn at a moment, a click on the path leads back to that moment."""
+    view = Opened(chromium, tmp_path, "lathe_shaft.nc", "lathe2", color_scheme="light")
+    view.slide(0.2)  # in the first roughing cut
+    then, line, x_mm = view.time_s, view.cell("line"), view.cell("X")
+    stage = view.page.locator("#stage").bounding_box()
+    view.page.wait_for_timeout(500)
+    column, row = _tool_on_screen(view.page.screenshot(clip=stage), (0xB3, 0x40, 0x0A))
+    view.page.locator("#slider").focus()
+    view.page.keyboard.press("Home")
+    assert view.time_s == 0.0
+    view.page.mouse.move(stage["x"] + column + 6, stage["y"] + row)
+    for _ in range(20):  # the library looks under the mouse when it draws the next picture
+        view.page.mouse.move(stage["x"] + column, stage["y"] + row, steps=3)
+        view.page.wait_for_timeout(200)
+        view.page.mouse.click(stage["x"] + column, stage["y"] + row)
+        if view.time_s > 0.0:
+            break
+    assert view.time_s == pytest.approx(then, abs=0.25)
+    assert (view.cell("line"), view.cell("X")) == (line, x_mm)
+    view.close()
+
+
+def test_a_phone_in_the_dark(chromium: Any, tmp_path: Path) -> None:
+    view = Opened(
+        chromium, tmp_path, "bracket.nc", "mill3", viewport={"width": 390, "height": 844}, color_scheme="dark"
+    )
+    assert view.page.evaluate("() => document.documentElement.scrollWidth") <= 390
+    assert view.page.locator("html").get_attribute("data-theme") == "dark"
+    view.page.locator("#colour").select_option("tool")
+    assert view.page.locator("#legend").inner_text().split() == ["T1", "T2", "T3", "rapid"]
+    view.page.locator("#theme").click()
+    assert view.page.locator("html").get_attribute("data-theme") == "light"
+    view.close()

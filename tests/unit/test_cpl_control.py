@@ -1,0 +1,203 @@
+"""CPL programs on their control: what outlives a run, where the axes are, what time it is, what cannot end."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from polycnc import runner
+from polycnc.cli._app import app
+from polycnc.nc import ProgramText
+from support.cpl_runs import Root
+from support.programs import MILL
+
+
+@pytest.fixture
+def root(tmp_path: Path) -> Root:
+    return Root(tmp_path)
+
+
+# ---------------------------------------------------------------------- permanent variables
+
+DECLARED = (
+    b"DEF INT @WZNR(9) ;tools\nDEF REAL @WZKOR(9,2) ;\nDEF CHAR @PSTR1(3) ;\nDEF CHAR @PSTR2(9,2) ;\n"
+    b"DEF DOUBLE @IJKL ;\nDEF BOOL @MNOP ;\n"
+)
+
+
+def test_permanent_variables_survive_to_the_next_run(root: Root) -> None:
+    root.write("wmhperm.dat", DECLARED)
+    root.write("anwperm.dat", b"DEF INT @ABCD ;\n")
+    root.run(
+        '1 @36%=3 : @ABCD%=-17 : @IJKL!=5.12345 : @MNOP?=TRUE : @PSTR1$="ABC"\n2 @WZNR%(2)=6 : @WZKOR(3,2)=7.625\n'
+        '3 @PSTR2$(3)="DE" : @_R!(4)=2.75'.replace("@_R!", "@_R")
+    )
+    found = root.run("1 #A%=@ABCD%+1 : #B=@WZKOR(3,2) : @36%=@36%*7").variables
+    assert (found["@36"], found["#A%"], found["#B"]) == (21, -16, 7.625)
+    assert (found["@IJKL!"], found["@MNOP?"], found["@PSTR1$"]) == (5.12345, True, "ABC")
+    wznr, pstr2, r = found["@WZNR%"], found["@PSTR2$"], found["@_R"]
+    assert isinstance(wznr, list)
+    assert isinstance(pstr2, list)
+    assert isinstance(r, list)
+    assert (wznr[2], wznr[3], pstr2[3], r[4], found["@37"]) == (6, None, "DE", 2.75, None)
+    root.write("anwperm.dat", b"DEF INT @OTHER ;\n")
+    assert "@ABCD%" not in root.run("1 A=1").variables
+
+
+def test_a_wrong_declaration_is_the_error_of_the_run(root: Root) -> None:
+    root.write("anwperm.dat", b"DEF INT @A ;\nDEF WORD @B ;\n")
+    alarms = root.run("1 A=1", check=False).alarms
+    assert [(alarm.file, alarm.line) for alarm in alarms] == [("anwperm.dat", 2)]
+
+
+def test_nothing_permanent_leaves_no_file(root: Root) -> None:
+    root.run("1 #A=5")
+    assert list(root.folder.iterdir()) == []
+
+
+# ---------------------------------------------------------------------- positions
+
+
+def test_positions_are_of_now_or_of_the_last_prepared_block(root: Root) -> None:
+    found = root.run(
+        'N1 G54\nN10 G1 X20 Y-7.5 F6000\n20 #A=CPOS(1) : #B=CPOS("Y",1) : #C=MPOS(1)\n30 WAIT\n'
+        '40 #D=MPOS("X") : #E=SPOS(2) : #F=APOS("Y") : #G=WPOS("Y",1,1) : #H=MPOS(2,0) : #I=MPOS(1,1,1)\n'
+        "N50 G91 X2.5\n60 #J=CPOS(1)"
+    ).variables
+    assert [found[f"#{name}"] for name in "ABCDEFGHIJ"] == [20, -7.5, 0, 20, -7.5, -7.5, -7.5, -7.5, 20, 22.5]
+
+
+def test_program_positions_have_shifts_and_inches(root: Root) -> None:
+    found = root.run(
+        "N10 G1 X50.8 Y5 F6000\nN20 G92 X25.4 Y2\n30 #A=CPOS(1)\n40 WAIT\n50 #B=WPOS(1) : #C=MPOS(1)\nN60 G70\n"
+        "70 #D=CPOS(1) : #E=WPOS(1) : #F=MPOS(1) : #G=APOS(1)"
+    ).variables
+    assert [found[f"#{name}"] for name in "ABC"] == pytest.approx([25.4, 25.4, 50.8])
+    assert [found[f"#{name}"] for name in "DEFG"] == pytest.approx([1, 1, 2, 2])
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        'MPOS("U")',
+        "MPOS(9)",
+        "MPOS(0)",
+        "MPOS(1,0,1)",
+        "MPOS(1,2)",
+        "WPOS(1,1,2)",
+        "CPOS(4,1)",
+        "APOS(7)",
+        "PPOS(1)",
+    ],
+)
+def test_axes_that_are_not_there_are_refused(root: Root, call: str) -> None:
+    error = root.error(f"1 A={call}")
+    assert error == ("1: NO PROBE POSITION" if call == "PPOS(1)" else "1: INVALID PARAMETER")
+
+
+# ---------------------------------------------------------------------- time and interface
+
+
+@pytest.mark.covers("cpl.CLOCK", "cpl.DATE", "cpl.TIME", "cpl.ex.2494")
+def test_the_clock_is_the_machine_s(root: Root) -> None:
+    result = root.run(
+        "1 WAIT\n2 T%=CLOCK\nN4 G1 X100 F6000\n5 WAIT\n6 #T%=CLOCK-T%\n7 DIM A$(9) : DIM B$(9)\n8 WAIT(,1500)\n"
+        '9 A$=DATE : B$=TIME : PRN#(0,A$," ",B$)'
+    )
+    assert result.variables["#T%"] == pytest.approx(result.cutting_time_s * 1000, abs=2)
+    assert result.time_s == pytest.approx(1.5 + result.cutting_time_s, abs=0.01)
+    expected = MILL.epoch.strftime("%d.%m.") + " " + MILL.epoch.replace(second=2).strftime("%H.%M.%S")
+    assert result.messages[-1].text == f"MSG: {expected}"
+
+
+def test_inputs_are_false_and_outputs_can_be_set(root: Root) -> None:
+    found = root.run(
+        "1 #A?=IC(5,1,2) : IC(80,0,1)=TRUE\n2 WAIT(NOT IC(3,2,1),,#C%)\n3 WAIT(IC(4),250,#D%)"
+    ).variables
+    assert (found["#A?"], found["#C%"], found["#D%"]) == (False, 0, 1)
+    assert root.error("1 IC(96,0,1)=TRUE") == "1: INVALID PARAMETER"
+    assert root.error("1 A?=IC(6,9)") == "1: INVALID PARAMETER"
+
+
+def test_a_wait_that_cannot_end_is_an_error(root: Root) -> None:
+    assert root.error("N5 G1 X5 F6000\n10 WAIT(IC(4)=TRUE)") == "2: the program waits without end"
+
+
+def test_a_function_that_the_control_lacks_is_refused_where_it_is_called(root: Root) -> None:
+    assert root.error("10 #A=1\n20 A=MCA(100100004,0)") == "2: the control has no MCA"
+
+
+# ---------------------------------------------------------------------- sub-programs and plain programs
+
+
+def test_sub_programs_lie_in_the_root(root: Root) -> None:
+    root.write("DRILL", b"1 A=P1\nN1 G1 Z[A] F2000\n")
+    root.write("P999", b"N1 Y3.5\n")
+    result = root.run("10 CALL DRILL[-2.5]\n20 CALL P999\nN30 X[1.25]")
+    assert result.end_position_mm == {"X": 1.25, "Y": 3.5, "Z": -2.5}
+
+
+def test_a_plain_program_needs_no_control(root: Root) -> None:
+    result = root.run("N10 G1 X5 F500\nN20 M30\n")
+    assert result.variables == {}
+    assert list(root.folder.iterdir()) == []
+
+
+def test_check_links_and_reports_every_error(root: Root) -> None:
+    root.write("SP", b"1 A\n2 B=\n")
+    text = '10 CALL SP\n20 CALL NONE\n30 @NOPE%=5\n40 OPENW(1,"P5")\n50 GOTO 99\n'
+    program = ProgramText.from_text(text, str(root.folder / "main.npg"))
+    found = runner.check(program, MILL, "bosch", root=root.folder)
+    assert {(Path(error.position.file).name, error.position.line) for error in found if error.position} >= {
+        ("main.npg", 5)
+    }
+    program = ProgramText.from_text(text.replace("50 GOTO 99\n", ""), str(root.folder / "main.npg"))
+    found = runner.check(program, MILL, "bosch", root=root.folder)
+    places = [(Path(error.position.file).name, error.position.line) for error in found if error.position]
+    assert sorted(places) == [("SP", 1), ("SP", 2), ("main.npg", 2), ("main.npg", 3)]
+    assert sorted(path.name for path in root.folder.iterdir()) == ["SP"]
+
+
+# ---------------------------------------------------------------------- the command
+
+
+def test_the_command_runs_a_program_on_a_root(root: Root) -> None:
+    program = root.folder / "main.npg"
+    program.write_text(
+        '10 @5=3 : #A%=5 : #B?=FALSE : #C=NUL\n20 OPENW(1,"P1") : PRN#(1,"X")\nN10 G1 X5 F600\n'
+    )
+    told = CliRunner().invoke(app, ["run", str(program), "--json"])
+    assert told.exit_code == 0, told.output
+    variables = json.loads(told.stdout)["variables"]
+    assert (variables["@5"], variables["@6"], variables["#A%"], variables["#B?"]) == (3, None, 5, False)
+    assert variables["#C"] is None
+    assert root.read("P1") == b"X\n\x03\n"
+    other = root.folder / "other"
+    other.mkdir()
+    told = CliRunner().invoke(app, ["run", str(program), "--root", str(other)])
+    assert told.exit_code == 0
+    assert sorted(path.name for path in other.iterdir()) == ["P1", "cpl.store"]
+    told = CliRunner().invoke(app, ["run", str(program), "--root", str(root.folder / "none")])
+    assert told.exit_code == 2
+    assert "no such folder" in told.output
+    program.write_text("10 A=\n20 CALL SP\n")
+    told = CliRunner().invoke(app, ["check", str(program), "--root", str(other)])
+    assert told.exit_code == 1
+    assert "1 error" in told.output
+
+
+# ---------------------------------------------------------------------- tables
+
+
+def test_tables_are_usable_without_set_up(root: Root) -> None:
+    found = root.run(
+        '1 TC(1,10,5)=31.5 : TC(-1,10,5)=0.25 : FXC("Y",54,1)=80 : FXC(-2,54,1)=2 : TDA(1,1,9)=20000\n'
+        "2 #A=TC(1,10,5) : #B=FXC(2,54,1) : #C%=TDA(1,1,9) : DIM E%(2,3) : #D%=GETERR(1,,E%)\n"
+        'N3 G70\n4 FXC("X",160,0)=2\nN5 G71\n6 #E=FXC("X",160,0)'
+    ).variables
+    assert [found[name] for name in ("#A", "#B", "#C%", "#D%")] == [31.75, 82.0, 20000, 0]
+    assert found["#E"] == pytest.approx(50.8)
+    assert root.error('1 A=FXC("Q",54,1)') == "1: INVALID PARAMETER"

@@ -1,0 +1,834 @@
+"""Tool offsets, parameters, settings and macro variables (Manual 000, 2712-4853)."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import pytest
+
+from polycnc.controllers.fanuc import Attribute, Kind, PowerMate, fwlib, parameter_rows
+from polycnc.controllers.fanuc.fwlib import ALL_AXES, EW, IODBMR, IODBPSD, IODBTO
+from polycnc.controllers.library import variant
+from support.power_mate import OK, attached, moved, registered, running
+
+MODES = ("MDI", "MEM", "EDIT", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT")
+
+
+def covers(*names: str) -> pytest.MarkDecorator:
+    return pytest.mark.covers(*(f"fanuc.{name}" for name in names))
+
+
+# ---------------------------------------------------------------------- tool offsets
+
+
+def offset(handle: int, number: int) -> int:
+    code, data = fwlib.cnc_rdtofs(handle, number, 0, 8)
+    assert (code, data.datano, data.type) == (OK, number, 0)
+    return int(data.data)
+
+
+@covers("cnc_rdtofs", "cnc_wrtofs", "example.cnc_rdtofs", "example.cnc_wrtofs", "enum.offset_type.0")
+def test_a_tool_offset_is_written_read_and_used() -> None:
+    control, handle = attached()
+    assert offset(handle, 99) == 0
+    assert fwlib.cnc_wrtofs(handle, 99, 0, 8, -12_345) == OK
+    assert fwlib.cnc_wrtofs(handle, 4, 0, 12, 7) == OK
+    assert (offset(handle, 99), offset(handle, 4), offset(handle, 5)) == (-12_345, 7, 0)
+    moved(control, "G43 H99 G0 Z20.")
+    assert fwlib.cnc_machine(handle, 3, 8)[1].data[0] == 7655
+    for mode in MODES:
+        control.select_mode(mode)
+        assert fwlib.cnc_wrtofs(handle, 1, 0, 8, 17) == OK
+
+
+@covers(
+    "cnc_rdtofs.err.EW_LENGTH", "cnc_rdtofs.err.EW_NUMBER", "cnc_rdtofs.err.EW_ATTRIB", "cnc_wrtofs.err.EW_LENGTH",
+    "cnc_wrtofs.err.EW_NUMBER", "cnc_wrtofs.err.EW_ATTRIB", "concept.tool_offset_memory",
+)  # fmt: skip
+def test_tool_offsets_that_are_refused() -> None:
+    _, handle = attached(offsets=64)
+    assert fwlib.cnc_wrtofs(handle, 64, 0, 8, 5) == OK
+    for code, number, kind, length in (
+        (EW.EW_LENGTH, 0, 9, 7),
+        (EW.EW_LENGTH, 64, 0, -1),
+        (EW.EW_NUMBER, 0, 9, 8),
+        (EW.EW_NUMBER, 65, 0, 8),
+        (EW.EW_NUMBER, -1, 0, 8),
+        (EW.EW_ATTRIB, 64, 1, 8),
+        (EW.EW_ATTRIB, 64, -1, 8),
+    ):
+        assert fwlib.cnc_rdtofs(handle, number, kind, length)[0] == code
+        assert fwlib.cnc_wrtofs(handle, number, kind, length, 9) == code
+        assert offset(handle, 64) == 5
+
+
+@pytest.mark.parametrize(
+    ("increment", "limit", "mm", "inch"),
+    [
+        pytest.param("IS-A", 99_999, 0.01, 0.001, marks=covers("units.IS_A", "ncparam.1004_0")),
+        pytest.param("IS-B", 999_999, 0.001, 0.0001, marks=covers("units.IS_B")),
+        pytest.param("IS-C", 9_999_999, 0.0001, 0.00001, marks=covers("units.IS_C", "ncparam.1004_1")),
+    ],
+)
+def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, inch: float) -> None:
+    for model in ("H", "D"):
+        control, handle = attached(increment=increment, model=model)
+        assert control.parameters.value(1004) == {"IS-A": 1, "IS-B": 0, "IS-C": 2}[increment]
+        for value in (limit, -limit):
+            assert fwlib.cnc_wrtofs(handle, 3, 0, 8, value) == OK
+            assert offset(handle, 3) == value
+        assert control.control.tools[3].length_mm == pytest.approx(-limit * mm)
+        for value in (limit + 1, -limit - 1):
+            assert fwlib.cnc_wrtofs(handle, 3, 0, 8, value) == EW.EW_DATA
+        assert offset(handle, 3) == -limit
+    control, handle = attached(increment=increment, inch_input=True)
+    assert fwlib.cnc_wrtofs(handle, 3, 0, 8, limit) == OK
+    assert control.control.tools[3].length_mm == pytest.approx(limit * inch * 25.4)
+    assert fwlib.cnc_wrtofs(handle, 3, 0, 8, limit + 1) == EW.EW_DATA
+    assert offset(handle, 3) == limit
+    control, _ = attached(increment="IS-B")
+    control.parameters.set(1004, 1 if increment == "IS-A" else 2 if increment == "IS-C" else 0)
+    control.power_cycle()
+    assert control.increment == increment
+
+
+@covers(
+    "cnc_rdtofsr", "cnc_wrtofsr", "example.cnc_rdtofsr", "example.cnc_wrtofsr", "enum.offset_type.all",
+    "cnc_rdtofsinfo",
+)  # fmt: skip
+def test_examples_of_tool_offset_ranges() -> None:
+    _, handle = attached()
+    values = [37 * k - 1500 for k in range(1, 100)]
+    data = IODBTO(datano_s=1, datano_e=99, type=-1)
+    data.u.m_ofs_a[:] = list(values)
+    assert fwlib.cnc_wrtofsr(handle, 402, data) == OK
+    assert [offset(handle, number) for number in range(1, 100)] == values
+    for kind, name in ((0, "m_ofs"), (-1, "m_ofs_a")):
+        code, found = fwlib.cnc_rdtofsr(handle, 1, kind, 99, 402)
+        assert (code, found.datano_s, found.type, found.datano_e) == (OK, 1, kind, 99)
+        assert list(getattr(found.u, name)) == values
+        assert struct.unpack_from("<3l", found.pack(), 6) == tuple(values[:3])
+    assert list(fwlib.cnc_rdtofsr(handle, 41, 0, 43, 18)[1].u.m_ofs[:4]) == [*values[40:43], 0]
+    few = IODBTO(datano_s=98, datano_e=99)
+    few.u.m_ofs[0], few.u.m_ofs[1] = 7, -8
+    assert fwlib.cnc_wrtofsr(handle, 14, few) == OK
+    assert [offset(handle, number) for number in (97, 98, 99)] == [values[96], 7, -8]
+    code, info = fwlib.cnc_rdtofsinfo(handle)
+    assert (code, info.ofs_type, info.use_no) == (OK, 0, 99)
+    assert fwlib.cnc_rdtofsinfo(attached(offsets=32)[1])[1].use_no == 32
+
+
+@covers(
+    "cnc_rdtofsr.err.EW_LENGTH", "cnc_rdtofsr.err.EW_NUMBER", "cnc_rdtofsr.err.EW_ATTRIB", "cnc_wrtofsr.err.EW_LENGTH",
+    "cnc_wrtofsr.err.EW_NUMBER", "cnc_wrtofsr.err.EW_ATTRIB",
+)  # fmt: skip
+def test_tool_offset_ranges_that_are_refused_change_nothing() -> None:
+    _, handle = attached()
+    for code, first, last, kind, length in (
+        (EW.EW_LENGTH, 1, 3, 0, 17),
+        (EW.EW_LENGTH, 1, 3, 5, 17),
+        (EW.EW_NUMBER, 0, 3, 5, 400),
+        (EW.EW_NUMBER, 98, 100, 0, 400),
+        (EW.EW_NUMBER, 4, 3, 0, 400),
+        (EW.EW_ATTRIB, 1, 3, 1, 400),
+        (EW.EW_ATTRIB, 1, 3, -2, 400),
+    ):
+        assert fwlib.cnc_rdtofsr(handle, first, kind, last, length)[0] == code
+        data = IODBTO(datano_s=first, datano_e=last, type=kind)
+        data.u.m_ofs[:] = [*range(1, 100)]
+        assert fwlib.cnc_wrtofsr(handle, length, data) == code
+        assert not any(fwlib.cnc_rdtofsr(handle, 1, 0, 99, 402)[1].u.m_ofs)
+    data = IODBTO(datano_s=1, datano_e=3)
+    data.u.m_ofs[:3] = [5, 6, 1_000_000]
+    assert fwlib.cnc_wrtofsr(handle, 18, data) == EW.EW_DATA
+    assert not any(fwlib.cnc_rdtofsr(handle, 1, 0, 99, 402)[1].u.m_ofs)
+
+
+# ---------------------------------------------------------------------- one parameter
+
+
+def parameter(handle: int, number: int, axis: int = 0) -> Any:
+    """Return a parameter, or its values of all axes, by the element that fits its type."""
+    row = parameter_rows()[number]
+    code, data = fwlib.cnc_rdparam(handle, number, axis, 28)
+    assert (code, data.datano, data.type) == (OK, number, axis)
+    name = {Kind.BIT: "cdata", Kind.BYTE: "cdata", Kind.WORD: "idata", Kind.TWO_WORD: "ldata"}[row.kind]
+    return list(getattr(data.u, f"{name}s")) if axis == ALL_AXES else getattr(data.u, name)
+
+
+def psd(number: int, axis: int = 0, **values: Any) -> IODBPSD:
+    data = IODBPSD(datano=number, type=axis)
+    for name, value in values.items():
+        if isinstance(value, (list, tuple)):
+            getattr(data.u, name)[: len(value)] = value
+        else:
+            setattr(data.u, name, value)
+    return data
+
+
+TYPES = {
+    "bit": (3202, {"cdata": 0x51}, Kind.BIT, 1),
+    "byte": (6710, {"cdata": 77}, Kind.BYTE, 1),
+    "word": (2086, {"idata": -1}, Kind.WORD, 2),
+    "two_word": (6711, {"ldata": 1_234_567}, Kind.TWO_WORD, 4),
+}
+AXIS_TYPES = {
+    "bit": (1008, (0x15, -128, 0x7F), 1),
+    "byte": (8010, (1, 4, 2), 1),
+    "word": (1851, (-9999, 333, 9999), 2),
+    "two_word": (1321, (-99_999_999, 70_000, -5), 4),
+}
+
+
+@pytest.mark.parametrize("kind", [pytest.param(k, marks=covers(f"paramtype.{k}"), id=k) for k in TYPES])
+@covers("enum.param_axis.0")
+def test_parameters_that_have_one_value(kind: str) -> None:
+    _, handle = attached()
+    number, given, attribute, size = TYPES[kind]
+    number = 1410 if kind == "word" else number
+    given = {"idata": 12_345} if kind == "word" else given
+    assert parameter_rows()[number].kind is attribute
+    name, value = next(iter(given.items()))
+    assert fwlib.cnc_wrparam(handle, 4 + size, psd(number, 0, **given)) == OK
+    assert parameter(handle, number) == value
+    code, data = fwlib.cnc_rdparam(handle, number, 0, 4 + size)
+    assert (code, getattr(data.u, name)) == (OK, value)
+    assert data.pack()[4 + size :] == b"\0" * (24 - size)
+    assert fwlib.cnc_rdparam(handle, number, 0, 3 + size)[0] == EW.EW_LENGTH
+    for axis in (1, 3, ALL_AXES):
+        assert fwlib.cnc_rdparam(handle, number, axis, 28)[0] == EW.EW_ATTRIB
+        assert fwlib.cnc_wrparam(handle, 28, psd(number, axis)) == EW.EW_ATTRIB
+    assert parameter(handle, number) == value
+
+
+@pytest.mark.parametrize(
+    "kind", [pytest.param(k, marks=covers(f"paramtype.{k}_axis"), id=k) for k in AXIS_TYPES]
+)
+@covers("enum.param_axis.1..m", "enum.param_axis.ALL_AXES")
+def test_parameters_of_axes(kind: str) -> None:
+    _, handle = attached()
+    number, values, size = AXIS_TYPES[kind]
+    name = {1: "cdata", 2: "idata", 4: "ldata"}[size]
+    assert fwlib.cnc_wrparam(handle, 4 + 3 * size, psd(number, ALL_AXES, **{f"{name}s": values})) == OK
+    assert parameter(handle, number, ALL_AXES) == [*values, 0, 0, 0]
+    assert [parameter(handle, number, axis) for axis in (1, 2, 3, 4, 6)] == [*values, 0, 0]
+    assert fwlib.cnc_wrparam(handle, 4 + size, psd(number, 2, **{name: 3})) == OK
+    assert parameter(handle, number, ALL_AXES)[:3] == [values[0], 3, values[2]]
+    assert fwlib.cnc_rdparam(handle, number, 2, 4 + size)[0] == OK
+    assert fwlib.cnc_rdparam(handle, number, ALL_AXES, 4 + 3 * size)[0] == OK
+    assert fwlib.cnc_rdparam(handle, number, ALL_AXES, 3 + 3 * size)[0] == EW.EW_LENGTH
+    for axis in (0, 7, -2):
+        assert fwlib.cnc_rdparam(handle, number, axis, 28)[0] == EW.EW_ATTRIB
+        assert fwlib.cnc_wrparam(handle, 28, psd(number, axis, **{name: 1})) == EW.EW_ATTRIB
+    assert parameter(handle, number, ALL_AXES)[:3] == [values[0], 3, values[2]]
+
+
+@covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
+def test_example_axis_names() -> None:
+    _, handle = attached(axes=4, rotary=(3,))
+    code, data = fwlib.cnc_rdparam(handle, 1020, ALL_AXES, 4 + 1 * fwlib.MAX_AXIS)
+    assert code == OK
+    assert "".join(chr(each) if each else "-" for each in data.u.cdatas) == "XYAZ--"
+
+
+@covers("cnc_wrparam", "example.cnc_wrparam", "ncparam.1320", "ncparam.1321")
+def test_example_stroke_limits_act_on_the_machine() -> None:
+    control, handle = attached()
+    for number, value in ((1320, 12_500), (1321, -7_250)):
+        assert fwlib.cnc_wrparam(handle, 8, psd(number, 2, ldata=value)) == OK
+    assert [parameter(handle, number, 2) for number in (1320, 1321)] == [12_500, -7_250]
+    assert parameter(handle, 1320, 1) == 99_999_999
+    assert control.machine.config.axes[1].soft_limits == (-7.25, 12.5)
+    control.select_mode("JOG")
+    control.control.jog("Y", 1)
+    control.advance(20_000)
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
+    assert fwlib.cnc_rddynamic(handle, 1, 38)[1].alarm == 1 << 4
+    control.control.jog("Y", None)
+    control.reset()
+    registered(control, O7="\nG1 Y12.6 F600\nM30\n")
+    running(control, 7)
+    control.advance(3000)
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
+    assert control.alarm_bits
+    control.reset()
+    assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=-8_000)) == OK  # below 1321: no limits
+    running(control, 7)
+    control.advance(3000)
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_600
+
+
+@covers(
+    "cnc_rdparam.err.EW_LENGTH", "cnc_rdparam.err.EW_NUMBER", "cnc_rdparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_LENGTH",
+    "cnc_wrparam.err.EW_NUMBER", "cnc_wrparam.err.EW_ATTRIB", "cnc_wrparam.err.EW_NOOPT", "cnc_wrparam.err.EW_PROT",
+    "option.param_write", "ODBPARAIF.prm_type.bit5", "ODBPARAIF.prm_type.bit7",
+)  # fmt: skip
+def test_parameters_that_are_refused_change_nothing() -> None:
+    control, handle = attached(options=("pmc_axis",))
+    before = {key: control.parameters.value(*key) for key in control.parameters._values}
+    for code, length, data in (
+        (EW.EW_LENGTH, 4, psd(6710)),
+        (EW.EW_LENGTH, 4, psd(9)),
+        (EW.EW_LENGTH, 7, psd(1320, 2, ldata=5)),
+        (EW.EW_LENGTH, 15, psd(1320, ALL_AXES, ldatas=[5, 6, 7])),
+        (EW.EW_NUMBER, 28, psd(9)),
+        (EW.EW_NUMBER, 28, psd(-1)),
+        (EW.EW_ATTRIB, 28, psd(1320, 0)),
+        (EW.EW_ATTRIB, 28, psd(1320, 7)),
+        (EW.EW_ATTRIB, 28, psd(6710, 1)),
+        (EW.EW_DATA, 28, psd(1420, 1, ldata=29)),
+        (EW.EW_DATA, 28, psd(1420, 1, ldata=240_001)),
+        (EW.EW_DATA, 28, psd(8010, ALL_AXES, cdatas=[1, 5, 1])),
+        (EW.EW_NOOPT, 28, psd(6080, 0, cdata=9)),
+        (EW.EW_PROT, 28, psd(1010, 0, cdata=2)),
+    ):
+        assert fwlib.cnc_wrparam(handle, length, data) == code
+        assert {key: control.parameters.value(*key) for key in before} == before
+    assert fwlib.cnc_wrparam(handle, 28, psd(8010, 1, cdata=3)) == OK  # its option is there
+    control.parameters_writable = False
+    assert fwlib.cnc_wrparam(handle, 28, psd(8010, 1, cdata=4)) == EW.EW_PROT
+    assert parameter(handle, 8010, 1) == 3
+    assert fwlib.cnc_rdparam(handle, 9, 0, 28)[0] == EW.EW_NUMBER
+    assert fwlib.cnc_rdparam(handle, -1, 0, 28)[0] == EW.EW_NUMBER
+    assert fwlib.cnc_rdparam(handle, 3210, 0, 28)[0] == EW.EW_NUMBER  # cannot be read
+    assert fwlib.cnc_rdparam(handle, 9, 0, 4)[0] == EW.EW_LENGTH
+    assert fwlib.cnc_rdparam(handle, 6080, 0, 5)[0] == OK  # reading needs no option
+
+
+@covers("concept.bit_param_rmw")
+def test_a_bit_is_changed_by_writing_its_byte() -> None:
+    _, handle = attached()
+    assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=0x11)) == OK
+    byte = parameter(handle, 3202)
+    assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=byte & ~0x10)) == OK
+    assert parameter(handle, 3202) == 0x01
+    assert fwlib.cnc_wrparam(handle, 5, psd(3202, 0, cdata=-128)) == OK  # bit 7 is the sign of a char
+    assert parameter(handle, 3202) == -128
+    assert attached()[0].parameters.value(3202) == 0
+
+
+@covers("concept.ps000_after_write", "ODBPARAIF.prm_type.bit6")
+def test_some_parameters_need_the_power_switched_off() -> None:
+    control, handle = attached(axes=2)
+    registered(control, O12="\nM30\n")
+    assert fwlib.cnc_wrparam(handle, 5, psd(1006, 2, cdata=1)) == OK
+    assert fwlib.cnc_rddynamic(handle, 1, 38)[1].alarm == 1 << 1
+    assert [fwlib.cnc_dwnstart(handle), fwlib.cnc_upstart(handle, 12), fwlib.cnc_search(handle, 12)] == [
+        EW.EW_BUSY
+    ] * 3
+    assert fwlib.cnc_delete(handle, 12) == EW.EW_BUSY
+    assert not control.is_rotary(2)
+    control.reset()
+    assert fwlib.cnc_search(handle, 12) == EW.EW_BUSY
+    control.power_cycle()
+    assert fwlib.cnc_search(handle, 12) == OK
+    assert control.is_rotary(2)
+    assert fwlib.cnc_wrparam(handle, 8, psd(1320, 1, ldata=5000)) == OK
+    assert control.alarm_bits == 0
+
+
+# ---------------------------------------------------------------------- records
+
+
+def records(data: bytes, sizes: dict[int, int], axes: int = 1) -> list[tuple[int, int, int, tuple[int, ...]]]:
+    """Take a sequence of records apart: number, type attribute, axis, values."""
+    found, at = [], 0
+    while at < len(data):
+        number, kind = struct.unpack_from("<hH", data, at)
+        size = sizes[kind >> 8]
+        count = axes if kind & 0xFF == 0xFF else 1
+        form = {1: "b", 2: "h", 4: "l"}[size]
+        found.append((number, kind >> 8, kind & 0xFF, struct.unpack_from(f"<{count}{form}", data, at + 4)))
+        at += 4 + size * count
+        at += at % 2
+    assert at == len(data)
+    return found
+
+
+SIZES = {0: 1, 1: 1, 2: 2, 3: 4}
+
+
+@covers(
+    "cnc_rdparar", "example.cnc_rdparar", "concept.param_record_stream", "concept.axis_param_rule", "enum.prm_attr.0",
+    "enum.prm_attr.1", "enum.prm_attr.2", "enum.prm_attr.3", "concept.sparse_parameters", "concept.range_growth",
+)  # fmt: skip
+def test_a_range_of_parameters_is_a_sequence_of_records() -> None:
+    control, handle = attached(axes=3)
+    control.parameters.set(1420, 24_000, 2)
+    control.parameters.set(1410, 1234)
+    control.parameters.set(1401, 0x42)
+    code, first, last, length, data = fwlib.cnc_rdparar(handle, 1400, 2, 1425, 1000)
+    assert (code, first, last, length) == (OK, 1401, 1425, len(data))
+    found = records(data, SIZES)
+    assert [each[0] for each in found] == [1401, 1402, 1410, 1420, 1421, 1422, 1423, 1424, 1425]
+    assert found[0] == (1401, 0, 0, (0x42,))
+    assert found[2] == (1410, 2, 0, (1234,))  # read whatever the axis
+    assert found[3] == (1420, 3, 2, (24_000,))
+    assert found[8] == (1425, 2, 2, (300,))
+    assert length == 6 + 6 + 6 + 8 * 5 + 6
+    code, _, _, length, data = fwlib.cnc_rdparar(handle, 1420, ALL_AXES, 1425, 1000)
+    found = records(data, SIZES, 6)
+    assert found[0] == (1420, 3, 0xFF, (15_000, 24_000, 15_000, 0, 0, 0))
+    assert length == 28 * 4 + 8 + 16
+    code, _, _, length, data = fwlib.cnc_rdparar(handle, 1020, ALL_AXES, 1023, 1000)
+    assert (code, length) == (OK, 3 * 10)
+    assert records(data, SIZES, 6)[0] == (1020, 1, 0xFF, tuple(b"XYZ\0\0\0"))
+    assert fwlib.cnc_rdparar(handle, 6710, 0, 6710, 6)[3:] == (6, b"\x36\x1a\0\x01\0\0")
+    assert fwlib.cnc_rdparar(handle, 0, 0, 0, 6)[:4] == (OK, 0, 0, 6)  # number 0 is a parameter
+    _, handle = attached(model="D")
+    code, _, _, length, data = fwlib.cnc_rdparar(handle, 1020, ALL_AXES, 1020, 100)
+    assert (code, length) == (OK, 6)
+    assert fwlib.cnc_rdparar(handle, 1420, ALL_AXES, 1420, 100)[3] == 12
+
+
+@covers("cnc_rdparar.err.EW_LENGTH", "cnc_rdparar.err.EW_NUMBER", "cnc_rdparar.err.EW_ATTRIB")
+def test_ranges_of_parameters_that_are_refused() -> None:
+    _, handle = attached()
+
+    def code(first: int, axis: int, last: int, length: int) -> int:
+        found = fwlib.cnc_rdparar(handle, first, axis, last, length)
+        assert found[1:] == (first, last, length, b"")
+        return found[0]
+
+    assert code(6711, 0, 6713, 23) == EW.EW_LENGTH
+    assert fwlib.cnc_rdparar(handle, 6711, 0, 6713, 24)[0] == OK
+    assert code(6711, 0, 6713, 0) == EW.EW_LENGTH
+    assert code(1420, ALL_AXES, 1420, 27) == EW.EW_LENGTH
+    assert code(6713, 0, 6711, 100) == EW.EW_NUMBER
+    assert code(2, 0, 11, 100) == EW.EW_NUMBER  # none in between
+    assert code(-5, 0, 10, 100) == EW.EW_NUMBER
+    assert code(3210, 0, 3210, 100) == EW.EW_NUMBER
+    assert code(6711, 7, 6713, 100) == EW.EW_ATTRIB
+    assert code(6711, -2, 6713, 100) == EW.EW_ATTRIB
+    assert code(1410, 0, 1420, 100) == EW.EW_ATTRIB  # 1420 is of axes
+    assert fwlib.cnc_rdparar(handle, 1401, 0, 1410, 100)[0] == OK
+
+
+@pytest.mark.parametrize(
+    "slot", [pytest.param(k, marks=covers(f"ncparam.{6080 + k}"), id=str(6080 + k)) for k in range(10)]
+)
+@covers("cnc_wrparas", "example.cnc_wrparas")
+def test_example_ten_m_codes(slot: int) -> None:
+    _, handle = attached()
+    data = b"".join(struct.pack("<hhbx", 6080 + k, 0, 31 + 3 * k) for k in range(10))
+    assert len(data) == 60
+    assert parameter(handle, 6080 + slot) == 0
+    assert fwlib.cnc_wrparas(handle, 60, data) == OK
+    assert parameter(handle, 6080 + slot) == 31 + 3 * slot
+
+
+def record(number: int, kind: int, axis: int, *values: int) -> bytes:
+    size = SIZES[kind]
+    data = struct.pack("<hH", number, kind << 8 | axis)
+    data += struct.pack(f"<{len(values)}{ {1: 'b', 2: 'h', 4: 'l'}[size] }", *values)
+    return data + b"\0" * (len(data) % 2)
+
+
+def test_what_is_read_as_records_can_be_written_back() -> None:
+    control, handle = attached()
+    for number in (1420, 1423):
+        control.parameters.set(number, 7_000 + number, 3)
+    for axis in (3, ALL_AXES):
+        _, _, _, length, data = fwlib.cnc_rdparar(handle, 1401, axis, 1430, 1000)
+        for number in (1420, 1423):
+            control.parameters.set(number, 999, 3)
+        assert fwlib.cnc_wrparas(handle, length, data) == OK
+        assert [parameter(handle, number, 3) for number in (1420, 1423)] == [8_420, 8_423]
+    axes = b"".join(record(1420, 3, axis, 1000 * axis) for axis in (1, 2, 3))
+    assert fwlib.cnc_wrparas(handle, len(axes), axes) == OK
+    assert parameter(handle, 1420, ALL_AXES) == [1000, 2000, 3000, 0, 0, 0]
+
+
+REFUSED: list[tuple[EW, bytes, int]] = [
+    (EW.EW_LENGTH, record(6711, 3, 0, 5), 7),
+    (EW.EW_LENGTH, record(6711, 3, 0, 5), 9),
+    (EW.EW_LENGTH, record(6711, 3, 0, 5), 0),
+    (EW.EW_LENGTH, record(6711, 3, 0, 5) + b"\0\0", 10),
+    (EW.EW_LENGTH, record(6711, 3, 0, 5) + record(6712, 3, 0, 5)[:6], 14),
+    (EW.EW_NUMBER, record(6711, 3, 0, 5) + record(6714, 3, 0, 5), 16),
+    (EW.EW_NUMBER, record(6712, 3, 0, 5) + record(6711, 3, 0, 5), 16),
+    (EW.EW_ATTRIB, record(6711, 3, 0, 5) + record(6712, 3, 1, 5), 16),
+]
+
+
+@covers(
+    "cnc_wrparas.err.EW_LENGTH", "cnc_wrparas.err.EW_NUMBER", "cnc_wrparas.err.EW_ATTRIB", "cnc_wrparas.err.EW_NOOPT",
+    "cnc_wrparas.err.EW_PROT",
+)  # fmt: skip
+def test_records_that_are_refused_change_nothing() -> None:
+    control, handle = attached(options=False)
+    for code, data, length in (
+        *REFUSED,
+        (EW.EW_ATTRIB, record(1420, 3, 7, 500), 8),
+        (EW.EW_ATTRIB, record(1420, 3, 0, 500), 8),
+        (EW.EW_DATA, record(6711, 3, 0, 5) + record(6713, 3, 0, 1_000_000), 16),
+        (EW.EW_NOOPT, record(6050, 2, 0, 5) + record(6711, 3, 0, 5), 14),
+        (EW.EW_PROT, record(1010, 1, 0, 3) + record(6711, 3, 0, 5), 14),
+    ):
+        assert fwlib.cnc_wrparas(handle, length, data) == code
+        assert (parameter(handle, 6711), parameter(handle, 1420, 1)) == (0, 15_000)
+    control.parameters_writable = False
+    assert fwlib.cnc_wrparas(handle, 8, record(6711, 3, 0, 5)) == EW.EW_PROT
+
+
+# ---------------------------------------------------------------------- attributes
+
+
+@covers("cnc_rdparainfo", "cnc_rdparainfo.err.EW_NUMBER")
+def test_walking_through_the_parameters() -> None:
+    _, handle = attached()
+    rows = parameter_rows()
+    number = 0
+    found: list[int] = []
+    while number != -1:
+        code, info = fwlib.cnc_rdparainfo(handle, number, 7)
+        assert code == OK
+        numbers = [each.prm_no for each in info.info]
+        assert (len(numbers), numbers[0]) == (info.info_no, number)
+        assert info.prev_no == (found[-1] if found else -1)
+        found += numbers
+        number = info.next_no
+    assert found == sorted(rows)
+    code, info = fwlib.cnc_rdparainfo(handle, 2, 1)
+    assert (code, info.info_no, info.prev_no, info.info[0].prm_no, info.next_no) == (OK, 1, 1, 12, 20)
+    assert fwlib.cnc_rdparainfo(handle, max(found) + 1, 5)[0] == EW.EW_NUMBER
+    assert fwlib.cnc_rdparainfo(handle, -1, 5)[0] == EW.EW_NUMBER
+    assert fwlib.cnc_rdparainfo(handle, 0, 0)[0] == EW.EW_LENGTH
+    assert fwlib.cnc_rdparainfo(handle, 0, 65_535)[1].info_no == len(rows)
+
+
+def attributes(number: int) -> int:
+    _, handle = attached()
+    code, info = fwlib.cnc_rdparainfo(handle, number, 1)
+    assert (code, info.info[0].prm_no) == (OK, number)
+    return int(info.info[0].prm_type)
+
+
+BITS: dict[str, tuple[int, int, Iterable[int], Iterable[int]]] = {
+    # name: shift, mask, numbers that have it, numbers that have not
+    "bit2": (2, 1, (1320, 1020, 1006), (6711, 3201)),
+    "bit3": (3, 1, (), (6711, 6710, 1320)),
+    "bit4": (4, 1, (0, 6711, 6750), (1320, 6710)),
+    "bit5": (5, 1, (1010,), (1020, 6711)),
+    "bit6": (6, 1, (1006, 1001, 1004), (1320, 6711)),
+    "bit7": (7, 1, (3210,), (3211, 6711)),
+    "bit8": (8, 1, (), (6711, 1320)),
+    "bit9_15": (9, 0x7F, (), tuple(parameter_rows())[::9]),
+}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=covers(f"ODBPARAIF.prm_type.{n}"), id=n) for n in BITS]
+)
+def test_attribute_bits(name: str) -> None:
+    shift, mask, have, have_not = BITS[name]
+    for number in have:
+        assert attributes(number) >> shift & mask == 1
+    for number in have_not:
+        assert attributes(number) >> shift & mask == 0
+    flag = {"bit3": Attribute.UNSIGNED, "bit8": Attribute.SPINDLE}.get(name)
+    if flag is not None:
+        assert int(flag) == 1 << shift
+
+
+@covers("ODBPARAIF.prm_type.bit0_1")
+def test_type_attribute() -> None:
+    assert [attributes(number) & 3 for number in (3201, 6710, 1410, 6711, 1006, 1020, 1825, 1320)] == [
+        0,
+        1,
+        2,
+        3,
+    ] * 2
+
+
+# ---------------------------------------------------------------------- settings
+
+
+@covers("cnc_rdsetr", "cnc_wrsets", "concept.setting_subset")
+def test_settings_are_the_parameters_of_the_setting_screen() -> None:
+    _, handle = attached()
+    code, first, last, length, data = fwlib.cnc_rdsetr(handle, 6700, 0, 6760, 1000)
+    assert (code, first, last, length) == (OK, 6711, 6758, 12 * 8)
+    assert [each[0] for each in records(data, SIZES)] == [6711, 6712, 6713, *range(6750, 6759)]
+    assert fwlib.cnc_wrsets(handle, 16, record(6711, 3, 0, 37) + record(6713, 3, 0, 500)) == OK
+    code, _, _, _, data = fwlib.cnc_rdsetr(handle, 6711, 0, 6713, 24)
+    assert [each[3][0] for each in records(data, SIZES)] == [37, 0, 500]
+    code, first, last, length, data = fwlib.cnc_rdsetr(handle, 0, 3, 20, 100)
+    assert (code, first, last, length) == (OK, 0, 20, 4 * 6)
+    assert records(data, SIZES)[2] == (12, 0, 3, (0,))
+    code, _, _, length, data = fwlib.cnc_rdsetr(handle, 12, ALL_AXES, 12, 100)
+    assert (code, length, records(data, SIZES, 6)) == (OK, 10, [(12, 0, 0xFF, (0,) * 6)])
+    assert fwlib.cnc_wrsets(handle, 10, record(12, 0, 0xFF, 1, 0, 1, 0, 0, 0)) == OK
+    assert parameter(handle, 12, ALL_AXES) == [1, 0, 1, 0, 0, 0]
+
+
+@covers(
+    "cnc_rdsetr.err.EW_LENGTH", "cnc_rdsetr.err.EW_NUMBER", "cnc_rdsetr.err.EW_ATTRIB", "cnc_wrsets.err.EW_LENGTH",
+    "cnc_wrsets.err.EW_NUMBER", "cnc_wrsets.err.EW_ATTRIB", "cnc_wrsets.err.EW_NOOPT",
+)  # fmt: skip
+def test_settings_that_are_refused() -> None:
+    control, handle = attached(options=False)
+    assert fwlib.cnc_rdsetr(handle, 6711, 0, 6713, 23)[0] == EW.EW_LENGTH
+    assert fwlib.cnc_rdsetr(handle, 1320, 1, 1321, 100)[0] == EW.EW_NUMBER  # parameters, no settings
+    assert fwlib.cnc_rdsetr(handle, 6713, 0, 6711, 100)[0] == EW.EW_NUMBER
+    assert fwlib.cnc_rdsetr(handle, 0, 0, 20, 100)[0] == EW.EW_ATTRIB  # 0012 is of axes
+    assert fwlib.cnc_rdsetr(handle, 6711, 7, 6713, 100)[0] == EW.EW_ATTRIB
+    for code, data, length in (
+        *REFUSED,
+        (EW.EW_NUMBER, record(6710, 1, 0, 5), 6),
+        (EW.EW_ATTRIB, record(12, 0, 0, 1), 6),
+    ):
+        assert fwlib.cnc_wrsets(handle, length, data) == code
+        assert parameter(handle, 6711) == 0
+    control.parameters_writable = False
+    assert fwlib.cnc_wrsets(handle, 8, record(6711, 3, 0, 5)) == OK  # settings can always be put in
+    control.parameters.rows = {6711: _with_option(6711, "run_hour")}  # type: ignore[assignment]
+    assert fwlib.cnc_wrsets(handle, 8, record(6711, 3, 0, 6)) == EW.EW_NOOPT
+    control.options = frozenset({"run_hour"})
+    assert fwlib.cnc_wrsets(handle, 8, record(6711, 3, 0, 6)) == OK
+
+
+def _with_option(number: int, option: str) -> Any:
+    from dataclasses import replace
+
+    return replace(parameter_rows()[number], option=option)
+
+
+def test_counters_and_timers_are_settings() -> None:
+    control, handle = attached()
+    registered(control, O7="\nG1 X5. F600\nM30\n")
+    for _ in range(3):
+        running(control, 7)
+        control.advance(2000)
+    assert [parameter(handle, number) for number in (6711, 6712)] == [3, 3]
+    assert parameter(handle, 6757) == round(control.status().timers_s["cycle"] * 1000)  # type: ignore[index]
+    assert fwlib.cnc_wrsets(handle, 8, record(6750, 3, 0, 77)) == OK
+    control.advance(1)
+    assert parameter(handle, 6750) == 77
+    assert fwlib.cnc_wrsets(handle, 16, record(6751, 3, 0, 59_500) + record(6752, 3, 0, 12)) == OK
+    assert [parameter(handle, number) for number in (6751, 6752)] == [59_500, 12]
+    registered(control, O7="\nG1 X0 F600\nM30\n")
+    running(control, 7)
+    control.advance(1000)
+    assert parameter(handle, 6752) in (12, 13)
+
+
+# ---------------------------------------------------------------------- macro variables
+
+
+def macro(handle: int, number: int) -> tuple[int, int]:
+    code, data = fwlib.cnc_rdmacro(handle, number, 10)
+    assert (code, data.datano, data.dummy) == (OK, number, 0)
+    return int(data.mcr_val), int(data.dec_val)
+
+
+def shown(mantissa: int, decimals: int) -> str:
+    """Return a value as the sample of cnc_rdmacro formats it."""
+    text = list(f" {mantissa:09d}")
+    if text[1] == "0":
+        text[1] = " "
+    front = "".join(text[1 : 1 + 9 - max(decimals, 0)])
+    return f"{front}.{''.join(text)[10 - decimals :]}" if decimals >= 0 else " 00000000"
+
+
+@covers("cnc_rdmacro", "cnc_wrmacro", "example.cnc_rdmacro", "example.cnc_wrmacro", "enum.macro_type.decimal")
+def test_macro_variables_in_decimal_form() -> None:
+    control, handle = attached()
+    for mantissa, decimals, value in (
+        (1500, 3, 1.5),
+        (-1500, 3, -1.5),
+        (99_999_999, 0, 99_999_999.0),
+        (-99_999_999, 8, -0.99999999),
+        (0, 0, 0.0),
+        (0, 5, 0.0),
+        (12_345_678, 0, 12_345_678.0),
+    ):
+        assert fwlib.cnc_wrmacro(handle, 137, 10, mantissa, decimals) == OK
+        assert macro(handle, 137) == (mantissa, decimals)
+        assert control.macros.get(137) == value
+    assert shown(1500, 3).strip() == "00001.500"
+    assert shown(-1500, 3) == "-00001.500"
+    assert shown(12_345_678, 0).strip() == "12345678."
+    for value, pair in (
+        (1.5, (15, 1)),
+        (-0.000_000_01, (-1, 8)),
+        (123.456789012, (12_345_679, 5)),
+        (9_999_999.96, (1, 7)),
+        (9_999_999.9, (99_999_999, 1)),
+        (99_999_999.4, (99_999_999, 0)),
+    ):
+        control.macros.set(137, value)
+        assert macro(handle, 137) == ((10_000_000, 0) if pair == (1, 7) else pair)
+    assert fwlib.cnc_wrmacro(handle, 137, 12, 5, 0) == OK
+
+
+@covers("concept.macro_empty")
+def test_vacant_is_not_zero() -> None:
+    control, handle = attached()
+    for kind in (0, 1):
+        assert fwlib.cnc_setmactype(handle, kind) == OK
+        assert fwlib.cnc_wrmacro(handle, 500, 10, 0, 0) == OK
+        assert (macro(handle, 500), control.macros.get(500)) == ((0, 0), 0.0)
+        assert fwlib.cnc_wrmacro(handle, 500, 10, 0, -1) == OK
+        assert (macro(handle, 500), control.macros.get(500)) == ((0, -1), None)
+
+
+@covers(
+    "concept.macro_out_of_range",
+    "enum.macro_type.binary",
+    "cnc_wrmacro.err.EW_DATA",
+    "cnc_setmactype",
+    "cnc_getmactype",
+)
+def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
+    control, handle = attached()
+    _, other = fwlib.cnc_allclibhndl()
+    for mantissa, decimals in ((100_000_000, 0), (-100_000_000, 0), (5, 9), (5, -1), (5, -2), (1, 32_767)):
+        assert fwlib.cnc_wrmacro(handle, 500, 10, mantissa, decimals) == EW.EW_DATA
+        assert control.macros.get(500) is None
+    assert fwlib.cnc_getmactype(handle) == (OK, 0)
+    assert fwlib.cnc_setmactype(handle, 5) == OK
+    assert fwlib.cnc_getmactype(handle) == (OK, 5)
+    assert fwlib.cnc_getmactype(other) == (OK, 0)
+    for mantissa, exponent in ((2**31 - 1, 0), (-(2**31) + 1, -128), (3, 127), (-5, 2), (1, -1)):
+        assert fwlib.cnc_wrmacro(handle, 500, 10, mantissa, exponent) == OK
+        assert macro(handle, 500) == (mantissa, exponent)
+        assert control.macros.get(500) == mantissa * 2.0**-exponent
+    for exponent in (-129, 128):
+        assert fwlib.cnc_wrmacro(handle, 500, 10, 1, exponent) == EW.EW_DATA
+    assert fwlib.cnc_wrmacro(handle, 500, 10, 3 * 2**20, -10) == OK
+    assert macro(handle, 500) == (3, -30)
+    assert macro(other, 500) == (-1, -1)  # too large for 8 digits
+    control.macros.set(500, 1e-9)
+    assert macro(other, 500) == (-1, -1)
+    assert fwlib.cnc_wrmacro(other, 500, 10, 25, 1) == OK
+    assert macro(handle, 500) == (5, 1)  # 2.5 is 5 halves
+    assert macro(other, 500) == (25, 1)
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "there", "missing"),
+    [
+        pytest.param((), 0, (100, 149, 500, 531), (150, 499, 532), marks=covers("enum.use_no2.0")),
+        pytest.param(True, 1, (100, 199, 500, 999), (99, 200, 499, 1000), marks=covers("enum.use_no2.1")),
+        pytest.param(
+            ("macro_variables_300",), 2, (100, 199, 500, 699), (200, 700), marks=covers("enum.use_no2.2")
+        ),
+    ],
+)
+@covers("cnc_rdmacroinfo", "cnc_rdmacro.err.EW_NUMBER", "cnc_wrmacro.err.EW_NUMBER")
+def test_ranges_of_common_variables(
+    options: Any, code: int, there: tuple[int, ...], missing: tuple[int, ...]
+) -> None:
+    _, handle = attached(options=options)
+    answer, info = fwlib.cnc_rdmacroinfo(handle)
+    assert (answer, info.use_no1, info.use_no2) == (OK, 33, code)
+    for number in there:
+        assert fwlib.cnc_wrmacro(handle, number, 10, number, 1) == OK
+        assert macro(handle, number) == (number, 1)
+    for number in (*missing, 0, -1, 34, 5000):
+        assert fwlib.cnc_rdmacro(handle, number, 10)[0] == EW.EW_NUMBER
+        assert fwlib.cnc_wrmacro(handle, number, 10, 5, 0) == EW.EW_NUMBER
+    assert fwlib.cnc_rdmacror(handle, there[0], there[2], 5000)[0] == EW.EW_NUMBER
+
+
+@covers("concept.macro_local_scope")
+def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
+    control, handle = attached()
+    assert [macro(handle, number) for number in (1, 33)] == [(0, -1)] * 2  # no macro
+    control.local_variables = lambda: {1: 2.5, 33: None, 7: -4.0}
+    assert [macro(handle, number) for number in (1, 7, 33)] == [(25, 1), (-4, 0), (0, -1)]
+    code, data = fwlib.cnc_rdmacror(handle, 1, 33, 6 + 6 * 33)
+    assert code == OK
+    assert [(each.mcr_val, each.dec_val) for each in data.data][:7:6] == [(25, 1), (-4, 0)]
+    assert fwlib.cnc_wrmacro(handle, 1, 10, 5, 0) == EW.EW_NUMBER
+    assert fwlib.cnc_wrmacror(handle, 12, variant(IODBMR, data=1)(datano_s=33, datano_e=33)) == EW.EW_NUMBER
+
+
+@covers("cnc_rdmacror", "cnc_wrmacror", "example.cnc_rdmacror", "example.cnc_wrmacror")
+def test_ranges_of_macro_variables() -> None:
+    control, handle = attached()
+    count = 20
+    data = IODBMR(datano_s=505, datano_e=505 + count - 1)
+    for k in range(count):
+        data.data[k].mcr_val = 11 * k - 50
+    assert fwlib.cnc_wrmacror(handle, 6 + 6 * count, data) == OK
+    assert [control.macros.get(505 + k) for k in range(count)] == [11.0 * k - 50 for k in range(count)]
+    control.macros.set(507, None)
+    code, found = fwlib.cnc_rdmacror(handle, 504, 508, 1000)
+    assert (code, found.datano_s, found.datano_e) == (OK, 504, 508)
+    assert [(each.mcr_val, each.dec_val) for each in found.data] == [
+        (0, -1),
+        (-50, 0),
+        (-39, 0),
+        (0, -1),
+        (-17, 0),
+    ]
+    assert struct.unpack_from("<lh", found.pack(), 6 + 6 * 2) == (-39, 0)
+
+
+@covers(
+    "cnc_rdmacro.err.EW_LENGTH", "cnc_wrmacro.err.EW_LENGTH", "cnc_rdmacror.err.EW_LENGTH",
+    "cnc_rdmacror.err.EW_NUMBER",
+    "cnc_wrmacror.err.EW_LENGTH", "cnc_wrmacror.err.EW_NUMBER", "cnc_wrmacror.err.EW_DATA",
+)  # fmt: skip
+def test_macro_requests_that_are_refused_change_nothing() -> None:
+    control, handle = attached()
+
+    def written(first: int, last: int, length: int, *values: tuple[int, int]) -> EW:
+        data = IODBMR(datano_s=first, datano_e=last)
+        for k, (mantissa, decimals) in enumerate(values):
+            data.data[k].mcr_val, data.data[k].dec_val = mantissa, decimals
+        code = fwlib.cnc_wrmacror(handle, length, data)
+        assert [control.macros.get(number) for number in (500, 501, 502)] == [None] * 3
+        return code
+
+    assert fwlib.cnc_rdmacro(handle, 9999, 9)[0] == EW.EW_LENGTH
+    assert fwlib.cnc_wrmacro(handle, 500, 9, 5, 0) == EW.EW_LENGTH
+    assert fwlib.cnc_rdmacror(handle, 500, 502, 23)[0] == EW.EW_LENGTH
+    assert fwlib.cnc_rdmacror(handle, 500, 502, 24)[0] == OK
+    for first, last in ((502, 500), (149, 500), (33, 100), (0, 5), (998, 1000)):
+        assert fwlib.cnc_rdmacror(handle, first, last, 30_000)[0] == EW.EW_NUMBER
+        assert written(first, last, 30_000, (1, 0), (2, 0)) == EW.EW_NUMBER
+    assert written(500, 502, 23, (1, 0), (2, 0), (3, 0)) == EW.EW_LENGTH
+    assert written(500, 502, 24, (1, 0), (2, 0), (100_000_000, 0)) == EW.EW_DATA
+    assert written(500, 502, 24, (1, 0), (2, 9), (3, 0)) == EW.EW_DATA
+
+
+def test_a_reset_clears_volatile_variables_if_parameter_6001_says_so() -> None:
+    control, handle = attached()
+    for number in (100, 500):
+        assert fwlib.cnc_wrmacro(handle, number, 10, 5, 0) == OK
+    control.reset()
+    assert macro(handle, 100) == (5, 0)
+    control.parameters.set(6001, 0)
+    control.reset()
+    assert [macro(handle, number) for number in (100, 500)] == [(0, -1), (5, 0)]
+
+
+CALLS: list[Callable[[int], Any]] = [
+    lambda handle: fwlib.cnc_rdparam(handle, 6711, 0, 8)[0],
+    lambda handle: fwlib.cnc_wrparam(handle, 8, psd(6711, 0, ldata=3)),
+    lambda handle: fwlib.cnc_rdparar(handle, 6711, 0, 6713, 24)[0],
+    lambda handle: fwlib.cnc_rdsetr(handle, 6711, 0, 6713, 24)[0],
+    lambda handle: fwlib.cnc_rdparainfo(handle, 6711, 1)[0],
+    lambda handle: fwlib.cnc_wrmacro(handle, 100, 10, 5, 0),
+    lambda handle: fwlib.cnc_rdmacroinfo(handle)[0],
+]
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_data_functions_work_in_every_mode(mode: str) -> None:
+    control, handle = attached()
+    control.select_mode(mode)
+    assert [call(handle) for call in CALLS] == [OK] * len(CALLS)
+
+
+def test_data_belong_to_their_control() -> None:
+    first = PowerMate()
+    second = PowerMate()
+    first.macros.set(100, 5.0)
+    first.parameters.set(6711, 7)
+    assert (second.macros.get(100), second.parameters.value(6711)) == (None, 0)

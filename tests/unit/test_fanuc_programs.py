@@ -1,0 +1,870 @@
+"""Programs: transfer, search, deletion, directory, what is executed, MDI (Manual 000, 1323-2710)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import pytest
+
+from polycnc.cnc import ControlError
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.fwlib import EW
+from support.power_mate import OK, attached, registered, running
+
+FORMAT = "\nO1234\nG1F0.3W10.\nM30\n%"
+UPLOADED = "%\nO1234\nG1F0.3W10.\nM30\n%"
+PIECES = ("\n", "O1234\n", "M3 S1200\n", "G0 Z0\n", "G0 X0 Y0\n", "G1 F500 X120. Y-30.\n", "M30\n", "%")
+STORED = b"O1234\nM3S1200\nG0Z0\nG0X0Y0\nG1F500X120.Y-30.\nM30\n"
+
+
+def covers(*names: str) -> pytest.MarkDecorator:
+    return pytest.mark.covers(*(f"fanuc.{name}" for name in names))
+
+
+def sent(handle: int, *pieces: str) -> tuple[EW, EW]:
+    """Download pieces like the manual's sample; return the first code that is no success, and that of the end."""
+    assert fwlib.cnc_dwnstart(handle) == OK
+    code = OK
+    for piece in pieces:
+        code = fwlib.cnc_download(handle, piece, len(piece))
+        if code != OK:
+            break
+    return code, fwlib.cnc_dwnend(handle)
+
+
+def uploaded(handle: int, number: int, size: int = 1000) -> str:
+    assert fwlib.cnc_upstart(handle, number) == OK
+    text = b""
+    while True:
+        code, piece, count = fwlib.cnc_upload(handle, size)
+        assert code == OK
+        assert len(piece.data) <= count <= size
+        text += bytes(piece.data)
+        if count == 0:
+            break
+    assert fwlib.cnc_upend(handle) == OK
+    return text.decode()
+
+
+def unchanged(control: PowerMate, call: Callable[[], EW], code: EW) -> None:
+    """Check that a call is refused with a code, and that the programs and the selection stay."""
+    before = (
+        [(each, control.programs.read(each.number)) for each in control.programs.directory()],
+        control.selected,
+    )
+    assert call() == code
+    after = (
+        [(each, control.programs.read(each.number)) for each in control.programs.directory()],
+        control.selected,
+    )
+    assert after == before
+
+
+# ---------------------------------------------------------------------- download
+
+
+@covers("example.cnc_download", "cnc_dwnstart", "cnc_download", "cnc_dwnend", "LF", "PERCENT")
+def test_example_download_in_eight_pieces() -> None:
+    control, handle = attached()
+    assert sum(map(len, PIECES)) == 56
+    assert sent(handle, *PIECES) == (OK, OK)
+    assert control.programs.read(1234) == STORED
+    assert [each.number for each in control.programs.directory()] == [1234]
+
+
+@covers("example.cnc_download_format", "format.download")
+@pytest.mark.parametrize("cut", [(23,), (1, 6, 11, 4, 1), (1,) * 23, (9, 9, 5), (2, 21)])
+def test_example_download_cut_anywhere(cut: tuple[int, ...]) -> None:
+    control, handle = attached()
+    assert (len(FORMAT), sum(cut)) == (23, 23)
+    pieces, at = [], 0
+    for size in cut:
+        pieces.append(FORMAT[at : at + size])
+        at += size
+    assert sent(handle, *pieces) == (OK, OK)
+    assert control.programs.read(1234) == b"O1234\nG1F0.3W10.\nM30\n"
+
+
+def test_what_stands_before_the_first_line_feed_and_behind_the_percent_is_ignored() -> None:
+    control, handle = attached()
+    assert sent(handle, "%jun", "k~\r(\nO7(PLATE", " 2)\nM30\n%", "\nO8\n~~~") == (OK, OK)
+    assert control.programs.read(7) == b"O0007(PLATE 2)\nM30\n"
+    assert len(control.programs) == 1
+
+
+def test_several_programs_come_together_or_not_at_all() -> None:
+    control, handle = attached()
+    assert sent(handle, "\nO7\nM99\nO12(B)\nG4P1\nM99\n%") == (OK, OK)
+    assert [(each.number, each.comment) for each in control.programs.directory()] == [(7, ""), (12, "B")]
+    unchanged(control, lambda: sent(handle, "\nO8\nM99\nO12\nM99\n%")[1], EW.EW_DATA)
+    unchanged(control, lambda: sent(handle, "\nO8\nM99\nO8\nM99\n%")[1], EW.EW_DATA)
+
+
+def test_a_stream_that_is_cut_leaves_no_half_program() -> None:
+    control, handle = attached()
+    unchanged(control, lambda: sent(handle, "\nO8\nG1X1.\nM30\n")[1], EW.EW_DATA)
+    unchanged(control, lambda: sent(handle)[1], EW.EW_DATA)
+    unchanged(control, lambda: sent(handle, "\n%")[1], EW.EW_DATA)
+    assert fwlib.cnc_dwnstart(handle) == OK
+
+
+@covers("concept.download_session", "cnc_download.err.EW_FUNC", "cnc_dwnend.err.EW_FUNC")
+def test_download_session() -> None:
+    control, handle = attached()
+    assert fwlib.cnc_download(handle, "\n", 1) == EW.EW_FUNC
+    assert fwlib.cnc_dwnend(handle) == EW.EW_FUNC
+    assert fwlib.cnc_dwnstart(handle) == OK
+    assert fwlib.cnc_dwnstart(handle) == EW.EW_BUSY
+    _, other = fwlib.cnc_allclibhndl()
+    assert fwlib.cnc_dwnstart(other) == EW.EW_BUSY  # one per control
+    assert fwlib.cnc_download(handle, "\nO1\n~", 5) == OK
+    assert fwlib.cnc_download(handle, "\n", 1) == EW.EW_DATA
+    assert fwlib.cnc_download(handle, "M30\n%", 5) == EW.EW_DATA  # open, and still wrong
+    assert fwlib.cnc_search(handle, 1) == EW.EW_BUSY
+    assert fwlib.cnc_dwnend(handle) == EW.EW_DATA
+    assert fwlib.cnc_dwnend(handle) == EW.EW_FUNC
+    assert control.transfer is None
+    assert sent(handle, FORMAT) == (OK, OK)
+
+
+@covers("cnc_download.err.EW_LENGTH", "range.download_number")
+def test_a_piece_has_1_to_256_characters() -> None:
+    control, handle = attached()
+    long = "\nO7\n" + "X1234567\n" * 28
+    assert len(long) == 256
+    assert fwlib.cnc_dwnstart(handle) == OK
+    assert fwlib.cnc_download(handle, long + " ", 257) == EW.EW_LENGTH
+    assert fwlib.cnc_download(handle, "", 0) == EW.EW_LENGTH
+    assert fwlib.cnc_download(handle, "X", -1) == EW.EW_LENGTH
+    assert fwlib.cnc_download(handle, "X", 2) == EW.EW_LENGTH
+    assert fwlib.cnc_download(handle, long + "behind the number", 256) == OK
+    assert fwlib.cnc_download(handle, "%", 1) == OK
+    assert fwlib.cnc_dwnend(handle) == OK
+    assert control.programs.read(7).count(b"X1234567\n") == 28
+
+
+@covers("cnc_download.err.EW_DATA", "cnc_dwnend.err.EW_DATA", "concept.duplicate_program")
+@pytest.mark.parametrize(
+    "stream",
+    [
+        "\nO7\nM30\n%",  # registered
+        "\nO55\nM30\n%",  # selected
+        "\nO1\nG1X1~\nM30\n%",
+        "\nO1\ng1x1\nM30\n%",
+        "\nO1\r\nM30\n%",
+        "\nO1\nM30(A\n%",
+        "\nO1\nM30)\n%",
+        "\nM30\n%",
+        "\nO0\nM30\n%",
+        "\nO10000\nM30\n%",
+        "\nO\nM30\n%",
+    ],
+)
+def test_streams_that_are_refused(stream: str) -> None:
+    control, handle = attached()
+    registered(control, O7="\nM30\n", O55="\nM30\n")
+    control.select_program(55)
+    unchanged(control, lambda: sent(handle, *stream)[0], EW.EW_DATA)
+    unchanged(control, lambda: sent(handle, *stream)[1], EW.EW_DATA)  # the end tells it again
+    assert sent(handle, FORMAT) == (OK, OK)
+
+
+def test_the_last_pieces_are_judged_at_the_end() -> None:
+    control, handle = attached()
+    assert fwlib.cnc_dwnstart(handle) == OK
+    assert fwlib.cnc_download(handle, "\nO7\nM30\n%", 9) == OK
+    registered(control, O7="(OPERATOR)\nM30\n")
+    unchanged(control, lambda: fwlib.cnc_dwnend(handle), EW.EW_DATA)
+
+
+@covers("concept.tv_check", "ncparam.0000_0")
+def test_tv_check_counts_the_characters_of_a_block() -> None:
+    control, handle = attached()
+    assert sent(handle, FORMAT) == (OK, OK)
+    control.parameters.set(0, 1)
+    odd = "\nO1235\nG1F0.3W10.\nM30\n%"
+    unchanged(control, lambda: sent(handle, odd)[0], EW.EW_DATA)
+    assert sent(handle, "\nO1235\nG1F0.3W10. \nM30\n%") == (OK, OK)
+    control.select_mode("MDI")
+    assert fwlib.cnc_wrmdiprog(handle, len(odd), odd) == EW.EW_DATA
+    control.parameters.set(0, 0)
+    assert fwlib.cnc_wrmdiprog(handle, len(odd), odd) == OK
+
+
+@covers("ncparam.3201_2", "ncparam.3201_6")
+def test_parameters_of_registration() -> None:
+    control, handle = attached()
+    registered(control, O7="\nM30\n", O55="\nM30\n")
+    control.select_program(55)
+    stream = "\nO7\nG4P5\nM30\nG4P6\nM99\n%"
+    unchanged(control, lambda: sent(handle, stream)[1], EW.EW_DATA)
+    control.parameters.set(3201, 1 << 6 | 1 << 2)
+    assert sent(handle, stream) == (OK, OK)
+    assert control.programs.read(7) == b"O0007\nG4P5\nM30\nG4P6\nM99\n"
+    unchanged(control, lambda: sent(handle, "\nO55\nM30\n%")[1], EW.EW_DATA)  # never the selected one
+    control.parameters.set(3201, 1 << 2)
+    unchanged(
+        control, lambda: sent(handle, stream)[0], EW.EW_DATA
+    )  # M30 ends a program, and no O word follows
+    assert sent(handle, "\nO7\nM2\nO8(M30)\nG4P30\nM099\n%") == (OK, OK)
+    assert (control.programs.read(7), len(control.programs)) == (b"O0007\nM2\n", 3)
+
+
+@covers("cnc_download.err.EW_OVRFLOW", "cnc_dwnend.err.EW_OVRFLOW", "concept.memory_accounting")
+def test_a_full_memory() -> None:
+    control, handle = attached(characters=60, most_programs=2)
+    assert sent(handle, FORMAT) == (OK, OK)
+    assert control.programs.memory.free_bytes == 60 - 21
+    unchanged(control, lambda: sent(handle, "\nO7\n", "X1.\n" * 9, "M30\n%")[0], EW.EW_OVRFLOW)
+    unchanged(control, lambda: sent(handle, "\nO7\n", "X1.\n" * 9, "M30\n%")[1], EW.EW_OVRFLOW)
+    unchanged(control, lambda: sent(handle, "\nO7\n" + "X" * 40)[0], EW.EW_OVRFLOW)
+    assert sent(handle, "\nO7\n", "X1.\n" * 8, "%") == (OK, OK)
+    assert control.programs.memory.free_bytes == 1
+    assert fwlib.cnc_delete(handle, 7) == OK
+    assert sent(handle, "\nO8\n%") == (OK, OK)
+    unchanged(control, lambda: sent(handle, "\nO9\n%")[1], EW.EW_OVRFLOW)  # two programs are all
+
+
+@covers("cnc_download.err.EW_RESET")
+@pytest.mark.parametrize("button", ["reset", "feed_hold"])
+def test_reset_and_stop_end_a_download(button: str) -> None:
+    control, handle = attached()
+    assert fwlib.cnc_dwnstart(handle) == OK
+    assert fwlib.cnc_download(handle, "\nO7\nM30\n%", 9) == OK
+    getattr(control, button)()
+    assert fwlib.cnc_download(handle, "M30\n", 4) == EW.EW_RESET
+    assert fwlib.cnc_download(handle, "M30\n", 4) == EW.EW_RESET
+    assert fwlib.cnc_dwnend(handle) == OK
+    assert len(control.programs) == 0
+    assert sent(handle, FORMAT) == (OK, OK)
+
+
+@covers("concept.blocking_download")
+def test_a_download_never_answers_that_a_buffer_is_full() -> None:
+    control, handle = attached(characters=200_000)
+    pieces = ["\nO7\n", *["G1X12.345Y-6.7\n" * 17] * 500, "M30\n%"]
+    assert sent(handle, *pieces) == (OK, OK)
+    assert len(control.programs.read(7)) == 6 + 15 * 17 * 500 + 4
+
+
+# ---------------------------------------------------------------------- upload
+
+
+@covers("example.cnc_upload_format", "cnc_upstart", "cnc_upload", "cnc_upend", "format.upload")
+@covers("concept.no_nul_termination")
+def test_example_upload_in_pieces() -> None:
+    _, handle = attached()
+    assert sent(handle, FORMAT) == (OK, OK)
+    for size, expected in ((1000, (24, 0, 0)), (10, (10, 10, 4, 0))):
+        assert fwlib.cnc_upstart(handle, 1234) == OK
+        found = [fwlib.cnc_upload(handle, size) for _ in expected]
+        assert [code for code, _, _ in found] == [OK] * len(expected)
+        assert tuple(count for _, _, count in found) == expected
+        assert "".join(bytes(piece.data).decode() for _, piece, _ in found) == UPLOADED
+        assert fwlib.cnc_upend(handle) == OK
+    assert [bytes(piece.data) for _, piece, _ in found[:3]] == [b"%\nO1234\nG1", b"F0.3W10.\nM", b"30\n%"]
+    assert found[0][1].pack()[:4] == b"\0\0\0\0"
+    assert len(found[0][1].pack()) == 14  # the piece fills its buffer
+
+
+@covers("example.cnc_upload")
+def test_example_upload_loop_until_the_percent() -> None:
+    _, handle = attached()
+    assert sent(handle, *PIECES) == (OK, OK)
+    assert fwlib.cnc_upstart(handle, 1234) == OK
+    text = ""
+    while True:
+        code, piece, number = fwlib.cnc_upload(handle, 39)
+        assert code == OK
+        text += bytes(piece.data)[:number].decode()
+        if text[-1] == "%":
+            break
+    assert fwlib.cnc_upend(handle) == OK
+    assert text == "%\n" + STORED.decode() + "%"
+    assert uploaded(handle, 1234, 1) == text
+
+
+@covers(
+    "concept.upload_session", "cnc_upstart.err.EW_BUSY", "cnc_upstart.err.EW_DATA", "cnc_upload.err.EW_FUNC",
+    "cnc_upload.err.EW_LENGTH", "cnc_upend.err.EW_FUNC",
+)  # fmt: skip
+def test_upload_session() -> None:
+    control, handle = attached()
+    assert sent(handle, FORMAT) == (OK, OK)
+    assert fwlib.cnc_upload(handle, 5)[0] == EW.EW_FUNC
+    assert fwlib.cnc_upend(handle) == EW.EW_FUNC
+    for number in (1235, 0, -1, 10000):
+        assert fwlib.cnc_upstart(handle, number) == EW.EW_DATA
+    assert fwlib.cnc_upstart(handle, 1234) == OK
+    assert fwlib.cnc_upstart(handle, 1234) == EW.EW_BUSY
+    code, _, number = fwlib.cnc_upload(handle, 0)
+    assert (code, number) == (EW.EW_LENGTH, 0)
+    assert fwlib.cnc_upload(handle, 24)[2] == 24
+    assert fwlib.cnc_upload(handle, 24)[::2] == (OK, 0)
+    _, other = fwlib.cnc_allclibhndl()
+    assert uploaded(other, 1234) == UPLOADED  # one per handle
+    assert fwlib.cnc_upend(handle) == OK
+    assert fwlib.cnc_upend(handle) == EW.EW_FUNC
+    control.raise_alarm(101)
+    assert fwlib.cnc_upstart(handle, 1234) == EW.EW_BUSY
+
+
+# ---------------------------------------------------------------------- search and deletion
+
+
+def _memory(*, selected: int = 201, **keys: object) -> tuple[PowerMate, int]:
+    control, handle = attached(**keys)
+    registered(
+        control, O12="(TEST)\nM30\n", O200="(WORK1)\nM30\n", O201="\nG1X50.F600\nM30\n", O9001="\nM99\n"
+    )
+    control.select_program(selected)
+    return control, handle
+
+
+@covers(
+    "cnc_search", "enum.search.foreground", "enum.search.background", "mode.MEM", "mode.EDIT", "mode.OTHER",
+    "concept.selected_program", "example.cnc_search", "cnc_search.err.EW_DATA",
+)  # fmt: skip
+def test_search_selects_in_mem_and_edit_only() -> None:
+    control, handle = _memory()
+    for mode in ("MEM", "EDIT"):
+        control.select_mode(mode)
+        for number in (12, 200):
+            assert fwlib.cnc_search(handle, number) == OK
+            assert fwlib.cnc_rdprgnum(handle)[1].data == control.selected == number
+    for mode in ("MDI", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"):
+        control.select_mode(mode)
+        assert fwlib.cnc_search(handle, 12) == OK
+        assert control.selected == 200
+    for mode in ("MEM", "JOG"):
+        control.select_mode(mode)
+        for number in (13, 0, -1, 10000):
+            unchanged(control, lambda number=number: fwlib.cnc_search(handle, number), EW.EW_DATA)  # type: ignore[misc]
+
+
+@covers("cnc_delete", "example.cnc_delete", "cnc_delete.err.EW_DATA")
+def test_delete_takes_one_program_in_any_mode_but_mdi() -> None:
+    control, handle = _memory()
+    assert fwlib.cnc_delete(handle, 12) == OK  # in MEM
+    unchanged(control, lambda: fwlib.cnc_delete(handle, 12), EW.EW_DATA)
+    unchanged(control, lambda: fwlib.cnc_delete(handle, 0), EW.EW_DATA)
+    control.select_mode("JOG")
+    assert fwlib.cnc_delete(handle, 9001) == OK
+    assert [each.number for each in control.programs.directory()] == [200, 201]
+
+
+@covers("cnc_delall", "example.cnc_delall")
+def test_delall_takes_every_program_and_the_selection() -> None:
+    control, handle = _memory()
+    control.select_mode("EDIT")
+    assert fwlib.cnc_delall(handle) == OK
+    assert (len(control.programs), fwlib.cnc_rdprgnum(handle)[1].data) == (0, 0)
+    assert fwlib.cnc_delall(handle) == OK
+    control.select_mode("MEM")
+    with pytest.raises(ControlError):
+        control.cycle_start()
+
+
+CALLS: dict[str, Callable[[int], EW]] = {
+    "dwnstart": lambda handle: fwlib.cnc_dwnstart(handle),
+    "upstart": lambda handle: fwlib.cnc_upstart(handle, 12),
+    "search": lambda handle: fwlib.cnc_search(handle, 12),
+    "delete": lambda handle: fwlib.cnc_delete(handle, 12),
+    "delall": lambda handle: fwlib.cnc_delall(handle),
+}
+
+
+def _background(control: PowerMate, handle: int) -> None:
+    control.programs.edit(9001, background=True)
+
+
+def _download(control: PowerMate, handle: int) -> None:
+    assert fwlib.cnc_dwnstart(handle) == OK
+
+
+def _compare(control: PowerMate, handle: int) -> None:
+    control.start_compare()
+
+
+def _alarm_000(control: PowerMate, handle: int) -> None:
+    control.raise_alarm(0)
+
+
+def _alarm_101(control: PowerMate, handle: int) -> None:
+    control.raise_alarm(101)
+
+
+def _mdi(control: PowerMate, handle: int) -> None:
+    control.select_mode("MDI")
+
+
+def _mem(control: PowerMate, handle: int) -> None:
+    control.select_mode("MEM")
+
+
+def _running(control: PowerMate, handle: int) -> None:
+    running(control, 201)
+    control.advance(100)
+    control.feed_hold()
+    control.advance(500)
+    control.select_mode("EDIT")
+
+
+def _key(control: PowerMate, handle: int) -> None:
+    control.protect_key(True)
+
+
+# What each call answers in a state of the control; a state is entered from EDIT. Every other answer is success.
+BUSY, PROT = EW.EW_BUSY, EW.EW_PROT
+MATRIX: list[tuple[Callable[[PowerMate, int], None], dict[str, EW]]] = [
+    (_background, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_download, {"dwnstart": BUSY, "search": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_compare, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_alarm_000, dict.fromkeys(CALLS, BUSY)),
+    (_alarm_101, dict.fromkeys(CALLS, BUSY)),
+    (_mdi, {"dwnstart": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_mem, {"delall": BUSY}),
+    (_running, {"search": BUSY, "delete": BUSY, "delall": BUSY}),
+    (_key, {"dwnstart": PROT, "delete": PROT, "delall": PROT}),
+]
+
+
+@covers(
+    "cnc_dwnstart.err.EW_BUSY", "cnc_dwnstart.err.EW_PROT", "cnc_search.err.EW_BUSY", "cnc_delall.err.EW_BUSY",
+    "cnc_delete.err.EW_BUSY", "concept.program_busy_conditions", "concept.alarm_ps000_ps101", "concept.op_signal",
+    "concept.protect_key", "concept.background_edit", "concept.compare_running", "EW_BUSY",
+)  # fmt: skip
+@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.parametrize(("state", "answers"), [pytest.param(*each, id=each[0].__name__) for each in MATRIX])
+def test_refusal_matrix(state: Callable[[PowerMate, int], None], answers: dict[str, EW], call: str) -> None:
+    control, handle = _memory()
+    control.select_mode("EDIT")
+    state(control, handle)
+    if (expected := answers.get(call, OK)) == OK:
+        assert CALLS[call](handle) == OK
+    else:
+        unchanged(control, lambda: CALLS[call](handle), expected)
+        assert (control.transfer is not None) is (state in (_download, _compare))
+
+
+@covers("cnc_delete.err.EW_BUSY")
+def test_the_selected_program_is_not_deleted() -> None:
+    control, handle = _memory()
+    unchanged(control, lambda: fwlib.cnc_delete(handle, 201), EW.EW_BUSY)
+    assert fwlib.cnc_search(handle, 12) == OK
+    assert fwlib.cnc_delete(handle, 201) == OK
+
+
+def test_in_other_modes_than_edit_and_mem_the_op_signal_does_not_matter() -> None:
+    control, handle = _memory()
+    _running(control, handle)
+    control.select_mode("JOG")
+    assert fwlib.cnc_search(handle, 12) == OK
+    assert fwlib.cnc_delete(handle, 12) == OK
+    unchanged(control, lambda: fwlib.cnc_delall(handle), BUSY)  # O201 is being executed
+
+
+@covers(
+    "concept.write_protection_programs", "cnc_delall.err.EW_PROT", "cnc_delete.err.EW_PROT", "ncparam.3202_0",
+    "ncparam.3202_4", "cnc_download.err.EW_PROT", "cnc_dwnend.err.EW_PROT",
+)  # fmt: skip
+@pytest.mark.parametrize(
+    ("parameter", "value", "guarded", "free"),
+    [
+        (3202, 1, (8000, 8999), (7999, 9000)),
+        (3202, 16, (9000, 9999), (8999, 7)),
+        (3210, 55, (9000, 9001), (8999, 1)),
+    ],
+)
+def test_parameters_protect_programs(
+    parameter: int, value: int, guarded: tuple[int, int], free: tuple[int, int]
+) -> None:
+    control, handle = attached()
+    control.select_mode("EDIT")
+    registered(control, **{f"O{number}": "\nM99\n" for number in (guarded[0], free[0])})
+    control.parameters.set(parameter, value)
+    unchanged(control, lambda: sent(handle, f"\nO{guarded[1]}\nM99\n%")[0], PROT)
+    unchanged(control, lambda: sent(handle, f"\nO{guarded[1]}\nM99\n%")[1], PROT)
+    assert sent(handle, f"\nO{free[1]}\nM99\n%") == (OK, OK)
+    unchanged(control, lambda: fwlib.cnc_delete(handle, guarded[0]), PROT)
+    assert fwlib.cnc_delete(handle, free[0]) == OK
+    assert fwlib.cnc_delall(handle) == PROT
+    assert [each.number for each in control.programs.directory()] == [guarded[0]]
+    if parameter == 3210:
+        control.parameters.set(3211, 55)  # the key word
+    else:
+        control.parameters.set(parameter, 0)
+    assert fwlib.cnc_delall(handle) == OK
+    assert len(control.programs) == 0
+
+
+@covers("ncparam.3290_7")
+def test_which_key_protects_programs() -> None:
+    control, handle = _memory()
+    control.protect_key(key=1)
+    assert fwlib.cnc_delete(handle, 12) == OK
+    control.parameters.set(3290, 1 << 7)
+    unchanged(control, lambda: fwlib.cnc_delete(handle, 200), PROT)
+    control.protect_key(False, key=1)
+    control.protect_key(key=3)
+    assert fwlib.cnc_delete(handle, 200) == OK
+    control.parameters.set(3290, 0)
+    unchanged(control, lambda: fwlib.cnc_dwnstart(handle), PROT)
+
+
+def test_a_comparison_tells_whether_programs_are_the_same_and_changes_nothing() -> None:
+    control, handle = attached()
+    assert sent(handle, FORMAT) == (OK, OK)
+    for stream, code in (
+        (FORMAT, OK),
+        (FORMAT.replace("10.", "11."), EW.EW_DATA),
+        ("\nO9\nM30\n%", EW.EW_DATA),
+        ("\nO1234\nG1 F0.3 W10.\nM30\n%", OK),
+    ):
+        control.start_compare()
+        assert fwlib.cnc_download(handle, stream, len(stream)) == OK
+        unchanged(control, lambda code=code: fwlib.cnc_dwnend(handle), code)  # type: ignore[misc]
+
+
+# ---------------------------------------------------------------------- directory
+
+
+def _directory() -> tuple[PowerMate, int]:
+    """Return a memory with the manual's four programs: comments and characters."""
+    control, handle = attached()
+    for number, comment, size in (
+        (12, "(TEST)", 420),
+        (200, "(WORK1)", 352),
+        (201, "", 537),
+        (9001, "(SUB-PRO1)", 781),
+    ):
+        head = f"O{number:04d}{comment}\n"
+        control.programs.register(number, head + "X" * (size - len(head) - 1) + "\n")
+    return control, handle
+
+
+LISTS = {
+    0: "O12O200O201O9001%",
+    1: "%\nO12(TEST)\nO200(WORK1)\nO201()\nO9001(SUB-PRO1)\n%",
+    2: "O12(TEST)420O200(WORK1)352O201()537O9001(SUB-PRO1)781%",
+}
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        pytest.param(k, marks=covers(f"enum.rdprogdir_type.{k}", f"format.progdir_type{k}"), id=str(k))
+        for k in (0, 1, 2)
+    ],
+)
+@covers("example.cnc_rdprogdir_format", "cnc_rdprogdir", "concept.truncation")
+def test_example_directory(kind: int) -> None:
+    _, handle = _directory()
+    text = LISTS[kind]
+    assert len(text) == {0: 17, 1: 48, 2: 54}[kind]
+    code, found = fwlib.cnc_rdprogdir(handle, kind, 1, 9999, 256)
+    assert (code, found.prg_data.decode(), len(found.pack())) == (OK, text, 256)
+    assert found.pack()[len(text) :] == b"\0" * (256 - len(text))
+    for length in (15, 1, len(text)):
+        code, found = fwlib.cnc_rdprogdir(handle, kind, 1, 9999, length)
+        assert (code, found.pack().decode()) == (OK, text[:length])
+    assert [fwlib.cnc_rdprogdir(handle, k, 1, 9999, 15)[1].pack() for k in (0, 1, 2)] == [
+        b"O12O200O201O900",
+        b"%\nO12(TEST)\nO20",
+        b"O12(TEST)420O20",
+    ]
+
+
+@covers("example.cnc_rdprogdir")
+def test_example_directory_printed_program_by_program() -> None:
+    _, handle = _directory()
+    code, found = fwlib.cnc_rdprogdir(handle, 0, 200, 9000, 255)
+    assert code == OK
+    text = "".join(f"\n{each}" if each == "O" else each for each in found.prg_data.decode())
+    assert text == "\nO200\nO201%"
+
+
+@covers("concept.comment_rules", "concept.program_number_range")
+def test_ranges_and_comments_of_the_directory() -> None:
+    control, handle = attached()
+    for kind in (0, 1, 2):
+        assert fwlib.cnc_rdprogdir(handle, kind, 1, 9999, 10)[1].prg_data == b"%"
+    long = "".join(chr(65 + k % 26) for k in range(53))
+    registered(
+        control, O1=f"({long[:48]})\nM30\n", O9999=f"({long})\nM30\n", O5="\n(NO COMMENT OF IT)\nM30\n"
+    )
+    assert fwlib.cnc_rdprogdir(handle, 1, 1, 9999, 500)[1].prg_data.decode() == (
+        f"%\nO1({long[:48]})\nO5()\nO9999({long[:48]})\n%"
+    )
+    for first, last, text in ((1, 1, b"O1%"), (2, 4, b"%"), (5, 9999, b"O5O9999%"), (9999, 9999, b"O9999%")):
+        assert fwlib.cnc_rdprogdir(handle, 0, first, last, 50)[1].prg_data == text
+    assert fwlib.cnc_rdprogdir(handle, 2, 2, 4, 50)[1].prg_data == b"%"
+
+
+@covers("cnc_rdprogdir.err.EW_LENGTH", "cnc_rdprogdir.err.EW_NUMBER", "cnc_rdprogdir.err.EW_ATTRIB")
+def test_directory_requests_that_are_refused() -> None:
+    _, handle = _directory()
+    for length in (0, -1):
+        assert fwlib.cnc_rdprogdir(handle, 3, 0, 0, length)[0] == EW.EW_LENGTH
+    for first, last in ((0, 9999), (1, 10000), (-1, 5), (201, 200), (5, 0)):
+        assert fwlib.cnc_rdprogdir(handle, 3, first, last, 100)[0] == EW.EW_NUMBER
+    for kind in (-1, 3):
+        assert fwlib.cnc_rdprogdir(handle, kind, 1, 9999, 100)[0] == EW.EW_ATTRIB
+
+
+@covers(
+    "cnc_rdproginfo", "enum.rdproginfo_type.0", "enum.rdproginfo_type.1", "format.proginfo_ascii",
+    "example.cnc_rdproginfo", "cnc_rdproginfo.err.EW_LENGTH", "cnc_rdproginfo.err.EW_ATTRIB",
+)  # fmt: skip
+def test_program_information() -> None:
+    _, handle = _directory()
+    code, info = fwlib.cnc_rdproginfo(handle, 0, 12)
+    numbers = info.u.bin
+    assert code == OK
+    assert (numbers.reg_prg, numbers.unreg_prg, numbers.used_mem, numbers.unused_mem) == (
+        4,
+        121,
+        2090,
+        125_910,
+    )
+    code, info = fwlib.cnc_rdproginfo(handle, 1, 31)
+    assert (code, info.u.asc) == (OK, b"%\n4\n121\n2090\n125910\n%")
+    assert info.pack()[22:] == b"\0" * 9
+    for kind, length in ((0, 11), (0, 13), (0, 31), (1, 12), (1, 30), (2, 20)):
+        assert fwlib.cnc_rdproginfo(handle, kind, length)[0] == EW.EW_LENGTH
+    for kind, length in ((-1, 12), (2, 31)):
+        assert fwlib.cnc_rdproginfo(handle, kind, length)[0] == EW.EW_ATTRIB
+
+
+# ---------------------------------------------------------------------- execution
+
+
+@covers("example.cnc_rdprgnum", "cnc_rdprgnum", "concept.subprogram_numbers")
+def test_example_program_numbers_in_a_subprogram() -> None:
+    control, handle = attached()
+    registered(
+        control,
+        O1234="\nN10 M98 P5678\nN20 M30\n",
+        O5678="\nN110 M98 P9876\nN120 G4 P100\nM99\n",
+        O9876="\nN210 G4 P300\nN220 M99\n",
+    )
+    control.select_program(1234)
+    assert fwlib.cnc_rdprgnum(handle)[1] == fwlib.ODBPRO(data=1234, mdata=1234)
+    seen = set()
+    running(control, 1234)
+    while control.programs.in_operation:
+        numbers = fwlib.cnc_rdprgnum(handle)[1]
+        seen.add((numbers.data, numbers.mdata, fwlib.cnc_rdseqnum(handle)[1].data))
+        control.advance(10)
+    assert {(9876, 1234, 210), (5678, 1234, 120)} <= seen
+    assert {main for _, main, _ in seen} == {1234}
+    assert fwlib.cnc_rdprgnum(handle)[1] == fwlib.ODBPRO(data=1234, mdata=1234)
+
+
+@covers("example.cnc_rdseqnum", "cnc_rdseqnum", "concept.seqnum_retention")
+def test_example_sequence_number_is_kept_by_blocks_without_one() -> None:
+    control, handle = attached()
+    registered(control, O1234="\nG4 P50\nN10 M3 S1500\nN20 T12\nN30 G0 X110.\nX90.\nN40 G0 X0\nM30\n")
+    assert fwlib.cnc_rdseqnum(handle)[1].data == 0
+    running(control, 1234)
+    control.advance(20)
+    assert fwlib.cnc_rdseqnum(handle)[1].data == 0
+    found: list[tuple[int, str]] = []
+    while control.programs.in_operation:
+        block = control.execution.block
+        assert block is not None
+        found.append((fwlib.cnc_rdseqnum(handle)[1].data, block.text))
+        control.advance(5)
+    assert (30, "N30 G0 X110.") in found
+    assert (30, "X90.") in found
+    assert found[-1][0] == 40
+    assert fwlib.cnc_rdseqnum(handle)[1].data == 40
+
+
+@covers("cnc_rdexecprog", "cnc_rdexecprog.err.EW_LENGTH")
+def test_the_program_in_execution() -> None:
+    control, handle = attached()
+    registered(control, O7="\nN10G1X10.F600\nN20Y5.\nN30X0\nM30\n")
+    assert fwlib.cnc_rdexecprog(handle, 100) == (OK, 0, 0, b"")
+    control.select_program(7)
+    assert fwlib.cnc_rdexecprog(handle, 9) == (OK, 9, 0, b"O0007\nN10")
+    running(control, 7, lambda: control.execution.sequence == 20)
+    code, count, ahead, text = fwlib.cnc_rdexecprog(handle, 100)
+    assert (code, text, count) == (OK, b"N20Y5.\nN30X0\nM30\n", 17)
+    assert ahead in (1, 2)
+    assert fwlib.cnc_rdexecprog(handle, 4)[1:] == (4, ahead, b"N20Y")
+    assert fwlib.cnc_rdexecprog(handle, 0) == (EW.EW_LENGTH, 0, 0, b"")
+
+
+# ---------------------------------------------------------------------- MDI
+
+
+@covers("cnc_wrmdiprog", "example.cnc_wrmdiprog_format", "concept.mdi_program", "mode.MDI")
+def test_example_mdi_program() -> None:
+    control, handle = attached(axes=1)
+    control.select_mode("MDI")
+    text = "\nO1234\nG1F600X10.\nM30\n%"
+    assert fwlib.cnc_wrmdiprog(handle, 23, FORMAT) == OK
+    assert fwlib.cnc_wrmdiprog(handle, len(text), "?" + text[:1] + text[1:]) == EW.EW_DATA  # the % is cut off
+    assert fwlib.cnc_wrmdiprog(handle, len(text), text) == OK
+    control.cycle_start()
+    control.advance(3000)
+    assert fwlib.cnc_absolute(handle, 1, 8)[1].data[0] == 10_000
+    assert len(control.programs) == 0
+
+
+@covers(
+    "cnc_wrmdiprog.err.EW_LENGTH", "cnc_wrmdiprog.err.EW_DATA", "cnc_wrmdiprog.err.EW_MODE",
+    "cnc_wrmdiprog.err.EW_REJECT", "range.mdi_length",
+)  # fmt: skip
+def test_mdi_programs_that_are_refused() -> None:
+    control, handle = attached(axes=1)
+
+    def put(text: str, length: int | None = None) -> EW:
+        before = control.mdi.blocks
+        code = fwlib.cnc_wrmdiprog(handle, len(text) if length is None else length, text)
+        assert (control.mdi.blocks == before) is (code != OK)
+        return code
+
+    assert put(FORMAT) == EW.EW_MODE
+    control.select_mode("MDI")
+    full = "\nO1\n" + "G4P123\n" * 27 + "M30\n%\n"
+    assert len(full) == 199
+    assert put(full) == OK
+    assert put(full + " ") == EW.EW_LENGTH
+    assert put(FORMAT, 0) == EW.EW_LENGTH
+    assert put(FORMAT, -3) == EW.EW_LENGTH
+    assert put(FORMAT, 24) == EW.EW_LENGTH
+    for text in ("\nO1\nG1X1~\n%", "\nG1X1\n%", "\nO1\n%", "\nO1\nM30\n", "O1M30%", "\nO1\nM30\nO2\nM30\n%"):
+        assert put(text) == EW.EW_DATA
+    control.cycle_start()
+    control.advance(20)
+    assert put(FORMAT) == EW.EW_REJECT
+    control.reset()
+    control.advance(20)
+    registered(control, O5="\nM30\n")
+    with control.programs.edit(5, background=True):
+        assert put(FORMAT) == EW.EW_REJECT
+    assert put(FORMAT) == OK
+
+
+@covers("cnc_rdmdipntr", "cnc_wrmdipntr")
+def test_mdi_pointers() -> None:
+    control, handle = attached(axes=1)
+    registered(control, O77="\nG4P80\nM99\n")
+    control.select_mode("MDI")
+    text = "\nO1\nG4P100\nM98P77\nG4P120\nG4P140\nM30\n%"
+    assert fwlib.cnc_wrmdiprog(handle, len(text), text) == OK
+
+    def pointers() -> tuple[int, int, int, int]:
+        code, data = fwlib.cnc_rdmdipntr(handle)
+        assert code == OK
+        return data.mdiprog, data.mdipntr, data.crntprog, data.crntpntr
+
+    def seen() -> list[tuple[int, int]]:
+        control.cycle_start()
+        found: list[tuple[int, int]] = []
+        while control.control.channels[0].active:
+            control.advance(5)
+            now = pointers()
+            assert (now[2], now[3]) >= (0, 0)
+            if control.control.channels[0].active and (not found or found[-1] != now[:2]):
+                found.append(now[:2])
+        return found
+
+    assert pointers() == (0, 0, 0, 0)
+    assert seen() == [(0, 0), (77, 1), (0, 2), (0, 3)]
+    assert fwlib.cnc_wrmdipntr(handle, 2) == OK
+    assert pointers() == (0, 2, 0, 2)
+    control.cycle_start()
+    control.advance(5)
+    assert pointers()[:2] == (0, 2)
+    assert pointers()[3] in (3, 4)  # read ahead
+    control.reset()
+
+
+@covers(
+    "cnc_rdmdipntr.err.EW_MODE", "cnc_wrmdipntr.err.EW_DATA", "cnc_wrmdipntr.err.EW_MODE",
+    "cnc_wrmdipntr.err.EW_REJECT",
+    "EW_MODE", "EW_REJECT",
+)  # fmt: skip
+def test_mdi_pointers_that_are_refused() -> None:
+    control, handle = attached(axes=1)
+    assert fwlib.cnc_rdmdipntr(handle)[0] == EW.EW_MODE
+    assert fwlib.cnc_wrmdipntr(handle, 0) == EW.EW_MODE
+    control.select_mode("MDI")
+    assert fwlib.cnc_wrmdipntr(handle, 0) == EW.EW_REJECT  # no program
+    assert fwlib.cnc_wrmdiprog(handle, 23, FORMAT) == OK
+    assert fwlib.cnc_wrmdipntr(handle, 1) == OK
+    for block in (-1, 2, 99):
+        assert fwlib.cnc_wrmdipntr(handle, block) == EW.EW_DATA
+        assert control.mdi.start == 1
+    registered(control, O5="\nM30\n")
+    with control.programs.edit(5, background=True):
+        assert fwlib.cnc_wrmdipntr(handle, 0) == EW.EW_REJECT
+
+
+# ---------------------------------------------------------------------- cursor
+
+
+@covers("cnc_seqsrch", "cnc_rewind")
+def test_a_start_begins_at_the_sequence_number_that_was_sought() -> None:
+    control, handle = attached(axes=2)
+    registered(control, O7="\nN10 G1 X10. F6000\nN20 Y5.\nN30 X2.5\nM30\n")
+    control.select_program(7)
+    assert fwlib.cnc_seqsrch(handle, 20) == OK
+    assert fwlib.cnc_rdexecprog(handle, 3)[3] == b"N20"
+    assert fwlib.cnc_rdseqnum(handle)[1].data == 20
+    assert fwlib.cnc_rewind(handle) == OK
+    assert fwlib.cnc_rdexecprog(handle, 3)[3] == b"O00"
+    assert fwlib.cnc_seqsrch(handle, 30) == OK
+    control.parameters.set(1422, 6000)
+    control.programs.register(7, "O0007\nN10 G1 X10. F6000\nN20 Y5.\nN30 G1 X2.5 F6000\nM30\n")
+    control.cycle_start()
+    control.advance(3000)
+    assert list(fwlib.cnc_absolute(handle, -1, 12)[1].data[:2]) == [2500, 0]
+    control.cycle_start()  # from its head again
+    control.advance(5000)
+    assert list(fwlib.cnc_absolute(handle, -1, 12)[1].data[:2]) == [2500, 5000]
+
+
+@covers(
+    "cnc_seqsrch.err.EW_DATA", "cnc_seqsrch.err.EW_MODE", "cnc_seqsrch.err.EW_REJECT", "cnc_rewind.err.EW_MODE",
+    "cnc_rewind.err.EW_REJECT", "concept.mode_matrix",
+)  # fmt: skip
+def test_searches_of_the_cursor_that_are_refused() -> None:
+    control, handle = attached(axes=1)
+    registered(control, O7="\nN10 G1 X10. F600\nN20 X5.\nM30\n")
+    assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_DATA  # nothing is selected
+    assert fwlib.cnc_rewind(handle) == EW.EW_REJECT
+    control.select_program(7)
+    assert fwlib.cnc_seqsrch(handle, 20) == OK
+    for number in (11, 0, -1, 99_999_999):
+        assert fwlib.cnc_seqsrch(handle, number) == EW.EW_DATA
+        assert control.cursor == 2
+    for mode in ("MDI", "EDIT", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"):
+        control.select_mode(mode)
+        assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_MODE
+        assert fwlib.cnc_rewind(handle) == (EW.EW_MODE if mode == "MDI" else OK)
+        assert fwlib.cnc_rdmdipntr(handle)[0] == (OK if mode == "MDI" else EW.EW_MODE)
+        assert fwlib.cnc_wrmdiprog(handle, 23, FORMAT) == (OK if mode == "MDI" else EW.EW_MODE)
+        assert fwlib.cnc_dwnstart(handle) == (EW.EW_BUSY if mode == "MDI" else OK)
+        if mode != "MDI":
+            control.select_mode("MDI")
+            assert fwlib.cnc_download(handle, "\n", 1) == EW.EW_BUSY
+            assert fwlib.cnc_dwnend(handle) == EW.EW_BUSY
+            control.select_mode(mode)
+            assert fwlib.cnc_download(handle, "\nO8\nM30\n%", 9) == OK
+            assert fwlib.cnc_dwnend(handle) == OK
+            assert fwlib.cnc_delete(handle, 8) == OK
+        assert uploaded(handle, 7).startswith("%\nO0007\nN10")
+        assert fwlib.cnc_rdprogdir(handle, 0, 1, 9999, 20)[1].prg_data == b"O7%"
+        assert fwlib.cnc_rdproginfo(handle, 0, 12)[0] == OK
+        assert fwlib.cnc_rdprgnum(handle)[1].data == 7
+        assert fwlib.cnc_rdseqnum(handle)[0] == OK
+        assert fwlib.cnc_rdexecprog(handle, 5)[0] == OK
+        assert fwlib.cnc_search(handle, 7) == OK
+    running(control, 7)
+    control.advance(100)
+    assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_REJECT
+    assert fwlib.cnc_rewind(handle) == EW.EW_REJECT

@@ -1,0 +1,301 @@
+"""Custom macros: variables, expressions, flow, calls and system variables, against figures made by hand."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from polycnc.cnc import ProgramRun, RunOptions
+from polycnc.machine import Machine, load_machine
+from polycnc.nc import ProgramText, load_dialect
+from polycnc.nc.macro import MacroCalls, MacroError, MacroLanguage, MacroVariables
+
+
+def run(
+    text: str, language: MacroLanguage | None = None, **options: object
+) -> tuple[ProgramRun, MacroVariables]:
+    """Run a program to its end."""
+    language = language or MacroLanguage()
+    language.longest_loop_pauses = 20
+    machine = Machine(load_machine(None))
+    program = ProgramText.from_text(text, "macro.tap")
+    made = ProgramRun(
+        machine,
+        program,
+        load_dialect("fanuc"),
+        language=language,
+        options=RunOptions(stands_at_stops=False, **options),  # type: ignore[arg-type]
+    )
+    made.start()
+    while made.active:
+        made.advance(1_000_000)
+    return made, language.variables
+
+
+def value(expression: str, before: str = "") -> float | None:
+    """Return what an expression gives."""
+    made, variables = run(f"{before}#100={expression}\nM30\n")
+    assert made.error is None, str(made.error)
+    return variables.get(100)
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("2+3*4", 14.0),
+        ("[2+3]*4", 20.0),
+        ("10/4-2", 0.5),
+        ("7-2-3", 2.0),
+        ("-[3-5]", 2.0),
+        ("SIN[30]", 0.5),
+        ("COS[60]", 0.5),
+        ("TAN[135]", -1.0),
+        ("ASIN[0.5]", 30.0),
+        ("ASIN[-0.5]", 330.0),
+        ("ACOS[-0.5]", 120.0),
+        ("ATAN[1]", 45.0),
+        ("ATAN[1]/[-1]", 135.0),
+        ("ATAN[-1]/[-1]", 225.0),
+        ("ATAN[6]/2", math.degrees(math.atan(6.0)) / 2.0),
+        ("SQRT[2.25]", 1.5),
+        ("ABS[-7.5]", 7.5),
+        ("ROUND[2.5]", 3.0),
+        ("ROUND[-2.5]", -3.0),
+        ("FIX[-2.7]", -2.0),
+        ("FUP[2.1]", 3.0),
+        ("FUP[-2.1]", -3.0),
+        ("BIN[18]", 12.0),
+        ("BCD[12]", 18.0),
+        ("LN[EXP[2]]", 2.0),
+        ("POW[3,4]", 81.0),
+        ("12 AND 10", 8.0),
+        ("12 OR 3", 15.0),
+        ("12 XOR 10", 6.0),
+        ("17 MOD 5", 2.0),
+        ("-17 MOD 5", -2.0),
+        ("2+12 AND 10", 10.0),
+        ("3*7 MOD 4", 1.0),
+        ("#0", None),
+        ("#0+0", 0.0),
+        ("-#0*5", 0.0),
+    ],
+)
+def test_expressions_give_what_the_control_calculates(expression: str, expected: float | None) -> None:
+    found = value(expression)
+    if expected is None:
+        assert found is None
+    else:
+        assert found == pytest.approx(expected, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("condition", "expected"),
+    [
+        ("#1 EQ #0", True),
+        ("#1 EQ 0", False),
+        ("#1 NE #0", False),
+        ("#1 NE 0", True),
+        ("#1 GE #0", True),
+        ("#1 GE 0", True),
+        ("#1 GT 0", False),
+        ("#1 LE 0", True),
+        ("#1 LT 0.5", True),
+        ("[2 GT 1] AND [3 GT 4]", False),
+        ("[2 GT 1] OR [3 GT 4]", True),
+        ("[2 GT 1] XOR [3 LT 4]", False),
+    ],
+)
+def test_a_vacant_variable_is_equal_to_vacant_only_and_counts_as_zero_else(
+    condition: str, expected: bool
+) -> None:
+    _, variables = run(f"#100=5\nIF [{condition}] THEN #100=6\nM30\n")
+    assert variables.get(100) == (6.0 if expected else 5.0)
+
+
+def test_loops_and_jumps() -> None:
+    text = (
+        "#100=0\n#1=0\nWHILE [1 EQ 1] DO1\n#2=0\nWHILE [#2 LT 5] DO2\nIF [#1*5+#2 EQ 13] GOTO 9\n"
+        "#100=#100+1\n#2=#2+1\nEND2\n#1=#1+1\nEND1\n#101=99\nN9 #102=#1*10+#2\n"
+        "#3=40\nGOTO #3\nN30 #103=3\nN40 #104=4\nGOTO[#3+10]\n#105=7\nN50 M30\n"
+    )
+    made, variables = run(text)
+    assert made.error is None
+    assert [variables.get(n) for n in range(100, 106)] == [13.0, None, 23.0, None, 4.0, None]
+
+
+def test_a_goto_finds_the_next_block_of_a_number_before_the_first() -> None:
+    _, variables = run("N5 #100=#100+1\nIF [#100 GT 3] GOTO 6\nGOTO 5\nN6 #101=8\nGOTO 7\nN7 M30\n")
+    assert (variables.get(100), variables.get(101)) == (4.0, 8.0)
+
+
+def test_blocks_between_statements_are_run_with_calculated_words() -> None:
+    made, _ = run("#1=12.3456\nG1 X#1 Y-[#1*2] F[600+400]\nX#2 Z-#2\nX[1/3]\nM30\n")
+    assert made.position == pytest.approx({"X": 0.333, "Y": -24.691, "Z": 0.0}, abs=1e-9)
+    assert made.error is None
+
+
+def test_plain_text_is_not_taken_by_the_language() -> None:
+    language = MacroLanguage()
+    run("G0 X5 (#1=5 [IGNORED])\nG1 X7 F500\nM30\n", language)
+    text = ProgramText.from_text("G0 X5 (#1 GOTO 5)\nM30\n")
+    assert language.source(text, 0, 1, None) is None
+
+
+# ------------------------------------------------------------------ calls
+
+
+def test_arguments_of_the_first_form_go_to_their_variables() -> None:
+    letters = {"A": 1, "B": 2, "C": 3, "D": 7, "E": 8, "F": 9, "H": 11, "I": 4, "J": 5, "K": 6, "M": 13}
+    letters |= {"Q": 17, "R": 18, "S": 19, "T": 20, "U": 21, "V": 22, "W": 23, "X": 24, "Y": 25, "Z": 26}
+    words = " ".join(f"{letter}{number + 0.25}" for letter, number in letters.items())
+    copies = "".join(f"#{500 + number}=#{number}\n" for number in letters.values())
+    made, variables = run(f"G65 P9000 {words}\nM30\nO9000\n{copies}M99\n")
+    assert made.error is None
+    for number in letters.values():
+        assert variables.get(500 + number) == number + 0.25
+
+
+def test_arguments_of_the_second_form_repeat_i_j_k_and_the_later_of_two_counts() -> None:
+    made, variables = run(
+        "G65 P9000 A1 B2 I3 J4 K5 I6 K7 D8 I9\nM30\nO9000\n#100=#4\n#101=#7\n#102=#8\n#103=#9\n#104=#10\nM99\n"
+    )
+    assert made.error is None
+    assert [variables.get(n) for n in range(100, 105)] == [3.0, 8.0, None, 7.0, 9.0]
+
+
+def test_each_call_has_its_own_local_variables_and_a_sub_program_shares_them() -> None:
+    text = (
+        "#1=5\nG65 P9000 A2 L3\nM98 P9001\nM30\n"
+        "O9000\n#100=#100+#1\n#1=77\nG65 P9002 A[#1+1]\n#101=#1\nM99\n"
+        "O9001\n#102=#1\n#1=6\nM99\nO9002\n#103=#1\n#104=#2\nM99\n"
+    )
+    made, variables = run(text)
+    assert made.error is None
+    assert [variables.get(n) for n in range(100, 105)] == [6.0, 77.0, 5.0, 78.0, None]
+    assert variables.get(1) == 6.0
+    assert variables.level == 0
+
+
+def test_a_modal_call_follows_every_move_until_g67() -> None:
+    text = "#100=0\nG66 P9000 A2\nG0 X1\nX#100 Y2\nG4 P10\nM98 P9001\nG67\nX4\nM30\n"
+    text += "O9000\n#100=#100+#1\nM99\nO9001\nX3\nM99\n"
+    made, variables = run(text)
+    assert made.error is None
+    assert variables.get(100) == 6.0
+
+
+def test_a_return_to_a_block_goes_on_there() -> None:
+    _, variables = run(
+        "M98 P9000\n#100=1\nN50 #101=2\nM98 P9000\nM30\nO9000\n#102=#102+1\nIF[#102 EQ 1]GOTO 1\nM99\nN1 M99 P50\n"
+    )
+    assert [variables.get(n) for n in (100, 101, 102)] == [None, 2.0, 2.0]
+
+
+def test_codes_call_programs_by_table_and_are_ordinary_inside() -> None:
+    calls = MacroCalls(g={81.5: 9010}, m={50: 9020}, m_sub={51: 9001}, t=9000)
+    text = (
+        "G81.5 X5 Z-2\nM50 A3.5\n#1=7\nM51\nT12\nM30\n"
+        "O9010\n#100=#24\nM50\nM99\nO9020\n#101=#1\nM99\nO9001\n#102=#1\nM99\nO9000\n#103=#149\nM99\n"
+    )
+    made, variables = run(text, MacroLanguage(calls=calls))
+    assert made.error is None
+    assert [variables.get(n) for n in range(100, 104)] == [5.0, 3.5, 7.0, 12.0]
+
+
+def test_macros_nest_four_deep() -> None:
+    made, variables = run("G65 P9000\nM30\nO9000\n#100=#100+1\nG65 P9000\nM99\n")
+    assert variables.get(100) == 4.0
+    assert made.error is not None
+    assert made.error.code == "PS0122"
+
+
+def test_m99_in_a_main_program_ends_or_repeats_it() -> None:
+    made, variables = run("#100=#100+1\nM99\n")
+    assert variables.get(100) == 1.0
+    assert made.error is None
+    repeating = MacroLanguage(main_repeats=True)
+    _, variables = run("#100=#100+1\nIF [#100 EQ 4] GOTO 8\nM99\nN8 M30\n", repeating)
+    assert variables.get(100) == 4.0
+
+
+# ------------------------------------------------------------------ system variables
+
+
+def test_end_points_are_read_ahead_and_positions_when_they_are_reached() -> None:
+    made, variables = run(
+        "G90 G0 X10 Y5\n#100=#5001\n#101=#5042\n#102=#5021\n#103=#4001\nG91 G1 X2.5 F300\n"
+        "#104=#5041\n#105=#4003\n#106=#4109\nG4 P500\n#3001=0\nG4 P250\n#107=#3001\nM30\n"
+    )
+    assert made.error is None
+    assert [variables.get(n) for n in range(100, 107)] == [10.0, 5.0, 10.0, 0.0, 12.5, 91.0, 300.0]
+    assert variables.get(107) == pytest.approx(250.0, abs=2.0)
+
+
+def test_offsets_are_variables() -> None:
+    made, variables = run(
+        "#5221=33\n#100=#2501\nG54 G0 X#100\n#101=#5001\n#102=#5021\n"
+        "#11003=12.5\nG43 H3 Z1\n#103=#5083\n#104=#5023\nM30\n"
+    )
+    assert made.error is None
+    assert [variables.get(n) for n in range(100, 105)] == [33.0, 33.0, 66.0, 12.5, 13.5]
+
+
+def test_an_alarm_comes_when_the_blocks_before_have_been_run() -> None:
+    made, _ = run("G1 X20 F6000\n#3000=5(TOOL IS WORN)\nX30\nM30\n")
+    assert made.error is not None
+    assert str(made.error).splitlines()[0] == "macro.tap:2:1: TOOL IS WORN [MC3005]"
+    assert made.position["X"] == pytest.approx(20.0)
+
+
+def test_a_message_stop_is_a_program_stop_with_its_text() -> None:
+    made, _ = run("G0 X1\n#3006=1(TURN THE PART)\nG0 X2\nM30\n")
+    assert made.error is None
+    assert any("TURN THE PART" in message.text for message in made.channel.messages.all())
+
+
+def test_a_skipped_statement_is_skipped_with_its_level_only() -> None:
+    text = "/ #100=1\n/2 #101=2\nM30\n"
+    _, variables = run(text, block_delete=frozenset({2}))
+    assert (variables.get(100), variables.get(101)) == (1.0, None)
+
+
+# ------------------------------------------------------------------ variables
+
+
+def test_variables_know_their_ranges() -> None:
+    small = MacroVariables("a")
+    small.set(531, 2.5)
+    assert small.permanent() == {531: 2.5}
+    for number in (34, 99, 150, 532, 1000, -1):
+        with pytest.raises(MacroError) as caught:
+            small.set(number, 1.0)
+        assert caught.value.code == "PS0115"
+    with pytest.raises(MacroError) as caught:
+        small.set(0, 1.0)
+    assert caught.value.code == "PS0116"
+    with pytest.raises(MacroError) as caught:
+        small.set(100, 1e48)
+    assert caught.value.code == "PS0111"
+    other = MacroVariables("a")
+    other.set(500, 7.0)
+    other.restore(small.permanent())
+    assert (other.get(500), other.get(531)) == (None, 2.5)
+
+
+# ------------------------------------------------------------------ wrong programs
+
+ERRORS = Path(__file__).parent.parent / "golden" / "macro_errors"
+
+
+@pytest.mark.parametrize("path", sorted(ERRORS.glob("*.tap")), ids=lambda path: path.stem)
+def test_a_wrong_program_is_refused_with_the_error_in_its_first_line(path: Path) -> None:
+    text = path.read_text(encoding="utf-8")
+    expected = text.splitlines()[0].removeprefix("(").removesuffix(")")
+    made, _ = run(text)
+    assert made.error is not None
+    assert made.error.position is not None
+    at = made.error.position
+    assert f"{at.line}:{at.column} {made.error.code} {made.error.what}" == expected
+    assert made.error.hint

@@ -1,0 +1,435 @@
+"""Tool paths as each CAM system writes them: arcs, cycles, coordinate systems, tools; and what is no tool path."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from polycnc.errors import ProgramError
+from polycnc.post import ArcAxis, parse_tool_path, sweep_tool_path
+from polycnc.post.tool_path._cl_words import CLSF_WORDS
+from polycnc.post.tool_path._records import (
+    Circle,
+    Compensation,
+    Coolant,
+    Cycle,
+    Dwell,
+    From,
+    Goto,
+    Home,
+    Record,
+    Retract,
+    Text,
+    Tool,
+    ToolShape,
+)
+from polycnc.runner import post_file
+from support.post_controls import control, posted
+from support.post_recorder import calls_of, moves_of, points_of
+
+# A slot with round ends, 30 long and 7 across: lines meet both arcs on their tangents. Seen from above it is
+# counter-clockwise, so that an axis by the right-hand rule is 0, 0, 1 and one for a clockwise direction 0, 0, -1.
+SLOT = """RAPID
+GOTO/0,-3.5,5
+FEDRAT/700,MMPM
+GOTO/0,-3.5,-2
+GOTO/30,-3.5,-2
+CIRCLE/30,0,-2,0,0,{0},3.5
+GOTO/30,3.5,-2
+GOTO/0,3.5,-2
+CIRCLE/0,0,-2,0,0,{0},3.5
+GOTO/0,-3.5,-2
+RAPID
+GOTO/0,-3.5,5
+END
+"""
+NX = "TOOL PATH/SLOT,TOOL,MILL_6\nTLDATA/MILL,6,0,75,0,0\nMSYS/0,0,0,1,0,0,0,1,0\n"
+
+
+def records(text: str, arc_axis: ArcAxis = "auto") -> list[Record]:
+    """Return the records of a text."""
+    return list(parse_tool_path(text, "part.cl", arc_axis))
+
+
+def senses(text: str, arc_axis: ArcAxis = "auto") -> list[float]:
+    """Return the Z of the right-hand axis of each arc."""
+    return [record.normal[2] for record in records(text, arc_axis) if isinstance(record, Circle)]
+
+
+@pytest.mark.parametrize("word", sorted(CLSF_WORDS))
+def test_the_axis_of_an_arc_in_a_clsf_is_for_a_clockwise_direction(word: str) -> None:
+    header = {"TOOLPATH": "TOOL PATH/SLOT,TOOL,M", "PAINT": "PAINT/PATH", "MSYS": "MSYS/0,0,0,1,0,0,0,1,0"}
+    text = f"{header.get(word, word)}\n" + SLOT.format(-1)
+    assert senses(text) == [1.0, 1.0]
+    assert senses(text, "counterclockwise") == [-1.0, -1.0]
+    assert senses(text, "clockwise") == [1.0, 1.0]
+
+
+def test_the_axis_of_an_arc_in_other_apt_is_by_the_right_hand_rule() -> None:
+    assert senses(SLOT.format(1)) == [1.0, 1.0]
+    assert senses(SLOT.format(1), "clockwise") == [-1.0, -1.0]
+    # MOVARC is not NX's: by the right-hand rule wherever it stands, unless one says otherwise.
+    text = NX + SLOT.format(1).replace("CIRCLE", "MOVARC")
+    assert senses(text) == [1.0, 1.0]
+    assert senses(text, "clockwise") == [-1.0, -1.0]
+
+
+def test_a_file_that_shows_too_late_what_it_is_is_refused() -> None:
+    text = SLOT.format(1).replace("RAPID\nGOTO/0,-3.5,5\nEND", "PAINT/COLOR,3\nEND")
+    with pytest.raises(ProgramError, match="PAINT is of an NX CLSF, but the arc on line 6"):
+        records(text)
+    assert senses(text, "counterclockwise") == [1.0, 1.0]
+
+
+def test_a_slot_of_nx_is_posted_counter_clockwise() -> None:
+    blocks, summary = posted(NX + SLOT.format(-1), control())
+    text = "\n".join(blocks)
+    assert "G03" in text
+    assert "G02" not in text
+    assert summary.remarks == ()
+
+
+@pytest.mark.parametrize(("header", "right", "wrong"), [("", 1, -1), (NX, -1, 1)])
+def test_arcs_that_turn_back_where_lines_meet_them_are_no_proof(header: str, right: int, wrong: int) -> None:
+    good = post_file(parse_tool_path(header + SLOT.format(right), "part.cl"), control(), verify=True)
+    assert good.ok
+    assert good.verification is not None
+    assert (good.verification.smooth_arcs, good.verification.kinked_arcs) == (2, 0)
+    bad = post_file(parse_tool_path(header + SLOT.format(wrong), "part.cl"), control(), verify=True)
+    proof = bad.verification
+    assert proof is not None
+    assert proof.deviation_mm < 1e-3  # the program does what was read, and what was read is wrong
+    assert (proof.smooth_arcs, proof.kinked_arcs) == (0, 2)
+    assert not bad.ok
+    first = 6 + header.count("\n")
+    assert [(r.line, "turn back" in r.text, "--arc-axis" in r.text) for r in bad.summary.remarks] == [
+        (first, True, True)
+    ]
+
+
+def test_arcs_between_corners_and_arcs_decide_nothing() -> None:
+    square = "FROM/0,0,0\nRAPID\nGOTO/10,0,0\nFEDRAT/500\nGOTO/20,0,0\nCIRCLE/15,0,0,0,0,1,5\nGOTO/10,0,0\nGOTO/0,0,0\n"
+    proof = post_file(parse_tool_path(square), control(), verify=True).verification
+    assert proof is not None
+    assert (proof.smooth_arcs, proof.kinked_arcs, proof.ok) == (0, 0, True)
+
+
+BETWEEN = (
+    *("SPINDL/RPM,2500,CLW", "COOLNT/FLOOD", "FEDRAT/333,MMPM", "PPRINT next", "DELAY/1.5", "STOP", "OPSTOP"),
+    *("INSERT M77", "CUTCOM/OFF", "PARTNO X", "TPRINT/D8", "CUTTER/8", "TLAXIS/0,0,1", "REMARK x"),
+)
+
+
+HOLES = """LOADTL/2
+SPINDL/RPM,2000,CLW
+RAPID
+GOTO/5,6,40
+CYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3
+GOTO/11,13,0
+{}
+GOTO/29,17,0
+CYCLE/OFF
+RAPID
+GOTO/29,17,40
+"""
+
+
+@pytest.mark.parametrize("statement", BETWEEN)
+def test_a_cycle_holds_whatever_stands_between_its_points(statement: str) -> None:
+    text = HOLES.format(statement)
+    feeds = [sweep for sweep in sweep_tool_path(parse_tool_path(text)) if not sweep.rapid]
+    down = [((11.0, 13.0, 3.0), (11.0, 13.0, -7.0)), ((29.0, 17.0, 3.0), (29.0, 17.0, -7.0))]
+    assert [(sweep.start, sweep.end) for sweep in feeds] == down
+    holes = [words for macro, words in moves_of(text) if macro == "CYCLE_DRILL"]
+    assert [(words["X"], words["Y"], words["Z"], words["R"]) for words in holes] == [
+        (11.0, 13.0, -7.0, 3.0),
+        (29.0, 17.0, -7.0, 3.0),
+    ]
+    as_moves = [words for macro, words in moves_of(text, cycles="moves") if macro == "LINEAR"]
+    assert [(words["X"], words["Y"], words["Z"]) for words in as_moves] == [end for _, end in down]
+
+
+@pytest.mark.parametrize(
+    ("statement", "calls"), [("SPINDL/RPM,2500,CLW", 2), ("DELAY/1.5", 2), ("PPRINT next", 1)]
+)
+def test_what_the_control_might_take_for_its_cycle_is_said_outside_of_it(statement: str, calls: int) -> None:
+    result = post_file(parse_tool_path(HOLES.format(statement)), control(), verify=True)
+    assert result.ok
+    assert result.text is not None
+    assert result.text.count("G80") == calls
+    assert result.verification is not None
+    # The machine never feeds sideways: each feed is a hole.
+    assert result.verification.run.cutting_path_mm == pytest.approx(20.0)
+
+
+def test_a_tool_change_ends_a_cycle_and_a_retraction_does_not() -> None:
+    text = "RAPID\nGOTO/1,2,40\nFEDRAT/80\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,2,0\n{}\nGOTO/9,2,0\n"
+    assert [macro for macro, *_ in points_of(moves_of(text.format("LOADTL/4")))] == [
+        "RAPID",
+        "CYCLE_DRILL",
+        "LINEAR",
+    ]
+    found = points_of(moves_of(text.format("CLEARP/XYPLAN,33\nRETRCT")))
+    assert found == [
+        ("RAPID", 1.0, 2.0, 40.0),
+        ("CYCLE_DRILL", 5.0, 2.0, -7.0),
+        ("RAPID", 5.0, 2.0, 33.0),
+        ("CYCLE_DRILL", 9.0, 2.0, -7.0),
+    ]
+
+
+def test_gohome_goes_to_its_point() -> None:
+    assert records("GOHOME/12,-7,85")[0] == Home(1, (12.0, -7.0, 85.0))
+    text = "UNITS/INCHES\nFROM/0,0,3\nGOHOME/1,2,4\nGOHOME\n"
+    assert points_of(moves_of(text)) == [
+        ("RAPID", 25.4, 50.8, pytest.approx(101.6)),
+        ("RAPID", 0.0, 0.0, pytest.approx(76.2)),
+    ]
+    assert [sweep.end for sweep in sweep_tool_path(parse_tool_path(text))] == [
+        pytest.approx((25.4, 50.8, 101.6)),
+        pytest.approx((0.0, 0.0, 76.2)),
+    ]
+    with pytest.raises(ProgramError, match="GOHOME needs 3 numbers"):
+        records("GOHOME/AXIS,X")
+
+
+def test_the_tool_axis_stays_until_another_one_is_given() -> None:
+    text = "FROM/0,0,50\nTLAXIS/0,3,4\nRAPID\nGOTO/1,2,3\nFEDRAT/100\nGOTO/4,2,3\nTLAXIS/0,0,1\nGOTO/5,2,3\n"
+    axes = [(words["TOOLI"], words["TOOLJ"], words["TOOLK"]) for _, words in moves_of(text, rotary="vector")]
+    assert axes == [(0.0, 0.6, 0.8), (0.0, 0.6, 0.8), (0.0, 0.0, 1.0)]
+    with pytest.raises(ProgramError, match="the tool is tilted"):
+        moves_of(text)
+    with pytest.raises(ProgramError, match="the tool axis changes with an arc"):
+        moves_of("FEDRAT/9\nGOTO/5,0,0\nTLAXIS/0,3,4\nCIRCLE/0,0,0,0,0,1,5\nGOTO/0,5,0\n", rotary="vector")
+
+
+def test_the_tool_axis_of_a_start_point_is_written_with_the_next_move() -> None:
+    for start in ("TLAXIS/0,3,4\nFROM/0,0,50\n", "FROM/0,0,50,0,3,4\n"):
+        text = f"{start}FEDRAT/100\nGOTO/1,2,3\n"
+        assert moves_of(text, rotary="vector")[0][1]["TOOLJ"] == 0.6
+        with pytest.raises(ProgramError, match="the tool is tilted"):
+            moves_of(text)
+
+
+def test_the_tool_is_upright_again_before_the_cycle_of_the_control() -> None:
+    text = "FEDRAT/90\nGOTO/1,2,30,0,3,4\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,6,0,0,0,1\nGOTO/9,6,0\n"
+    found = [(macro, words.get("TOOLK"), words.get("Z")) for macro, words in moves_of(text, rotary="vector")]
+    assert found[1] == ("RAPID", 1.0, 30.0)
+    assert [(macro, z) for macro, _, z in found[2:4]] == [("CYCLE_DRILL", -7.0), ("CYCLE_DRILL", -7.0)]
+
+
+def test_a_tool_that_is_in_the_spindle_already_ends_a_cycle_too() -> None:
+    text = "LOADTL/4\nRAPID\nGOTO/1,2,40\nFEDRAT/80\nCYCLE/DRILL,DEPTH,7,CLEAR,3\nGOTO/5,2,0\nLOADTL/4\nGOTO/9,2,0\n"
+    assert [macro for macro, *_ in points_of(moves_of(text))] == ["RAPID", "CYCLE_DRILL", "LINEAR"]
+    assert sum(macro == "TOOL_CHANGE" for macro, _ in calls_of(text)[0]) == 1
+
+
+def test_a_retraction_goes_up_to_the_clearance_plane() -> None:
+    assert records("CLEARP/XYPLAN,27\nRETRCT\nRETRCT/XYPLAN,31\nCLEARP/0,0,1,19\nRETRCT\n") == [
+        Retract(2, 27.0),
+        Retract(3, 31.0),
+        Retract(5, 19.0),
+    ]
+    text = "FEDRAT/90\nRAPID\nGOTO/3,4,6\nCLEARP/XYPLAN,27\nRETRCT\nGOTO/3,4,50\nRETRCT\n"
+    assert points_of(moves_of(text)) == [
+        ("RAPID", 3.0, 4.0, 6.0),
+        ("RAPID", 3.0, 4.0, 27.0),
+        ("LINEAR", 3.0, 4.0, 50.0),
+    ]
+
+
+REFUSED = {
+    "RETRCT": "RETRCT without a clearance plane",
+    "RETRCT/ON": "RETRCT with something else than a height",
+    "CLEARP/YZPLAN,5": "CLEARP with something else than a height",
+    "CLEARP/1,0,0,5": "CLEARP with something else than a height",
+    "CLEARP/XYPLAN,5\nRETRCT": "RETRCT from an unknown point",
+    "FROM/0,0,0\nCLEARP/XYPLAN,5\nTLAXIS/1,0,0\nRETRCT": "RETRCT with a tilted tool",
+    "TLAXIS/NORMPS": "TLAXIS with something else than a direction",
+    "TLAXIS/0,0,0": "a direction without a length",
+    "SAFPOS/1,2,3": "SAFPOS moves the tool",
+    "SET/OFSETL,12": "SET moves the tool",
+    "UNIT/FURLONG": "UNIT without a unit",
+    "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0,1,0,0,0,0,1": "MSYS changes the coordinate system",
+    "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0.5,1,0,0,0,1,0": "MSYS changes the coordinate system",
+    "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,0\n$$-> CSYS / 1,0,0,0, $\n 0,0,1,0, $\n 0,-1,0,0": "CSYS changes",
+    "PAINT/PATH\nFEDRAT/IPM,12": "a feed in inches in a CLSF",
+    "PAINT/PATH\nCYCLE/DRILL,RAPTO,.1,FEDTO,-1,IPR,.002": "a feed in inches in a CLSF",
+    "NURBS/3": "NURBS moves the tool",
+    "MODE/INCR": "MODE/INCR is not known",
+    "CUTCOM/ON\nGOTO/1,2,3": "CUTCOM/ON without a side",
+    "CYCLE/BORE,BACK,DEPTH,5,CLEAR,1": "cuts from below",
+    "CYCLE/TAP,DEEP,DEPTH,5,CLEAR,1,STEP,2": "a thread tapped in pecks",
+}
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_what_would_be_cut_wrong_is_an_error(text: str) -> None:
+    with pytest.raises(ProgramError) as caught:
+        moves_of(text + "\n")
+    assert REFUSED[text] in caught.value.what
+    assert caught.value.hint
+    assert caught.value.position is not None
+
+
+def test_nurbs_names_the_setting_of_nx() -> None:
+    with pytest.raises(ProgramError) as caught:
+        records("NURBS/3\n")
+    assert "Motion Output" in caught.value.hint
+
+
+NO_TOOL_PATHS = {
+    "an NC program": b"%\nO0001 (PART)\nN10 G90 G21\nN20 T1 M06\nG00 X1. Y2.\nG01 Z-1. F100\nM30\n%\n",
+    "random bytes": np.random.default_rng(7).integers(0, 256, 5000, np.uint8).tobytes(),
+    "nothing": b"",
+    "only remarks": b"$$ nothing\n$$ here\n",
+    "a letter": b"Dear Sir,\nRAPID\nplease find enclosed\nthe drawing\n",
+}
+
+
+@pytest.mark.parametrize("name", NO_TOOL_PATHS)
+def test_what_is_no_tool_path_is_an_error_and_the_old_output_stays(name: str, tmp_path: Path) -> None:
+    (tmp_path / "part.cl").write_bytes(NO_TOOL_PATHS[name])
+    (tmp_path / "part.nc").write_text("old\n")
+    with pytest.raises(ProgramError, match="this is no tool path"):
+        post_file(tmp_path / "part.cl", "din", tmp_path / "part.nc")
+    assert (tmp_path / "part.nc").read_text() == "old\n"
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["part.cl", "part.nc"]
+
+
+BEYOND = (
+    "GOTO/5,0,0\nCIRCLE/1e20,0,0,0,0,1,1e20\nGOTO/5,1,0",
+    "GOTO/5,0,0\nCIRCLE/0,-2e7,0,0,0,1,2e7\nGOTO/5.001,0,0",
+    "GOTO/5,0,0\nMOVARC/0,0,0,0,0,1,5,ANGLE,1e15\nGOTO/5,0,0",
+    "GOTO/5,0,0\nCIRCLE/0,0,0,0,0,1,5,TIMES,1e9\nGOTO/5,0,0",
+    "GOTO/0,5,0\nINDIRV/1,0,0\nTLON,GOFWD/(CIRCLE/1e20,0,0,5),ON,(LINE/0,0,0,5,0,0)",
+    "GOTO/1e20,-1e20,0",
+    "UNITS/INCHES\nGOTO/99999,0,0\nGOTO/999999,0,0",
+    "GODLTA/1e20",
+    "GODLTA/0,0,1e20",
+    "GOHOME/0,0,1e20",
+    "FROM/0,0,-1e20",
+    "CLEARP/XYPLAN,1e20",
+    "CYCLE/DRILL,DEPTH,1e20,CLEAR,2",
+)
+
+
+@pytest.mark.parametrize("text", BEYOND)
+def test_what_is_beyond_any_machine_is_an_error(text: str) -> None:
+    with pytest.raises(ProgramError) as caught:
+        moves_of(f"FEDRAT/100\n{text}\n")
+    assert "any machine" in caught.value.what or "turns" in caught.value.what
+
+
+# ---------------------------------------------------------------------------------------- one system after another
+
+SYSTEMS: dict[str, tuple[str, list[Record]]] = {
+    "NX: the tool goes out to where it was": (
+        "CYCLE/DRILL,RAPTO,3.0000,FEDTO,-33.0043,RTRCTO,AUTO,MMPM,250.0000",
+        [Cycle(1, "drill", 33.0043, 3.0, None, 250.0)],
+    ),
+    "NX: STEP makes pecks": (
+        "CYCLE/DRILL,RAPTO,3,FEDTO,-33,RTRCTO,12,STEP,4.5,MMPM,250",
+        [Cycle(1, "deep", 33.0, 3.0, 12.0, 250.0, peck=4.5)],
+    ),
+    "NX: a turret": ("LOAD/TURRET,7,ADJUST,17", [Tool(1, 7, None, None, 17)]),
+    "NX: a dwell in revolutions": ("DELAY/REV,12", [Dwell(1, revolutions=12.0)]),
+    "DWELL is DELAY": ("DWELL/2.5", [Dwell(1, seconds=2.5)]),
+    "UNIT is UNITS": ("UNIT/INCH\nGOTO/1,2,3", [Goto(2, 25.4, 50.8, 3.0 * 25.4)]),
+    "Autodesk: texts in quotes": (
+        "MODE/MILL\nPARTNO/'plate 3'\nPPRINT/'face (1)'",
+        [Text(2, "part", "plate 3"), Text(3, "comment", "face (1)")],
+    ),
+    "Autodesk: pocket, length and offset of a tool": (
+        "LOADTL/5, 0, 62.500000, 15",
+        [Tool(1, 5, None, 62.5, 15)],
+    ),
+    "Autodesk: CUTCOM/ON comes before its side": (
+        "CUTCOM/ON\nCUTCOM/LEFT, 9\nCUTCOM/OFF\nCUTCOM/ON\nCUTCOM/RIGHT, 9",
+        [Compensation(2, "left", 9), Compensation(3, "off"), Compensation(5, "right", 9)],
+    ),
+    "CUTCOM/ON takes the last side up": (
+        "CUTCOM/LEFT, 9\nCUTCOM/OFF\nCUTCOM/ON\nGOTO/1,2,3",
+        [
+            Compensation(1, "left", 9),
+            Compensation(2, "off"),
+            Compensation(4, "left", 9),
+            Goto(4, 1.0, 2.0, 3.0),
+        ],
+    ),
+    "CATIA: TOOLNO describes, LOADTL changes once": (
+        "TOOLNO/3,MILL,1,0,   14.1,  100.0,$\n  100.0,,NOTE\nTPRINT/T3 END MILL,A\nLOADTL/3,1,1\nLOADTL/3,1,1",
+        [ToolShape(3, "T3 END MILL"), Tool(4, 3)],
+    ),
+    "Creo: the tool stands in a remark": (
+        "$$*  Pro/CLfile\n$$-> MFGNO / M1\n$$-> CUTTER / 12.500000\n$$-> END /  4\nGOTO / 1, 2, 3",
+        [ToolShape(3, diameter=12.5), Goto(5, 1.0, 2.0, 3.0)],
+    ),
+    "Creo: a coordinate system over three lines": (
+        "$$-> CSYS / 1.0, 0.0, 0.0, 0.0,  $\n            0.0, 1.0, 0.0, 0.0,  $\n            0.0, 0.0, 1.0, 0.0\n"
+        "FROM / 1, 2, 3",
+        [From(4, 1.0, 2.0, 3.0)],
+    ),
+    "SolidWorks CAM: the next tool is only announced": (
+        "SELECT/TOOL,4\nLOAD/TOOL,3\nCOOLNT/FLOOD",
+        [Tool(2, 3), Coolant(3, "flood")],
+    ),
+    "SolidWorks CAM: INIT announces a cycle": (
+        "CYCLE/INIT\nCYCLE/DEEP2,DEPTH,17,STEP,3,MMPM,120,CLEAR,2",
+        [Cycle(2, "deep", 17.0, 2.0, 2.0, 120.0, peck=3.0)],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_statement_means_what_its_system_means(name: str) -> None:
+    text, wanted = SYSTEMS[name]
+    path = parse_tool_path(text + "\n")
+    assert list(path) == wanted
+    assert path.remarks.all() == []
+
+
+def test_clear_ends_a_cycle_that_has_had_its_points() -> None:
+    text = "RAPID\nGOTO/0,0,9\nFEDRAT/50\nCYCLE/INIT\nCYCLE/DRILL,DEPTH,5,CLEAR,2\n{}GOTO/4,0,0\n"
+    text += "CYCLE/CLEAR\nRAPID\nGOTO/4,0,9\n"
+    for clear in ("", "CYCLE/CLEAR\n"):
+        found = [macro for macro, *_ in points_of(moves_of(text.format(clear)))]
+        assert found == ["RAPID", "CYCLE_DRILL", "RAPID"]
+
+
+def test_spindle_and_coolant_come_back_after_a_tool_change() -> None:
+    text = "LOADTL/1\nSPINDL/RPM,900,CCLW\nCOOLNT/MIST\nRAPID\nGOTO/1,2,3\nLOADTL/2\n{}RAPID\nGOTO/4,5,6\n"
+
+    def after(between: str) -> list[tuple[str, object]]:
+        calls = calls_of(text.format(between))[0]
+        changes = [place for place, (macro, _) in enumerate(calls) if macro == "TOOL_CHANGE"]
+        return [(macro, words.get("S")) for macro, words in calls[changes[1] + 1 :]][:-2]
+
+    assert after("") == [("SPINDLE_CCW", 900.0), ("COOLANT_MIST", None), ("RAPID", None)]
+    assert after("SPINDL/RPM,1700,CLW\n") == [("SPINDLE_CW", 1700.0), ("COOLANT_MIST", None), ("RAPID", None)]
+    assert after("SPINDL/OFF\nCOOLNT/OFF\n") == [
+        ("SPINDLE_OFF", None),
+        ("COOLANT_OFF", None),
+        ("RAPID", None),
+    ]
+
+
+def test_a_highest_speed_is_not_lost() -> None:
+    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\n"
+    assert calls_of(text)[0][2] == ("SPINDLE_CW", {"S": 180.0, "SPINDLEMODE": 96.0, "MAXRPM": 2600.0})
+    found = [remark.text for remark in posted(text, control())[1].remarks]
+    assert found == ["the highest speed is not written: SPINDLE_CW of the control file does not use MAXRPM"]
+    clamped = control(macros={"SPINDLE_CW": "<R=MAXRPM>\nG50$R$"})
+    blocks, summary = posted(text, clamped)
+    assert "G50R2600.000" in blocks
+    assert summary.remarks == ()
+
+
+def test_the_way_of_an_arc_is_as_long_as_it_turns() -> None:
+    text = "GOTO/30,-3.5,-2\nCIRCLE/30,0,-2,0,0,-1,3.5\nGOTO/26.5,0,-2\n"
+    (quarter,) = [s for s in sweep_tool_path(parse_tool_path(text)) if s.angle]
+    (rest,) = [s for s in sweep_tool_path(parse_tool_path("PAINT/PATH\n" + text)) if s.angle]
+    assert (quarter.angle, rest.angle) == pytest.approx((0.5 * math.pi, 1.5 * math.pi))
