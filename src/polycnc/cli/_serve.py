@@ -57,7 +57,7 @@ async def _serve(profile: str, address: str, port: int, program: Path | None, ax
 
     series = load_profile(profile)
     content = None if program is None else runner.program_text(program).content
-    control = PowerMate(axes)
+    control: Any = PowerMate(axes)
     if content is not None:
         number, text = _numbered(content)
         control.programs.register(number, text)

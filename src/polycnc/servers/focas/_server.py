@@ -27,7 +27,7 @@ class FocasServer:
 
     def __init__(
         self,
-        host: Host[PowerMate],
+        host: Host[Any],
         control: PowerMate,
         profile: Profile,
         *,
