@@ -7,7 +7,7 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _debug, _machine, _post, _run, _sap, _view, _warmup
+from polycnc.cli import _check, _conformance, _debug, _machine, _post, _run, _sap, _serve, _view, _warmup
 from polycnc.cli._errors import end_on_termination, guarded
 from polycnc.cli._output import print_remarks
 
@@ -48,6 +48,9 @@ app.command("debug", short_help="Execute a program block by block and look at it
 app.command("check", short_help="Report every error of part programs.")(guarded(_check.check_command))
 app.command("post", short_help="Turn a tool path into a program for a control.")(guarded(_post.post_command))
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
+app.command("serve", short_help="Serve a simulated control to clients on the network.")(
+    guarded(_serve.serve_command)
+)
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
 )

@@ -10,20 +10,30 @@ from polycnc.servers.focas._blocks import (
     write_replies,
     write_requests,
 )
+from polycnc.servers.focas._commands import COMMANDS
+from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._frames import Frame, FrameReader, FrameType, read_status, status_body
 from polycnc.servers.focas._numbers import VACANT, Value8, text
+from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
+from polycnc.servers.focas._server import PORT, FocasServer
 from polycnc.servers.focas._session import TRANSITIONS, Answerer, Ending, Session, State, Status, Transition
 
 __all__ = [
     "CNC",
+    "COMMANDS",
     "PMC",
+    "PORT",
+    "PROFILES",
     "TRANSITIONS",
     "VACANT",
     "Answerer",
     "Ending",
+    "FocasControl",
+    "FocasServer",
     "Frame",
     "FrameReader",
     "FrameType",
+    "Profile",
     "Reply",
     "Request",
     "Session",
@@ -31,6 +41,7 @@ __all__ = [
     "Status",
     "Transition",
     "Value8",
+    "load_profile",
     "read_replies",
     "read_requests",
     "read_status",

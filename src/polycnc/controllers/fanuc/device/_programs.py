@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 FIRST, LAST = 1, 9999
 COMMENT_MOST = 48
 _NAME = re.compile(r"O([0-9]{4})")
-_COMMENT = re.compile(rb"O[0-9]+\(([^)\n]*)\)")
+_COMMENT = re.compile(rb"O[0-9]+ *\(([^)\n]*)\)")
 _IN_OPERATION = frozenset(
     {
         RunState.ACTIVE,

@@ -1,0 +1,43 @@
+"""Series of controls as clients tell them apart on the wire, each a small data file."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+
+from pydantic import Field
+
+from polycnc.errors import UsageError
+from polycnc.machine import StrictModel, parse_toml, validate
+
+PROFILES = ("power-mate", "16i", "0i-d", "31i")
+
+
+class Profile(StrictModel):
+    """What a series answers with."""
+
+    frame_version: int = Field(ge=1, le=5)
+    cnc_type: str = Field(min_length=2, max_length=2)
+    machine_type: str = Field(min_length=2, max_length=2)
+    series: str = Field(min_length=4, max_length=4)
+    software: str = Field(min_length=4, max_length=4)
+    additional_info: int = Field(ge=0, le=0xFFFF)
+    most_axes: int = Field(ge=1, le=32)
+    wide_values: bool
+    """Parameters in eight bytes under their new command codes, else in four under the old ones."""
+    old_states: bool
+    """States in the numbers of the function library's manual, else in those of later series."""
+    refused: tuple[int, ...] = ()
+    """Command codes that this series does not know."""
+    most_sessions: int = 5
+
+
+def load_profile(name: str) -> Profile:
+    """Return one of the `PROFILES`.
+
+    Raises:
+        UsageError: There is no such profile.
+    """
+    if name not in PROFILES:
+        raise UsageError(f"there is no profile '{name}'", hint=f"There are {', '.join(PROFILES)}.")
+    text = (files("polycnc.servers.focas") / "profiles" / f"{name}.toml").read_text(encoding="utf-8")
+    return validate(Profile, *parse_toml(text, name))
