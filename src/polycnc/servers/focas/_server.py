@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket
+from typing import Any
 
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
