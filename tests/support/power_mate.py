@@ -6,6 +6,7 @@ from typing import Any
 
 from polycnc.cnc import ControlEvent
 from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.fwlib import IODBPSD
 
 OK = fwlib.EW.EW_OK
 
@@ -46,3 +47,14 @@ def running(control: PowerMate, number: int, condition: Any = None) -> None:
     if condition is not None:
         passed = control.advance(1_000_000, until=condition)
         assert condition(), passed
+
+
+def psd(number: int, axis: int = 0, **values: Any) -> IODBPSD:
+    """Return the structure of one parameter."""
+    data = IODBPSD(datano=number, type=axis)
+    for name, value in values.items():
+        if isinstance(value, (list, tuple)):
+            getattr(data.u, name)[: len(value)] = value
+        else:
+            setattr(data.u, name, value)
+    return data

@@ -6,7 +6,6 @@ Every command is carried out or refused whole: a refused one raises `ControlErro
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable
 from dataclasses import replace
 from enum import IntFlag
@@ -15,10 +14,11 @@ from typing import Any, TypeAlias
 
 from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
+from polycnc.cnc._control_checks import check_over, check_ready, wrong_mode
 from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
 from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot, copied, nested
 from polycnc.cnc._manual import ManualMotion
-from polycnc.cnc._plc import Function, PlcModel, Script
+from polycnc.cnc._plc import Function, PlcModel, Script, functions_of
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._program_memory import ProgramMemory
 from polycnc.cnc._program_run import ProgramRun
@@ -48,7 +48,6 @@ _MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
-_FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
 
 
 _ACTIONS = {action.title: action for action in MAction}
@@ -143,7 +142,7 @@ class Control:
             ControlError: A program is being executed or is interrupted, or axes move.
         """
         for channel in self.channels:
-            self._check_over(channel)
+            check_over(channel)
         if self.manual.active:
             raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
         self.machine.change_axes(axes)
@@ -159,7 +158,7 @@ class Control:
             ControlError: A program is being executed or is interrupted.
         """
         for channel in self.channels:
-            self._check_over(channel)
+            check_over(channel)
         self.dialect = dialect
         for channel in self.channels:
             channel.change_config(self._live, dialect)
@@ -260,7 +259,7 @@ class Control:
             )
         if wanted.machine_lock != self._switches.machine_lock:
             for channel in self.channels:
-                self._check_over(channel)
+                check_over(channel)
                 channel.check_rest()
         self._switches = wanted
         for channel in self.channels:
@@ -275,7 +274,7 @@ class Control:
             ControlError: There is no such program or channel, or the channel executes one.
         """
         chosen = self._channel(channel)
-        self._check_over(chosen)
+        check_over(chosen)
         text = self.programs.text(program) if isinstance(program, str) else program
         chosen.program = text
 
@@ -287,8 +286,8 @@ class Control:
         """
         chosen = self._channel(channel)
         if self._mode is not Mode.MDI:
-            raise self._wrong_mode("a text can be put in", Mode.MDI)
-        self._check_over(chosen)
+            raise wrong_mode(self._mode, "a text can be put in", Mode.MDI)
+        check_over(chosen)
         if not text.strip():
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
@@ -303,9 +302,9 @@ class Control:
                 move or are not referenced, or a program is being executed.
         """
         chosen = self._channel(channel)
-        self._check_ready()
+        check_ready(self._emergency, self.alarms)
         if self._mode not in _PROGRAM_MODES:
-            raise self._wrong_mode("a program can start", *sorted(_PROGRAM_MODES))
+            raise wrong_mode(self._mode, "a program can start", *sorted(_PROGRAM_MODES))
         if chosen.active:
             raise ControlError(
                 Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
@@ -403,7 +402,7 @@ class Control:
             ControlError: Not in EDIT, such an edit is open, or the program is not there, protected or in use.
         """
         if not background and self._mode is not Mode.EDIT:
-            raise self._wrong_mode("a program can be edited in the foreground", Mode.EDIT)
+            raise wrong_mode(self._mode, "a program can be edited in the foreground", Mode.EDIT)
         self._edits = [edit for edit in self._edits if edit.is_open]
         if any(edit.background is background for edit in self._edits):
             raise ControlError(
@@ -731,29 +730,6 @@ class Control:
             )
         return self.channels[number]
 
-    def _check_over(self, channel: ControlChannel) -> None:
-        if channel.active or channel.interrupted or channel.broken:
-            raise ControlError(
-                Refusal.RUNNING,
-                "a program is being executed or is interrupted",
-                hint="Wait for its end, or reset it.",
-            )
-
-    def _check_ready(self) -> None:
-        """Refuse to move anything by program while something is wrong."""
-        if self._emergency is not Emergency.OFF:
-            on = self._emergency is Emergency.ON
-            raise ControlError(
-                Refusal.EMERGENCY,
-                "the emergency stop is on" if on else "the emergency stop was on",
-                hint="Release it and reset." if on else "Reset first.",
-            )
-        if self.alarms:
-            first = self.alarms.active[0]
-            raise ControlError(
-                Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset."
-            )
-
     def _to_begin(self, channel: ControlChannel, is_mdi: bool) -> ProgramText:
         """Return the text that a start executes now."""
         text = channel.mdi if is_mdi else channel.program
@@ -778,20 +754,14 @@ class Control:
     def _lend(self, mode: Mode) -> None:
         """Give the axes to manual motion in its mode."""
         if self._mode is not mode:
-            raise self._wrong_mode(f"axes can be moved in {mode}", mode)
+            raise wrong_mode(self._mode, f"axes can be moved in {mode}", mode)
         if self._emergency is not Emergency.OFF:
-            self._check_ready()
+            check_ready(self._emergency, self.alarms)
         serious = [alarm for alarm in self.alarms.active if alarm.kind is not AlarmKind.TRAVEL]
         if serious:
-            self._check_ready()
+            check_ready(self._emergency, self.alarms)
         for channel in self.channels:
             channel.lend()
-
-    def _wrong_mode(self, what: str, *modes: Mode) -> ControlError:
-        names = " or ".join(modes)
-        return ControlError(
-            Refusal.MODE, f"not in {self._mode}: {what} only in {names}", hint=f"Select {names}."
-        )
 
     def _cutting_s(self) -> float:
         return float(self.machine.state.paths.totals[:, FEED_S].sum())
@@ -799,8 +769,3 @@ class Control:
     def _tool(self) -> int:
         block = self.channels[0].executed
         return 0 if block is None else block.modal.tool
-
-
-def functions_of(word: str) -> list[tuple[str, int]]:
-    """Return letter and number of the auxiliary functions in the words of an event, "M6 T12" for example."""
-    return [(letter, int(float(number))) for letter, number in _FUNCTION.findall(word)]

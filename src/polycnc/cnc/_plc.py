@@ -7,6 +7,7 @@ own time, an alarm instead of an answer, or no answer until somebody calls `answ
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -14,6 +15,8 @@ from typing import TypeAlias
 
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.machine import Clock, TimesConfig
+
+_FUNCTION = re.compile(r"([MSTB])(\d+(?:\.\d*)?)")
 
 
 class Function(StrEnum):
@@ -190,6 +193,11 @@ class PlcModel:
                 del self._pending[serial]
                 if each.alarm or each.timed_out:
                     self._failed.append(each)
+
+
+def functions_of(word: str) -> list[tuple[str, int]]:
+    """Return letter and number of the auxiliary functions in the words of an event, "M6 T12" for example."""
+    return [(letter, int(float(number))) for letter, number in _FUNCTION.findall(word)]
 
 
 def _check(function: Function, number: int | None, after_s: float | None) -> None:
