@@ -308,23 +308,26 @@ def test_two_programs_in_two_threads_have_one_control() -> None:
     control, _ = attached(axes=1)
     opened = []
 
-    def begin(session: fwlib.Session) -> None:
+    def begin(session: fwlib.Session, number: int) -> None:
         session.attach(0, control)
         _, handle = session.cnc_allclibhndl()
         for _ in range(200):
             if session.cnc_dwnstart(handle) == OK:
                 opened.append(handle)
-                assert session.cnc_download(handle, "\nO9\nM30\n%", 9) == OK
+                text = f"\nO{number}\nM30\n%"
+                assert session.cnc_download(handle, text, len(text)) == OK
                 assert session.cnc_dwnend(handle) == OK
-                assert session.cnc_delete(handle, 9) == OK
+                while session.cnc_delete(handle, number) == EW.EW_BUSY:  # the other one has a session open
+                    pass
 
-    threads = [threading.Thread(target=begin, args=(fwlib.Session(),)) for _ in range(2)]
+    threads = [threading.Thread(target=begin, args=(fwlib.Session(), number)) for number in (7, 9)]
     for thread in threads:
         thread.start()
     for thread in threads:
         thread.join()
     assert opened
     assert control.transfer is None
+    assert not control.programs.directory()
 
 
 def test_power_off_and_on() -> None:

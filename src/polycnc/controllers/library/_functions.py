@@ -195,7 +195,7 @@ def _returned(out: Out, hint: Any) -> Argument:
 
 
 def _zero(hint: Any) -> Callable[[], Any]:
-    if type(None) in get_args(hint):
+    if hint is Any or type(None) in get_args(hint):
         return lambda: None
     made = get_origin(hint) or hint
     return made if isinstance(made, type) else lambda: None

@@ -253,7 +253,7 @@ def cnc_rdopmsg(
 @call
 def cnc_rdopmsg3(
     link: Link, type: SHORT, num: Annotated[SHORT, INOUT]
-) -> tuple[EW, SHORT, Annotated[Any, OPMSG, Out("opmsg", c="OPMSG *")]]:
+) -> tuple[EW, SHORT, Annotated[list[OPMSG], Out("opmsg", c="OPMSG *")]]:
     """Read at most `num` messages to the operator, -1 for all kinds, and how many there were."""
     if num < 1:
         raise Refused(EW.EW_LENGTH)
