@@ -326,7 +326,7 @@ def test_view_writes_a_page_and_never_over_an_input(part: Path) -> None:
     assert (part / "part.html").read_text("utf-8").startswith("<!doctype html>")
     (part / "text.html").write_text(PROGRAM)
     refused = polycnc("view", "text.html", cwd=part, status=2).stderr
-    assert "a view cannot be written to text.html: the run reads that file" in refused
+    assert "a view cannot be written to text.html: the command reads that file" in refused
     assert (part / "text.html").read_text() == PROGRAM
 
 
@@ -335,3 +335,28 @@ def test_view_shows_the_run_up_to_an_alarm(tmp_path: Path) -> None:
     printed = polycnc("view", "wrong.nc", "-o", "w.html", cwd=tmp_path, status=1).stdout
     assert "alarm: wrong.nc:2:7: 'Q' has no number" in printed
     assert (tmp_path / "w.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("command", "option", "victim"),
+    [
+        ("run", "--trace", "p.csv"),
+        ("run", "--plot", "p.png"),
+        ("run", "--trace", "link.csv"),
+        ("view", "-o", "p.html"),
+        ("post", "-o", "p.cl"),
+        ("post", "-o", "c.toml"),
+    ],
+)
+def test_an_output_never_replaces_an_input(tmp_path: Path, command: str, option: str, victim: str) -> None:
+    (tmp_path / "c.toml").write_text(polycnc("post", "--control", "din", "--show-control").stdout)
+    (tmp_path / "p.cl").write_text("GOTO/1,2,3\nFINI\n")
+    for name in ("p.csv", "p.png", "p.html"):
+        (tmp_path / name).write_text(PROGRAM)
+    (tmp_path / "link.csv").symlink_to("p.csv")
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    read = {"run": ["p.csv" if victim == "link.csv" else victim, "--dialect", "din"], "view": [victim]}
+    given = read.get(command, ["p.cl", "--control", "c.toml"])
+    failed = polycnc(command, *given, option, victim, cwd=tmp_path, status=2)
+    assert "the command reads that file" in failed.stderr
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before

@@ -184,10 +184,10 @@ def test_a_view_is_never_written_over_an_input(tmp_path: Path) -> None:
     program = tmp_path / "part.html"
     program.write_text("G0 X5\n")
     view = view_program(program)
-    with pytest.raises(UsageError, match="the run reads that file"):
+    with pytest.raises(UsageError, match="the command reads that file"):
         view.save(program)
     (tmp_path / "linked.html").symlink_to(program)
-    with pytest.raises(UsageError, match="the run reads that file"):
+    with pytest.raises(UsageError, match="the command reads that file"):
         view.save(tmp_path / "linked.html")
     assert program.read_text() == "G0 X5\n"
     assert view.save(tmp_path / "other.html").read_text("utf-8") == view.html

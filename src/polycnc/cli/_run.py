@@ -82,6 +82,8 @@ def run_command(
     from polycnc import runner
     from polycnc.machine import load_machine
 
+    for what, output in (("a trace", trace), ("a plot", plot), ("a screen", screen)):
+        runner.keep_inputs(output, (program, machine, dialect, keys), what)
     text = runner.program_text(program)
     config = load_machine(machine)
     with ExitStack() as stack:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -36,6 +36,22 @@ def check_output(path: str | Path, extensions: Sequence[str], what: str) -> Path
             hint="Name another folder, or change its access rights.",
         )
     return path
+
+
+def keep_inputs(output: str | Path | None, inputs: Iterable[str | Path | None], what: str) -> None:
+    """Refuse to write `what` over a file that is read; other names of a file, links among them, count.
+
+    Raises:
+        UsageError: `output` is one of `inputs`.
+    """
+    if output is None or not Path(output).exists():
+        return
+    for each in inputs:
+        if each is not None and Path(each).exists() and Path(output).samefile(each):
+            raise UsageError(
+                f"{what} cannot be written to {output}: the command reads that file",
+                hint="Name another file.",
+            )
 
 
 @contextmanager

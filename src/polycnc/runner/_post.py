@@ -23,6 +23,7 @@ from polycnc.post import (
     program_file,
 )
 from polycnc.runner._execution import Progress
+from polycnc.runner._files import keep_inputs
 from polycnc.runner._verify_post import DEFAULT_TOLERANCE_MM, PostVerification, verify_post
 
 
@@ -83,6 +84,8 @@ def post_file(
         ConfigurationError: the control file is wrong.
         ProgramError: the tool path cannot be posted.
     """
+    files = [each for each in (tool_path, control, machine) if isinstance(each, str | Path)]
+    keep_inputs(output, files, "a program")
     chosen = control if isinstance(control, ControlFile) else load_control(control)
     if arc_axis is not None and (
         isinstance(tool_path, ToolPath) or Path(tool_path).suffix.lower() == ".json"

@@ -13,7 +13,7 @@ from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._blocks import Execution
 from polycnc.runner._execution import Progress
-from polycnc.runner._files import check_output, complete_or_absent
+from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._result import RunResult, Trace
 from polycnc.runner._run import program_text, run
 from polycnc.runner.view._page import page, plotly_source
@@ -61,11 +61,7 @@ def check_view_file(
         UsageError: another extension, no such folder, one of `inputs`, another file, or plotly is not installed.
     """
     target = check_output(path, VIEW_FORMATS, "a view")
-    for each in map(Path, inputs):
-        if target.exists() and each.exists() and target.samefile(each):
-            raise UsageError(
-                f"a view cannot be written to {target}: the run reads that file", hint="Name another file."
-            )
+    keep_inputs(target, inputs, "a view")
     if replaces_views_only and target.exists() and not _is_view(target):
         raise UsageError(
             f"{target} exists and is no view of polycnc",
