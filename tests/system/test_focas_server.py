@@ -19,6 +19,7 @@ from polycnc.servers.focas import (
     Reply,
     Request,
     Value8,
+    load_profile,
     read_replies,
     read_status,
     write_requests,
@@ -115,8 +116,11 @@ def test_an_independent_client_reads_and_writes(profile: str) -> None:
     try:
         assert client.connect()
         system, state = client.get_sys_info(), client.get_status_info()
-        assert str(system)
-        assert str(state)
+        series = load_profile(profile)
+        assert (system.cnc_type.strip(), system.series) == (series.cnc_type.strip(), series.series)
+        assert system.axes == "03"
+        assert system.max_axis == series.most_axes
+        assert (state.aut, state.run, state.emergency, state.alarm) == (1, 0, 0, 0)  # MEM, reset
         client.write_macro_double(501, -2.625)
         bare = Line(port)
         assert values(bare.payload(0x15, 501, 501)) == [-2.625]
