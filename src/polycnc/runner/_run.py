@@ -88,6 +88,7 @@ def run(
         text,
         chosen,
         language=language_for(chosen) if control is None else control.language,
+        config=None if control is None else control.config,
         options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
         rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, execution),
@@ -98,7 +99,8 @@ def run(
     else:
         control.attach(execution)
         try:
-            run_to_end(execution, every_cycle=every_cycle, control=control)
+            told = None if every_cycle else progress
+            run_to_end(execution, every_cycle=every_cycle, control=control, progress=told)
         except ProgramError as error:
             stuck = error
         finally:
