@@ -68,6 +68,32 @@ class PathConfig(StrictModel):
         description="Share of each ramp that is S-shaped; 0 is a trapezoid. The mean acceleration stays.",
     )
 
+    speed_limit_mm_s: Positive | None = Field(
+        default=None, description="Highest speed along the path; absent: what its axes allow."
+    )
+    acceleration_limit_mm_s2: Positive | None = Field(
+        default=None, description="Highest acceleration along the path; absent: what its axes allow."
+    )
+    junction_deviation_mm: Positive | None = Field(
+        default=None,
+        description="Corners are passed, with a step in velocity, as fast as an arc that leaves them by this much; "
+        "absent: as fast as the axes keep their acceleration in every cycle.",
+    )
+    square_corner_mm_s: Positive | None = Field(
+        default=None,
+        description="The same by the speed through a right angle, sharper corners slower and blunter ones faster.",
+    )
+
+    @model_validator(mode="after")
+    def _one_corner_rule(self) -> PathConfig:
+        if self.junction_deviation_mm is not None and self.square_corner_mm_s is not None:
+            raise problem(
+                "'junction_deviation_mm' and 'square_corner_mm_s' are two rules for the same corners",
+                hint="keep one of them",
+                at=("square_corner_mm_s",),
+            )
+        return self
+
     @property
     def look_ahead_limit(self) -> int | None:
         """Return the number of blocks the look-ahead sees, None if unlimited."""
