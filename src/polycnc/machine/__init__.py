@@ -1,5 +1,11 @@
 """The simulated machine: configuration and presets, kernel state, I/O image, clock, durable memory."""
 
+from polycnc.machine._bounds import (
+    LARGEST_POSITION,
+    LEAST_OVERRIDE,
+    LONGEST_BLOCK_S,
+    PIECE_CYCLES,
+)
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import (
     IoConfig,
@@ -34,6 +40,10 @@ from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step
 __all__ = [
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
+    "LARGEST_POSITION",
+    "LEAST_OVERRIDE",
+    "LONGEST_BLOCK_S",
+    "PIECE_CYCLES",
     "PRESETS",
     "AnyAxis",
     "Area",

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from polycnc import kernel
 from polycnc.errors import UsageError
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, PIDF, REFERENCE, KernelState, make_state, place_machine
+from polycnc.machine._bounds import PIECE_CYCLES
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import MachineConfig
 from polycnc.machine._config_axis import AnyAxis
@@ -118,10 +119,15 @@ class Machine:
 
         Fewer after a cycle that has `raised` one of the reasons `until` (`Reason`).
         """
-        self._mask[0] = until or 0
-        done = kernel.advance(self.state, cycles)
-        self.clock.tick(done)
-        return done
+        self._mask[0] = mask = until or 0
+        done = 0
+        while True:
+            piece = min(cycles - done, PIECE_CYCLES)
+            ran = kernel.advance(self.state, piece)
+            self.clock.tick(ran)
+            done += ran
+            if done >= cycles or ran < piece or self.state.clock[0]["raised"] & mask:
+                return done
 
     def skip(self, path: int, until: int) -> int:
         """Go along a path in closed form to segment count `until` or the next event; return the cycles."""
