@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
@@ -15,7 +16,7 @@ from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
+from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText, of_another_channel
 
 INTERRUPTED = frozenset(
     {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
@@ -72,7 +73,9 @@ class ControlChannel:
     def _own(self, config: MachineConfig) -> MachineConfig:
         """Return the machine file as the programs of this channel see it: no word reaches the axes of others."""
         axes = tuple(
-            axis if axis.name in self.data.axes else axis.model_copy(update={"name": f"({axis.name})"})
+            axis
+            if axis.name in self.data.axes
+            else axis.model_copy(update={"name": of_another_channel(axis.name)})
             for axis in config.axes
         )
         return config.model_copy(update={"axes": axes})
@@ -144,10 +147,31 @@ class ControlChannel:
             block_line(text, search.line, search.sequence)
         except UsageError as error:
             raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
-        self._load(text, mdi=False)
-        line = self._find(search)
+        with self._whole_or_nothing():
+            self._load(text, mdi=False)
+            line = self._find(search)
         self.search = search
         return line
+
+    @contextmanager
+    def _whole_or_nothing(self) -> Iterator[None]:
+        """Let a refusal within leave run and path as they were."""
+        state = self._machine.state
+        arrays = (state.owner, *(each[self.path] for each in (state.paths.position, state.paths.queued)))
+        kept = [each.copy() for each in arrays]
+        row, run = state.paths.row[self.path : self.path + 1], self.run
+        kept_row = row.copy()
+        saved = None if run is None else run.snapshot()
+        try:
+            yield
+        except ControlError:
+            row[:] = kept_row
+            for each, content in zip(arrays, kept, strict=True):
+                each[:] = content
+            if run is not None and saved is not None:
+                run.restore(saved)
+            self.run = run
+            raise
 
     def _find(self, search: Search) -> int:
         assert self.run is not None
