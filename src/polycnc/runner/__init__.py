@@ -10,7 +10,8 @@ from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, p
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
 from polycnc.runner._run import check, program_text, run
-from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
