@@ -40,6 +40,7 @@ from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._words import BlockWords, code_text, sort_words
+from polycnc.nc.text._not_words import slip, statements
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
 from polycnc.nc.text._scan_plain import Block, Word
@@ -58,6 +59,10 @@ _FRAME_ACTIONS = {
     Action.MIRROR,
     Action.MIRROR_OFF,
 }
+_LANGUAGES = (
+    "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
+    "or post the program without them."
+)
 _NUMBERS = "NO:"  # block and program numbers
 _AXIS_LETTERS = "XYZABCUVW"
 # What the words belong to that need a function beside them.
@@ -134,6 +139,10 @@ class Interpreter:
         self._text = ProgramText.from_text("")
         self._held_text = self._text  # of the move that radius compensation holds back
         self._block: Block | None = None
+        self._rules = dialect.text_rules()
+        self._statements: tuple[ProgramText, int, int] | None = (
+            None  # a program, its first statement, how many
+        )
         self._motion = MotionBuilder(state, dialect, messages, self.fail)
         self._auxiliary = Auxiliary(state, messages, self._motion, self.fail)
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
@@ -200,6 +209,23 @@ class Interpreter:
         """Return an error about the present block, at `word` if there is one."""
         return ProgramError(what, position=self._text.position(self._place(word)), hint=hint)
 
+    def _no_words(self, block: Block) -> ProgramError:
+        """Return what is wrong with a line that is no words; statements of a language make one error a program."""
+        text, rules = self._text, self._rules
+        wrong = slip(text.content[block.offset : text.line_end(block.offset)].decode("latin-1"), rules)
+        if wrong is not None:
+            position = text.position(block.offset + wrong.place)
+            return ProgramError(wrong.what, position=position, hint=wrong.hint)
+        if self._statements is None or self._statements[0] is not text:
+            self._statements = (text, *statements(text, rules))
+        _, first, count = self._statements
+        blocks = "1 block has them" if count <= 1 else f"{count} blocks have them, this is the first"
+        return ProgramError(
+            f"dialect '{self.dialect.name}' reads no variables, expressions or program flow ({blocks})",
+            position=text.line_position(first or block.line),
+            hint=_LANGUAGES,
+        )
+
     def _place(self, word: Word | None) -> int:
         if word is not None:
             return word.place
@@ -230,11 +256,7 @@ class Interpreter:
 
     def _execute(self, block: Block) -> tuple[Outcome, list[QueueItem]]:
         if block.flags & STATEMENT:
-            raise ProgramError(
-                f"this statement needs a language, and dialect '{self.dialect.name}' has none",
-                position=self._text.line_position(block.line),
-                hint="Expressions, variables and program flow are no part of DIN 66025: write plain words.",
-            )
+            raise self._no_words(block)
         if block.flags & MESSAGE and block.message:
             self.messages.add(f"MSG: {block.message}")
         line = block.line

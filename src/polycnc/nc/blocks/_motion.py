@@ -321,7 +321,11 @@ class MotionBuilder:
             if self.dialect.arcs.no_center == "line":
                 self.messages.add("an arc with neither centre nor radius goes straight to its end point")
                 return self.line(end, False, line)
-            raise self.fail("an arc needs a centre or a radius", "Add I J K or R.", self.place())
+            raise self.fail(
+                "an arc needs a centre or a radius",
+                "Add I J K or R, or write G1 if the move is straight.",
+                self.place(),
+            )
         if center and radius is not None:
             raise self.fail(
                 "an arc has both a radius R and a centre", "Write one of them.", self.words.first("R")
