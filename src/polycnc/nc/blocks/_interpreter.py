@@ -50,9 +50,11 @@ _MOTIONS = {
     Action.LINEAR: MOTION_LINEAR,
     Action.ARC_CW: MOTION_ARC_CW,
     Action.ARC_CCW: MOTION_ARC_CCW,
+    Action.MOTION_OFF: MOTION_NONE,
 }
 _FRAME_ACTIONS = {
     Action.SET_DATA,
+    Action.SET_WORK_ZERO,
     Action.LOCAL_COORDINATES,
     Action.SCALING,
     Action.SCALING_OFF,
@@ -78,6 +80,9 @@ _BELONGS_TO = {
     "H": "tool length compensation (G43, G44)",
     "F": "a dwell that has its time already, or a feed",
 }
+
+_REMARKS = re.compile(rb"\([^)\r\n]*\)")
+_WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
 
 Trouble = tuple[str, str]
 """What is wrong and what to do, of something that is not a matter of the block's words alone."""
@@ -146,7 +151,7 @@ class Interpreter:
         self._motion = MotionBuilder(state, dialect, messages, self.fail)
         self._auxiliary = Auxiliary(state, messages, self._motion, self.fail)
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
-        self._non_modal = NonModal(state, self._motion, self.fail)
+        self._non_modal = NonModal(state, messages, self._motion, self.fail)
         self._frames = Frames(state, dialect, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
 
@@ -239,12 +244,8 @@ class Interpreter:
     def _count(self, code: str) -> int:
         """Return in how many blocks of the present program text a G code stands."""
         pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
-        return len(
-            {
-                self._text.content.rfind(b"\n", 0, found.start())
-                for found in re.finditer(pattern, self._text.content)
-            }
-        )
+        content = _REMARKS.sub(lambda found: b" " * len(found[0]), self._text.content)
+        return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
 
     def _placed(self, error: CompensationError) -> ProgramError:
         """Add the place to an error of radius compensation, which knows its line only."""
@@ -262,6 +263,7 @@ class Interpreter:
         line = block.line
         words = sort_words(block, self.dialect, self.fail, self._count)
         self._refuse_contradictions(words)
+        self._leave_out(words)
         self._motion.begin(words)
         for letter in _NUMBERS:
             words.take(letter)
@@ -278,6 +280,8 @@ class Interpreter:
             if g := words.g.get(group):
                 self._frames.set_modal(g, words)
         items += self._move(words, line)
+        if words.left_out:
+            self._take_parameters(words)
         self._refuse_unused(words)
         if words.m:
             items += self._auxiliary.after_motion(words, line)
@@ -355,6 +359,16 @@ class Interpreter:
         """Go on without radius compensation, to look for errors behind a path that cannot be followed."""
         self.state.compensation.reset()
         self.state.side = 0
+
+    def _leave_out(self, words: BlockWords) -> None:
+        """Say which codes are left out, and leave out the words that belong to them.
+
+        Axis words belong to the block's own motion word, if it has one.
+        """
+        for code in words.left_out:
+            self.messages.add(f"{code} is left out, as told")
+        if words.takes_words and words.g.keys().isdisjoint(_WORDS_OF_THEIR_OWN):
+            words.take_all()
 
     def _refuse_contradictions(self, words: BlockWords) -> None:
         """Refuse functions of different groups that cannot share a block."""
@@ -461,6 +475,12 @@ class Interpreter:
         if trouble := self._call_trouble(program):
             raise self.fail(*trouble, p_word)
         return Outcome(Control.CALL, program, repeats)
+
+    def _take_parameters(self, words: BlockWords) -> None:
+        """Take what is left of words that are no axes: it belonged to codes that are left out."""
+        for letter, word in list(words.unused()):
+            if letter not in self.state.axis_names and word.letter not in _AXIS_LETTERS:
+                words.take(letter)
 
     def _refuse_unused(self, words: BlockWords) -> None:
         for name, word in words.unused():

@@ -367,7 +367,7 @@ class MotionBuilder:
         return center
 
     def _turns(self) -> int:
-        turns = self.words.value("P")
+        turns = self.words.value("P") if self.dialect.arcs.turns else None
         if turns is None:
             return 1
         if turns != int(turns) or not 1 <= turns <= LARGEST:
