@@ -483,7 +483,8 @@ def test_what_grbl_answers_with_an_error_is_refused(block: str) -> None:
 
 def test_what_grbl_knows_is_read() -> None:
     program = (
-        "G17 G21 G40 G49 G54 G61 G90 G91.1 G94\nT1\nM3 S1000\nM8\nG0 X1 Y2\nG1 X3 F100\nG2 X5 I1\nG3 X7 Y2 R5\n"
+        "G17 G21 G40 G49 G54 G61 G90 G91.1 G94\n"
+        "T1\nM3 S1000\nM8\nG0 X1 Y2\nG1 X3 F100\nG2 X5 I1\nG3 X7 Y2 R5\n"
         "G4 P0.5\nG93 G1 X9 F30\nG94 F100\nM7\nM9\nM0\nM1\nG92 X0\nG92.1\nM5\nM2\n"
     )
     assert accepted(program, dialect="grbl").error is None
