@@ -21,7 +21,7 @@ def share(part: float, whole: float) -> tuple[float, bool]:
 
 
 def silent(values: list[int]) -> None:
-    values.append(max(2, 5))
+    values.insert(2, max(3, 5))
 '''
 TESTS = """
 from demo.thing import LARGEST, share
@@ -53,7 +53,8 @@ def test_every_kind_of_change_is_made_and_nothing_else_is_touched() -> None:
         ("comparison", 10, "!="),
         ("dropped", 14, "pass"),
         ("constant", 14, "3"),
-        ("arguments", 14, "5, 2"),
+        ("arguments", 14, "max(3, 5), 2"),
+        ("constant", 14, "2"),
         ("constant", 14, "4"),
     ]
 

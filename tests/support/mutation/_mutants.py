@@ -31,6 +31,7 @@ OPERATORS: dict[type[ast.operator], tuple[str, str]] = {
     ast.LShift: ("<<", ">>"),
     ast.RShift: (">>", "<<"),
 }
+SYMMETRICAL = {"min", "max", "hypot", "gcd", "dist", "isclose", "minimum", "maximum", "array_equal"}
 
 
 @dataclass(frozen=True)
@@ -101,7 +102,7 @@ class _Finder:
                 yield self._mutant("condition", test, b"not (" + self._text(test) + b")")
             case ast.Return(value=ast.Tuple(elts=[first, second, *_])):
                 yield from self._swapped("return", first, second)
-            case ast.Call(args=[*_, first, second]) if not isinstance(first, ast.Starred):
+            case ast.Call(args=[*_, first, second]) if not _is_symmetrical(node):
                 yield from self._swapped("arguments", first, second)
         if isinstance(node, ast.AugAssign) or _is_effect(node):
             yield self._mutant("dropped", node, b"pass")
@@ -151,6 +152,12 @@ def _is_effect(node: ast.AST) -> bool:
         case ast.Assign(targets=[ast.Subscript() | ast.Attribute()]):
             return True
     return False
+
+
+def _is_symmetrical(call: ast.Call) -> bool:
+    """Tell whether the order of a call's arguments makes no difference, or cannot be told."""
+    name = getattr(call.func, "attr", getattr(call.func, "id", ""))
+    return name in SYMMETRICAL or any(isinstance(each, ast.Starred) for each in call.args)
 
 
 def _is_equality(test: ast.expr) -> bool:
