@@ -87,20 +87,15 @@ def run_command(
     text = runner.program_text(program)
     config = load_machine(machine)
     with ExitStack() as stack:
-        sinks = []
         picture = None
+        writer = None
         if plot is not None:
             runner.check_plot_file(plot)
             picture = runner.PlotCollector(config)
-            sinks.append(picture.add)
         if trace is not None:
-            sinks.append(stack.enter_context(runner.TraceWriter(trace, config, servo)).add)
+            writer = stack.enter_context(runner.TraceWriter(trace, config, servo))
         if servo:
             _say_if_ideal(config)
-
-        def rows(piece: Floats) -> None:
-            for sink in sinks:
-                sink(piece)
 
         with progress_bar(program.name) as bar:
             result = runner.run(
@@ -111,7 +106,8 @@ def run_command(
                 check=False,
                 skip_levels=skip or (),
                 stop_at_m0=stop_at_m0,
-                rows=rows if sinks else None,
+                rows=None if picture is None else picture.add,
+                tagged_rows=None if writer is None else writer.add_tagged,
                 progress=bar,
                 root=root,
                 keys=() if keys is None else runner.read_keys(keys),

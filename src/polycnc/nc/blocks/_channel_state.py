@@ -87,6 +87,11 @@ class SavedState(NamedTuple):
     plain: Plain
 
 
+def of_another_channel(axis: str) -> str:
+    """Return the name of an axis in a channel that does not own it: one that no word of a program has."""
+    return f"({axis})"
+
+
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 

@@ -18,7 +18,7 @@ from polycnc.nc._block_records import AGAIN
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
-from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
 from polycnc.nc.blocks._frames import Frames
@@ -261,6 +261,7 @@ class Interpreter:
             items += self._auxiliary.after_motion(words, line)
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
+        self._motion.check_times(items)
         self._note_position(items)
         return outcome, self._compensated(
             self._tagged(items, line, words_stand=bool(block.words)), change_compensation
@@ -448,6 +449,12 @@ class Interpreter:
                 raise self.fail(
                     f"'{name}' cannot stand beside this function",
                     "Write the move in a block of its own.",
+                    word,
+                )
+            elif of_another_channel(name) in self.state.axis_names:
+                raise self.fail(
+                    f"axis '{name}' belongs to another channel",
+                    "Take the word out, or execute the program in that channel.",
                     word,
                 )
             elif word.letter in _AXIS_LETTERS:
