@@ -62,7 +62,9 @@ ALARMS: AlarmTable = MappingProxyType({
     "emergency_stop":        AlarmRow(400, AlarmKind.EMERGENCY, "emergency stop", ClearedBy.CAUSE),
 })
 # fmt: on
-"""The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts."""
+"""The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts.
+
+Errors of a program are "program", or "program CODE" where a vendor has a number for the error's code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,6 +121,11 @@ class AlarmList:
     def has(self, name: str, axis: str | None = None) -> bool:
         """Tell whether an alarm is on."""
         return (name, axis) in self._active
+
+    def of_program(self, code: str) -> str:
+        """Return the name of the alarm for an error of a program: the table's row "program CODE", or "program"."""
+        name = f"program {code}"
+        return name if code and name in self._table else "program"
 
     def put(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
         """Put an alarm on and note it in the history; one that is on already stays as it is."""

@@ -6,13 +6,13 @@ Every command is carried out or refused whole: a refused one raises `ControlErro
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from enum import IntFlag
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._alarms import MOST_MESSAGE_CHARACTERS, Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_checks import check_over, check_ready, wrong_mode
 from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
@@ -41,13 +41,15 @@ from polycnc.machine import (
     Store,
     load_machine,
 )
-from polycnc.nc import Dialect, Event, Group, MAction, ProgramText, load_dialect
+from polycnc.nc import Dialect, Event, Group, Language, MAction, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
 _MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
+PROGRAM_MESSAGE = 3006
+"""Number of the message of a stop in a program of the first channel; those of the others follow."""
 
 
 _ACTIONS = {action.title: action for action in MAction}
@@ -70,6 +72,7 @@ class Control:
 
     `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    `languages` are those of the channels' programs, one for each channel.
     """
 
     def __init__(
@@ -83,6 +86,7 @@ class Control:
         script: Script | None = None,
         servo: bool = False,
         record_cycles: int = 0,
+        languages: Sequence[Language | None] = (),
     ) -> None:
         self.data = data or ControlData()
         self.machine = Machine(
@@ -113,6 +117,7 @@ class Control:
                 library=self._sub_program,
                 dry_run_mm_min=self.data.dry_run_mm_min,
                 on_event=self._meet,
+                language=languages[path] if path < len(languages) else None,
             )
             for path in range(channels)
         )
@@ -320,6 +325,7 @@ class Control:
                     hint="Go on in that mode, or reset it.",
                 )
             chosen.go_on(self.data.after_manual, step)
+            self.messages.withdraw(PROGRAM_MESSAGE + channel)
         else:
             text = self._to_begin(chosen, is_mdi)
             if not 1 <= line <= text.content.count(b"\n") + 1:
@@ -390,6 +396,7 @@ class Control:
         self.manual.stop_all()
         for channel in self.channels:
             channel.reset()
+            self.messages.withdraw(PROGRAM_MESSAGE + channel.path)
         self._waiting.clear()
         self.plc.cancel()
 
@@ -577,7 +584,10 @@ class Control:
         if channel.run_state is RunState.COMPLETED and self.data.count_parts and not channel.is_mdi:
             self.parts.count()
         if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
-            self.alarms.put("program", detail=str(run.error).splitlines()[0])
+            error = run.error
+            name = self.alarms.of_program(error.code)
+            detail = str(error).splitlines()[0] if name == "program" else error.what
+            self.alarms.put(name, detail=detail)
 
     def _note_running(self) -> None:
         self.programs.running = frozenset().union(*(channel.programs for channel in self.channels))
@@ -586,6 +596,8 @@ class Control:
 
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
+        if event.message:
+            self._tell(channel, event.message)
         block = channel.executed
         if block is not None:
             modal = block.modal
@@ -601,6 +613,11 @@ class Control:
         if waiting:
             self._waiting.setdefault(channel.path, []).extend(waiting)
         return bool(waiting)
+
+    def _tell(self, channel: ControlChannel, text: str) -> None:
+        """Show what a program tells the operator where it stops, until it goes on or is reset."""
+        number = PROGRAM_MESSAGE + channel.path
+        self.messages.show(number, text[:MOST_MESSAGE_CHARACTERS])
 
     def _function_s(self, letter: str, number: int) -> float:
         """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
@@ -682,6 +699,7 @@ class Control:
             self.machine.config,
             self._live,
             *nested(self.machine.state),
+            *(channel.language for channel in self.channels if channel.language is not None),
         ]
 
     def _moment(self) -> ControlMoment:

@@ -13,7 +13,7 @@ from polycnc.cnc._run_state import RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
+from polycnc.nc import BlockRecord, BoundLanguage, Dialect, Event, Language, Library, ProgramText
 
 INTERRUPTED = frozenset(
     {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
@@ -39,8 +39,10 @@ class ControlChannel:
         library: Library,
         dry_run_mm_min: float,
         on_event: Callable[[ControlChannel, Event], bool],
+        language: Language | None = None,
     ) -> None:
         self.path = path
+        self.language = language
         self.program: ProgramText | None = None
         self.mdi: ProgramText | None = None
         self.run: ProgramRun | None = None
@@ -135,6 +137,7 @@ class ControlChannel:
                 options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
                 config=self._config,
                 library=self._library,
+                language=self.language,
                 on_event=lambda event: self._on_event(self, event),
             )
         else:
@@ -271,6 +274,8 @@ class ControlChannel:
         self.returning = moment.returning
         self._lent = moment.lent
         self.run = run
+        if run is not None and isinstance(self.language, BoundLanguage):
+            self.language.attach(run.channel)
 
     # ------------------------------------------------------------------ lent axes
 

@@ -332,7 +332,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
-        if _START_OFFSET in config.offsets or self.dialect.macros:
+        if _START_OFFSET in config.offsets or self.dialect.language == "macro":
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 
@@ -442,9 +442,11 @@ class Channel:
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+        return self.records.reference(self._place.text, self.stack, self.state.snapshot(), line)
 
-    def _stack(self) -> tuple[Call, ...]:
+    @property
+    def stack(self) -> tuple[Call, ...]:
+        """The calls that led to what is prepared now, the outermost first."""
         return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
@@ -466,7 +468,7 @@ class Channel:
         kernel = self.machine.state
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
+        base = self.records.run_base(self._place.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)
