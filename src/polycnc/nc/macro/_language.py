@@ -71,10 +71,10 @@ class MacroLanguage:
 
     `turns` counts how often programs were asked for a block: whoever keeps variables sees by it that they may have
     changed. `variables` may be shared with whoever else reads and writes them, `system` are the control's own
-    variables, `calls` the codes that call programs. With `nat` ASIN and ATAN give -90 to 90 and -180 to 180 degrees. With
-    `main_repeats` M99 in the main program begins it anew instead of ending it. With `endless_loops` a loop may go
-    round without a block for ever; else that is an error after 50,000,000 rounds. It pauses after `pause_jumps`
-    of them.
+    variables, `calls` the codes that call programs. With `nat` ASIN and ATAN give -90 to 90 and -180 to 180 degrees.
+    With `main_repeats` M99 in the main program begins it anew instead of ending it. With `endless_loops` a loop may go
+    round without a block for ever; else that is an error after 50,000,000 rounds. It pauses after `pause_jumps` of
+    them.
     """
 
     def __init__(
