@@ -447,9 +447,11 @@ class Channel:
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+        return self.records.reference(self._place.text, self.stack, self.state.snapshot(), line)
 
-    def _stack(self) -> tuple[Call, ...]:
+    @property
+    def stack(self) -> tuple[Call, ...]:
+        """The calls that led to what is prepared now, the outermost first."""
         return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
@@ -471,7 +473,7 @@ class Channel:
         kernel = self.machine.state
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
+        base = self.records.run_base(self._place.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)

@@ -284,7 +284,7 @@ class Interpreter:
             self._take_parameters(words)
         self._refuse_unused(words)
         if words.m:
-            items += self._auxiliary.after_motion(words, line)
+            items += self._auxiliary.after_motion(words, line, block.message)
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
         self._motion.check_times(items)
