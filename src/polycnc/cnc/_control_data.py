@@ -10,6 +10,8 @@ from polycnc.cnc._alarms import ALARMS, AlarmTable
 from polycnc.cnc._manual import ManualData
 from polycnc.cnc._program_memory import MemoryData
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import UsageError
+from polycnc.machine import LEAST_OVERRIDE
 
 
 class Mode(StrEnum):
@@ -70,6 +72,49 @@ class ControlData:
 
 
 @dataclass(frozen=True, slots=True)
+class ChannelData:
+    """Say what a channel owns: `axes` by their names, which no other channel has, and perhaps the spindle.
+
+    Auxiliary functions of all channels go to the same PLC. Parts are counted by the program ends of the first channel.
+    """
+
+    axes: tuple[str, ...]
+    spindle: bool = False
+
+
+def check_channels(channels: tuple[ChannelData, ...], axes: tuple[str, ...]) -> None:
+    """Refuse channels that do not share out the axes of a machine.
+
+    Raises:
+        UsageError: An axis belongs to none of them or to two, there is no such axis, or two have the spindle.
+    """
+    given = [axis for channel in channels for axis in channel.axes]
+    for axis in (*axes, *given):
+        owners = given.count(axis)
+        if axis not in axes:
+            raise UsageError(f"there is no axis '{axis}'", hint=f"The axes are {', '.join(axes)}.")
+        if owners != 1:
+            belongs = "no channel" if owners == 0 else f"{owners} channels"
+            raise UsageError(f"axis {axis} belongs to {belongs}", hint="Give it to one channel.")
+    if any(not channel.axes for channel in channels):
+        raise UsageError("a channel has no axes", hint="Give it some, or leave it out.")
+    if sum(channel.spindle for channel in channels) > 1:
+        raise UsageError("the spindle belongs to several channels", hint="Give it to one.")
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """Where a program begins with its next start: the block on `line`, or with sequence number `sequence`.
+
+    With `calculate` what stands before is carried out without moving.
+    """
+
+    line: int = 0
+    sequence: int | None = None
+    calculate: bool = False
+
+
+@dataclass(frozen=True, slots=True)
 class Overrides:
     """The overrides, 1 is 100 %."""
 
@@ -84,8 +129,9 @@ class Overrides:
             ControlError: One is out of range, or no step of the rapid override.
         """
         low, high = data.spindle_overrides
-        if not (math.isfinite(self.feed) and 0.0 <= self.feed <= data.most_feed_override):
-            raise _refused("feed", self.feed, f"Give 0 to {data.most_feed_override:g}; 1 is 100 %.")
+        if self.feed != 0.0 and not LEAST_OVERRIDE <= self.feed <= data.most_feed_override:
+            hint = f"Give 0, or {LEAST_OVERRIDE:g} to {data.most_feed_override:g}; 1 is 100 %."
+            raise _refused("feed", self.feed, hint)
         if self.rapid not in data.rapid_overrides:
             steps = ", ".join(f"{step:g}" for step in data.rapid_overrides)
             raise _refused("rapid", self.rapid, f"The steps are {steps}; 1 is 100 %.")

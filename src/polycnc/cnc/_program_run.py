@@ -22,7 +22,7 @@ from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import Machine, MachineConfig, Reason
+from polycnc.machine import LEAST_OVERRIDE, Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
@@ -549,7 +549,7 @@ class ProgramRun:
             self._meet_event()
         if raised & kernel.RECORDER_FULL:
             self.drain()
-        if (found := axis_alarm(self.machine, raised)) is not None:
+        if (found := axis_alarm(self.machine, raised, self.path)) is not None:
             self._stop_by(*found)
         self._look()
 
@@ -795,5 +795,6 @@ class ProgramRun:
 
 
 def _check_factor(factor: float, highest: float, what: str) -> None:
-    if not 0.0 <= factor <= highest:
-        raise UsageError(f"{what} cannot be {factor:g}", hint=f"Give a factor from 0 to {highest:g}.")
+    if not (factor == 0.0 or LEAST_OVERRIDE <= factor <= highest):
+        hint = f"Give 0, or a factor from {LEAST_OVERRIDE:g} to {highest:g}."
+        raise UsageError(f"{what} cannot be {factor:g}", hint=hint)

@@ -146,7 +146,11 @@ class Channel:
             if not keeps_modal:
                 self.state = self._initial_state(config or machine.config)
                 self.state.tool = before.state.tool
-        self._fast_work = make_fast_work(self.state.modal, _CHUNK_BLOCKS if marks else 0)
+        self._fast_work = make_fast_work(
+            self.state.modal,
+            _CHUNK_BLOCKS if marks else 0,
+            feed_needs_point=dialect.numbers.feed_least_input > 0.0,
+        )
         self.interpreter = Interpreter(
             dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
         )
@@ -332,6 +336,7 @@ class Channel:
             ],
             [low for low, _ in limits],
             [high for _, high in limits],
+            min(axis.vmax for axis in config.axes),
         )
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
@@ -339,7 +344,7 @@ class Channel:
         state.axis_names = names
         given = getattr(config.offsets, "at_start", None)
         begins = _START_OFFSET in config.offsets if given is None else given
-        if begins or self.dialect.macros:
+        if begins or self.dialect.sets_work_offsets:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 
@@ -449,9 +454,11 @@ class Channel:
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+        return self.records.reference(self._place.text, self.stack, self.state.snapshot(), line)
 
-    def _stack(self) -> tuple[Call, ...]:
+    @property
+    def stack(self) -> tuple[Call, ...]:
+        """The calls that led to what is prepared now, the outermost first."""
         return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
@@ -473,7 +480,7 @@ class Channel:
         kernel = self.machine.state
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
+        base = self.records.run_base(self._place.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)

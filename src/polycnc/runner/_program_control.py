@@ -40,8 +40,8 @@ class ProgramControl(Protocol):
     def attach(self, run: ProgramRun) -> None:
         """Take the run whose channel executes the program."""
 
-    def has_screen(self, program: ProgramText) -> bool:
-        """Tell whether a program can show anything."""
+    def has_statements(self, program: ProgramText) -> bool:
+        """Tell whether a program holds more than NC blocks."""
 
     def check(self, program: ProgramText) -> list[ProgramError]:
         """Return everything that is wrong with a program without running it."""
@@ -129,7 +129,7 @@ def check_screen_file(path: str | Path, program: ProgramText, control: ProgramCo
         UsageError: The program shows nothing, no format has this ending, or the place is wrong.
     """
     target = check_output(path, SCREEN_FORMATS, "a screen")
-    if control is None or not control.has_screen(program):
+    if control is None or not control.has_statements(program):
         raise UsageError(
             f"{program.name} has no screen: it holds NC blocks only",
             hint="Leave --screen out, or name the dialect of a control with a language (bosch).",

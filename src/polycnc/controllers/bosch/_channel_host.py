@@ -131,8 +131,8 @@ class ChannelHost:
         """The machine file with the tables that programs change."""
         return self.system.live_config()
 
-    def has_screen(self, program: ProgramText) -> bool:
-        """Tell whether a program can show anything: NC blocks alone cannot."""
+    def has_statements(self, program: ProgramText) -> bool:
+        """Tell whether a program holds CPL."""
         return holds_cpl(program.content)
 
     def check(self, program: ProgramText) -> list[ProgramError]:

@@ -61,6 +61,7 @@ class Plain(NamedTuple):
     skip_position: tuple[float, ...] | None
     placement: Placement
     probe: Probe | None
+    rigid_tap: bool
 
 
 class ModalSnapshot(NamedTuple):
@@ -92,6 +93,11 @@ class SavedState(NamedTuple):
     plain: Plain
 
 
+def of_another_channel(axis: str) -> str:
+    """Return the name of an axis in a channel that does not own it: one that no word of a program has."""
+    return f"({axis})"
+
+
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 
@@ -101,7 +107,7 @@ class ChannelState:
     length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
     that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
     mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine coordinates),
-    `probe` the last probing.
+    `probe` the last probing. With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -120,6 +126,7 @@ class ChannelState:
         self.selected_tool = 0
         self.feed_word = 0.0
         self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.rigid_tap = False
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -163,6 +170,7 @@ class ChannelState:
             self.skip_position,
             self.placement,
             self.probe,
+            self.rigid_tap,
         )
 
     def snapshot(self) -> ModalSnapshot:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
@@ -41,7 +42,6 @@ from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 
-LONGEST_DWELL_S = 1e7
 _INCREMENTS_PER_INCH_STEP = 0.1  # an increment in inch is a tenth of the number that it is in mm
 _DEFAULT_WORK_OFFSET = "G54"
 _TIME_LETTERS_WITH_INCREMENTS = "XU"
@@ -106,14 +106,19 @@ class Modes:
         word = words.take("F")
         if word is None:
             return
-        if word.value <= 0.0:
-            raise self.fail(
-                f"the feed {code_text(word.value)} is not above zero", "Write a positive F.", word
+        value = word.value
+        if value <= 0.0:
+            raise self.fail(f"the feed {code_text(value)} is not above zero", "Write a positive F.", word)
+        if (least := self.dialect.numbers.feed_least_input) and not word.point:
+            value *= least * (_INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0)
+            self.messages.add(
+                f"F without a decimal point counts {least:g} mm in dialect '{self.dialect.name}': "
+                f"F{code_text(word.value)} is {code_text(value)}"
             )
-        state.feed_word = word.value
+        state.feed_word = value
         if modal.whole[FEED_MODE] != FEED_INVERSE_TIME:
-            modal.real[FEED] = word.value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
-            modal.real[FEED_NUMBER] = word.value
+            modal.real[FEED] = value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
+            modal.real[FEED_NUMBER] = value
 
     def dwell(self, words: BlockWords, line: int) -> list[Wait]:
         """Return the wait of a dwell, if there is one.
@@ -130,7 +135,7 @@ class Modes:
             letters = " or ".join(", ".join(self.dialect.dwell).rsplit(", ", 1))
             raise self.fail(f"a dwell (G{g.code}) without a time", f"Add {letters} and the time.", g.word)
         seconds = self._dwell_s(word, self.dialect.dwell[letter])
-        if not 0.0 <= seconds <= LONGEST_DWELL_S:
+        if not 0.0 <= seconds <= LONGEST_BLOCK_S:
             what = "negative" if seconds < 0.0 else "longer than anybody waits"
             raise self.fail(
                 f"the dwell {word.letter}{code_text(word.value)} is {what}", "Write a time from 0 up.", word
@@ -193,12 +198,15 @@ class Modes:
         g = words.g.get(Group.WORK_OFFSET)
         if g is None:
             return
-        group = work_group(g.word.value)
+        additional = g.action in (Action.ADDITIONAL_OFFSET, Action.ADDITIONAL_OFFSET_110)
+        group = 0 if additional else work_group(g.word.value)
         if g.action is Action.WORK_OFFSET_OFF:
             self.state.coordinates.select_work_offset(group, MACHINE_ZERO)
             return
         if g.action is Action.ADDITIONAL_OFFSET:
             name = additional_offset(self._additional_number(words))
+        elif g.action is Action.ADDITIONAL_OFFSET_110:
+            name = additional_offset(int(g.word.value) - 109)
         else:
             name = f"G{g.code}"
         offsets = self.state.machine.offsets

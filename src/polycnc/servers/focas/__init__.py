@@ -1,19 +1,25 @@
 """FOCAS over TCP: frames, commands and sessions as Ethernet clients of FANUC controls speak them."""
 
-from polycnc.servers.focas._blocks import (
+from polycnc.controllers.fanuc.wire import (
     CNC,
     PMC,
+    VACANT,
+    Frame,
+    FrameReader,
+    FrameType,
     Reply,
     Request,
+    Value8,
     read_replies,
     read_requests,
+    read_status,
+    status_body,
+    text,
     write_replies,
     write_requests,
 )
 from polycnc.servers.focas._commands import COMMANDS
 from polycnc.servers.focas._control import FocasControl
-from polycnc.servers.focas._frames import Frame, FrameReader, FrameType, read_status, status_body
-from polycnc.servers.focas._numbers import VACANT, Value8, text
 from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
 from polycnc.servers.focas._server import PORT, FocasServer
 from polycnc.servers.focas._session import TRANSITIONS, Answerer, Ending, Session, State, Status, Transition

@@ -12,8 +12,7 @@ from collections.abc import Callable
 from typing import TypeAlias
 
 from polycnc.controllers.fanuc import AlarmBit, PowerMate, bit_of, pmc, read_state, shown
-from polycnc.servers.focas._blocks import CNC, PMC, Request
-from polycnc.servers.focas._numbers import VALUE8_SIZE, Value8, text
+from polycnc.controllers.fanuc.wire import CNC, PMC, VALUE8_SIZE, Request, Value8, text
 from polycnc.servers.focas._profile import Profile
 
 NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, PROTECTED, REJECTED = 1, 2, 3, 4, 5, 7, 13

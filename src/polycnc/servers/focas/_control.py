@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 from polycnc.cnc import ControlError
 from polycnc.controllers.fanuc import PowerMate
+from polycnc.controllers.fanuc.wire import Reply, Request
 from polycnc.errors import ProtocolError
-from polycnc.servers.focas._blocks import Reply, Request
 from polycnc.servers.focas._commands import DATA, NOT_THERE, REJECTED, RefusedError, known
 from polycnc.servers.focas._profile import Profile
 from polycnc.servers.focas._session import SESSIONS_USED_UP, Status

@@ -11,9 +11,17 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple, Protocol
 
+from polycnc.controllers.fanuc.wire import (
+    Frame,
+    FrameReader,
+    FrameType,
+    Reply,
+    Request,
+    read_requests,
+    status_body,
+    write_replies,
+)
 from polycnc.errors import ProtocolError
-from polycnc.servers.focas._blocks import Reply, Request, read_requests, write_replies
-from polycnc.servers.focas._frames import Frame, FrameReader, FrameType, status_body
 
 SESSIONS_USED_UP = 2
 """The code with which a control refuses one session too many."""

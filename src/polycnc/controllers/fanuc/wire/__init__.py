@@ -1,0 +1,34 @@
+"""The Ethernet protocol of FANUC controls without sockets: frames, command blocks and numbers, for both ends."""
+
+from polycnc.controllers.fanuc.wire._blocks import (
+    CNC,
+    PMC,
+    Reply,
+    Request,
+    read_replies,
+    read_requests,
+    write_replies,
+    write_requests,
+)
+from polycnc.controllers.fanuc.wire._frames import Frame, FrameReader, FrameType, read_status, status_body
+from polycnc.controllers.fanuc.wire._numbers import VACANT, VALUE8_SIZE, Value8, text
+
+__all__ = [
+    "CNC",
+    "PMC",
+    "VACANT",
+    "VALUE8_SIZE",
+    "Frame",
+    "FrameReader",
+    "FrameType",
+    "Reply",
+    "Request",
+    "Value8",
+    "read_replies",
+    "read_requests",
+    "read_status",
+    "status_body",
+    "text",
+    "write_replies",
+    "write_requests",
+]
