@@ -29,9 +29,8 @@ class Probing:
 
     def look(self, machine: Machine, channel: Channel) -> bool:
         """Look at one cycle; tell whether the contact is in it, whose position the channel takes."""
-        now = positions(machine)
-        surfaces, names = machine.config.surfaces, machine.config.axis_names
-        found = first_contact(surfaces, names, self.before, now)
+        now, config = positions(machine), channel.state.machine
+        found = first_contact(config.surfaces, config.axis_names, self.before, now)
         self.before = now
         if found is None:
             return False

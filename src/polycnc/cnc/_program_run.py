@@ -538,7 +538,8 @@ class ProgramRun:
         self.feed.feed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        return cycles if self._probing is None else 1
+        waits = self._options.asks_often and self.at_rest and not self.channel.done
+        return 1 if waits or self._probing is not None else cycles
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
@@ -563,8 +564,6 @@ class ProgramRun:
             rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
-
-    # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> RunSnapshot:
         """Return everything that this run holds, to go back to with `restore`.
