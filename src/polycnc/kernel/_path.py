@@ -23,7 +23,7 @@ HELD = 3  # at rest within a segment, until released
 
 NO_LIMIT = 1 << 62
 
-BLEND_COLUMNS = 15  # five points of three axes
+BLEND_COLUMNS = 16  # see `_blend`
 
 # Columns of `totals`.
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6

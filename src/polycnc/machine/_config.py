@@ -5,6 +5,7 @@ A key that nothing reads does not exist here, so a file cannot hold a setting wi
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from datetime import datetime
@@ -51,6 +52,14 @@ def _look_ahead(value: object) -> object:
     raise problem("'look_ahead_blocks' must be a whole number from 2 up", hint='or write "unlimited"')
 
 
+def _path_tolerance(value: object) -> object:
+    if value == "free":
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value <= LARGEST_POSITION:
+        return value
+    raise problem("'path_tolerance_mm' must be a number from 0 up", hint='or write "free"')
+
+
 def _some_axes(value: tuple[AnyAxis, ...]) -> tuple[AnyAxis, ...]:
     if not value:
         raise problem("the machine has no axis", hint="add a table [[axis]] for each axis")
@@ -63,8 +72,9 @@ class PathConfig(StrictModel):
     look_ahead_blocks: Annotated[int | Literal["unlimited"], BeforeValidator(_look_ahead)] = Field(
         default="unlimited", description='How many blocks the look-ahead sees: 2 or more, or "unlimited".'
     )
-    path_tolerance_mm: NotNegative = Field(
-        default=0.0, description="How far the path may leave a corner, mm."
+    path_tolerance_mm: Annotated[float | Literal["free"], BeforeValidator(_path_tolerance)] = Field(
+        default=0.0,
+        description='How far the path may leave a corner, mm: 0 or more, or "free", a quarter of the shorter line.',
     )
     jerkrel: Share = Field(
         default=0.0,
@@ -96,6 +106,11 @@ class PathConfig(StrictModel):
                 at=("square_corner_mm_s",),
             )
         return self
+
+    @property
+    def tolerance_mm(self) -> float:
+        """Return how far the path may leave a corner, mm; inf if it is free."""
+        return math.inf if self.path_tolerance_mm == "free" else self.path_tolerance_mm
 
     @property
     def look_ahead_limit(self) -> int | None:
