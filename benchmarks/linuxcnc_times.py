@@ -2,8 +2,8 @@
 
     python benchmarks/linuxcnc_times.py [PROGRAM...]
 
-Needs `linuxcnc` (Debian: linuxcnc-uspace) and an ordinary user; it runs in wall time, some ten minutes. Without programs
-it makes some as CAM systems write them. The machine is a router of 150 mm/s and 800 mm/s² (Z 80 and 500).
+Needs `linuxcnc` (Debian: linuxcnc-uspace) and an ordinary user; it runs in wall time, some ten minutes. Without
+programs it makes some as CAM systems write them. The machine is a router of 150 mm/s and 800 mm/s² (Z 80 and 500).
 """
 
 from __future__ import annotations
@@ -62,19 +62,25 @@ def compare(folder: Path, programs: dict[str, str]) -> None:
 def made_programs() -> Iterator[tuple[str, str]]:
     """Yield programs of the kinds that CAM systems write: name and text, from the origin."""
     rng = np.random.default_rng(4)
-    turn = np.linspace(0.0, 12.0 * math.pi, 2400)
+    turn = np.linspace(0.0, 8.0 * math.pi, 500)
     yield "pocket spiral", lines(turn * np.cos(turn), turn * np.sin(turn), 0.0 * turn, 4800.0)
-    x = np.tile(np.concatenate([np.linspace(0, 60, 200), np.linspace(60, 0, 200)]), 8)
-    y = np.repeat(np.arange(16) * 1.3, 200)
+    x = np.tile(np.concatenate([np.linspace(0, 60, 100), np.linspace(60, 0, 100)]), 3)
+    y = np.repeat(np.arange(6) * 1.3, 100)
     yield "surface raster", lines(x, y, 3.0 * np.sin(x / 7.0) * np.cos(y / 5.0), 3600.0)
-    yield "trochoid arcs", arcs(18, 4.0, 1.1, 3900.0)
-    heading = np.cumsum(rng.normal(size=700) * 0.4)
-    yield "engraving", lines(np.cumsum(0.35 * np.cos(heading)), np.cumsum(0.35 * np.sin(heading)), 0.0 * heading, 2400.0)
-    boxes = [(b * k, b * j) for b in np.arange(4.0, 40.0, 3.0) for k, j in ((1, 0), (1, 1), (0, 1), (0, 0))]
-    yield "box offsets", lines(*np.array(boxes).T, np.zeros(len(boxes)), 5400.0)
-    corners = np.cumsum(rng.uniform(-25.0, 25.0, size=(90, 2)), axis=0)
-    yield "facets", lines(corners[:, 0], corners[:, 1], np.zeros(90), 4200.0)
-    yield "long chords", lines(30 * np.sin(turn[::12]), 30 - 30 * np.cos(turn[::12]), 0.0 * turn[::12], 6000.0)
+    yield "trochoid arcs", arcs(10, 4.0, 1.1, 3900.0)
+    heading = np.cumsum(rng.normal(size=250) * 0.4)
+    yield (
+        "engraving",
+        lines(np.cumsum(0.35 * np.cos(heading)), np.cumsum(0.35 * np.sin(heading)), 0.0 * heading, 2400.0),
+    )
+    boxes = [(b * k, b * j) for b in np.arange(4.0, 25.0, 3.0) for k, j in ((1, 0), (1, 1), (0, 1), (0, 0))]
+    yield "box offsets", lines(np.array(boxes)[:, 0], np.array(boxes)[:, 1], np.zeros(len(boxes)), 5400.0)
+    corners = np.cumsum(rng.uniform(-25.0, 25.0, size=(40, 2)), axis=0)
+    yield "facets", lines(corners[:, 0], corners[:, 1], np.zeros(40), 4200.0)
+    yield (
+        "long chords",
+        lines(30 * np.sin(turn[::4]), 30 - 30 * np.cos(turn[::4]), 0.0 * turn[::4], 6000.0),
+    )
 
 
 def lines(x: np.ndarray, y: np.ndarray, z: np.ndarray, feed: float) -> str:
@@ -130,7 +136,9 @@ def write_configuration(folder: Path) -> None:
     for joint, (name, (speed, accel)) in enumerate(AXES.items()):
         limits = f"MAX_VELOCITY = {speed}\nMAX_ACCELERATION = {accel}\nMIN_LIMIT = -1e5\nMAX_LIMIT = 1e5\n"
         parts.append(f"[AXIS_{name}]\n{limits}[JOINT_{joint}]\nTYPE = LINEAR\nHOME = 0\n{limits}")
-        parts.append("FERROR = 1e5\nMIN_FERROR = 1e5\nHOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\nHOME_SEQUENCE = 0\n")
+        parts.append(
+            "FERROR = 1e5\nMIN_FERROR = 1e5\nHOME_SEARCH_VEL = 0\nHOME_LATCH_VEL = 0\nHOME_SEQUENCE = 0\n"
+        )
     (folder / "sim.ini").write_text("".join(parts))
     (folder / "sim.hal").write_text(SIGNALS)
     display = folder / "run-all.py"

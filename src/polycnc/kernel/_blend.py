@@ -18,6 +18,7 @@ from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import (
     CIRCLE3D,
     CIRCLE3D_LENGTH,
+    CORNER_STOP,
     LINE,
     RAPID,
     STOP,
@@ -54,7 +55,7 @@ def blend_corner(
         return False
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]
-    if line["kind"] != LINE or line["flags"] & (RAPID | STOP) or math.isinf(speed_mm_s):
+    if line["kind"] != LINE or line["flags"] & (RAPID | STOP | CORNER_STOP) or math.isinf(speed_mm_s):
         return False
     p, q, r = _three_axes(seg, k, limits, end)
     if p < 0:

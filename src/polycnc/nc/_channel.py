@@ -337,6 +337,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
+        state.path_tolerance_mm = self.dialect.path_tolerance_mm(config.path)
         if _START_OFFSET in config.offsets or self.dialect.sets_work_offsets:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state

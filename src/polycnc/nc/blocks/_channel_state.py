@@ -96,13 +96,13 @@ def of_another_channel(axis: str) -> str:
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 
-    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
-    the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
-    -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
-    length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `skip_position` where the last skip move ended (machine coordinates). With `rigid_tap` a tapping cycle
-    turns the spindle itself.
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
+    present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
+    0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
+    compensated. `path_tolerance_mm` is how far corners may be rounded (kernel.EXACT_PATH: they are stops).
+    `m_codes` are those of the last block that had any. `tables` are the tools and work offsets, `frame` how
+    programmed positions are turned, scaled and mirrored, `skip_position` where the last skip move ended
+    (machine coordinates). With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -118,7 +118,7 @@ class ChannelState:
         self.tool = 0
         self.selected_tool = 0
         self.feed_word = 0.0
-        self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.path_tolerance_mm = machine.path.tolerance_mm
         self.rigid_tap = False
         self.side = 0
         self.compensation_tool: int | None = None
