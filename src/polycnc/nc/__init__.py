@@ -3,6 +3,7 @@
 from polycnc.nc._block_records import LINE_MASK, BlockRecord, BlockRecords, Call, ModalWords, line_of
 from polycnc.nc._block_source import (
     BlockSource,
+    BoundLanguage,
     CallProgram,
     Drain,
     EndSource,
@@ -33,6 +34,7 @@ __all__ = [
     "BlockRecord",
     "BlockRecords",
     "BlockSource",
+    "BoundLanguage",
     "Call",
     "CallProgram",
     "Channel",
