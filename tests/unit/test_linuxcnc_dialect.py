@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import polycnc
+from polycnc.nc import Group
+from support.runs import program_run
 
 SQUARE = "G1 X40 F3000\nY40\nX0\nY0\n"  # 50 mm/s on mill3: 5000 mm/s2
 ALONE_S = 40.0 / 50.0 + 50.0 / 5000.0
@@ -63,12 +65,23 @@ def test_a_free_tolerance_of_the_machine_holds_in_any_dialect(tmp_path: Path) ->
     assert time_of(tmp_path, SQUARE, "din", machine) == time_of(tmp_path, SQUARE)
 
 
-def test_g61_holds_until_g64_and_is_what_the_status_says(tmp_path: Path) -> None:
+def test_g61_holds_until_g64_its_last_corner_as_well(tmp_path: Path) -> None:
     mixed = "G61 " + SQUARE + "G64 P0.3\n" + SQUARE
     both = time_of(tmp_path, "G61 " + SQUARE) + time_of(tmp_path, "G64 P0.3\n" + SQUARE)
-    assert time_of(tmp_path, mixed) == pytest.approx(both, abs=1e-2)
+    assert time_of(tmp_path, mixed) == pytest.approx(both, abs=1e-9)
 
 
 def test_an_unknown_code_is_named_as_not_supported(tmp_path: Path) -> None:
     with pytest.raises(polycnc.ProgramError, match=r"G38\.2"):
         time_of(tmp_path, "G38.2 Z-5 F100\n")
+
+
+def test_the_executed_block_tells_which_of_them_is_in_force(tmp_path: Path) -> None:
+    seen = {}
+    run = program_run("G61 G1 X4 F3000\nX9\nG64 P0.1 Y5\nG61.1 X1\nM30\n", dialect="linuxcnc")
+    run.start()
+    while run.active:
+        run.advance(1)
+        if run.executed is not None and run.modal is not None:
+            seen[run.executed.line] = run.modal.g.get(Group.STOPPING)
+    assert seen == {1: "G61", 2: "G61", 3: "G64", 4: "G61.1", 5: "G61.1"}

@@ -16,7 +16,16 @@ from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText, of_another_channel
+from polycnc.nc import (
+    BlockRecord,
+    BoundLanguage,
+    Dialect,
+    Event,
+    Language,
+    Library,
+    ProgramText,
+    of_another_channel,
+)
 
 INTERRUPTED = frozenset(
     {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
@@ -43,8 +52,10 @@ class ControlChannel:
         library: Library,
         dry_run_mm_min: float,
         on_event: Callable[[ControlChannel, Event], bool],
+        language: Language | None = None,
     ) -> None:
         self.path = path
+        self.language = language
         self.data = data
         self.mode = Mode.AUTO
         self.overrides = Overrides()
@@ -210,6 +221,7 @@ class ControlChannel:
                 options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
                 config=self.config,
                 library=self._library,
+                language=self.language,
                 on_event=lambda event: self._on_event(self, event),
             )
         else:
@@ -349,6 +361,8 @@ class ControlChannel:
         self.returning = moment.returning
         self._lent = moment.lent
         self.run = run
+        if run is not None and isinstance(self.language, BoundLanguage):
+            self.language.attach(run.channel)
 
     # ------------------------------------------------------------------ lent axes
 

@@ -16,6 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_CYCLE_S
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
+from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 
@@ -217,10 +218,15 @@ class MachineConfig(StrictModel):
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
     )
     io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")
+    surfaces: tuple[SurfaceConfig, ...] = Field(
+        default=(), alias="surface", description="What a probe meets, see `[[surface]]`."
+    )
 
     @model_validator(mode="after")
     def _fits_together(self) -> MachineConfig:
         for error in (*self._axis_problems(), *self._offset_problems(), *self._start_problems()):
+            raise error
+        for error in surface_problems(self.surfaces, self.axis_names):
             raise error
         return self
 

@@ -77,10 +77,10 @@ class Auxiliary:
                 waits += [self._function(m, speed, line) for m in words.m if m.action is action]
         return waits
 
-    def after_motion(self, words: BlockWords, line: int) -> list[Wait]:
-        """Return the waits of program stops and the program end."""
+    def after_motion(self, words: BlockWords, line: int, message: str = "") -> list[Wait]:
+        """Return the waits of program stops, with a message to the operator, and of the program end."""
         return [
-            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action))
+            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action), message=message)
             for m in words.m
             if m.action in _AFTER_MOTION
         ]

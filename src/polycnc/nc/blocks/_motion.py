@@ -156,9 +156,9 @@ class MotionBuilder:
             others = axis_values
         for axis, value in others.items():
             programmed[axis] = value if absolute else programmed[axis] + value
-        turn = frame.rotation
-        if turn is not None and changed & {turn.p, turn.q}:
-            changed |= {turn.p, turn.q}
+        for turn in (frame.rotation, frame.outer):
+            if turn is not None and changed & {turn.p, turn.q}:
+                changed |= {turn.p, turn.q}
         found = frame.forward(programmed)
         for axis in changed:
             wanted = found[axis] + offset[axis]
