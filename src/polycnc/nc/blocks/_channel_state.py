@@ -57,6 +57,7 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
+    skip_tag: int | None
     rigid_tap: bool
 
 
@@ -101,8 +102,8 @@ class ChannelState:
     -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
     length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
     that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `skip_position` where the last skip move ended (machine coordinates). With `rigid_tap` a tapping cycle
-    turns the spindle itself.
+    mirrored, `skip_position` where the last skip move ended (machine coordinates), `skip_tag` the reference of its
+    block. With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -112,6 +113,7 @@ class ChannelState:
         self.coordinates = Coordinates(self.tables, modal)
         self.frame = Frame()
         self.skip_position: tuple[float, ...] | None = None
+        self.skip_tag: int | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
@@ -161,6 +163,7 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
+            self.skip_tag,
             self.rigid_tap,
         )
 
