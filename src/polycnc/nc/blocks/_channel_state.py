@@ -59,6 +59,7 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
+    skip_tag: int | None
     placement: Placement
     probe: Probe | None
     rigid_tap: bool
@@ -106,7 +107,8 @@ class ChannelState:
     -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
     length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
     that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine coordinates),
+    mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine coordinates), `skip_tag`
+    the reference of its block,
     `probe` the last probing. With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
@@ -119,6 +121,7 @@ class ChannelState:
         self.placement = Placement()
         self.probe: Probe | None = None
         self.skip_position: tuple[float, ...] | None = None
+        self.skip_tag: int | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
@@ -168,6 +171,7 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
+            self.skip_tag,
             self.placement,
             self.probe,
             self.rigid_tap,
