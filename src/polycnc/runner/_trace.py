@@ -16,8 +16,8 @@ from polycnc.errors import UsageError
 from polycnc.kernel import BLOCK, FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
+from polycnc.outputs import check_output, complete_or_absent, format_of
 from polycnc.runner._blocks import ExecutionCollector
-from polycnc.runner._files import check_output, complete_or_absent
 from polycnc.runner._result import Trace
 
 Floats = npt.NDArray[np.float64]
@@ -195,7 +195,9 @@ class TraceWriter:
         checked = check_output(path, TRACE_FORMATS, "a trace")
         with ExitStack() as stack:
             partial = stack.enter_context(complete_or_absent(checked))
-            self._file: TraceFile = _FORMATS[checked.suffix.lower()](partial, trace_columns(config, actual))
+            self._file: TraceFile = _FORMATS[format_of(checked, TRACE_FORMATS)](
+                partial, trace_columns(config, actual)
+            )
             stack.push(self._close)
             self._stack = stack.pop_all()
 
@@ -219,7 +221,7 @@ def read_trace(path: str | Path) -> Trace:
     """Read a trace file; which moves were rapids is not in it, so none is marked.
 
     Raises:
-        UsageError: no such file, an unknown extension, or columns that are not those of a trace.
+        UsageError: no such file, an unknown extension, a damaged file, or columns that are not those of a trace.
     """
     path = Path(path)
     readers = {".csv": _read_csv, ".npz": _read_npz, ".parquet": _read_parquet}
@@ -230,7 +232,13 @@ def read_trace(path: str | Path) -> Trace:
         )
     if not path.is_file():
         raise UsageError(f"no such file: {path}", hint="Check the name and the folder.")
-    columns = read(path)
+    try:
+        columns = read(path)
+    except UsageError:
+        raise
+    except Exception as error:  # whatever the readers of three formats raise for what is no such file
+        why = (str(error).splitlines() or [""])[0]
+        raise UsageError(f"{path} cannot be read as a trace: {why}", hint=_WRITE_ANEW) from error
     axes = [match for name in columns if (match := _AXIS_COLUMN.fullmatch(name))]
     if not axes or tuple(columns)[: len(_COLUMN_NAMES)] != _COLUMN_NAMES:
         raise UsageError(
@@ -238,6 +246,8 @@ def read_trace(path: str | Path) -> Trace:
         )
     setpoints = [match for match in axes if not match[2]]
     actual = [columns[match[0]] for match in axes if match[2]]
+    if trouble := _trouble(columns, len(setpoints), len(actual)):
+        raise UsageError(f"{path} is damaged: {trouble}", hint=_WRITE_ANEW)
     return Trace(
         axes=tuple(match[1] for match in setpoints),
         units=tuple(match[3] for match in setpoints),
@@ -250,16 +260,35 @@ def read_trace(path: str | Path) -> Trace:
     )
 
 
+_WRITE_ANEW = "Write it anew: polycnc run --trace."
+_LARGEST_BLOCK = 2.0**53
+
+
+def _trouble(columns: dict[str, Floats], setpoints: int, actual: int) -> str:
+    """Return what is wrong with the columns of a trace; empty if nothing is."""
+    rows = len(columns["t_s"]) if columns["t_s"].ndim == 1 else -1
+    for name, column in columns.items():
+        if column.shape != (rows,):
+            return f"column {name} has another size than the others"
+        if column.dtype.kind not in "fiu":
+            return f"column {name} does not hold numbers"
+    if not np.all(np.abs(columns["block"]) <= _LARGEST_BLOCK):
+        return "column block holds what is no number of a block"
+    return "" if setpoints and actual in (0, setpoints) else "positions of axes are missing"
+
+
 def _read_csv(path: Path) -> dict[str, Floats]:
     with path.open(encoding="utf-8") as file:
         names = file.readline().rstrip("\n").split(",")
+        if len(set(names)) != len(names):
+            raise ValueError("two columns have the same name")
         lines = file.readlines()
     rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(names)))
     return dict(zip(names, rows.T, strict=True))
 
 
 def _read_npz(path: Path) -> dict[str, Floats]:
-    with np.load(path) as archive:
+    with np.load(path, allow_pickle=False) as archive:
         return {name: archive[name] for name in archive.files}
 
 
