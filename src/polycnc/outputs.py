@@ -10,8 +10,10 @@ from __future__ import annotations
 import os
 import re
 import secrets
+import shutil
 import stat
 import sys
+import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -121,11 +123,12 @@ def keep_apart(outputs: Iterable[tuple[str, str | Path | None]]) -> None:
 
 
 @contextmanager
-def complete_or_absent(path: Path, *, durable: bool = False) -> Iterator[Path]:
+def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = False) -> Iterator[Path]:
     """Yield a name to write to; the file gets its real name when the body ends well, else it is removed.
 
     A link is followed. A device or a pipe is written itself, so what is yielded is `path`. With `durable` the content
     is on the disk before the name is, so that a power failure cannot leave an empty file in the place of an old one.
+    With `rewritten` the body reads and writes the file more than once: a device gets what it comes to at the end.
 
     Raises:
         UsageError: The file cannot be made.
@@ -134,7 +137,10 @@ def complete_or_absent(path: Path, *, durable: bool = False) -> Iterator[Path]:
         special = is_special(path)
         target = path if special else path.resolve()
     if special:
-        yield path
+        if rewritten:
+            yield from _copied(path)
+        else:
+            yield path
         return
     if not target.name or target.is_dir():
         raise UsageError(f"{path} is a folder", hint="Give the name of a file.")
@@ -160,10 +166,19 @@ def complete_or_absent(path: Path, *, durable: bool = False) -> Iterator[Path]:
         os.close(descriptor)
 
 
+def _copied(path: Path) -> Iterator[Path]:
+    """Yield a file elsewhere, and write what it comes to into a device."""
+    with tempfile.TemporaryDirectory(prefix="polycnc-") as folder:
+        content = Path(folder, path.name)
+        yield content
+        with content.open("rb") as source, path.open("wb") as sink:
+            shutil.copyfileobj(source, sink)
+
+
 def sweep(target: Path) -> None:
     """Remove what killed processes have left of files that were to become `target`."""
     pattern = re.compile(
-        rf"\.{re.escape(target.stem)}\.[0-9a-f]{{{2 * _TOKEN_BYTES}}}\.partial{re.escape(target.suffix)}"
+        rf"\.{re.escape(target.stem)}\.[0-9a-f]{{{2 * _TOKEN_BYTES}}}\.partial{re.escape(target.suffix)}(\.before)?"
     )
     for path in target.parent.iterdir() if os.access(target.parent, os.R_OK) else ():
         if pattern.fullmatch(path.name) and not path.is_symlink():

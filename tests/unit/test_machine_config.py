@@ -591,3 +591,9 @@ def test_validate_names_keys_in_any_strict_model(text: str, message: str) -> Non
 def test_sizes_of_the_io_image_are_bounded() -> None:
     with pytest.raises(pydantic.ValidationError, match="less than or equal to 65536"):
         IoConfig(inputs=65537)
+
+
+def test_two_rules_for_the_same_corners_are_refused() -> None:
+    error = refused(AXIS_X + "[path]\njunction_deviation_mm = 0.01\nsquare_corner_mm_s = 5\n")
+    assert "two rules for the same corners" in str(error)
+    assert "m.toml:8" in str(error)

@@ -29,7 +29,7 @@ from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._pace import Pace, Pacer, Wall
 from polycnc.machine._polling import Polling
-from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
+from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
 from polycnc.machine._store_file import StoreError
@@ -108,6 +108,7 @@ __all__ = [
     "load_toml",
     "machine_file_reference",
     "machine_row",
+    "parse_machine",
     "parse_toml",
     "preset_text",
     "problem",

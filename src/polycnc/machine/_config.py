@@ -13,7 +13,7 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from polycnc.errors import UsageError
-from polycnc.machine._bounds import LONGEST_BLOCK_S, SHORTEST_CYCLE_S
+from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_CYCLE_S
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
@@ -21,6 +21,7 @@ from polycnc.machine._toml_locator import KeyPath
 EPOCH = datetime(2000, 1, 1)
 WORK_OFFSET = re.compile(r"G[12]?5[4-9]")
 IO_ADDRESS = re.compile(r"(IW|OW|I|O)(0|[1-9][0-9]*)")
+Deviation: TypeAlias = Annotated[float, Field(ge=1e-9, le=LARGEST_POSITION)]
 Duration: TypeAlias = Annotated[float, Field(ge=0, le=LONGEST_BLOCK_S)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=65536)]
 
@@ -69,6 +70,32 @@ class PathConfig(StrictModel):
         default=0.0,
         description="Share of each ramp that is S-shaped; 0 is a trapezoid. The mean acceleration stays.",
     )
+
+    speed_limit_mm_s: Rate | None = Field(
+        default=None, description="Highest speed along the path; absent: what its axes allow."
+    )
+    acceleration_limit_mm_s2: Rate | None = Field(
+        default=None, description="Highest acceleration along the path; absent: what its axes allow."
+    )
+    junction_deviation_mm: Deviation | None = Field(
+        default=None,
+        description="Corners are passed, with a step in velocity, as fast as an arc that leaves them by this much; "
+        "absent: as fast as the axes keep their acceleration in every cycle.",
+    )
+    square_corner_mm_s: Rate | None = Field(
+        default=None,
+        description="The same by the speed through a right angle, sharper corners slower and blunter ones faster.",
+    )
+
+    @model_validator(mode="after")
+    def _one_corner_rule(self) -> PathConfig:
+        if self.junction_deviation_mm is not None and self.square_corner_mm_s is not None:
+            raise problem(
+                "'junction_deviation_mm' and 'square_corner_mm_s' are two rules for the same corners",
+                hint="keep one of them",
+                at=("square_corner_mm_s",),
+            )
+        return self
 
     @property
     def look_ahead_limit(self) -> int | None:

@@ -143,7 +143,11 @@ class Channel:
             if not keeps_modal:
                 self.state = self._initial_state(config or machine.config)
                 self.state.tool = before.state.tool
-        self._fast_work = make_fast_work(self.state.modal, _CHUNK_BLOCKS if marks else 0)
+        self._fast_work = make_fast_work(
+            self.state.modal,
+            _CHUNK_BLOCKS if marks else 0,
+            feed_needs_point=dialect.numbers.feed_least_input > 0.0,
+        )
         self.interpreter = Interpreter(
             dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
         )
@@ -333,7 +337,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
-        if _START_OFFSET in config.offsets or self.dialect.macros:
+        if _START_OFFSET in config.offsets or self.dialect.sets_work_offsets:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 
@@ -443,9 +447,11 @@ class Channel:
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+        return self.records.reference(self._place.text, self.stack, self.state.snapshot(), line)
 
-    def _stack(self) -> tuple[Call, ...]:
+    @property
+    def stack(self) -> tuple[Call, ...]:
+        """The calls that led to what is prepared now, the outermost first."""
         return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
@@ -467,7 +473,7 @@ class Channel:
         kernel = self.machine.state
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
+        base = self.records.run_base(self._place.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)
