@@ -102,14 +102,14 @@ def of_another_channel(axis: str) -> str:
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 
-    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
-    the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
-    -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
-    length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine coordinates), `skip_tag`
-    the reference of its block,
-    `probe` the last probing. With `rigid_tap` a tapping cycle turns the spindle itself.
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
+    present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
+    0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
+    compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
+    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled
+    and mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine
+    coordinates), `skip_tag` the reference of its block, `probe` the last probing. With `rigid_tap` a tapping
+    cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
