@@ -470,7 +470,8 @@ def measuring(cell: Cell) -> Cell:
 def test_a_coordinate_is_measured(measuring: Cell) -> None:
     blocks = (
         "N5 G168 X10\nN6 G1 X20 Y1 F900\nN10 G75 X20 Y1 Z-50\n20 IF SD(9) = 1 THEN\n"
-        "N30 (MSG, Measuring probe was not deflected!)\n40 GOTO .ERROR\n50 ELSE\n60 ZMEAS = CPROBE(3)\n70 ENDIF\n80 .ERROR"
+        "N30 (MSG, Measuring probe was not deflected!)\n40 GOTO .ERROR\n50 ELSE\n60 ZMEAS = CPROBE(3)\n70 ENDIF\n"
+        "80 .ERROR"
     )
     found = measuring.values(blocks, "ZMEAS", "SD(9)", "CPROBE(1)", "PROBE(1)", "PPOS(1)", 'PROBE("Z")')
     assert found == pytest.approx([-12.345, 0, 20, 30, 20, -12.345], abs=1e-5)

@@ -12,7 +12,7 @@ from polycnc.cnc import ProgramRun
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Language, ProgramText
-from polycnc.runner._files import check_output
+from polycnc.outputs import check_output
 
 
 class Screen(Protocol):

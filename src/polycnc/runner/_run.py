@@ -14,6 +14,7 @@ from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
 from polycnc.nc.macro import language_for
+from polycnc.outputs import keep_inputs
 from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
@@ -84,6 +85,9 @@ def run(
     surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
     control = control_for(chosen, text, simulated, surroundings)
     if screen is not None:
+        keep_inputs(
+            screen, (each for each in (program, machine, dialect) if isinstance(each, str | Path)), "a screen"
+        )
         check_screen_file(screen, text, control)
     execution = ProgramRun(
         simulated,

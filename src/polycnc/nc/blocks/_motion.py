@@ -419,7 +419,7 @@ class MotionBuilder:
         turns = self.words.value("P") if self.dialect.arcs.turns else None
         if turns is None:
             return 1
-        if turns != int(turns) or not 1 <= turns <= LARGEST:
+        if not turns.is_integer() or not 1 <= turns <= LARGEST:
             raise self.fail(
                 f"the number of turns P{code_text(turns)} of an arc is not a whole number from 1 up",
                 "Write P1, P2, ...",

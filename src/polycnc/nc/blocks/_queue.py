@@ -112,6 +112,15 @@ class QueueWriter:
         if self.marks is not None:
             self.marks.clear()
 
+    def put_again(self) -> None:
+        """Append the events that have not been come to anew, because the queue that they were in has been dropped."""
+        events = [self.events[number] for number in sorted(self.events)]
+        self.events.clear()
+        for event in events:
+            self._append_wait(0.0, self._next_event, event.tag)
+            self.events[self._next_event] = event
+            self._next_event += 1
+
     def snapshot(self) -> WriterSnapshot:
         """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
         marks = None if self.marks is None else tuple(self.marks)
