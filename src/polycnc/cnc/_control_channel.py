@@ -56,6 +56,8 @@ class ControlChannel:
     ) -> None:
         self.path = path
         self.language = language
+        self.skip_signal = False
+        self.on_skip: Callable[[], None] | None = None
         self.data = data
         self.mode = Mode.AUTO
         self.overrides = Overrides()
@@ -208,6 +210,8 @@ class ControlChannel:
         self.set_switches(self.switches)
         self.set_overrides(self.overrides)
         self.run.breakpoints = self.breakpoints
+        self.run.skip_signal = self.skip_signal
+        self.run.on_skip = self.on_skip
         self._go(step)
 
     def _load(self, text: ProgramText, *, mdi: bool) -> None:
@@ -302,6 +306,12 @@ class ControlChannel:
 
     # ------------------------------------------------------------------ settings
 
+    def set_skip_signal(self, on: bool) -> None:
+        """Give the signal that ends skip moves, or take it away."""
+        self.skip_signal = on
+        if self.run is not None:
+            self.run.skip_signal = on
+
     def set_breakpoints(self, breakpoints: frozenset[Breakpoint]) -> None:
         """Set where the program stops besides."""
         self.breakpoints = breakpoints
@@ -361,6 +371,8 @@ class ControlChannel:
         self.returning = moment.returning
         self._lent = moment.lent
         self.run = run
+        if run is not None:
+            run.on_skip = self.on_skip
         if run is not None and isinstance(self.language, BoundLanguage):
             self.language.attach(run.channel)
 

@@ -213,6 +213,13 @@ class Dialect(StrictModel):
         default="none",
         description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro").',
     )
+    h_compensates: bool = Field(
+        default=False,
+        description="H alone compensates the tool length, H0 cancels; else G43 or G44 is needed.",
+    )
+    notes_codes: bool = Field(
+        default=False, description="The G codes that were programmed are kept, for those who ask for them."
+    )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")

@@ -293,10 +293,17 @@ class PowerMate:
         self.control.set_switches(optional_stop=on)
 
     def skip_signal(self, on: bool = True) -> None:
-        """Give the skip signal, or take it away; its rising edge notes where the axes are."""
+        """Give the skip signal, or take it away; its rising edge notes where the axes are.
+
+        While it is on it ends skip moves (G31): the axes brake, and the next block goes on from there.
+        """
         if on and not self._skip:
-            self._skip_positions = tuple(each.absolute for each in self.positions.read())
+            self._note_skip()
         self._skip = on
+        self.control.channels[0].set_skip_signal(on)
+
+    def _note_skip(self) -> None:
+        self._skip_positions = tuple(each.absolute for each in self.positions.read())
 
     @property
     def skip_is_on(self) -> bool:
@@ -447,6 +454,7 @@ class PowerMate:
         """
         self.control.restore(snapshot.control)
         self._mode, self._cursor = snapshot.mode, snapshot.cursor
+        self.control.channels[0].set_skip_signal(snapshot.skip)
         self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
         self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
         self.protection_keys = snapshot.protection_keys
@@ -506,6 +514,7 @@ class PowerMate:
                 emergency_needs_reset=False,
             ),
         )
+        control.channels[0].on_skip = self._note_skip
         control.change_axes(axes)
         for axis, name in enumerate(names, 1):
             if self.parameters.value(1020, axis) != ord(name):
