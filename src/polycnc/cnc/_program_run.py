@@ -35,6 +35,7 @@ from polycnc.nc import (
     ModalWords,
     ProgramText,
     Stop,
+    Suppressed,
     load_dialect,
 )
 
@@ -78,6 +79,9 @@ _SAVED = (
     "_approach",
     "_tool_times",
     "skip_signal",
+    "_suppressed",
+    "_held_back",
+    "_override_kept",
     "_skipped",
 )
 
@@ -145,6 +149,9 @@ class ProgramRun:
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
         self._skipped = False  # a skip move brakes
+        self._suppressed = Suppressed()  # what the program keeps from acting now
+        self._held_back = False  # a feed hold that comes when the program lets it
+        self._override_kept = 1.0  # the feed override while the program keeps it from acting
         self._locked = False
         self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
@@ -191,13 +198,18 @@ class ProgramRun:
         """
         self._check_start()
         if self._state in _OVER:
-            self._begin(Step.INTO if self._single_block else Step.RUN)
+            self._begin(self._step_of_switch)
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
     def hold(self) -> None:
-        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed."""
-        if self._state is RunState.ACTIVE:
+        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed.
+
+        While the program suppresses feed holds it comes as soon as it does no more.
+        """
+        if self._state is RunState.ACTIVE and self._suppressed.hold:
+            self._held_back = True
+        elif self._state is RunState.ACTIVE:
             self._hold = True
             self._state = RunState.HOLD
             self._set_hold()
@@ -212,7 +224,7 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._state.value}", hint="Start it."
             )
-        self._go(Step.INTO if self._single_block else Step.RUN)
+        self._go(self._step_of_switch)
 
     def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
         """Select another program; with `keeps_modal` it begins with the modal state that is in force.
@@ -314,6 +326,9 @@ class ProgramRun:
         """
         self.alarm = None
         self.channel.close()
+        self.channel.suppressed = Suppressed()
+        self._held_back = False
+        self._take_suppressed()
         if self._row["state"] == kernel.IDLE:
             self._state = RunState.RESET
             return
@@ -333,7 +348,7 @@ class ProgramRun:
         if on == self._single_block:
             return
         self._single_block = on
-        self.stopper.step = Step.INTO if on else Step.RUN
+        self.stopper.step = self._step_of_switch
         if self._state in (RunState.ACTIVE, RunState.HOLD):
             self.feed.look_again()
 
@@ -409,11 +424,14 @@ class ProgramRun:
     @property
     def feed_override(self) -> float:
         """Factor of the programmed feeds, 0 to 2; at 0 moves at feed stand."""
-        return float(self._row["override"])
+        return self._override_kept if self._suppressed.override else float(self._row["override"])
 
     @feed_override.setter
     def feed_override(self, factor: float) -> None:
         _check_factor(factor, HIGHEST_OVERRIDE, "the feed override")
+        if self._suppressed.override:
+            self._override_kept = factor
+            return
         self._row["override"] = factor
         self.feed.replan()
 
@@ -523,6 +541,7 @@ class ProgramRun:
         """
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         target = self.feed.target()
         done = 0
         if (self.skip_signal or self.machine.config.skip) and (skipping := self._skip_segment()) is not None:
@@ -552,6 +571,7 @@ class ProgramRun:
             return 0
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
         return self._watch_skip(cycles)
@@ -725,7 +745,7 @@ class ProgramRun:
         self._met = int(self._row["head"]), event.tag
         self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
-            self._unanswered = bool(self.on_event(event))
+            self._unanswered = bool(self.on_event(event)) and not self._suppressed.answers
             self._set_hold()
         if event.stop is Stop.DRAIN:
             self.channel.go_on()
@@ -740,6 +760,29 @@ class ProgramRun:
         if self._stop is not None:
             self._stop = None
             self.channel.go_on()
+
+    @property
+    def _step_of_switch(self) -> Step:
+        """How far a start goes as the switch of single blocks says, and the program lets it."""
+        return Step.INTO if self._single_block and not self._suppressed.single_block else Step.RUN
+
+    def _take_suppressed(self) -> None:
+        """Let what the program suppresses act no more, and what it did until now act again."""
+        was, now = self._suppressed, self.channel.suppressed
+        if now == was:
+            return
+        self._suppressed = now
+        if now.override is not was.override:
+            if now.override:
+                self._override_kept = float(self._row["override"])
+            self._row["override"] = 1.0 if now.override else self._override_kept
+            self.feed.replan()
+        if now.single_block is not was.single_block and self._single_block:
+            self.stopper.step = self._step_of_switch
+            self.feed.look_again()
+        if self._held_back and not now.hold:
+            self._held_back = False
+            self.hold()
 
     def _skip_segment(self) -> int | None:
         """Return the count of the skip move that is in the queue, None if there is none; all behind it waits for it."""

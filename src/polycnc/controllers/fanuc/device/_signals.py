@@ -55,6 +55,7 @@ _FUNCTION_BITS = {"M": 0, "S": 2, "T": 3, "B": 7}
 _FUNCTION_BYTES = {"M": 10, "S": 22, "T": 26, "B": 30}
 _INTERRUPTED = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
 _MLK = 2
+_UINT = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +91,7 @@ class Signals:
             43: lambda old, new: self._select(new),
             44: self._delete_and_lock,
             46: self._switches,
+            53: self._interrupt,
             100: lambda old, new: self._jog_keys(old, new, 1),
             102: lambda old, new: self._jog_keys(old, new, -1),
             126: lambda old, new: self._servo_off(new),
@@ -300,6 +302,10 @@ class Signals:
             )
         self._power_mate.select_mode(mode)
         self._hold_keys()
+
+    def _interrupt(self, old: int, new: int) -> None:
+        if new & ~old & _UINT:
+            self._power_mate.custom_macros.language.interrupt()
 
     def _delete_and_lock(self, old: int, new: int) -> None:
         self._power_mate.control.set_switches(block_delete=frozenset({1} if new & 1 else ()))
