@@ -44,7 +44,7 @@ def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBE
     Raises:
         ProgramError: it is negative, too large or not whole.
     """
-    if word.value != int(word.value) or not 0 <= word.value <= largest:
+    if not word.value.is_integer() or not 0 <= word.value <= largest:
         text = f"{word.letter}{code_text(word.value)}"
         raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
     return int(word.value)

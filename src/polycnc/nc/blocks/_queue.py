@@ -184,7 +184,8 @@ class QueueWriter:
             time_s = item.duration_s if answered and word is words[-1] else 0.0
             self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag, item.message)
             self._next_event += 1
-        if item.stop is Stop.DRAIN or (item.stop is not None and self.stands_at_stops):
+        stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
+        if item.stop is Stop.DRAIN or stands:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
