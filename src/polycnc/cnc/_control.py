@@ -208,8 +208,12 @@ class Control:
         What it does to a program that is executed is `ControlData.mode_change_while_running`.
 
         Raises:
-            ControlError: A program is being executed and the control refuses to leave its mode then.
+            ControlError: No such mode, or a program is being executed and the control refuses to leave its mode then.
         """
+        if mode not in list(Mode):
+            raise ControlError(
+                Refusal.DATA, f"there is no mode '{mode}'", hint=f"The modes are {', '.join(Mode)}."
+            )
         mode = Mode(mode)
         changing = [each for each in self._chosen(channel) if each.mode is not mode]
         running = [each for each in changing if each.active]
