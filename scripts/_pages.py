@@ -6,6 +6,7 @@ from functools import partial
 from pathlib import Path
 
 from polycnc import conformance
+from polycnc.machine import machine_file_reference
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -67,6 +68,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),
     "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),
+    "docs/reference/machine-file.md": machine_file_reference,
     "docs/reference/post-events.md": post_events_page,
 }
 """Every generated page: its path in the repository, and what returns its text."""

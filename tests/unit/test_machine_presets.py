@@ -152,10 +152,7 @@ def test_rows_for_people() -> None:
 
 def test_the_reference_page_is_up_to_date() -> None:
     page = (DOCS / "reference" / "machine-file.md").read_text(encoding="utf-8")
-    assert page == machine_file_reference(), (
-        "write it again: python -c 'from pathlib import Path; from polycnc.machine._describe import *; "
-        'Path("docs/reference/machine-file.md").write_text(machine_file_reference(), encoding="utf-8")\''
-    )
+    assert page == machine_file_reference(), "write it again with scripts/reference"
 
 
 def test_the_reference_page_explains_every_key() -> None:

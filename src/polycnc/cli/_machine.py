@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -20,11 +21,33 @@ def machine_command(
     as_toml: Annotated[
         bool, typer.Option("--toml", help="Print the machine file of a preset, to start your own from.")
     ] = False,
+    source: Annotated[
+        Path | None,
+        typer.Option(
+            "--from",
+            help="Print the machine file of a control by its configuration: grbl's $$, LinuxCNC's INI, Klipper's "
+            "printer.cfg, Smoothieware, FluidNC, FANUC parameters.",
+            metavar="FILE",
+        ),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Write what --from gives to this file.", metavar="FILE"),
+    ] = None,
 ) -> None:
     """Show the axes, limits and settings of a machine."""
     from polycnc import machine as machines
     from polycnc.errors import UsageError
 
+    if source is not None:
+        if machine is not None or as_json or as_toml:
+            raise UsageError(
+                "--from takes a configuration only", hint="Leave out the machine, --json and --toml."
+            )
+        _print_from(source, output)
+        return
+    if output is not None:
+        raise UsageError("-o belongs to --from", hint="Use --toml > FILE to copy a preset.")
     if as_json and as_toml:
         raise UsageError("--json and --toml exclude each other", hint="Give one of them.")
     if as_toml:
@@ -42,3 +65,22 @@ def machine_command(
     if machine is None:
         say()
         say(f"presets: {', '.join(machines.PRESETS)}")
+
+
+def _print_from(source: Path, output: Path | None) -> None:
+    from polycnc.runner import check_output, complete_or_absent, keep_inputs, machine_from
+
+    if output is not None:
+        keep_inputs(output, [source], "the machine file")
+        check_output(output, (".toml",), "the machine file")
+    text = machine_from(source)
+    if output is None:
+        typer.echo(text, nl=False)
+        return
+    with complete_or_absent(output) as partial:
+        partial.write_text(text, encoding="utf-8")
+    left_out = text.count("\n# - ")
+    say(
+        f"wrote      {output}"
+        + (f"; what it has no place for stands at its top ({left_out})" if left_out else "")
+    )

@@ -10,6 +10,7 @@ from polycnc.cnc._alarms import ALARMS, AlarmTable
 from polycnc.cnc._manual import ManualData
 from polycnc.cnc._program_memory import MemoryData
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.machine import LEAST_OVERRIDE
 
 
 class Mode(StrEnum):
@@ -84,8 +85,9 @@ class Overrides:
             ControlError: One is out of range, or no step of the rapid override.
         """
         low, high = data.spindle_overrides
-        if not (math.isfinite(self.feed) and 0.0 <= self.feed <= data.most_feed_override):
-            raise _refused("feed", self.feed, f"Give 0 to {data.most_feed_override:g}; 1 is 100 %.")
+        if self.feed != 0.0 and not LEAST_OVERRIDE <= self.feed <= data.most_feed_override:
+            hint = f"Give 0, or {LEAST_OVERRIDE:g} to {data.most_feed_override:g}; 1 is 100 %."
+            raise _refused("feed", self.feed, hint)
         if self.rapid not in data.rapid_overrides:
             steps = ", ".join(f"{step:g}" for step in data.rapid_overrides)
             raise _refused("rapid", self.rapid, f"The steps are {steps}; 1 is 100 %.")

@@ -21,7 +21,7 @@ from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import Machine, MachineConfig, Reason
+from polycnc.machine import LEAST_OVERRIDE, Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
@@ -778,5 +778,6 @@ class ProgramRun:
 
 
 def _check_factor(factor: float, highest: float, what: str) -> None:
-    if not 0.0 <= factor <= highest:
-        raise UsageError(f"{what} cannot be {factor:g}", hint=f"Give a factor from 0 to {highest:g}.")
+    if not (factor == 0.0 or LEAST_OVERRIDE <= factor <= highest):
+        hint = f"Give 0, or a factor from {LEAST_OVERRIDE:g} to {highest:g}."
+        raise UsageError(f"{what} cannot be {factor:g}", hint=hint)

@@ -18,9 +18,10 @@ from polycnc.kernel._append import (
     append_spline,
     append_wait,
 )
+from polycnc.kernel._axis_limits import AxisLimits, make_limits
+from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SQUARE_CORNER
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._limits import AxisLimits, make_limits
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._path import (
     FEED_LENGTH,
@@ -94,6 +95,8 @@ __all__ = [
     "ADDED",
     "ARC",
     "BLOCK",
+    "BY_DEVIATION",
+    "BY_SQUARE_CORNER",
     "FEED_LENGTH",
     "FEED_MM_S",
     "FEED_S",

@@ -10,9 +10,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import blend_corner
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._limits import AxisLimits
 from polycnc.kernel._path import Paths, free_slots, slot, slot_of
 from polycnc.kernel._segments import (
     RAPID,

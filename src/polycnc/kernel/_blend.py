@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 
+from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._limits import AxisLimits
 from polycnc.kernel._path import BLEND_COLUMNS, Paths, slot
 from polycnc.kernel._segments import (
     CIRCLE3D,

@@ -14,12 +14,12 @@ Units: those of `_segments` along the path; an axis' limits in its own unit (mm 
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
+from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._circle3d import circle3d_tangent_bound
+from polycnc.kernel._corner_rules import AS_AXES_ALLOW, corner_speed
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._ramps import MOST_SHARE, beside_corner
@@ -51,25 +51,6 @@ CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
 LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
 WORTH = 0.5  # of a corner's speed is what the ramp beside it may lose; more and stopping would be as good
-
-
-class AxisLimits(NamedTuple):
-    """Limits of n axes, and which of them count in the path length."""
-
-    speed: Floats
-    acceleration: Floats
-    jump: Floats  # velocity step at a junction; negative: what the acceleration allows
-    feed_axis: npt.NDArray[np.uint8]
-
-
-def make_limits(axes: int) -> AxisLimits:
-    """Allocate limits of `axes` axes: unlimited, all counting. Rapids need a speed limit."""
-    return AxisLimits(
-        speed=np.full(axes, np.inf),
-        acceleration=np.full(axes, np.inf),
-        jump=np.full(axes, -1.0),
-        feed_axis=np.ones(axes, np.uint8),
-    )
 
 
 @compiled
@@ -123,35 +104,39 @@ def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work
             if part > 0.0:
                 cap = min(cap, limits.speed[i] / part)
                 accel = min(accel, limits.acceleration[i] / part)
+        accel = min(accel, path["accel_limit_mm_s2"])
+        cap = min(cap, path["speed_limit_mm_s"])
         if row["flags"] & RAPID:
             cap = overridden_rapid(cap, path)
     else:
-        cap, accel = _limit_curve(seg, k, limits, cap, work)
+        cap, accel = _limit_curve(seg, k, limits, path, cap, work)
     row["cap"] = cap
     row["full_accel"] = accel
 
 
 @compiled
 def _limit_curve(
-    seg: Segments, k: int, limits: AxisLimits, asked_mm_s: float, work: Floats
+    seg: Segments, k: int, limits: AxisLimits, path: np.void, asked_mm_s: float, work: Floats
 ) -> tuple[float, float]:
     """Return speed cap and tangential acceleration on a curve from per-axis bounds of tangent and curvature."""
     tangent, bend = work[0], work[1]
     _curve_bounds(seg, k, tangent, bend)
     is_spline = seg.row[k]["kind"] == SPLINE
     bend_share = SPLINE_CENTRIPETAL_SHARE if is_spline else CENTRIPETAL_SHARE
-    cap = asked_mm_s
+    whole = path["accel_limit_mm_s2"]
+    cap = min(asked_mm_s, path["speed_limit_mm_s"])
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             cap = min(cap, limits.speed[i] / tangent[i])
         if bend[i] > 0.0:
-            cap = min(cap, math.sqrt(bend_share * limits.acceleration[i] / bend[i]))
-    accel = math.inf
+            cap = min(cap, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
+    accel = CURVE_SHARE * whole
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
-            used = cap * cap * bend[i] / limits.acceleration[i] if bend[i] > 0.0 else 0.0
+            allowed = min(limits.acceleration[i], whole)
+            used = cap * cap * bend[i] / allowed if bend[i] > 0.0 else 0.0
             left = CURVE_SHARE - used if is_spline else math.sqrt(CURVE_SHARE * CURVE_SHARE - used * used)
-            accel = min(accel, left * limits.acceleration[i] / tangent[i])
+            accel = min(accel, left * allowed / tangent[i])
     return cap, accel
 
 
@@ -232,7 +217,7 @@ def _yielded_alone(step: float, less: float) -> float:
 
 @compiled
 def limit_junction(
-    seg: Segments, k: int, following: int, limits: AxisLimits, jerkrel: float, dt: float, work: Floats
+    seg: Segments, k: int, following: int, limits: AxisLimits, path: np.void, dt: float, work: Floats
 ) -> None:
     """Set `junction`, `yield_before` and `yield_after` of the end of segment `k`, which `following` continues.
 
@@ -246,8 +231,11 @@ def limit_junction(
         return
     segment_tangent(seg, k, 1.0, work[0])
     segment_tangent(seg, following, 0.0, work[1])
-    curved = is_curved(seg, k) or is_curved(seg, following)
     speed = min(row["cap"], after["cap"])
+    if path["corner_rule"] != AS_AXES_ALLOW:
+        row["junction"] = corner_speed(seg, k, following, limits, path, work, speed)
+        return
+    curved = is_curved(seg, k) or is_curved(seg, following)
     corner = False
     needs = False
     accel_before, accel_after = row["full_accel"], after["full_accel"]
@@ -281,7 +269,7 @@ def limit_junction(
         if near:
             speed = _speed_between(seg, k, following, limits, dt, work, speed)
         if needs and speed > 0.0:
-            speed = _give_way(seg, k, following, jerkrel, dt, work, speed, near)
+            speed = _give_way(seg, k, following, path["jerkrel"], dt, work, speed, near)
     row["junction"] = speed
 
 

@@ -12,9 +12,10 @@ import math
 
 import numpy as np
 
+from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._geometry import grow_extents
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._limits import AxisLimits, least_accel, limit_junction, limit_segment, share_acceleration
+from polycnc.kernel._limits import least_accel, limit_junction, limit_segment, share_acceleration
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import STOP, WAIT, Floats, Segments
 
@@ -39,7 +40,7 @@ def limit_queue(
         k = slot(paths, g, count)
         seg.row[k]["bound"] = 0.0
         if count + 1 < tail:
-            limit_junction(seg, k, slot(paths, g, count + 1), limits, jerkrel, dt, work)
+            limit_junction(seg, k, slot(paths, g, count + 1), limits, row, dt, work)
         else:
             seg.row[k]["junction"] = 0.0
             seg.row[k]["yield_before"] = 0.0

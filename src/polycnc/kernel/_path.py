@@ -52,6 +52,9 @@ PATH_ROW = np.dtype(
             "tolerance_mm",
             np.float64,
         ),  # how far the path may leave a corner between lines appended from now on
+        ("speed_limit_mm_s", np.float64),  # of the path, whatever its axes allow
+        ("accel_limit_mm_s2", np.float64),  # of the path, whatever its axes allow
+        ("corner_deviation_mm", np.float64),  # of a corner rule other than AS_AXES_ALLOW
         ("lead", np.float64),  # time into the running segment at sample 0
         (
             "entry_share",
@@ -61,6 +64,7 @@ PATH_ROW = np.dtype(
         ("speed", np.float64),  # path speed now
         ("tag", np.int64),  # tag of the segment that gave the last setpoint
         ("flags", np.int8),  # of that segment
+        ("corner_rule", np.int8),  # see `_corner_rules`
         ("state", np.int8),
         ("hold", np.int8),  # feed hold
         ("pending", np.int8),  # a change waits for the end of the S-shaped ramp that is under way
@@ -90,6 +94,8 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
     row["override"] = 1.0
     row["rapid_override"] = 1.0
     row["rapid_top"] = np.inf
+    row["speed_limit_mm_s"] = np.inf
+    row["accel_limit_mm_s2"] = np.inf
     row["event"] = -1
     row["limit"] = NO_LIMIT
     row["low_water"] = 1024

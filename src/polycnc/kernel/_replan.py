@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._geometry import is_curved
 from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._limits import AxisLimits, feed_in_force, least_accel, line_speed, overridden_rapid
+from polycnc.kernel._limits import feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at

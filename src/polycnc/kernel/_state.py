@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.kernel._limits import AxisLimits, make_limits
+from polycnc.kernel._axis_limits import AxisLimits, make_limits
 from polycnc.kernel._path import Paths, make_paths
 from polycnc.kernel._plant import Plant, make_plant
 from polycnc.kernel._point_to_point import PointToPoint, make_point_to_point

@@ -1,5 +1,11 @@
 """The simulated machine: configuration and presets, kernel state, I/O image, clock, durable memory."""
 
+from polycnc.machine._bounds import (
+    LARGEST_POSITION,
+    LEAST_OVERRIDE,
+    LONGEST_BLOCK_S,
+    PIECE_CYCLES,
+)
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import (
     IoConfig,
@@ -23,7 +29,7 @@ from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._pace import Pace, Pacer, Wall
 from polycnc.machine._polling import Polling
-from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, preset_text
+from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
 from polycnc.machine._store_file import StoreError
@@ -34,6 +40,10 @@ from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step
 __all__ = [
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
+    "LARGEST_POSITION",
+    "LEAST_OVERRIDE",
+    "LONGEST_BLOCK_S",
+    "PIECE_CYCLES",
     "PRESETS",
     "AnyAxis",
     "Area",
@@ -88,6 +98,7 @@ __all__ = [
     "load_toml",
     "machine_file_reference",
     "machine_row",
+    "parse_machine",
     "parse_toml",
     "preset_text",
     "problem",

@@ -8,6 +8,9 @@ from datetime import datetime, timedelta
 from polycnc.errors import UsageError
 from polycnc.machine._config import EPOCH
 
+MOST_CYCLES = 1 << 62
+"""As many cycles never pass."""
+
 
 class Clock:
     """Count control cycles and tell the time from them, never from the computer.
@@ -40,7 +43,10 @@ class Clock:
     @property
     def now(self) -> datetime:
         """Return the machine's date and time, to the microsecond."""
-        return self._epoch + timedelta(microseconds=round(self.now_s * 1e6))
+        try:
+            return self._epoch + timedelta(microseconds=round(self.now_s * 1e6))
+        except OverflowError:
+            return datetime.max  # the calendar ends there
 
     def set_now(self, now: datetime) -> None:
         """Set the machine's date and time; `cycles` and `now_s` stay.
@@ -64,5 +70,6 @@ class Clock:
         self.cycles, self._epoch = cycles, epoch
 
     def cycles_for(self, duration_s: float) -> int:
-        """Return the least number of cycles that last `duration_s`; rounding of 1e-9 cycles is forgiven."""
-        return max(0, math.ceil(duration_s / self.cycle_s - 1e-9))
+        """Return the least number of cycles that last `duration_s`, at most `MOST_CYCLES`; 1e-9 cycles are forgiven."""
+        cycles = duration_s / self.cycle_s - 1e-9
+        return max(0, math.ceil(cycles)) if cycles < MOST_CYCLES else MOST_CYCLES

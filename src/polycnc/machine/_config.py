@@ -13,13 +13,16 @@ from typing import Annotated, Literal, TypeAlias
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from polycnc.errors import UsageError
-from polycnc.machine._config_axis import AnyAxis, NotNegative, Positive, Share
+from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_CYCLE_S
+from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 
 EPOCH = datetime(2000, 1, 1)
 WORK_OFFSET = re.compile(r"G[12]?5[4-9]")
 IO_ADDRESS = re.compile(r"(IW|OW|I|O)(0|[1-9][0-9]*)")
+Deviation: TypeAlias = Annotated[float, Field(ge=1e-9, le=LARGEST_POSITION)]
+Duration: TypeAlias = Annotated[float, Field(ge=0, le=LONGEST_BLOCK_S)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=65536)]
 
 
@@ -68,6 +71,32 @@ class PathConfig(StrictModel):
         description="Share of each ramp that is S-shaped; 0 is a trapezoid. The mean acceleration stays.",
     )
 
+    speed_limit_mm_s: Rate | None = Field(
+        default=None, description="Highest speed along the path; absent: what its axes allow."
+    )
+    acceleration_limit_mm_s2: Rate | None = Field(
+        default=None, description="Highest acceleration along the path; absent: what its axes allow."
+    )
+    junction_deviation_mm: Deviation | None = Field(
+        default=None,
+        description="Corners are passed, with a step in velocity, as fast as an arc that leaves them by this much; "
+        "absent: as fast as the axes keep their acceleration in every cycle.",
+    )
+    square_corner_mm_s: Rate | None = Field(
+        default=None,
+        description="The same by the speed through a right angle, sharper corners slower and blunter ones faster.",
+    )
+
+    @model_validator(mode="after")
+    def _one_corner_rule(self) -> PathConfig:
+        if self.junction_deviation_mm is not None and self.square_corner_mm_s is not None:
+            raise problem(
+                "'junction_deviation_mm' and 'square_corner_mm_s' are two rules for the same corners",
+                hint="keep one of them",
+                at=("square_corner_mm_s",),
+            )
+        return self
+
     @property
     def look_ahead_limit(self) -> int | None:
         """Return the number of blocks the look-ahead sees, None if unlimited."""
@@ -77,18 +106,16 @@ class PathConfig(StrictModel):
 class TimesConfig(StrictModel):
     """Say how long the functions take that are not motion."""
 
-    tool_change_s: NotNegative = Field(default=0.0, description="Time of a tool change, s.")
-    spindle_start_s: NotNegative = Field(
-        default=0.0, description="Time the spindle takes to start or stop, s."
-    )
-    auxiliary_s: NotNegative = Field(default=0.0, description="Time of any other auxiliary function, s.")
+    tool_change_s: Duration = Field(default=0.0, description="Time of a tool change, s.")
+    spindle_start_s: Duration = Field(default=0.0, description="Time the spindle takes to start or stop, s.")
+    auxiliary_s: Duration = Field(default=0.0, description="Time of any other auxiliary function, s.")
 
 
 class SpindleConfig(StrictModel):
     """Describe the spindle."""
 
-    max_rpm: Positive = Field(default=24000.0, description="Highest spindle speed, revolutions per minute.")
-    acceleration_rpm_s: Positive | None = Field(
+    max_rpm: Rate = Field(default=24000.0, description="Highest spindle speed, revolutions per minute.")
+    acceleration_rpm_s: Rate | None = Field(
         default=None,
         description="Change of the spindle speed in a second; absent: every change takes `times.spindle_start_s`.",
     )
@@ -96,7 +123,7 @@ class SpindleConfig(StrictModel):
         default=0.0,
         description="Deviation from the commanded speed that counts as reached, as a share of it.",
     )
-    orientation_rpm: Positive = Field(
+    orientation_rpm: Rate = Field(
         default=60.0, description="Speed at which the spindle is brought to an angle."
     )
     orientation_deg: float = Field(default=0.0, description="Angle at which an oriented spindle stands.")
@@ -152,7 +179,7 @@ class MachineConfig(StrictModel):
 
     name: str = Field(min_length=1, description="Name of the machine.")
     description: str = Field(default="", description="Any text.")
-    cycle_s: Annotated[float, Field(gt=0, le=1)] = Field(
+    cycle_s: Annotated[float, Field(ge=SHORTEST_CYCLE_S, le=1)] = Field(
         default=0.001, description="Length of a control cycle, s."
     )
     epoch: Annotated[datetime, AfterValidator(_local)] = Field(
@@ -167,11 +194,11 @@ class MachineConfig(StrictModel):
     tools: dict[Annotated[int, BeforeValidator(_number_key)], ToolConfig] = Field(
         default={}, description="The tools by number, see `[tools.N]`."
     )
-    offsets: dict[str, dict[str, float]] = Field(
+    offsets: dict[str, dict[str, Position]] = Field(
         default={},
         description="Work offsets G54 to G59, G154 to G159, G254 to G259, like `G54 = { X = 10, Y = 0 }`.",
     )
-    start: dict[str, float] = Field(
+    start: dict[str, Position] = Field(
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
     )
     io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")

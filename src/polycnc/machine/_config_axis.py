@@ -11,6 +11,7 @@ from typing import Annotated, Any, ClassVar, Literal, TypeAlias
 
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag, model_validator
 
+from polycnc.machine._bounds import LARGEST_POSITION, LEAST_RATE, MOST_RATE
 from polycnc.machine._toml import StrictModel, problem
 
 AXIS_NAME = re.compile(r"[ABCPQRUVWXYZ][0-9]{0,2}")
@@ -41,6 +42,10 @@ def _axis_name(value: str) -> str:
 
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
+Rate: TypeAlias = Annotated[float, Field(ge=LEAST_RATE, le=MOST_RATE)]
+"""A speed or an acceleration: what moves at all arrives some day (`_bounds`)."""
+Jump: TypeAlias = Annotated[float, Field(ge=0, le=MOST_RATE)]
+Position: TypeAlias = Annotated[float, Field(ge=-LARGEST_POSITION, le=LARGEST_POSITION)]
 Share: TypeAlias = Annotated[float, Field(ge=0, le=1)]
 Limits: TypeAlias = Annotated[tuple[float, float], BeforeValidator(_pair), AfterValidator(_ordered)]
 AxisName: TypeAlias = Annotated[str, AfterValidator(_axis_name)]
@@ -228,11 +233,11 @@ class LinearAxis(AxisConfig):
     """An axis that moves straight, in mm."""
 
     kind: Literal["linear"] = Field(default="linear", description=_TEXT["kind"])
-    vmax_mm_s: Positive = Field(description=_TEXT["vmax"])
-    amax_mm_s2: Positive = Field(description=_TEXT["amax"])
-    jump_mm_s: NotNegative | None = Field(default=None, description=_TEXT["jump"])
+    vmax_mm_s: Rate = Field(description=_TEXT["vmax"])
+    amax_mm_s2: Rate = Field(description=_TEXT["amax"])
+    jump_mm_s: Jump | None = Field(default=None, description=_TEXT["jump"])
     soft_limits_mm: Limits | None = Field(default=None, description=_TEXT["soft_limits"])
-    home_mm: float = Field(default=0.0, description=_TEXT["home"])
+    home_mm: Position = Field(default=0.0, description=_TEXT["home"])
     resolution_mm: NotNegative = Field(default=0.0, description=_TEXT["resolution"])
     limit_switches_mm: Limits | None = Field(default=None, description=_TEXT["limit_switches"])
     reference_switch_mm: float | None = Field(default=None, description=_TEXT["reference_switch"])
@@ -248,12 +253,12 @@ class RotaryAxis(AxisConfig):
 
     unit: ClassVar[Unit] = "deg"
     kind: Literal["rotary"] = Field(default="rotary", description=_TEXT["kind"])
-    vmax_deg_s: Positive = Field(description=_TEXT["vmax"])
-    amax_deg_s2: Positive = Field(description=_TEXT["amax"])
-    jump_deg_s: NotNegative | None = Field(default=None, description=_TEXT["jump"])
+    vmax_deg_s: Rate = Field(description=_TEXT["vmax"])
+    amax_deg_s2: Rate = Field(description=_TEXT["amax"])
+    jump_deg_s: Jump | None = Field(default=None, description=_TEXT["jump"])
     modulo: bool = Field(default=False, description="true: positions repeat every 360 degree.")
     soft_limits_deg: Limits | None = Field(default=None, description=_TEXT["soft_limits"])
-    home_deg: float = Field(default=0.0, description=_TEXT["home"])
+    home_deg: Position = Field(default=0.0, description=_TEXT["home"])
     resolution_deg: NotNegative = Field(default=0.0, description=_TEXT["resolution"])
     limit_switches_deg: Limits | None = Field(default=None, description=_TEXT["limit_switches"])
     reference_switch_deg: float | None = Field(default=None, description=_TEXT["reference_switch"])

@@ -16,6 +16,7 @@ import numpy.typing as npt
 from polycnc import kernel
 from polycnc.errors import UsageError
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, PIDF, REFERENCE, KernelState, make_state, place_machine
+from polycnc.machine._bounds import PIECE_CYCLES
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import MachineConfig
 from polycnc.machine._config_axis import AnyAxis
@@ -104,9 +105,7 @@ class Machine:
             if servo and axis.servo.kind == "pidf":
                 self._set_servo(index)
             place_machine(self.state, index, config.start_positions[index])
-        rows = self.state.paths.row
-        rows["jerkrel"] = config.path.jerkrel
-        rows["depth"] = config.path.look_ahead_limit or 0
+        self._set_paths()
 
     # ------------------------------------------------------------------ time
 
@@ -120,10 +119,15 @@ class Machine:
 
         Fewer after a cycle that has `raised` one of the reasons `until` (`Reason`).
         """
-        self._mask[0] = until or 0
-        done = kernel.advance(self.state, cycles)
-        self.clock.tick(done)
-        return done
+        self._mask[0] = mask = until or 0
+        done = 0
+        while True:
+            piece = min(cycles - done, PIECE_CYCLES)
+            ran = kernel.advance(self.state, piece)
+            self.clock.tick(ran)
+            done += ran
+            if done >= cycles or ran < piece or self.state.clock[0]["raised"] & mask:
+                return done
 
     def skip(self, path: int, until: int) -> int:
         """Go along a path in closed form to segment count `until` or the next event; return the cycles."""
@@ -269,6 +273,21 @@ class Machine:
         limits.acceleration[index] = acceleration
         limits.jump[index] = -1.0 if jump is None else jump
         limits.feed_axis[index] = counts
+
+    def _set_paths(self) -> None:
+        path, rows = self.config.path, self.state.paths.row
+        rows["jerkrel"] = path.jerkrel
+        rows["depth"] = path.look_ahead_limit or 0
+        rows["speed_limit_mm_s"] = path.speed_limit_mm_s or math.inf
+        rows["accel_limit_mm_s2"] = path.acceleration_limit_mm_s2 or math.inf
+        if path.junction_deviation_mm is not None:
+            rows["corner_rule"] = kernel.BY_DEVIATION
+            rows["corner_deviation_mm"] = path.junction_deviation_mm
+        elif path.square_corner_mm_s is not None:
+            # The arc through a right angle has the radius deviation / (sqrt(2) - 1) and the highest acceleration.
+            highest = path.acceleration_limit_mm_s2 or max(axis.amax for axis in self.config.axes)
+            rows["corner_rule"] = kernel.BY_SQUARE_CORNER
+            rows["corner_deviation_mm"] = path.square_corner_mm_s**2 * (math.sqrt(2.0) - 1.0) / highest
 
     def _set_servo(self, index: int) -> None:
         axis = self.config.axes[index]

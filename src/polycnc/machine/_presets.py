@@ -30,7 +30,7 @@ def load_machine(source: str | Path | MachineConfig | None = None) -> MachineCon
         source = DEFAULT_MACHINE
     if isinstance(source, str):
         if source in PRESETS:
-            return _parse(preset_text(source), f"{source}.toml")
+            return parse_machine(preset_text(source), f"{source}.toml")
         if not _is_path(source):
             raise UsageError(f"there is no machine '{source}'", hint=_instead(source))
     data, locator = load_toml(source)
@@ -48,7 +48,12 @@ def preset_text(name: str) -> str:
     return (files("polycnc.machine") / "presets" / f"{name}.toml").read_text(encoding="utf-8")
 
 
-def _parse(text: str, file: str) -> MachineConfig:
+def parse_machine(text: str, file: str) -> MachineConfig:
+    """Return the machine that the text of a machine file describes; errors speak of `file`.
+
+    Raises:
+        ConfigurationError: It is no TOML, or has an unknown, missing or wrong key.
+    """
     data, locator = parse_toml(text, file)
     return validate(MachineConfig, data, locator)
 

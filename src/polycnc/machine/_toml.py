@@ -106,14 +106,19 @@ def range_text(field: FieldInfo) -> str:
             case annotated_types.Ge(ge=limit):
                 low = (limit, "<=", ">=")
             case annotated_types.Lt(lt=limit):
-                high = f" < {limit}"
+                high = f" < {_number(limit)}"
             case annotated_types.Le(le=limit):
-                high = f" <= {limit}"
+                high = f" <= {_number(limit)}"
             case _:
                 pass
     if low is None:
         return f"value{high}" if high else ""
-    return f"{low[0]} {low[1]} value{high}" if high else f"value {low[2]} {low[0]}"
+    limit = _number(low[0])
+    return f"{limit} {low[1]} value{high}" if high else f"value {low[2]} {limit}"
+
+
+def _number(limit: object) -> str:
+    return f"{limit:g}" if isinstance(limit, float) else str(limit)
 
 
 def _marks(field: FieldInfo) -> Iterator[object]:

@@ -328,6 +328,7 @@ class Channel:
             ],
             [low for low, _ in limits],
             [high for _, high in limits],
+            min(axis.vmax for axis in config.axes),
         )
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)

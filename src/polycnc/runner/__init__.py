@@ -5,7 +5,7 @@ What posting and debugging need is loaded when it is first used.
 
 from typing import TYPE_CHECKING, Any
 
-from polycnc.runner._files import keep_inputs
+from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner.machine_sources import machine_from
     from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
 
 _LATER = {
@@ -28,6 +29,7 @@ _LATER = {
     "PostVerification": "_verify_post",
     "View": "view",
     "check_view_file": "view",
+    "machine_from": "machine_sources",
     "open_in_browser": "view",
     "post_file": "_post",
     "verify_post": "_verify_post",
@@ -54,10 +56,13 @@ __all__ = [
     "Violation",
     "WallClock",
     "check",
+    "check_output",
     "check_plot_file",
     "check_view_file",
+    "complete_or_absent",
     "counted",
     "keep_inputs",
+    "machine_from",
     "open_in_browser",
     "plot",
     "post_file",

@@ -261,6 +261,7 @@ class Interpreter:
             items += self._auxiliary.after_motion(words, line)
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
+        self._motion.check_times(items)
         self._note_position(items)
         return outcome, self._compensated(
             self._tagged(items, line, words_stand=bool(block.words)), change_compensation

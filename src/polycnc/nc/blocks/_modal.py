@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.machine import LARGEST_POSITION
 from polycnc.units import MM_PER_INCH
 
 Floats = npt.NDArray[np.float64]
@@ -27,7 +28,8 @@ WHOLE_COLUMNS = 14
 # Columns of `real`.
 FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2
 FEED_NUMBER = 3  # the feed as it was programmed: of moves that only turn, it is in degrees in any unit
-REAL_COLUMNS = 4
+SLOWEST_AXIS = 4  # the highest speed of the slowest axis, mm/s or deg/s
+REAL_COLUMNS = 5
 
 # Values of MOTION; a drilling cycle leaves it as it was.
 MOTION_NONE = -1
@@ -55,8 +57,7 @@ MODULO_AXIS = 2  # positions repeat every turn
 
 NO_AXIS = -1
 
-LARGEST = 1e9
-"""No position lies further out (mm or degree): float64 would not resolve it any more."""
+LARGEST = LARGEST_POSITION
 
 TURN_DEG = 360.0
 
@@ -80,7 +81,11 @@ class Modal(NamedTuple):
 
 
 def make_modal(
-    names: Sequence[str], rotary: Sequence[int], low: Sequence[float], high: Sequence[float]
+    names: Sequence[str],
+    rotary: Sequence[int],
+    low: Sequence[float],
+    high: Sequence[float],
+    slowest_axis: float = math.inf,
 ) -> Modal:
     """Make the state at program start for axes of these names; set the dialect's initial state afterwards.
 
@@ -103,6 +108,7 @@ def make_modal(
         letter_axis=letter_axis,
     )
     modal.whole[ABSOLUTE] = 1
+    modal.real[SLOWEST_AXIS] = slowest_axis
     set_plane(modal, PLANE_XY)
     return modal
 

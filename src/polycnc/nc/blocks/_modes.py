@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
@@ -41,7 +42,6 @@ from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 
-LONGEST_DWELL_S = 1e7
 _INCREMENTS_PER_INCH_STEP = 0.1  # an increment in inch is a tenth of the number that it is in mm
 _DEFAULT_WORK_OFFSET = "G54"
 _TIME_LETTERS_WITH_INCREMENTS = "XU"
@@ -130,7 +130,7 @@ class Modes:
             letters = " or ".join(", ".join(self.dialect.dwell).rsplit(", ", 1))
             raise self.fail(f"a dwell (G{g.code}) without a time", f"Add {letters} and the time.", g.word)
         seconds = self._dwell_s(word, self.dialect.dwell[letter])
-        if not 0.0 <= seconds <= LONGEST_DWELL_S:
+        if not 0.0 <= seconds <= LONGEST_BLOCK_S:
             what = "negative" if seconds < 0.0 else "longer than anybody waits"
             raise self.fail(
                 f"the dwell {word.letter}{code_text(word.value)} is {what}", "Write a time from 0 up.", word

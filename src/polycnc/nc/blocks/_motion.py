@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Group
 from polycnc.nc.blocks._arcs import (
@@ -49,13 +50,19 @@ from polycnc.nc.blocks._modal import (
     RAPID_STOP,
     short_way,
 )
-from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Wait
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import SECONDS_PER_MINUTE
 
 LIMIT_ROUNDING = 1e-6
 """A position this little past a soft limit (mm or degree) is one on it, reached by rounding."""
+
+_SECONDS_PER_DAY = 86_400.0
+_SECONDS_PER_YEAR = 365.25 * _SECONDS_PER_DAY
+_TOO_LONG = "the block would take {}"
+_LONGEST_DAYS = LONGEST_BLOCK_S / _SECONDS_PER_DAY
+_TOO_LONG_HINT = f"No block may take longer than {_LONGEST_DAYS:.0f} days: check the feed and the way."
 
 _ARC_TROUBLE = {
     ARC_NO_RADIUS: (
@@ -198,12 +205,54 @@ class MotionBuilder:
         Raises:
             CompensationError: names the axis, the position and the limit.
         """
+        time_s = self._least_time_s(item)
+        if not time_s <= LONGEST_BLOCK_S:
+            what = _TOO_LONG.format(_duration_text(time_s))
+            raise CompensationError(
+                f"with radius compensation {what}", reason="time", line=item.line, hint=_TOO_LONG_HINT
+            )
         for point, what in _points(item):
             if trouble := self._limit_trouble(point, what):
                 _, text, hint = trouble
                 raise CompensationError(
                     f"with radius compensation {text}", reason="limit", line=item.line, hint=hint
                 )
+
+    def check_times(self, items: Iterable[QueueItem]) -> None:
+        """Refuse a move or a dwell that would take longer than anybody waits (`LONGEST_BLOCK_S`).
+
+        Raises:
+            ProgramError: says how long, and names what makes it so.
+        """
+        for item in items:
+            time_s = self._least_time_s(item)
+            if not time_s <= LONGEST_BLOCK_S:
+                raise self.fail(
+                    _TOO_LONG.format(_duration_text(time_s)), _TOO_LONG_HINT, self._slow_word(item)
+                )
+
+    def _least_time_s(self, item: QueueItem) -> float:
+        """Return the time that an item takes at the least: at its feed, and at the speeds of the axes."""
+        if isinstance(item, Wait):
+            return item.duration_s
+        ways = [abs(b - a) for a, b in zip(item.start, item.end, strict=True)]
+        length = math.hypot(*ways)
+        if isinstance(item, Arc):
+            p, q = item.plane[:2]
+            radius = math.hypot(item.start[p] - item.center[0], item.start[q] - item.center[1])
+            length = math.hypot(length, radius * item.sweep_rad)
+            ways[p] = ways[q] = radius * abs(item.sweep_rad) / 2.0
+        axes = max(way / axis.vmax for way, axis in zip(ways, self.state.machine.axes, strict=True))
+        if isinstance(item, Line) and item.rapid:
+            return axes
+        if item.feed.duration_s > 0.0:
+            return max(axes, item.feed.duration_s)
+        return max(axes, length / item.feed.speed_mm_s) if item.feed.speed_mm_s > 0.0 else math.inf
+
+    def _slow_word(self, item: QueueItem) -> Word | None:
+        if isinstance(item, Wait):
+            return self.words.first("P", "X", "U", "F")
+        return self.words.first("F") or self.place()
 
     def _limit_trouble(
         self, point: Point, what: str, but: tuple[int, ...] = ()
@@ -425,6 +474,14 @@ class MotionBuilder:
             return start[axis]
         length = value * float(modal.scale[axis])
         return length + float(modal.offset[axis]) if modal.whole[ARC_ABSOLUTE] else start[axis] + length
+
+
+def _duration_text(time_s: float) -> str:
+    """Return a time that nobody waits for."""
+    if not time_s < math.inf:
+        return "for ever"
+    years = time_s / _SECONDS_PER_YEAR
+    return f"{years:.3g} years" if years >= 1.0 else f"{time_s / _SECONDS_PER_DAY:.0f} days"
 
 
 def _points(item: Move) -> Iterator[tuple[Point, str]]:

@@ -27,6 +27,7 @@ from polycnc.kernel import (
     compiled,
     entry,
 )
+from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import DialectTables
 from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
@@ -54,6 +55,7 @@ from polycnc.nc.blocks._modal import (
     NO_AXIS,
     ORDINARY,
     RAPID_STOP,
+    SLOWEST_AXIS,
     WORD_P,
     WORD_Q,
     Floats,
@@ -227,6 +229,8 @@ def _run(
                 and _only_rotary(modal.rotary, modal.position, work.target)
             ):
                 speed = feed_number / 60.0
+            if _reach(modal.position, work.target) > LONGEST_BLOCK_S * min(speed, modal.real[SLOWEST_AXIS]):
+                return block, NOT_PLAIN  # it may never end: the ordinary path looks closer
             moves = True
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
@@ -356,6 +360,15 @@ def _target(
 
 
 @compiled
+def _reach(start: Floats, end: Floats) -> float:
+    """Return at least the length of a straight move."""
+    reach = 0.0
+    for i in range(end.shape[0]):
+        reach += abs(end[i] - start[i])
+    return reach
+
+
+@compiled
 def _only_rotary(rotary: npt.NDArray[np.uint8], start: Floats, end: Floats) -> bool:
     linear = 0
     for i in range(end.shape[0]):
@@ -426,4 +439,7 @@ def _arc(
         and center_q + radius <= modal.high[q]
     ):
         return False  # the ordinary path looks closer
+    reach = radius * abs(sweep) + _reach(modal.position, work.target)
+    if reach > LONGEST_BLOCK_S * min(speed, modal.real[SLOWEST_AXIS]):
+        return False
     return append_arc(seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag)

@@ -27,7 +27,7 @@ from polycnc.controllers.apci.core._registers import OUTPUTS, ErrorReg, ModeReg
 from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, WATCHED, run_scans
 from polycnc.controllers.apci.core._state import BoardState, Floats, make_board_state
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
-from polycnc.machine import Clock, Snapshot, wait
+from polycnc.machine import PIECE_CYCLES, Clock, Snapshot, wait
 
 LATENCY_SCANS = 2  # after which a direct command takes effect (Manual 002, 2.2.8.1)
 _AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own begins
@@ -235,7 +235,7 @@ class Board:
         while done < cycles:
             self._carry_out()
             mask = INTERRUPT | RESET | wanted
-            piece = cycles - done
+            piece = min(cycles - done, PIECE_CYCLES)
             if self.tasks is not None:
                 waiting = self.tasks.scans_to_wait()
                 if waiting == 0:

@@ -37,7 +37,7 @@ from polycnc.controllers.imc.core._state import (
 from polycnc.controllers.imc.core._write_effects import empty_now, write_now
 from polycnc.errors import UsageError
 from polycnc.kernel import KernelState
-from polycnc.machine import Array, Clock, Snapshot, arrays_of, wait
+from polycnc.machine import PIECE_CYCLES, Array, Clock, Snapshot, arrays_of, wait
 
 INPUTS = 32
 OUTPUTS = 48
@@ -297,11 +297,14 @@ class Card:
 
         Fewer after a cycle in which one of the attentions `until` happened (`_state`: AXIS_RESTED, AXIS_ERROR).
         """
-        if cycles <= 0:
-            return 0
-        ran = int(run_cycles(self.state, self.kernel, cycles, until or 0))
-        self.clock.tick(ran)
-        return ran
+        done = 0
+        while done < cycles:
+            ran = int(run_cycles(self.state, self.kernel, min(cycles - done, PIECE_CYCLES), until or 0))
+            self.clock.tick(ran)
+            done += ran
+            if until and self.state.card[0]["attention"] & until:
+                break
+        return done
 
     def is_moving(self, axis: int) -> bool:
         """Tell whether an axis is planning or smoothing a motion."""

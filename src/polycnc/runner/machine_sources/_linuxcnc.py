@@ -1,0 +1,133 @@
+"""Read a LinuxCNC INI file of a machine without its own kinematics."""
+
+from __future__ import annotations
+
+import re
+
+from polycnc.errors import ConfigurationError
+from polycnc.runner.machine_sources._facts import (
+    AXIS_LETTERS,
+    AxisFacts,
+    Entry,
+    Facts,
+    LeftOut,
+    Settings,
+    others,
+)
+from polycnc.runner.machine_sources._ini import read_sections, sections_of
+
+CONTROL = "a LinuxCNC configuration"
+MM_PER_INCH = 25.4
+INCH = ("inch", "imperial", "in")
+TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)", re.IGNORECASE)
+FREE = LeftOut(
+    "G64 without P",
+    "the control rounds corners as far as it likes; path_tolerance_mm says how far it may go here",
+)
+LEFT_OUT = {
+    "RS274NGC.PARAMETER_FILE": "work offsets and variables are in that file",
+    "EMCIO.TOOL_TABLE": "tools are in that file",
+    "TRAJ.ARC_BLEND_OPTIMIZATION_DEPTH": "the look-ahead is unlimited",
+}
+
+
+def recognises(text: str) -> bool:
+    """Tell whether `text` has the sections of such a file."""
+    found = sections_of(text)
+    return "TRAJ" in found and any(re.fullmatch(r"(JOINT|AXIS)_\w", name) for name in found)
+
+
+def read(text: str, file: str) -> Facts:
+    """Return what the configuration says.
+
+    Raises:
+        ConfigurationError: A value is no number, or an axis has no speed or acceleration.
+    """
+    settings = read_sections(text, file, comments=(), fold=False)
+    unit = settings.get("TRAJ.LINEAR_UNITS")
+    to_mm = MM_PER_INCH if unit is not None and unit.text.lower() in INCH else 1.0
+    coordinates = settings.need("TRAJ.COORDINATES", "the axes of the machine")
+    joints = _joint_letters(settings, coordinates)
+    axes = tuple(
+        _axis(settings, name, [index for index, letter in enumerate(joints) if letter == name], to_mm)
+        for name in dict.fromkeys(joints)
+    )
+    if not axes:
+        raise coordinates.error("no axis is named", "Write them like COORDINATES = X Y Z.")
+    path: dict[str, float] = {}
+    for key, name in (
+        ("speed_limit_mm_s", "TRAJ.MAX_LINEAR_VELOCITY"),
+        ("acceleration_limit_mm_s2", "TRAJ.MAX_LINEAR_ACCELERATION"),
+    ):
+        if (entry := settings.get(name)) is not None:
+            path[key] = entry.positive * to_mm
+    start = settings.get("RS274NGC.RS274NGC_STARTUP_CODE")
+    tolerance = TOLERANCE.search(start.text) if start is not None else None
+    if start is not None and tolerance is not None:
+        in_inch = re.search(r"G20\b", start.text) is not None or (to_mm != 1.0 and "G21" not in start.text)
+        path["path_tolerance_mm"] = float(tolerance[1]) * (MM_PER_INCH if in_inch else 1.0)
+    kinematics = settings.get("KINS.KINEMATICS")
+    period = settings.get("EMCMOT.SERVO_PERIOD")
+    top = settings.get("SPINDLE_0.MAX_FORWARD_VELOCITY")
+    left = others(settings, LEFT_OUT)
+    if tolerance is None:
+        left = (FREE, *left)
+    if kinematics is not None and not kinematics.text.startswith("trivkins"):
+        left = (LeftOut(f"kinematics {kinematics.text}", "axes and joints count as the same"), *left)
+    return Facts(
+        control=CONTROL,
+        axes=axes,
+        left_out=left,
+        path=path,
+        spindle={} if top is None else {"max_rpm": top.positive},
+        cycle_s=None if period is None else period.positive * 1e-9,
+    )
+
+
+def _joint_letters(settings: Settings, coordinates: Entry) -> list[str]:
+    """Return the axis letter of each joint: those of the kinematics, or one joint for each coordinate."""
+    kinematics = settings.get("KINS.KINEMATICS")
+    named = re.search(r"coordinates\s*=\s*(\w+)", kinematics.text, re.IGNORECASE) if kinematics else None
+    letters = [letter for letter in (named[1] if named else coordinates.text).upper() if not letter.isspace()]
+    for letter in letters:
+        if letter not in AXIS_LETTERS + "UVW":
+            raise coordinates.error(f"'{letter}' is no axis", "Write them like COORDINATES = X Y Z.")
+    return letters
+
+
+def _axis(settings: Settings, name: str, joints: list[int], to_mm: float) -> AxisFacts:
+    sections = [
+        f"AXIS_{name}",
+        *(f"JOINT_{joint}" for joint in joints),
+        *(f"AXIS_{joint}" for joint in joints),
+    ]
+    scale = 1.0 if name in "ABC" else to_mm
+
+    def values(key: str) -> list[Entry]:
+        found = (settings.get(f"{section}.{key}") for section in sections)
+        return [entry for entry in found if entry is not None]
+
+    speeds, accelerations = values("MAX_VELOCITY"), values("MAX_ACCELERATION")
+    for key, each in (("MAX_VELOCITY", speeds), ("MAX_ACCELERATION", accelerations)):
+        if not each:
+            raise ConfigurationError(
+                f"{settings.file}: axis {name} has no {key}",
+                hint=f"Write it into [AXIS_{name}], as the control wants it too.",
+            )
+    lows = [entry.number * scale for entry in values("MIN_LIMIT")]
+    highs = [entry.number * scale for entry in values("MAX_LIMIT")]
+    limits = (max(lows), min(highs)) if lows and highs else None
+    homes = values("HOME")
+    home = homes[0].number * scale if homes else 0.0
+    if limits is not None and not limits[0] <= home <= limits[1]:
+        raise (homes[0] if homes else values("MIN_LIMIT")[0]).error(
+            f"axis {name} is at home at {home:g}, outside {limits[0]:g} to {limits[1]:g}",
+            "Write HOME inside the limits.",
+        )
+    return AxisFacts(
+        name,
+        min(entry.positive for entry in speeds) * scale,
+        min(entry.positive for entry in accelerations) * scale,
+        limits=limits,
+        home=home,
+    )
