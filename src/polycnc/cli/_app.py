@@ -7,7 +7,19 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _debug, _machine, _post, _run, _sap, _serve, _view, _warmup
+from polycnc.cli import (
+    _check,
+    _conformance,
+    _debug,
+    _focas,
+    _machine,
+    _post,
+    _run,
+    _sap,
+    _serve,
+    _view,
+    _warmup,
+)
 from polycnc.cli._errors import end_on_termination, guarded
 from polycnc.cli._output import print_remarks
 
@@ -57,6 +69,10 @@ app.command("conformance", short_help="Show which parts of the manuals are teste
 app.command("warmup", short_help="Compile beforehand what the first use would wait for.")(
     guarded(_warmup.warmup_command)
 )
+_focas.focas_app.command("dissect", short_help="Explain captured bytes of the protocol.")(
+    guarded(_focas.dissect_command)
+)
+app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 

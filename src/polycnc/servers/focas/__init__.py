@@ -18,8 +18,10 @@ from polycnc.controllers.fanuc.wire import (
     write_replies,
     write_requests,
 )
+from polycnc.servers.focas._capture import explain_capture, from_hex
 from polycnc.servers.focas._commands import COMMANDS, WRITING
 from polycnc.servers.focas._control import FocasControl
+from polycnc.servers.focas._dissect import Dissector, Field, dissect
 from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
 from polycnc.servers.focas._layouts import LAYOUTS, Layout
 from polycnc.servers.focas._owner import HostOwner, Keeper, Owner
@@ -39,10 +41,12 @@ __all__ = [
     "VACANT",
     "WRITING",
     "Answerer",
+    "Dissector",
     "Ending",
     "Fault",
     "FaultKind",
     "Faults",
+    "Field",
     "FocasControl",
     "FocasServer",
     "Frame",
@@ -62,6 +66,9 @@ __all__ = [
     "Status",
     "Transition",
     "Value8",
+    "dissect",
+    "explain_capture",
+    "from_hex",
     "load_faults",
     "load_profile",
     "read_replies",

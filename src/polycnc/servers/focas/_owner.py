@@ -15,8 +15,8 @@ from polycnc.servers.focas._served import ServedControl
 
 R = TypeVar("R")
 _BUSY_BEAT_S = 0.05
-_IDLE_BEAT_S = 0.5
-_MOST_AT_ONCE_S = 0.25  # of the wall clock that is caught up with in one go
+_IDLE_BEAT_S = 1.0
+_MOST_CYCLES = 20_000  # that are caught up with in one go, so that nobody waits long
 
 
 class Owner(Protocol):
@@ -77,20 +77,20 @@ class Keeper:
         if not self.failed.done():
             self.failed.cancel()
 
-    def _catch_up(self) -> None:
-        cycle_s = self._served.clock.cycle_s
-        most = max(1, round(_MOST_AT_ONCE_S * max(self.pace.rate, 1.0) / cycle_s))
-        due = self.pace.due(cycle_s, most)
+    def _catch_up(self) -> bool:
+        """Let pass what is due; tell whether there is more."""
+        due = self.pace.due(self._served.clock.cycle_s, _MOST_CYCLES)
         if due:
             self.pace.count(self._served.advance(due))
+        return due == _MOST_CYCLES
 
     def _beat(self) -> None:
         try:
-            self._catch_up()
+            late = self._catch_up()
         except Exception as error:
             self._fail(error)
             return
-        beat_s = _BUSY_BEAT_S if self._served.busy else _IDLE_BEAT_S
+        beat_s = 0.0 if late else _BUSY_BEAT_S if self._served.busy else _IDLE_BEAT_S
         self._timer = asyncio.get_running_loop().call_later(beat_s, self._beat)
 
     def _fail(self, error: Exception) -> None:
