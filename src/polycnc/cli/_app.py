@@ -9,6 +9,7 @@ import typer
 from polycnc import __version__
 from polycnc.cli import (
     _check,
+    _compare,
     _conformance,
     _debug,
     _focas,
@@ -53,6 +54,9 @@ def _options(
 app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
 app.command("view", short_help="Write a page that shows a run: path, time, blocks, tools.")(
     guarded(_view.view_command)
+)
+app.command("compare", short_help="Compare two programs, or one on two machines.")(
+    guarded(_compare.compare_command)
 )
 app.command("debug", short_help="Execute a program block by block and look at it.")(
     guarded(_debug.debug_command)

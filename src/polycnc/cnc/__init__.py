@@ -14,7 +14,16 @@ from polycnc.cnc._alarms import (
 )
 from polycnc.cnc._control import Control, ControlEvent
 from polycnc.cnc._control_channel import ControlChannel
-from polycnc.cnc._control_data import AfterManual, ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_data import (
+    AfterManual,
+    ChannelData,
+    ControlData,
+    Mode,
+    OnModeChange,
+    Overrides,
+    Search,
+    Switches,
+)
 from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
 from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
@@ -42,6 +51,7 @@ __all__ = [
     "AxisMotion",
     "AxisStatus",
     "Breakpoint",
+    "ChannelData",
     "ChannelStatus",
     "ClearedBy",
     "Control",
@@ -81,6 +91,7 @@ __all__ = [
     "RunOptions",
     "RunState",
     "Script",
+    "Search",
     "Spindle",
     "SpindleMotion",
     "SpindleState",

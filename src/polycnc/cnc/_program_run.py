@@ -550,7 +550,7 @@ class ProgramRun:
             self._meet_event()
         if raised & kernel.RECORDER_FULL:
             self.drain()
-        if (found := axis_alarm(self.machine, raised)) is not None:
+        if (found := axis_alarm(self.machine, raised, self.path)) is not None:
             self._stop_by(*found)
         self._look()
 

@@ -181,7 +181,9 @@ def _value_text(annotation: Any) -> str:
         case origin if origin is dict:
             return "table"
         case origin if origin is tuple:
-            return "tables" if choices[-1] is Ellipsis else "[low, high]"
+            if choices[-1] is not Ellipsis:
+                return "[low, high]"
+            return "numbers" if _value_text(choices[0]) == "number" else "tables"
         case _:
             return _PLAIN.get(annotation, "table")
 

@@ -17,7 +17,7 @@ from polycnc.nc._channel import Channel, ChannelSnapshot
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._calls import Library
-from polycnc.nc.blocks._channel_state import ChannelState, Spindle
+from polycnc.nc.blocks._channel_state import ChannelState, Spindle, of_another_channel
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._queue import Event
@@ -61,5 +61,6 @@ __all__ = [
     "dialect_for",
     "line_of",
     "load_dialect",
+    "of_another_channel",
     "scan_block",
 ]

@@ -143,7 +143,11 @@ class Channel:
             if not keeps_modal:
                 self.state = self._initial_state(config or machine.config)
                 self.state.tool = before.state.tool
-        self._fast_work = make_fast_work(self.state.modal, _CHUNK_BLOCKS if marks else 0)
+        self._fast_work = make_fast_work(
+            self.state.modal,
+            _CHUNK_BLOCKS if marks else 0,
+            feed_needs_point=dialect.numbers.feed_least_input > 0.0,
+        )
         self.interpreter = Interpreter(
             dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
         )
@@ -333,7 +337,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
-        if _START_OFFSET in config.offsets or self.dialect.macros:
+        if _START_OFFSET in config.offsets or self.dialect.sets_work_offsets:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 

@@ -10,7 +10,8 @@ from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, p
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
 from polycnc.runner._run import check, program_text, run
-from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
@@ -18,17 +19,21 @@ if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner.comparison import Comparison, PathDeviation, compare
     from polycnc.runner.machine_sources import machine_from
     from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
 
 _LATER = {
+    "Comparison": "comparison",
     "Debugger": "_debugger",
     "Deviation": "_verify_post",
+    "PathDeviation": "comparison",
     "Place": "_debugger",
     "PostResult": "_post",
     "PostVerification": "_verify_post",
     "View": "view",
     "check_view_file": "view",
+    "compare": "comparison",
     "machine_from": "machine_sources",
     "open_in_browser": "view",
     "post_file": "_post",
@@ -41,8 +46,10 @@ __all__ = [
     "SCREEN_FORMATS",
     "TRACE_FORMATS",
     "Alarm",
+    "Comparison",
     "Debugger",
     "Deviation",
+    "PathDeviation",
     "Place",
     "PlotCollector",
     "PostResult",
@@ -59,6 +66,7 @@ __all__ = [
     "check_output",
     "check_plot_file",
     "check_view_file",
+    "compare",
     "complete_or_absent",
     "counted",
     "keep_inputs",

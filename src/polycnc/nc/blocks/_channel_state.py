@@ -57,6 +57,7 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
+    rigid_tap: bool
 
 
 class ModalSnapshot(NamedTuple):
@@ -87,6 +88,11 @@ class SavedState(NamedTuple):
     plain: Plain
 
 
+def of_another_channel(axis: str) -> str:
+    """Return the name of an axis in a channel that does not own it: one that no word of a program has."""
+    return f"({axis})"
+
+
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 
@@ -95,7 +101,8 @@ class ChannelState:
     -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
     length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
     that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `skip_position` where the last skip move ended (machine coordinates).
+    mirrored, `skip_position` where the last skip move ended (machine coordinates). With `rigid_tap` a tapping cycle
+    turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -112,6 +119,7 @@ class ChannelState:
         self.selected_tool = 0
         self.feed_word = 0.0
         self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.rigid_tap = False
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -153,6 +161,7 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
+            self.rigid_tap,
         )
 
     def snapshot(self) -> ModalSnapshot:

@@ -106,14 +106,19 @@ class Modes:
         word = words.take("F")
         if word is None:
             return
-        if word.value <= 0.0:
-            raise self.fail(
-                f"the feed {code_text(word.value)} is not above zero", "Write a positive F.", word
+        value = word.value
+        if value <= 0.0:
+            raise self.fail(f"the feed {code_text(value)} is not above zero", "Write a positive F.", word)
+        if (least := self.dialect.numbers.feed_least_input) and not word.point:
+            value *= least * (_INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0)
+            self.messages.add(
+                f"F without a decimal point counts {least:g} mm in dialect '{self.dialect.name}': "
+                f"F{code_text(word.value)} is {code_text(value)}"
             )
-        state.feed_word = word.value
+        state.feed_word = value
         if modal.whole[FEED_MODE] != FEED_INVERSE_TIME:
-            modal.real[FEED] = word.value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
-            modal.real[FEED_NUMBER] = word.value
+            modal.real[FEED] = value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
+            modal.real[FEED_NUMBER] = value
 
     def dwell(self, words: BlockWords, line: int) -> list[Wait]:
         """Return the wait of a dwell, if there is one.
@@ -187,12 +192,15 @@ class Modes:
         g = words.g.get(Group.WORK_OFFSET)
         if g is None:
             return
-        group = work_group(g.word.value)
+        additional = g.action in (Action.ADDITIONAL_OFFSET, Action.ADDITIONAL_OFFSET_110)
+        group = 0 if additional else work_group(g.word.value)
         if g.action is Action.WORK_OFFSET_OFF:
             self.state.coordinates.select_work_offset(group, MACHINE_ZERO)
             return
         if g.action is Action.ADDITIONAL_OFFSET:
             name = additional_offset(self._additional_number(words))
+        elif g.action is Action.ADDITIONAL_OFFSET_110:
+            name = additional_offset(int(g.word.value) - 109)
         else:
             name = f"G{g.code}"
         offsets = self.state.machine.offsets

@@ -370,7 +370,11 @@ class MotionBuilder:
             if self.dialect.arcs.no_center == "line":
                 self.messages.add("an arc with neither centre nor radius goes straight to its end point")
                 return self.line(end, False, line)
-            raise self.fail("an arc needs a centre or a radius", "Add I J K or R.", self.place())
+            raise self.fail(
+                "an arc needs a centre or a radius",
+                "Add I J K or R, or write G1 if the move is straight.",
+                self.place(),
+            )
         if center and radius is not None:
             raise self.fail(
                 "an arc has both a radius R and a centre", "Write one of them.", self.words.first("R")
@@ -412,7 +416,7 @@ class MotionBuilder:
         return center
 
     def _turns(self) -> int:
-        turns = self.words.value("P")
+        turns = self.words.value("P") if self.dialect.arcs.turns else None
         if turns is None:
             return 1
         if turns != int(turns) or not 1 <= turns <= LARGEST:

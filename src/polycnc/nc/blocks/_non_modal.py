@@ -1,4 +1,4 @@
-"""Functions that take the axis words of their block for themselves: G28, G53 (one block), G92, G92.1."""
+"""Functions that take the axis words of their block for themselves: G28, G30, G53 (one block), G92, G92.1."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from polycnc.nc.blocks._actions import Action
+from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import MOTION_LINEAR, MOTION_RAPID
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Feed, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._words import Fail, GWord
 
+REFERENCE_POSITIONS = 4
 _CANCEL_FIRST = "Cancel it with G40 first."
 
 
@@ -20,6 +23,7 @@ class NonModal:
     """Carry out the non-modal functions."""
 
     state: ChannelState
+    messages: Messages
     motion: MotionBuilder
     fail: Fail
 
@@ -36,7 +40,9 @@ class NonModal:
                 self._refuse_compensation(g, self.state.compensation.active)
                 self.state.coordinates.clear_shift()
             case Action.REFERENCE_RETURN:
-                return self._reference_return(g, line)
+                return self._reference_return(g, 1, line)
+            case Action.REFERENCE_POINT:
+                return self._reference_return(g, self._reference_number(g), line)
             case Action.MACHINE_COORDINATES:
                 return self._machine_move(g, motion, line)
             case Action.SKIP_MOVE:
@@ -73,15 +79,29 @@ class NonModal:
         for axis, value in values.items():
             self.state.coordinates.set_position(axis, value)
 
-    def _reference_return(self, g: GWord, line: int) -> list[Line]:
-        """Go to the intermediate point that the axis words name, then with these axes (all, if none) home."""
+    def _reference_number(self, g: GWord) -> int:
+        """Take P: which reference position, the second if there is none."""
+        word = self.motion.words.take("P")
+        number = 2 if word is None else whole_number(word, "a reference position", self.fail)
+        if not 2 <= number <= REFERENCE_POSITIONS:
+            raise self.fail(
+                f"there is no reference position P{number}", f"Write P2 to P{REFERENCE_POSITIONS}.", word
+            )
+        if not any(len(axis.reference_positions) > number - 2 for axis in self.state.machine.axes):
+            self.messages.add(
+                f"G{g.code}: the machine file has no reference position {number}: the home position stands for it"
+            )
+        return number
+
+    def _reference_return(self, g: GWord, number: int, line: int) -> list[Line]:
+        """Go to the point that the axis words name, then with these axes (all, if none) to a reference position."""
         self._refuse_compensation(g, self.state.side != 0)
         values = self.motion.axis_words()
         start = self.motion.start
         middle = self.motion.target(values)
         self.motion.check_limits(middle, "would pass")
         home = tuple(
-            self.motion.turned(index, axis.home, middle[index])
+            self.motion.turned(index, axis.reference_position(number), middle[index])
             if index in values or not values
             else middle[index]
             for index, axis in enumerate(self.state.machine.axes)

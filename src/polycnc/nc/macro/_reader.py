@@ -135,6 +135,14 @@ class _Statements:
                 "Write them in two blocks.",
                 code="PS0127",
             )
+        if isinstance(before, Words) and token.word == "," and before.words:
+            at = before.words[-1].at
+            return Flaw(
+                at,
+                f"'{before.words[-1].letter}' has a comma in its number",
+                "Write a decimal point, like 1.5.",
+                code=_FORMAT,
+            )
         return Flaw(token.at, f"the statement does not go on with {token}", "Check it.", code=_STATEMENT)
 
     def _skip(self, level: int) -> int:
