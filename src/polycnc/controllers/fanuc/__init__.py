@@ -8,6 +8,7 @@ from polycnc.controllers.fanuc.device._modal_data import ADDRESSES as MODAL_ADDR
 from polycnc.controllers.fanuc.device._modal_data import CODES as MODAL_CODES
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._panel import MEMBERS as PANEL_SIGNALS
+from polycnc.controllers.fanuc.device._positions import AxisPositions
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
 from polycnc.controllers.fanuc.device._state import State, read_state
@@ -20,6 +21,7 @@ __all__ = [
     "PANEL_SIGNALS",
     "AlarmBit",
     "Attribute",
+    "AxisPositions",
     "Diagnosis",
     "Fault",
     "Kind",

@@ -7,13 +7,12 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeAlias
 
-from polycnc.controllers.fanuc import PowerMate
+from polycnc.controllers.fanuc import AxisPositions, PowerMate
 from polycnc.controllers.fanuc.wire import VALUE8_SIZE, Request, Value8
 from polycnc.servers.focas._profile import Profile
 
 if TYPE_CHECKING:
     from polycnc.cnc import Status
-    from polycnc.controllers.fanuc.device._positions import AxisPositions
 
 NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED, REJECTED = 1, 2, 3, 4, 5, 6, 7, 13
 """Codes that clients get, by the names of the function library."""

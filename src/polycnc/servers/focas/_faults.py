@@ -57,7 +57,7 @@ class Fault(StrictModel):
     Requests are frames of commands, of all clients, counted from 1 since the machine is served.
     """
 
-    kind: FaultKind
+    kind: FaultKind = Field(strict=False)
     at_s: float | None = Field(default=None, ge=0.0, allow_inf_nan=False)
     at_request: int | None = Field(default=None, ge=1)
     for_s: float | None = Field(default=None, gt=0.0, allow_inf_nan=False)
