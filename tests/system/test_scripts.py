@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-SCRIPTS = [REPOSITORY / "scripts" / name for name in ("demo", "reference", "test")]
+SCRIPTS = [REPOSITORY / "scripts" / name for name in ("demo", "mutate", "reference", "test", "test_long")]
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)

@@ -92,9 +92,12 @@ def run_command(
     """Run a part program on a simulated machine and say how long it takes and where it goes."""
     from polycnc import runner
     from polycnc.machine import load_machine
+    from polycnc.outputs import keep_apart, keep_inputs
 
-    for what, output in (("a trace", trace), ("a plot", plot), ("a screen", screen)):
-        runner.keep_inputs(output, (program, machine, dialect, keys), what)
+    outputs = (("a trace", trace), ("a plot", plot), ("a screen", screen))
+    for what, output in outputs:
+        keep_inputs(output, (program, machine, dialect, keys), what)
+    keep_apart(outputs)
     text = runner.program_text(program)
     config = load_machine(machine)
     with ExitStack() as stack:

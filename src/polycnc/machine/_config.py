@@ -6,7 +6,7 @@ A key that nothing reads does not exist here, so a file cannot hold a setting wi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime
 from typing import Annotated, Literal, TypeAlias
 
@@ -15,6 +15,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_CYCLE_S
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
+from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 
@@ -201,11 +202,21 @@ class MachineConfig(StrictModel):
     start: dict[str, Position] = Field(
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
     )
+    skip: tuple[dict[str, tuple[Position, Position]], ...] = Field(
+        default=(),
+        description="`[[skip]]`: where the signal of G31 is on, like `Z = [-50, -12.5]`; else anywhere.",
+    )
     io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")
+    surfaces: tuple[SurfaceConfig, ...] = Field(
+        default=(), alias="surface", description="What a probe meets, see `[[surface]]`."
+    )
 
     @model_validator(mode="after")
     def _fits_together(self) -> MachineConfig:
-        for error in (*self._axis_problems(), *self._offset_problems(), *self._start_problems()):
+        problems = self._axis_problems, self._offset_problems, self._start_problems, self._skip_problems
+        for error in (error for find in problems for error in find()):
+            raise error
+        for error in surface_problems(self.surfaces, self.axis_names):
             raise error
         return self
 
@@ -240,7 +251,27 @@ class MachineConfig(StrictModel):
                     else ("axis", index, home_key if has_home else f"soft_limits_{axis.unit}"),
                 )
 
-    def _unknown_axes(self, names: dict[str, float], at: KeyPath) -> Iterator[Exception]:
+    def _skip_problems(self) -> Iterator[Exception]:
+        for index, region in enumerate(self.skip):
+            yield from self._unknown_axes(region, ("skip", index))
+            if not region:
+                yield problem("the skip signal has no position", hint="name an axis", at=("skip", index))
+            for name, (low, high) in region.items():
+                if not low < high:
+                    yield problem(
+                        f"the skip signal would be on from {low} to {high}",
+                        hint="write the lower position first",
+                        at=("skip", index, name),
+                    )
+
+    def gives_skip_signal(self, positions: Sequence[float]) -> bool:
+        """Tell whether the skip signal is on at machine positions of all axes (mm or deg)."""
+        at = dict(zip(self.axis_names, positions, strict=True))
+        return any(
+            all(low <= at[name] <= high for name, (low, high) in region.items()) for region in self.skip
+        )
+
+    def _unknown_axes(self, names: Iterable[str], at: KeyPath) -> Iterator[Exception]:
         for name in names:
             if name not in self.axis_names:
                 yield problem(

@@ -44,6 +44,7 @@ from polycnc.nc.blocks._modal import (
     PLANE_YZ,
     PLANE_ZX,
 )
+from polycnc.nc.blocks._placement import NO_PLACEMENT, Placement
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, scan, word_columns
 
@@ -87,7 +88,8 @@ class ModalWords:
 
     `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
     next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
-    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis.
+    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
+    offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
     """
 
     g: dict[Group, str]
@@ -101,6 +103,8 @@ class ModalWords:
     m: tuple[int, ...]
     inch: bool
     zero: tuple[float, ...]
+    work: tuple[str, ...] = ()
+    placement: Placement = NO_PLACEMENT
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +204,10 @@ class BlockRecords:
         )
         self._read = tag, context, record
         return record
+
+    def words(self, text: ProgramText, modal: ModalSnapshot) -> ModalWords:
+        """Return the modal words of a state of preparation."""
+        return self._words(_Context(text, (), modal, None), 0)
 
     def depth(self, tag: int) -> int:
         """Return how many calls led to the block of a tag."""
@@ -302,6 +310,8 @@ class BlockRecords:
             m=modal.m_codes,
             inch=bool(whole[INCH]),
             zero=tuple(np.frombuffer(modal.offset).tolist()),
+            work=modal.work,
+            placement=modal.placement,
         )
 
     def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:

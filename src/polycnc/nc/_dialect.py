@@ -209,16 +209,20 @@ class Dialect(StrictModel):
         default=None,
         description="How many blocks are prepared beyond the one that is executed; absent: as many as fit.",
     )
-    language: Literal["none", "cpl"] = Field(
+    language: Literal["none", "cpl", "macro"] = Field(
         default="none",
-        description='The language that programs may hold besides NC blocks; "cpl" is that of Bosch.',
+        description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro").',
+    )
+    h_compensates: bool = Field(
+        default=False,
+        description="H alone compensates the tool length, H0 cancels; else G43 or G44 is needed.",
+    )
+    notes_codes: bool = Field(
+        default=False, description="The G codes that were programmed are kept, for those who ask for them."
     )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
-    macros: bool = Field(
-        default=False, description="Programs may hold custom macros: variables, expressions and program flow."
-    )
     scaling_unit: Annotated[float, Field(gt=0)] = Field(
         default=0.001, description="What a scaling factor without a decimal point counts."
     )

@@ -14,6 +14,8 @@ from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._frame import Frame
 from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.blocks._placement import Placement
+from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tables import ProgramTables
 
 
@@ -57,6 +59,9 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
+    skip_tag: int | None
+    placement: Placement
+    probe: Probe | None
     rigid_tap: bool
 
 
@@ -77,6 +82,7 @@ class ModalSnapshot(NamedTuple):
     length_sign: int
     length_tool: int
     m_codes: tuple[int, ...]
+    placement: Placement
 
 
 class SavedState(NamedTuple):
@@ -96,13 +102,14 @@ def of_another_channel(axis: str) -> str:
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 
-    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
-    the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
-    -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
-    length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `skip_position` where the last skip move ended (machine coordinates). With `rigid_tap` a tapping cycle
-    turns the spindle itself.
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
+    present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
+    0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
+    compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
+    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled
+    and mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine
+    coordinates), `skip_tag` the reference of its block, `probe` the last probing. With `rigid_tap` a tapping
+    cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -111,7 +118,10 @@ class ChannelState:
         self.tables = ProgramTables(machine)
         self.coordinates = Coordinates(self.tables, modal)
         self.frame = Frame()
+        self.placement = Placement()
+        self.probe: Probe | None = None
         self.skip_position: tuple[float, ...] | None = None
+        self.skip_tag: int | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
@@ -161,6 +171,9 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
+            self.skip_tag,
+            self.placement,
+            self.probe,
             self.rigid_tap,
         )
 
@@ -182,4 +195,5 @@ class ChannelState:
             coordinates.length_sign,
             self.length_tool,
             self.m_codes,
+            self.placement,
         )

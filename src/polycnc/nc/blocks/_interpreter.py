@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from polycnc.errors import ProgramError
@@ -38,6 +38,7 @@ from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
+from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._words import BlockWords, code_text, sort_words
 from polycnc.nc.text._not_words import slip, statements
@@ -61,6 +62,7 @@ _FRAME_ACTIONS = {
     Action.MIRROR,
     Action.MIRROR_OFF,
 }
+_STATED = (Group.MOTION, Group.DISTANCE)
 _LANGUAGES = (
     "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
     "or post the program without them."
@@ -153,6 +155,7 @@ class Interpreter:
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
         self._non_modal = NonModal(state, messages, self._motion, self.fail)
         self._frames = Frames(state, dialect, self._motion, self.fail)
+        self._placing = Placing(state, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
@@ -284,14 +287,17 @@ class Interpreter:
             self._take_parameters(words)
         self._refuse_unused(words)
         if words.m:
-            items += self._auxiliary.after_motion(words, line)
+            items += self._auxiliary.after_motion(words, line, block.message)
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
         self._motion.check_times(items)
         self._note_position(items)
-        return outcome, self._compensated(
-            self._tagged(items, line, words_stand=bool(block.words)), change_compensation
-        )
+        if self.dialect.notes_codes:
+            self._note_codes(words)
+        tagged = self._tagged(items, line, words_stand=bool(block.words))
+        if (g := words.g.get(Group.NON_MODAL)) and g.action is Action.SKIP_MOVE:
+            self.state.skip_tag = self._last_tag
+        return outcome, self._compensated(tagged, change_compensation)
 
     def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
         """Return the items with the reference of the block's record, another one than the block just before has.
@@ -425,6 +431,9 @@ class Interpreter:
             if g.action in _FRAME_ACTIONS:
                 self._frames.carry_out(g, words)
                 return []
+            if g.action in PLACING:
+                self._placing.carry_out(g, words)
+                return []
             return list(self._non_modal.carry_out(g, motion, line))
         if self._cycles.active:
             return self._cycles.expand(words, line)
@@ -448,6 +457,20 @@ class Interpreter:
             if isinstance(item, (Line, Arc)):
                 self.state.modal.position[:] = item.end
                 return
+
+    def _note_codes(self, words: BlockWords) -> None:
+        """Keep the G codes of the block, the latest last; motion and distance are in the modal state."""
+        said = {int(g.word.value) for group, g in words.g.items() if group not in _STATED}
+        said |= {int(g.word.value) for g in words.ignored}
+        placement = self.state.placement
+        alone = words.g.get(Group.NON_MODAL) or words.g.get(Group.DWELL)
+        once = int(alone.word.value) if alone else 0
+        new = said and not said <= {*placement.codes[-1:]}
+        if new or once != placement.once:
+            kept = (code for code in placement.codes if code not in said)
+            plane = None if Group.PLANE in words.g else placement.plane
+            codes = (*kept, *sorted(said))
+            self.state.placement = replace(placement, codes=codes, once=once, plane=plane)
 
     # ------------------------------------------------------------------ the rest of the block
 

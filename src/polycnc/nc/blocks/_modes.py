@@ -168,8 +168,14 @@ class Modes:
         g = words.g.get(Group.LENGTH_COMPENSATION)
         coordinates = self.state.coordinates
         sign = coordinates.length_sign if g is None else _LENGTH_SIGNS[g.action]
-        if g is None and (sign == 0 or "H" not in words.by_letter):
-            return  # an H that is left over is reported as such
+        if g is None and "H" not in words.by_letter:
+            return
+        if g is None and sign == 0:
+            if not self.dialect.h_compensates:
+                return  # an H that is left over is reported as such
+            sign = 1
+        if self.dialect.h_compensates and g is None and words.by_letter["H"].value == 0.0:
+            sign = 0
         h_word = words.take("H")
         axis = int(self.state.modal.letter_axis[ord("Z") - ord("A")])
         if axis == NO_AXIS:
@@ -279,4 +285,5 @@ class Modes:
         tool = state.tool if state.compensation_tool is None else state.compensation_tool
         data = self.auxiliary.tool_data(tool)
         radius = data.radius_mm + data.wear_radius_mm
+        radius += state.tables.tool_radius(state.placement.compensations)
         return lambda: state.compensation.start(Side(state.side), radius, plane, line)
