@@ -19,7 +19,7 @@ from polycnc.controllers.fanuc.wire import (
     write_requests,
 )
 from polycnc.servers.focas._capture import explain_capture, from_hex
-from polycnc.servers.focas._commands import COMMANDS, WRITING
+from polycnc.servers.focas._commands import COMMANDS, WRITING, known
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._dissect import Dissector, Field, dissect
 from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
@@ -69,6 +69,7 @@ __all__ = [
     "dissect",
     "explain_capture",
     "from_hex",
+    "known",
     "load_faults",
     "load_profile",
     "read_replies",

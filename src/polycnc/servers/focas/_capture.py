@@ -15,10 +15,10 @@ from polycnc.servers.focas._dissect import Dissector, Stream, dissect
 
 _PCAP = {bytes.fromhex(magic) for magic in ("d4c3b2a1", "a1b2c3d4", "4d3cb2a1", "a1b23c4d")}
 _PCAPNG = bytes.fromhex("0a0d0d0a")
-_OFFSET = re.compile(r"^\s*[0-9A-Fa-f]{4,8}(:|\s{2})\s*")
+_OFFSET = re.compile(r"^\s*(?:[0-9A-Fa-f]{4,8}:|000[0-9A-Fa-f]{5}\s{2})\s*")
 _NOTE = re.compile(r"\[[^\]]*\]|<[^>]*>|#.*|;.*")
 _SIDE = re.compile(r"^\s*(?:[<>]|->|<-|C:|S:)\s*")
-_HEX = re.compile(r"(?:0[xX])?([0-9A-Fa-f]+),?")
+_HEX = re.compile(r"(?:0[xX])?([0-9A-Fa-f]+)")
 _MOST_BYTES = 64 << 20
 _HALF = 1 << 31
 
@@ -57,7 +57,7 @@ def from_hex(data: bytes, name: str = "the capture") -> bytes:
     made = bytearray()
     for number, line in enumerate(text.splitlines(), 1):
         line = _NOTE.sub(" ", _OFFSET.sub("", _SIDE.sub("", line)))
-        for word in line.split():
+        for word in line.replace(",", " ").split():
             found = _HEX.fullmatch(word)
             if found is None or len(found[1]) % 2:
                 raise UsageError(

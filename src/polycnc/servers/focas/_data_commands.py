@@ -98,7 +98,8 @@ def write_double(view: View, request: Request) -> bytes:
 
 def macro_range(view: View, request: Request) -> bytes:
     """Return how many local and how many common variables there are."""
-    return longs(len(_LOCALS), sum(map(len, view.control.macros.common.blocks)))
+    commons = (last - first + 1 for first, last in view.control.macros.variables.ranges)
+    return longs(len(_LOCALS), sum(commons))
 
 
 # ---------------------------------------------------------------------- parameters, settings, diagnosis
