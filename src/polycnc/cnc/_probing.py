@@ -27,11 +27,14 @@ class Probing:
     before: tuple[float, ...]
     met: bool = False
 
-    def look(self, machine: Machine, channel: Channel) -> bool:
-        """Look at one cycle; tell whether the contact is in it, whose position the channel takes."""
+    def look(self, machine: Machine, channel: Channel, *, signal: bool = False) -> bool:
+        """Look at one cycle; tell whether the contact is in it, whose position the channel takes.
+
+        A `signal` from outside is a contact where the axes are.
+        """
         now = positions(machine)
         surfaces, names = machine.config.surfaces, machine.config.axis_names
-        found = first_contact(surfaces, names, self.before, now)
+        found = first_contact(surfaces, names, self.before, now) or (now if signal else None)
         self.before = now
         if found is None:
             return False
@@ -45,9 +48,9 @@ class Probing:
 
 
 def delete_rest(machine: Machine, channel: Channel, feed: PathFeed) -> None:
-    """Drop what a path, which stands, has still to go along; its program goes on from there."""
+    """Drop what a path, which stands, has still to go along, but for functions; its program goes on from there."""
     drop_queue(machine.state.seg, machine.state.paths, channel.path)
-    channel.writer.clear()
+    channel.writer.put_again()
     feed.drop_probing()
     feed.clear()
     channel.state.modal.position[:] = machine.state.paths.position[channel.path]

@@ -67,7 +67,7 @@ _SKIP_CYCLES = 1 << 12
 _SAVED = (
     "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
     "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
-    "skip_signal", "_skipped",
+    "skip_signal",
 )  # fmt: skip
 
 
@@ -91,7 +91,7 @@ class ProgramRun:
     names of the machine's axes in this channel, empty for those that it does not have.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The regions of the machine file give it as well. `on_skip` is told when it is met.
+    The surfaces of the machine file give it as well. `on_skip` is told when it is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -136,7 +136,6 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
-        self._skipped = False  # a skip move brakes
         self._locked = False
         self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
@@ -519,10 +518,6 @@ class ProgramRun:
         self.feed.feed()
         target = self.feed.target()
         done = 0
-        if (self.skip_signal or self.machine.config.skip) and (skipping := self._skip_segment()) is not None:
-            if skipping == self._row["head"]:
-                return self.advance(_SKIP_CYCLES, until=lambda: self._skip_segment() is None)
-            target = min(target, skipping)
         while self._state is RunState.ACTIVE and self._row["head"] < target:
             if self._probing is not None:
                 return done + self.advance(1)
@@ -550,7 +545,6 @@ class ProgramRun:
         self.feed.feed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        cycles = self._watch_skip(cycles)
         return cycles if self._probing is None else min(cycles, 1)
 
     def after_cycles(self, cycles: int) -> None:
@@ -670,7 +664,7 @@ class ProgramRun:
             self._state is RunState.STOPPED_AT_BLOCK
         )  # before a segment that is in the look-ahead already
         met = self._probing is not None and self._probing.met and self._probing.deletes
-        hold = self._hold or stands or met or self._stop is not None or self._unanswered or self._skipped
+        hold = self._hold or stands or met or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == kernel.RUNNING:
@@ -745,8 +739,10 @@ class ProgramRun:
     def _probe(self, probing: Probing) -> None:
         """Look for the contact of a probing move; what is left of the move is dropped once the axes stand."""
         if not probing.met:
-            if probing.look(self.machine, self.channel) and probing.deletes:
+            if probing.look(self.machine, self.channel, signal=self.skip_signal) and probing.deletes:
                 self._set_hold()
+                if self.on_skip is not None and self.channel.state.skip_position is not None:
+                    self.on_skip()
         elif probing.deletes and self.at_rest and self._state is RunState.ACTIVE:
             delete_rest(self.machine, self.channel, self.feed)
             self._probing = None
@@ -757,58 +753,9 @@ class ProgramRun:
             self._stop = None
             self.channel.go_on()
 
-    def _skip_segment(self) -> int | None:
-        """Return the count of the skip move that is in the queue, None if there is none; all behind it waits for it."""
-        tag, row = self.channel.state.skip_tag, self._row
-        if tag is None or not self.channel.waits:
-            return None
-        segments = self.machine.state.seg.row
-        for count in range(int(row["tail"]) - 1, int(row["head"]) - 1, -1):
-            segment = segments[int(row["base"]) + count % int(row["capacity"])]
-            if segment["tag"] != tag:
-                return None
-            if segment["kind"] != kernel.WAIT:
-                return count
-        return None
-
-    def _watch_skip(self, cycles: int) -> int:
-        """Brake a skip move whose signal is on; return how many cycles may pass before it is looked at again."""
-        if self._skipped:
-            return 1  # whether it stands is not told
-        regions = self.machine.config.skip
-        if not (self.skip_signal or regions) or (skipping := self._skip_segment()) is None:
-            return cycles
-        row = self._row
-        if skipping > row["head"]:
-            row["low_water"] = max(row["planned"] - skipping, 0)  # comes back when it begins
-            return cycles
-        actual = tuple(self.machine.state.servo.actual.tolist())
-        if not self.skip_signal and not self.machine.config.gives_skip_signal(actual):
-            return 1
-        self.channel.state.skip_position = actual
-        self._skipped = True
-        self._set_hold()
-        if self.on_skip is not None:
-            self.on_skip()
-        self._look()
-        return 1
-
-    def _end_skip(self) -> None:
-        """Drop what is left of a skip move, and go on from where it stands."""
-        state = self.machine.state
-        kernel.drop_queue(state.seg, state.paths, self.path)
-        self.channel.writer.put_again()
-        self.feed.clear()
-        self.channel.state.modal.position[:] = state.paths.position[self.path]
-        self._skipped = False
-        self._set_hold()
-        self.feed.feed()
-
     def _look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""
         row = self._row
-        if self._skipped and self.at_rest and not self._dropping:
-            self._end_skip()
         if self._dropping:
             if self.at_rest:
                 self._drop()
@@ -841,7 +788,6 @@ class ProgramRun:
         self._stop = None
         self._unanswered = False
         self._probing = None
-        self._skipped = False
         self._met = None
         self._set_hold()
 

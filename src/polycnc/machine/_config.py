@@ -5,8 +5,9 @@ A key that nothing reads does not exist here, so a file cannot hold a setting wi
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from typing import Annotated, Literal, TypeAlias
 
@@ -52,6 +53,14 @@ def _look_ahead(value: object) -> object:
     raise problem("'look_ahead_blocks' must be a whole number from 2 up", hint='or write "unlimited"')
 
 
+def _path_tolerance(value: object) -> object:
+    if value == "free":
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value <= LARGEST_POSITION:
+        return value
+    raise problem("'path_tolerance_mm' must be a number from 0 up", hint='or write "free"')
+
+
 def _some_axes(value: tuple[AnyAxis, ...]) -> tuple[AnyAxis, ...]:
     if not value:
         raise problem("the machine has no axis", hint="add a table [[axis]] for each axis")
@@ -64,8 +73,9 @@ class PathConfig(StrictModel):
     look_ahead_blocks: Annotated[int | Literal["unlimited"], BeforeValidator(_look_ahead)] = Field(
         default="unlimited", description='How many blocks the look-ahead sees: 2 or more, or "unlimited".'
     )
-    path_tolerance_mm: NotNegative = Field(
-        default=0.0, description="How far the path may leave a corner, mm."
+    path_tolerance_mm: Annotated[float | Literal["free"], BeforeValidator(_path_tolerance)] = Field(
+        default=0.0,
+        description='How far the path may leave a corner, mm: 0 or more, or "free", a quarter of the shorter line.',
     )
     jerkrel: Share = Field(
         default=0.0,
@@ -97,6 +107,11 @@ class PathConfig(StrictModel):
                 at=("square_corner_mm_s",),
             )
         return self
+
+    @property
+    def tolerance_mm(self) -> float:
+        """Return how far the path may leave a corner, mm; inf if it is free."""
+        return math.inf if self.path_tolerance_mm == "free" else self.path_tolerance_mm
 
     @property
     def look_ahead_limit(self) -> int | None:
@@ -202,10 +217,6 @@ class MachineConfig(StrictModel):
     start: dict[str, Position] = Field(
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
     )
-    skip: tuple[dict[str, tuple[Position, Position]], ...] = Field(
-        default=(),
-        description="`[[skip]]`: where the signal of G31 is on, like `Z = [-50, -12.5]`; else anywhere.",
-    )
     io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")
     surfaces: tuple[SurfaceConfig, ...] = Field(
         default=(), alias="surface", description="What a probe meets, see `[[surface]]`."
@@ -213,7 +224,7 @@ class MachineConfig(StrictModel):
 
     @model_validator(mode="after")
     def _fits_together(self) -> MachineConfig:
-        problems = self._axis_problems, self._offset_problems, self._start_problems, self._skip_problems
+        problems = self._axis_problems, self._offset_problems, self._start_problems
         for error in (error for find in problems for error in find()):
             raise error
         for error in surface_problems(self.surfaces, self.axis_names):
@@ -250,26 +261,6 @@ class MachineConfig(StrictModel):
                     if axis.name in self.start
                     else ("axis", index, home_key if has_home else f"soft_limits_{axis.unit}"),
                 )
-
-    def _skip_problems(self) -> Iterator[Exception]:
-        for index, region in enumerate(self.skip):
-            yield from self._unknown_axes(region, ("skip", index))
-            if not region:
-                yield problem("the skip signal has no position", hint="name an axis", at=("skip", index))
-            for name, (low, high) in region.items():
-                if not low < high:
-                    yield problem(
-                        f"the skip signal would be on from {low} to {high}",
-                        hint="write the lower position first",
-                        at=("skip", index, name),
-                    )
-
-    def gives_skip_signal(self, positions: Sequence[float]) -> bool:
-        """Tell whether the skip signal is on at machine positions of all axes (mm or deg)."""
-        at = dict(zip(self.axis_names, positions, strict=True))
-        return any(
-            all(low <= at[name] <= high for name, (low, high) in region.items()) for region in self.skip
-        )
 
     def _unknown_axes(self, names: Iterable[str], at: KeyPath) -> Iterator[Exception]:
         for name in names:

@@ -28,6 +28,7 @@ from polycnc.nc.blocks._channel_state import ModalSnapshot
 from polycnc.nc.blocks._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
+    EXACT_PATH,
     EXACT_STOP,
     FEED_INVERSE_TIME,
     FEED_MODE,
@@ -360,6 +361,12 @@ def _codes(dialect: Dialect) -> dict[Action, str]:
     return codes
 
 
+def _stopping(whole: list[int]) -> Action:
+    if whole[EXACT_STOP]:
+        return Action.EXACT_STOP
+    return Action.EXACT_PATH if whole[EXACT_PATH] else Action.CONTINUOUS
+
+
 def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
     """Return what is in force, one action of every modal group."""
     found = [
@@ -371,7 +378,7 @@ def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
         Action.CONSTANT_SURFACE_SPEED if modal.spindle.surface_speed else Action.SPINDLE_RPM,
         _SIDES[modal.side],
         _LENGTHS[modal.length_sign],
-        Action.EXACT_STOP if whole[EXACT_STOP] else Action.CONTINUOUS,
+        _stopping(whole),
         Action.RETRACT_INITIAL if modal.retract_to_initial else Action.RETRACT_R,
     ]
     if modal.cycle:

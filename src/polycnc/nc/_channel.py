@@ -341,6 +341,7 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
+        state.path_tolerance_mm = self.dialect.path_tolerance_mm(config.path)
         state.axis_names = names
         given = getattr(config.offsets, "at_start", None)
         begins = _START_OFFSET in config.offsets if given is None else given

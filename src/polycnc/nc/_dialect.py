@@ -5,6 +5,7 @@ The interpreter knows actions, never code numbers of a vendor; a new control is 
 
 from __future__ import annotations
 
+import math
 import re
 import string
 from collections.abc import Iterable
@@ -18,7 +19,7 @@ import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
-from polycnc.machine import StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
 from polycnc.nc.blocks._cycles import CycleSettings, PeckTap
 from polycnc.nc.blocks._modal import (
@@ -221,6 +222,10 @@ class Dialect(StrictModel):
         default=False, description="The G codes that were programmed are kept, for those who ask for them."
     )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
+    free_corners: bool = Field(
+        default=False,
+        description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter line.",
+    )
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
     scaling_unit: Annotated[float, Field(gt=0)] = Field(
@@ -250,6 +255,10 @@ class Dialect(StrictModel):
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""
         return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())
+
+    def path_tolerance_mm(self, path: PathConfig) -> float:
+        """Return how far corners may be rounded where the program says nothing, mm; inf if it is free."""
+        return math.inf if self.free_corners and path.tolerance_mm == 0.0 else path.tolerance_mm
 
     def g_action(self, code: float) -> Action | None:
         """Return what a G code does, None if the dialect does not know it."""
@@ -333,7 +342,7 @@ class DialectTables(NamedTuple):
     least_input: float
 
 
-_SHIPPED = ("din", "fanuc", "haas", "grbl", "bosch")
+_SHIPPED = ("din", "fanuc", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

@@ -59,6 +59,7 @@ class Action(IntEnum):
     WORK_OFFSET = auto()
     WORK_OFFSET_OFF = auto()
     EXACT_STOP = auto()
+    EXACT_PATH = auto()
     CONTINUOUS = auto()
     ABSOLUTE = auto()
     INCREMENTAL = auto()
@@ -205,7 +206,7 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.ADDITIONAL_OFFSET,
         Action.ADDITIONAL_OFFSET_110,
     ),
-    Group.STOPPING: (Action.EXACT_STOP, Action.CONTINUOUS),
+    Group.STOPPING: (Action.EXACT_STOP, Action.EXACT_PATH, Action.CONTINUOUS),
     Group.EXACT_STOP_BLOCK: (Action.EXACT_STOP_BLOCK,),
     Group.RETRACT: (Action.RETRACT_INITIAL, Action.RETRACT_R),
     Group.IGNORED: (Action.IGNORED, Action.NOTHING, Action.UNSUPPORTED, Action.LEFT_OUT),

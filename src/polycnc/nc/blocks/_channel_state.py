@@ -59,7 +59,6 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
-    skip_tag: int | None
     placement: Placement
     probe: Probe | None
     rigid_tap: bool
@@ -105,11 +104,11 @@ class ChannelState:
     `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
     present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
     0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
-    compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled
-    and mirrored, `placement` where they lie besides, `skip_position` where the last skip move ended (machine
-    coordinates), `skip_tag` the reference of its block, `probe` the last probing. With `rigid_tap` a tapping
-    cycle turns the spindle itself.
+    compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops. `m_codes` are
+    those of the last block that had any. `tables` are the tools and work offsets, `frame` how programmed
+    positions are turned, scaled and mirrored, `placement` where they lie besides, `skip_position` where the
+    last skip move ended (machine coordinates), `probe` the last probing.
+    With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -121,14 +120,13 @@ class ChannelState:
         self.placement = Placement()
         self.probe: Probe | None = None
         self.skip_position: tuple[float, ...] | None = None
-        self.skip_tag: int | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
         self.tool = 0
         self.selected_tool = 0
         self.feed_word = 0.0
-        self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.path_tolerance_mm = machine.path.tolerance_mm
         self.rigid_tap = False
         self.side = 0
         self.compensation_tool: int | None = None
@@ -171,7 +169,6 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
-            self.skip_tag,
             self.placement,
             self.probe,
             self.rigid_tap,
