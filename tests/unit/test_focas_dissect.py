@@ -14,6 +14,7 @@ import pytest
 from polycnc.errors import UsageError
 from polycnc.servers.focas import (
     PMC,
+    PROFILES,
     Dissector,
     Frame,
     FrameType,
@@ -25,7 +26,7 @@ from polycnc.servers.focas import (
     status_body,
     write_requests,
 )
-from support.focas_scenes import PROFILES, SCENES, open_session, scene_control
+from support.focas_scenes import SCENES, open_session, scene_control
 
 _LINE = re.compile(r"  ([0-9a-f]{4})  ((?:[0-9a-f]{2} ?)+)")
 
