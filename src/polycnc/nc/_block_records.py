@@ -166,6 +166,11 @@ class BlockRecords:
         self._next = 1
         self._enough = _FEW
         self._last: tuple[_Key | None, int] = None, 0  # and what is added to a line
+        self._read: tuple[int, _Context | None, BlockRecord | None] = (
+            0,
+            None,
+            None,
+        )  # what is asked for again and again
         self._codes = _codes(dialect)
 
     def reference(self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, line: int) -> int:
@@ -183,11 +188,13 @@ class BlockRecords:
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         if context is None:
             return None
+        if self._read[0] == tag and self._read[1] is context:
+            return self._read[2]
         line = tag & LINE_MASK
         offset = context.text.line_start(line)
         text = context.text.line(offset)
         number = _SEQUENCE.match(text)
-        return BlockRecord(
+        record = BlockRecord(
             program=context.text.name,
             line=line,
             offset=offset,
@@ -196,6 +203,8 @@ class BlockRecords:
             stack=context.stack,
             modal=self._words(context, line),
         )
+        self._read = tag, context, record
+        return record
 
     def words(self, text: ProgramText, modal: ModalSnapshot) -> ModalWords:
         """Return the modal words of a state of preparation."""
