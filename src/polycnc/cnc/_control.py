@@ -170,6 +170,21 @@ class Control:
         for channel in self.channels:
             channel.change_config(self._live, self.dialect)
 
+    def share_axes(self, shares: Sequence[tuple[str, ...]]) -> None:
+        """Share the axes out anew, one tuple for each channel; an axis in none of them is moved by hand only.
+
+        Raises:
+            ControlError: A channel whose axes change executes a program.
+        """
+        pairs = zip(self.channels, shares, strict=True)
+        changing = [(channel, axes) for channel, axes in pairs if set(axes) != set(channel.axes)]
+        for channel, _ in changing:
+            check_over(channel)
+            channel.check_rest()
+        for channel, axes in changing:
+            channel.share(axes)
+        self.alarms.owners = {axis: n for n, axes in enumerate(shares) for axis in axes}
+
     def change_dialect(self, dialect: Dialect) -> None:
         """Let programs be read in another dialect, or with other settings of it, from now on.
 

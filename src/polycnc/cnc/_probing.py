@@ -32,9 +32,10 @@ class Probing:
 
         A `signal` from outside is a contact where the axes are.
         """
-        now = positions(machine)
-        surfaces, names = machine.config.surfaces, machine.config.axis_names
-        found = first_contact(surfaces, names, self.before, now) or (now if signal else None)
+        now, config = positions(machine), channel.state.machine
+        found = first_contact(config.surfaces, config.axis_names, self.before, now) or (
+            now if signal else None
+        )
         self.before = now
         if found is None:
             return False

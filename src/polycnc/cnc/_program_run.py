@@ -562,7 +562,10 @@ class ProgramRun:
         self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        return cycles if self._probing is None else min(cycles, 1)
+        often = self._probing is not None or (
+            self._options.asks_often and self.at_rest and not self.channel.done
+        )
+        return min(cycles, 1) if often else cycles
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
@@ -587,8 +590,6 @@ class ProgramRun:
             rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
-
-    # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> RunSnapshot:
         """Return everything that this run holds, to go back to with `restore`.
