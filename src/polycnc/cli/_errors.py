@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable
 from typing import NoReturn, ParamSpec
 
-from polycnc.cli._output import bold_red, say_error
+from polycnc.cli._output import bold_red, say_problem
 from polycnc.errors import PolycncError, UsageError
 
 P = ParamSpec("P")
@@ -48,7 +48,7 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
 
 
 def _end(text: str, status: int) -> NoReturn:
-    say_error(text, lead=bold_red("error: "))
+    say_problem(text, lead=bold_red("error: "), error=True)
     sys.exit(status)
 
 

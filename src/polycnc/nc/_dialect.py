@@ -243,6 +243,11 @@ class Dialect(StrictModel):
         return {int(code): M_ACTIONS[action] for code, action in self.m.items()}
 
     @property
+    def has_tool_change(self) -> bool:
+        """Whether programs can change the tool."""
+        return MAction.TOOL_CHANGE in self._by_m.values()
+
+    @property
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""
         return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())

@@ -120,8 +120,8 @@ _OUTCOMES = {
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
-    `call_trouble` says what is against calling a sub-program, None if nothing is. `reference` gives the reference of
-    the record of the block on a line, when all that the block changes has been changed.
+    `call_trouble` says what is against calling a sub-program from an offset of a text, None if nothing is. `reference`
+    gives the reference of the record of the block on a line, when all that the block changes has been changed.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class Interpreter:
         state: ChannelState,
         messages: Messages,
         queue: QueueWriter,
-        call_trouble: Callable[[int], Trouble | None],
+        call_trouble: Callable[[int, ProgramText, int], Trouble | None],
         reference: Callable[[int], int],
     ) -> None:
         self.dialect = dialect
@@ -473,7 +473,7 @@ class Interpreter:
         repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", self.fail)
         if l_word is None and program > 9999 and self.dialect.sub_program.repeats_in_p:
             repeats, program = divmod(program, 10_000)
-        if trouble := self._call_trouble(program):
+        if trouble := self._call_trouble(program, self._text, p_word.place):
             raise self.fail(*trouble, p_word)
         return Outcome(Control.CALL, program, repeats)
 
