@@ -31,7 +31,14 @@ from polycnc.nc.blocks._calls import Back, Calls, Library, Place, Running
 from polycnc.nc.blocks._channel_state import ChannelState, SavedState
 from polycnc.nc.blocks._interpreter import Control, Interpreter, Trouble
 from polycnc.nc.blocks._messages import Message, Messages
-from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
+from polycnc.nc.blocks._modal import (
+    LINEAR_AXIS,
+    MODULO_AXIS,
+    ORDINARY,
+    ROTARY_AXIS,
+    make_modal,
+    set_diameters,
+)
 from polycnc.nc.blocks._moves import Feed, Line
 from polycnc.nc.blocks._queue import QueueWriter, WriterSnapshot
 from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
@@ -345,6 +352,11 @@ class Channel:
         )
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
+        named = self.dialect.diameter_axes
+        set_diameters(
+            modal,
+            [index for index, axis in enumerate(config.axes) if axis.is_diameter or axis.name in named],
+        )
         state = ChannelState(config, modal)
         if _START_OFFSET in config.offsets or self.dialect.sets_work_offsets:
             state.coordinates.select_work_offset(0, _START_OFFSET)
@@ -587,6 +599,8 @@ class Channel:
                 back = Back(self._here(), self._text_end, block.line, self._calls_within)
                 if self._calls.enter(outcome.program, outcome.repeats, back):
                     self._begin()
+            case Control.GO_ON:
+                self._go_behind(outcome.place, block)
             case Control.RETURN:
                 source = self._calls.running.source
                 if source is not None and source.leave():
@@ -597,6 +611,21 @@ class Channel:
                 self._leave()
             case _:
                 pass
+
+    def _go_behind(self, place: Place | None, block: Block) -> None:
+        """Go on behind the contour that a cycle has cut.
+
+        Raises:
+            ProgramError: statements stand before that place.
+        """
+        assert place is not None
+        if place.offset > self._text_end:
+            raise ProgramError(
+                "a contour that is cut apart by statements is not supported yet",
+                position=place.text.position(block.offset),
+                hint="Write the contour in plain words.",
+            )
+        self._jump(place, self._text_end)
 
     def _leave(self) -> None:
         """End the present program: go back to the one that called it, or end everything."""

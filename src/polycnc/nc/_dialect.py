@@ -213,6 +213,17 @@ class Dialect(StrictModel):
         default="none",
         description='The language that programs may hold besides NC blocks; "cpl" is that of Bosch.',
     )
+    diameter_axes: tuple[str, ...] = Field(
+        default=(),
+        description="Axes whose positions are diameters, besides those that the machine file names.",
+    )
+    incremental: dict[str, str] = Field(
+        default={}, description='Addresses of ways = the axis that goes them, like `U = "X"`.'
+    )
+    tool_word: Literal["select", "turret"] = Field(
+        default="select",
+        description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
+    )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
@@ -245,7 +256,7 @@ class Dialect(StrictModel):
     @property
     def has_tool_change(self) -> bool:
         """Whether programs can change the tool."""
-        return MAction.TOOL_CHANGE in self._by_m.values()
+        return MAction.TOOL_CHANGE in self._by_m.values() or self.tool_word == "turret"
 
     @property
     def sets_work_offsets(self) -> bool:
@@ -334,7 +345,7 @@ class DialectTables(NamedTuple):
     least_input: float
 
 
-_SHIPPED = ("din", "fanuc", "haas", "grbl", "bosch")
+_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

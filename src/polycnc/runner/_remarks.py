@@ -85,6 +85,8 @@ class MachiningWatch:
         self._moves(slots[begin:])
 
     def _event(self, word: str, tag: int) -> None:
+        if word.startswith("T"):  # a turret turns with T alone
+            self._change(int(word[1:]) // 100)
         if not word.startswith("M"):
             return
         code, _, rest = word[1:].partition(" ")
@@ -92,10 +94,13 @@ class MachiningWatch:
         if action in _TURNS:
             self._turning = _TURNS[action]
         elif action is MAction.TOOL_CHANGE:
-            self._tool = int(rest[1:]) if rest.startswith("T") and rest[1:].isdigit() else 0
-            self._clear, self._top, self._rapid_end = np.inf, -np.inf, np.nan
+            self._change(int(rest[1:]) if rest.startswith("T") and rest[1:].isdigit() else 0)
         elif action is MAction.PROGRAM_STOP:
             self._note("program_stop", f"{word} stops the program until the operator starts it again", [tag])
+
+    def _change(self, tool: int) -> None:
+        self._tool = tool or self._tool
+        self._clear, self._top, self._rapid_end = np.inf, -np.inf, np.nan
 
     def _moves(self, slots: npt.NDArray[np.int64]) -> None:
         if not len(slots):
@@ -165,7 +170,8 @@ def times_remark(config: MachineConfig, dialect: Dialect, words: list[str]) -> s
     for word in words:
         code = word[1:].partition(" ")[0]
         action = dialect.m_action(int(code)) if word.startswith("M") and code.isdigit() else None
-        if action is MAction.TOOL_CHANGE and times.tool_change_s == 0.0:
+        is_change = action is MAction.TOOL_CHANGE or word.startswith("T")
+        if is_change and times.tool_change_s == 0.0:
             counts["tool change"] += 1
         elif action in (MAction.SPINDLE_CW, MAction.SPINDLE_CCW) and not spindle_counts:
             counts["spindle start"] += 1

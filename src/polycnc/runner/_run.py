@@ -268,7 +268,7 @@ def _note(
         code = event.word[1:].partition(" ")[0]
         action = execution.dialect.m_action(int(code)) if event.word[:1] == "M" and code.isdigit() else None
         tool = records.tool(event.tag)
-        changes = action is MAction.TOOL_CHANGE
+        changes = action is MAction.TOOL_CHANGE or event.word[:1] == "T"
         operations.function(event.line, tool, changes, execution.machine.time_s, execution.path_times)
     if event.stop in (Stop.PROGRAM, Stop.OPTIONAL):
         what = "the run stops here" if execution.stands_at(event.stop) else "passed without stopping"

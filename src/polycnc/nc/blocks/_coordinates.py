@@ -79,6 +79,15 @@ class Coordinates:
         self.length[axis] = sign * length_mm
         self._renew()
 
+    def set_tool(self, values: dict[int, float], *, active: bool) -> None:
+        """Compensate where the tip of a tool lies, along several axes (mm)."""
+        self.length_sign = int(active)
+        self.length = np.zeros_like(self.length)
+        for axis, value in values.items():
+            if axis >= 0:
+                self.length[axis] = value
+        self._renew()
+
     def take_changes(self) -> None:
         """Take over work offsets that have been changed in the table since."""
         if self._tables.revision != self._revision:

@@ -72,7 +72,7 @@ class NonModal:
                 f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
             )
         values = self.motion.axis_words()
-        if not values:
+        if not values and "S" not in self.motion.words.by_letter:  # S is the spindle's clamp
             raise self.fail(
                 f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
             )
