@@ -19,17 +19,31 @@ __version__ = "0.1.0.dev0"
 if TYPE_CHECKING:
     from polycnc.errors import AlarmError, ConfigurationError, PolycncError, ProgramError, UsageError
     from polycnc.machine import Machine, MachineConfig, load_machine
-    from polycnc.runner import Alarm, RunResult, Trace, Violation, check, plot, read_trace, run, verify_trace
+    from polycnc.runner import (
+        Alarm,
+        Comparison,
+        RunResult,
+        Trace,
+        Violation,
+        check,
+        compare,
+        plot,
+        read_trace,
+        run,
+        verify_trace,
+    )
 
 _HOME = {
     "errors": ("AlarmError", "ConfigurationError", "PolycncError", "ProgramError", "UsageError"),
     "machine": ("Machine", "MachineConfig", "load_machine"),
     "runner": (
         "Alarm",
+        "Comparison",
         "RunResult",
         "Trace",
         "Violation",
         "check",
+        "compare",
         "plot",
         "read_trace",
         "run",
@@ -40,6 +54,7 @@ _HOME = {
 __all__ = [
     "Alarm",
     "AlarmError",
+    "Comparison",
     "ConfigurationError",
     "Machine",
     "MachineConfig",
@@ -50,6 +65,7 @@ __all__ = [
     "UsageError",
     "Violation",
     "check",
+    "compare",
     "load_machine",
     "plot",
     "read_trace",

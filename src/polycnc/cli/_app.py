@@ -7,14 +7,26 @@ import sys
 import typer
 
 from polycnc import __version__
-from polycnc.cli import _check, _conformance, _debug, _machine, _post, _run, _sap, _serve, _view, _warmup
-from polycnc.cli._errors import end_on_termination, guarded
+from polycnc.cli import (
+    _check,
+    _compare,
+    _conformance,
+    _debug,
+    _machine,
+    _post,
+    _run,
+    _sap,
+    _serve,
+    _view,
+    _warmup,
+)
+from polycnc.cli._errors import INTERRUPTED, end_on_termination, end_with_report, guarded
 from polycnc.cli._output import print_remarks
 
 app = typer.Typer(
     name="polycnc",
     help="A virtual CNC and motion controller: run, time and inspect NC programs without a machine.",
-    epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 130 interrupted.",
+    epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 70 internal error, 130 interrupted.",
     no_args_is_help=True,
     add_completion=True,
     pretty_exceptions_enable=False,
@@ -41,6 +53,9 @@ def _options(
 app.command("run", short_help="Run a part program: times, path, alarms.")(guarded(_run.run_command))
 app.command("view", short_help="Write a page that shows a run: path, time, blocks, tools.")(
     guarded(_view.view_command)
+)
+app.command("compare", short_help="Compare two programs, or one on two machines.")(
+    guarded(_compare.compare_command)
 )
 app.command("debug", short_help="Execute a program block by block and look at it.")(
     guarded(_debug.debug_command)
@@ -69,4 +84,9 @@ def main() -> None:
         sys.modules["scipy"] = None  # type: ignore[assignment]  # numba would load it: 0.3 s, for nothing here
     print_remarks()
     end_on_termination()
-    app(prog_name="polycnc")
+    try:
+        app(prog_name="polycnc")
+    except Exception as error:  # of the command line itself; the commands are guarded
+        end_with_report(error)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)

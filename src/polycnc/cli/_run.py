@@ -15,16 +15,8 @@ from polycnc.cli._summary import Units, print_summary
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import numpy as np
-    import numpy.typing as npt
-
     from polycnc.machine import MachineConfig
     from polycnc.runner import RunResult
-
-    Floats = npt.NDArray[np.float64]
-    Rows = Callable[[Floats], None]
 
 MACHINE = typer.Option(
     "--machine",
@@ -107,11 +99,14 @@ def run_command(
     """Run part programs on a simulated machine and say how long they take and where they go."""
     from polycnc import runner
     from polycnc.machine import load_machine
+    from polycnc.outputs import keep_apart, keep_inputs
 
-    for what, output in (("a trace", trace), ("a plot", plot), ("a screen", screen)):
+    outputs = (("a trace", trace), ("a plot", plot), ("a screen", screen))
+    for what, output in outputs:
         if output is not None and len(programs) > 1:
             raise UsageError(f"{what} of {len(programs)} programs", hint="Run them one by one.")
-        runner.keep_inputs(output, (*programs, machine, dialect, keys), what)
+        keep_inputs(output, (*programs, machine, dialect, keys), what)
+    keep_apart(outputs)
     texts = [read_program(program) for program in programs]
     config = load_machine(machine)
     if servo:
@@ -119,14 +114,13 @@ def run_command(
     results = []
     for text in texts:
         with ExitStack() as stack:
-            sinks: list[Rows] = []
             picture = None
+            writer = None
             if plot is not None:
                 runner.check_plot_file(plot)
                 picture = runner.PlotCollector(config)
-                sinks.append(picture.add)
             if trace is not None:
-                sinks.append(stack.enter_context(runner.TraceWriter(trace, config, servo)).add)
+                writer = stack.enter_context(runner.TraceWriter(trace, config, servo))
             with progress_bar(Path(text.name).name) as bar:
                 result = runner.run(
                     text,
@@ -136,7 +130,8 @@ def run_command(
                     check=False,
                     skip_levels=skip or (),
                     stop_at_m0=stop_at_m0,
-                    rows=_to_all(sinks) if sinks else None,
+                    rows=None if picture is None else picture.add,
+                    tagged_rows=None if writer is None else writer.add_tagged,
                     progress=bar,
                     root=root,
                     keys=() if keys is None else runner.read_keys(keys),
@@ -161,16 +156,6 @@ def run_command(
             if path is not None:
                 say(f"wrote      {path}")
     sys.exit(0 if all(result.ok for result in results) else 1)
-
-
-def _to_all(sinks: list[Rows]) -> Rows:
-    """Return a sink that hands each piece of the record to all of `sinks`."""
-
-    def rows(piece: Floats) -> None:
-        for sink in sinks:
-            sink(piece)
-
-    return rows
 
 
 def _all_as_dict(results: list[RunResult]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ The interpreter knows actions, never code numbers of a vendor; a new control is 
 
 from __future__ import annotations
 
+import math
 import re
 import string
 from collections.abc import Iterable
@@ -18,7 +19,7 @@ import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
-from polycnc.machine import StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
 from polycnc.nc.blocks._cycles import CycleSettings, PeckTap
 from polycnc.nc.blocks._modal import (
@@ -209,9 +210,16 @@ class Dialect(StrictModel):
         default=None,
         description="How many blocks are prepared beyond the one that is executed; absent: as many as fit.",
     )
-    language: Literal["none", "cpl"] = Field(
+    language: Literal["none", "cpl", "macro"] = Field(
         default="none",
-        description='The language that programs may hold besides NC blocks; "cpl" is that of Bosch.',
+        description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro").',
+    )
+    h_compensates: bool = Field(
+        default=False,
+        description="H alone compensates the tool length, H0 cancels; else G43 or G44 is needed.",
+    )
+    notes_codes: bool = Field(
+        default=False, description="The G codes that were programmed are kept, for those who ask for them."
     )
     diameter_axes: tuple[str, ...] = Field(
         default=(),
@@ -225,11 +233,12 @@ class Dialect(StrictModel):
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
     )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
+    free_corners: bool = Field(
+        default=False,
+        description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter line.",
+    )
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
-    macros: bool = Field(
-        default=False, description="Programs may hold custom macros: variables, expressions and program flow."
-    )
     scaling_unit: Annotated[float, Field(gt=0)] = Field(
         default=0.001, description="What a scaling factor without a decimal point counts."
     )
@@ -262,6 +271,10 @@ class Dialect(StrictModel):
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""
         return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())
+
+    def path_tolerance_mm(self, path: PathConfig) -> float:
+        """Return how far corners may be rounded where the program says nothing, mm; inf if it is free."""
+        return math.inf if self.free_corners and path.tolerance_mm == 0.0 else path.tolerance_mm
 
     def g_action(self, code: float) -> Action | None:
         """Return what a G code does, None if the dialect does not know it."""
@@ -345,7 +358,7 @@ class DialectTables(NamedTuple):
     least_input: float
 
 
-_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "bosch")
+_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

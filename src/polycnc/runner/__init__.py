@@ -5,7 +5,6 @@ What posting and debugging need is loaded when it is first used.
 
 from typing import TYPE_CHECKING, Any
 
-from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._operations import Operation
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
@@ -21,7 +20,8 @@ from polycnc.runner._result import (
     time_text,
 )
 from polycnc.runner._run import CheckReport, check, inspect, program_text, run
-from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
@@ -29,17 +29,21 @@ if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner.comparison import Comparison, PathDeviation, compare
     from polycnc.runner.machine_sources import machine_from
     from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
 
 _LATER = {
+    "Comparison": "comparison",
     "Debugger": "_debugger",
     "Deviation": "_verify_post",
+    "PathDeviation": "comparison",
     "Place": "_debugger",
     "PostResult": "_post",
     "PostVerification": "_verify_post",
     "View": "view",
     "check_view_file": "view",
+    "compare": "comparison",
     "machine_from": "machine_sources",
     "open_in_browser": "view",
     "post_file": "_post",
@@ -53,9 +57,11 @@ __all__ = [
     "TRACE_FORMATS",
     "Alarm",
     "CheckReport",
+    "Comparison",
     "Debugger",
     "Deviation",
     "Operation",
+    "PathDeviation",
     "Place",
     "PlotCollector",
     "PostResult",
@@ -71,13 +77,11 @@ __all__ = [
     "Violation",
     "WallClock",
     "check",
-    "check_output",
     "check_plot_file",
     "check_view_file",
-    "complete_or_absent",
+    "compare",
     "counted",
     "inspect",
-    "keep_inputs",
     "machine_from",
     "open_in_browser",
     "plot",

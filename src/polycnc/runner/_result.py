@@ -71,7 +71,7 @@ class Trace:
     `axes` and `units` name the columns of `setpoint` [cycles, n] and `actual`, which is None without
     simulated servos. The first row is the end of the first cycle, the last row the end of the run.
     `execution` tells the block of each row apart from its neighbours, in whatever program it stands; None in a trace
-    that was read from a file.
+    that was read from a file. `program` [cycles] names the program of each row; None where there is only one.
     """
 
     axes: tuple[str, ...]
@@ -83,6 +83,7 @@ class Trace:
     setpoint: Floats
     actual: Floats | None = None
     execution: Execution | None = field(default=None, repr=False)
+    program: npt.NDArray[np.object_] | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.t_s)
@@ -128,12 +129,12 @@ class RunResult:
     alarms: list[Alarm]
     messages: list[RunMessage]
     tool_times: dict[int, ToolTime]
-    operations: list[Operation]
     events: list[RunEvent] = field(repr=False)
     source: ProgramText | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)
     variables: dict[str, object] = field(default_factory=dict, repr=False)
     """Variables of a program's language by name, after the run: permanent and global ones."""
+    operations: list[Operation] = field(default_factory=list, repr=False)
 
     def __str__(self) -> str:
         state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"

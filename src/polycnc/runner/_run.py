@@ -16,6 +16,7 @@ from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, MAction, ProgramText, Stop, dialect_for, line_of
 from polycnc.nc.macro import language_for
+from polycnc.outputs import keep_inputs
 from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._operations import OperationCollector
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
@@ -140,12 +141,16 @@ def run(
     surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
     control = control_for(chosen, text, simulated, surroundings)
     if screen is not None:
+        keep_inputs(
+            screen, (each for each in (program, machine, dialect) if isinstance(each, str | Path)), "a screen"
+        )
         check_screen_file(screen, text, control)
     execution = ProgramRun(
         simulated,
         text,
         chosen,
         language=language_for(chosen) if control is None else control.language,
+        config=None if control is None else control.config,
         options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
         rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, operations, execution),
@@ -156,7 +161,8 @@ def run(
     else:
         control.attach(execution)
         try:
-            run_to_end(execution, every_cycle=every_cycle, control=control)
+            told = None if every_cycle else progress
+            run_to_end(execution, every_cycle=every_cycle, control=control, progress=told)
         except ProgramError as error:
             stuck = error
         finally:
@@ -227,10 +233,14 @@ def inspect(
     simulated = Machine(load_machine(machine))
     chosen = _dialect_of(text, dialect, ignore)
     control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
-    if control is not None:
+    if control is not None and control.has_statements(text):
         return CheckReport(control.check(text), [])
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = ProgramRun(simulated, text, chosen, options=options, language=language_for(chosen))
+    language = language_for(chosen) if control is None else control.language
+    config = None if control is None else control.config
+    execution = ProgramRun(simulated, text, chosen, options=options, language=language, config=config)
+    if control is not None:
+        control.attach(execution)
     watch = MachiningWatch(execution.channel)
     execution.channel.on_filled = watch.look
     run_to_end(execution, every_cycle=False)

@@ -44,7 +44,7 @@ def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBE
     Raises:
         ProgramError: it is negative, too large or not whole.
     """
-    if word.value != int(word.value) or not 0 <= word.value <= largest:
+    if not word.value.is_integer() or not 0 <= word.value <= largest:
         text = f"{word.letter}{code_text(word.value)}"
         raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
     return int(word.value)
@@ -83,10 +83,10 @@ class Auxiliary:
                 waits += [self._function(m, speed, line) for m in words.m if m.action is action]
         return waits
 
-    def after_motion(self, words: BlockWords, line: int) -> list[Wait]:
-        """Return the waits of program stops and the program end."""
+    def after_motion(self, words: BlockWords, line: int, message: str = "") -> list[Wait]:
+        """Return the waits of program stops, with a message to the operator, and of the program end."""
         return [
-            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action))
+            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action), message=message)
             for m in words.m
             if m.action in _AFTER_MOTION
         ]

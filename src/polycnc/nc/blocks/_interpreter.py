@@ -11,7 +11,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from polycnc.errors import ProgramError
@@ -21,7 +21,7 @@ from polycnc.nc.blocks import _turning_blocks as turning_blocks
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
 from polycnc.nc.blocks._calls import Place
-from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
 from polycnc.nc.blocks._frames import Frames
@@ -41,6 +41,7 @@ from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
+from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._turning_blocks import TurningBlocks
 from polycnc.nc.blocks._words import BlockWords, GWord, code_text, sort_words
@@ -65,6 +66,7 @@ _FRAME_ACTIONS = {
     Action.MIRROR,
     Action.MIRROR_OFF,
 }
+_STATED = (Group.MOTION, Group.DISTANCE)
 _LANGUAGES = (
     "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
     "or post the program without them."
@@ -171,6 +173,7 @@ class Interpreter:
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
         self._non_modal = NonModal(state, messages, self._motion, self.fail)
         self._frames = Frames(state, dialect, self._motion, self.fail)
+        self._placing = Placing(state, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
         self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
         self._behind: Place | None = None  # where the program goes on, behind a contour that a cycle has cut
@@ -311,14 +314,15 @@ class Interpreter:
             self._take_parameters(words)
         self._refuse_unused(words)
         if words.m:
-            items += self._auxiliary.after_motion(words, line)
+            items += self._auxiliary.after_motion(words, line, block.message)
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
         self._motion.check_times(items)
         self._note_position(items)
-        return outcome, self._compensated(
-            self._tagged(items, line, words_stand=bool(block.words)), change_compensation
-        )
+        if self.dialect.notes_codes:
+            self._note_codes(words)
+        tagged = self._tagged(items, line, words_stand=bool(block.words))
+        return outcome, self._compensated(tagged, change_compensation)
 
     def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
         """Return the items with the reference of the block's record, another one than the block just before has.
@@ -476,6 +480,9 @@ class Interpreter:
                 return self._turning.cycle(g, words, line)
             if g.action in turning_blocks.CONTOUR:
                 return self._contour_cycle(g, words, line)
+            if g.action in PLACING:
+                self._placing.carry_out(g, words)
+                return []
             return list(self._non_modal.carry_out(g, motion, line))
         if self._cycles.active:
             return self._cycles.expand(words, line)
@@ -592,6 +599,20 @@ class Interpreter:
                 self.state.modal.position[:] = item.end
                 return
 
+    def _note_codes(self, words: BlockWords) -> None:
+        """Keep the G codes of the block, the latest last; motion and distance are in the modal state."""
+        said = {int(g.word.value) for group, g in words.g.items() if group not in _STATED}
+        said |= {int(g.word.value) for g in words.ignored}
+        placement = self.state.placement
+        alone = words.g.get(Group.NON_MODAL) or words.g.get(Group.DWELL)
+        once = int(alone.word.value) if alone else 0
+        new = said and not said <= {*placement.codes[-1:]}
+        if new or once != placement.once:
+            kept = (code for code in placement.codes if code not in said)
+            plane = None if Group.PLANE in words.g else placement.plane
+            codes = (*kept, *sorted(said))
+            self.state.placement = replace(placement, codes=codes, once=once, plane=plane)
+
     # ------------------------------------------------------------------ the rest of the block
 
     def _outcome(self, words: BlockWords) -> Outcome:
@@ -634,6 +655,12 @@ class Interpreter:
                 raise self.fail(
                     f"'{name}' cannot stand beside this function",
                     "Write the move in a block of its own.",
+                    word,
+                )
+            elif of_another_channel(name) in self.state.axis_names:
+                raise self.fail(
+                    f"axis '{name}' belongs to another channel",
+                    "Take the word out, or execute the program in that channel.",
                     word,
                 )
             elif word.letter in _AXIS_LETTERS:

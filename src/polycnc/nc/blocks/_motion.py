@@ -182,9 +182,9 @@ class MotionBuilder:
             others = axis_values
         for axis, value in others.items():
             programmed[axis] = value if absolute else programmed[axis] + value
-        turn = frame.rotation
-        if turn is not None and changed & {turn.p, turn.q}:
-            changed |= {turn.p, turn.q}
+        for turn in (frame.rotation, frame.outer):
+            if turn is not None and changed & {turn.p, turn.q}:
+                changed |= {turn.p, turn.q}
         found = frame.forward(programmed)
         for axis in changed:
             wanted = found[axis] + offset[axis]
@@ -477,7 +477,7 @@ class MotionBuilder:
         turns = self.words.value("P") if self.dialect.arcs.turns else None
         if turns is None:
             return 1
-        if turns != int(turns) or not 1 <= turns <= LARGEST:
+        if not turns.is_integer() or not 1 <= turns <= LARGEST:
             raise self.fail(
                 f"the number of turns P{code_text(turns)} of an arc is not a whole number from 1 up",
                 "Write P1, P2, ...",

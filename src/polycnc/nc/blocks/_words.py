@@ -144,7 +144,7 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: C
 
 
 def _add_m(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
-    if word.value != int(word.value) or not 0 <= word.value <= LARGEST_M:
+    if not word.value.is_integer() or not 0 <= word.value <= LARGEST_M:
         raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
     code = int(word.value)
     action = dialect.m_action(code)

@@ -1,5 +1,7 @@
 """See a run: one self-contained page with the path in three dimensions, time, blocks, tools, speed."""
 
+from polycnc.runner.view._page import Beside, Mark, page
+from polycnc.runner.view._thin import kept_rows
 from polycnc.runner.view._track import MOST_POINTS, Track, TrackCollector
 from polycnc.runner.view._view import (
     VIEW_FORMATS,
@@ -13,11 +15,15 @@ from polycnc.runner.view._view import (
 __all__ = [
     "MOST_POINTS",
     "VIEW_FORMATS",
+    "Beside",
+    "Mark",
     "Track",
     "TrackCollector",
     "View",
     "check_view_file",
+    "kept_rows",
     "open_in_browser",
+    "page",
     "view_of_trace",
     "view_program",
 ]

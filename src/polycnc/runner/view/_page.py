@@ -6,6 +6,7 @@ import base64
 import gzip
 import html
 import json
+from dataclasses import dataclass
 from importlib import resources
 from typing import Any
 
@@ -28,8 +29,31 @@ _TYPES = {
 }
 
 
+@dataclass(frozen=True)
+class Beside:
+    """A second path that a view shows beside its own, with the same axes, and places that are to be marked."""
+
+    name: str
+    own_name: str
+    track: Track
+    marks: tuple[Mark, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A place that a view marks: what there is, positions of the axes, and when the view's own path comes there."""
+
+    text: str
+    position: tuple[float, ...]
+    time_s: float | None = None
+
+
 def page(
-    result: RunResult, axes: tuple[tuple[str, str], ...], track: Track, texts: dict[str, ProgramText]
+    result: RunResult,
+    axes: tuple[tuple[str, str], ...],
+    track: Track,
+    texts: dict[str, ProgramText],
+    beside: Beside | None = None,
 ) -> str:
     """Return the HTML of a view; `axes` are names and units.
 
@@ -50,6 +74,9 @@ def page(
         "block_kind": np.array([KINDS.index(block.kind) for block in track.blocks], np.uint8),
         "line": np.array(listing.lines, np.int32),
     }
+    if beside is not None:
+        columns["other_t_s"] = beside.track.t_s
+        columns["other_position"] = np.ascontiguousarray(beside.track.position.T, dtype=np.float32)
     blob, places = _packed(columns)
     about = {
         "program": result.program,
@@ -69,6 +96,14 @@ def page(
         "text": listing.texts,
         "columns": places,
     }
+    if beside is not None:
+        about["other"] = {
+            "name": beside.name,
+            "own": beside.own_name,
+            "marks": [
+                {"text": mark.text, "position": mark.position, "time_s": mark.time_s} for mark in beside.marks
+            ],
+        }
     return _filled(
         TITLE=html.escape(result.program.encode("utf-8", "replace").decode()),
         STYLE=_asset("page.css"),

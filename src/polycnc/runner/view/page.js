@@ -18,6 +18,7 @@
   for (const [name, at] of Object.entries(about.columns)) data[name] = new arrays[at.type](blob, at.at, at.length);
 
   const points = data.t_s.length;
+  const other = about.other && { ...about.other, points: data.other_t_s.length, position: (k, axis) => data.other_position[axis * data.other_t_s.length + k] };
   const executions = data.start_s.length;
   const end_s = points ? data.t_s[points - 1] : 0;
   const position = (point, axis) => data.position[axis * points + point];
@@ -45,7 +46,9 @@
   const label = (i) => (i === undefined ? "" : `${about.axes[i].name} [${about.axes[i].unit}]`);
   const ranges = [ix, iy, iz].map((i) => {
     let low = i === undefined ? 0 : Infinity, high = i === undefined ? 0 : -Infinity;
-    if (i !== undefined) for (let k = 0; k < points; k++) { const v = position(k, i); if (v < low) low = v; if (v > high) high = v; }
+    const widen = (v) => { if (v < low) low = v; if (v > high) high = v; };
+    if (i !== undefined) for (let k = 0; k < points; k++) widen(position(k, i));
+    if (i !== undefined && other) for (let k = 0; k < other.points; k++) widen(other.position(k, i));
     if (lathe && i === iz) low = Math.min(low, 0);
     return low <= high ? [low, high] : [0, 0];
   });
@@ -145,6 +148,7 @@
       about.kinds.forEach((kind, i) => { if (used.has(i)) legend.append(chip(paletteColour(i), kind)); });
     }
     if (rapids.x.length) legend.append(chip("", "rapid", "rapid"));
+    if (other) legend.append(chip(css("--other"), `beside it: ${other.name}`));
   }
 
   // ---------------------------------------------------------------- the picture
@@ -195,6 +199,12 @@
     ];
     traces.push(corners);
     if (lathe) traces.push(line({ x: ranges[0], y: [0, 0], z: [0, 0] }, { color: css("--soft"), dash: "dashdot" }, 2));
+    if (other) {
+      const along = (i) => Array.from({ length: other.points }, (_, k) => coordinate((axis) => other.position(k, axis), i));
+      traces.push(line({ x: along(ix), y: along(iy), z: along(iz) }, { color: css("--other") }, 3));
+      const of = (i) => other.marks.map((mark) => coordinate((axis) => mark.position[axis], i));
+      traces.push({ type: "scatter3d", mode: "markers", x: of(ix), y: of(iy), z: of(iz), text: other.marks.map((mark) => mark.text), hoverinfo: "text", marker: { symbol: "diamond-open", size: 9, color: css("--accent"), line: { width: 2 } } });
+    }
     if (alarms.length) {
       const of = (i) => alarmPlaces.map((place) => coordinate((axis) => place[axis], i));
       traces.push({ type: "scatter3d", mode: "markers", x: of(ix), y: of(iy), z: of(iz), hoverinfo: "none", marker: { symbol: "x", size: 6, color: css("--accent") } });
@@ -206,7 +216,8 @@
     const scene = { xaxis: hidden(ranges[0]), yaxis: hidden(ranges[1]), zaxis: hidden(ranges[2]), aspectmode: "manual", ...held };
     const block = { type: "scatter3d", mode: "lines", x: [], y: [], z: [], line: { width: 9, color: css("--accent") }, hoverinfo: "skip" };
     const mark = { type: "scatter3d", mode: "markers", x: [], y: [], z: [], hoverinfo: "skip", marker: { size: 9, color: css("--accent"), line: { width: 2, color: css("--paper") } } };
-    return Plotly.react("tool", [mark, block, corners], { ...frame(), scene }, { displayModeBar: false, responsive: true });
+    const beside = { ...mark, marker: { size: 8, symbol: "circle-open", color: css("--other"), line: { width: 3 } } };
+    return Plotly.react("tool", [mark, block, corners, ...(other ? [beside] : [])], { ...frame(), scene }, { displayModeBar: false, responsive: true });
   }
   let following = false;
   function follow(event) { // the tool's picture lies over that of the path and turns with it
@@ -332,6 +343,12 @@
     if (row !== lit) light(row);
     const place = [ix, iy, iz].map((i) => coordinate((axis) => here.axes[axis], i));
     const change = { x: [[place[0]]], y: [[place[1]]], z: [[place[2]]] }, which = [0];
+    if (other && other.points) {
+      const k = Math.min(after(data.other_t_s, now), other.points - 1), j = Math.max(k - 1, 0), span = data.other_t_s[k] - data.other_t_s[j];
+      const share = span > 0 ? Math.min(Math.max((now - data.other_t_s[j]) / span, 0), 1) : 0;
+      const there = [ix, iy, iz].map((i) => coordinate((axis) => other.position(j, axis) + share * (other.position(k, axis) - other.position(j, axis)), i));
+      change.x.push([there[0]]); change.y.push([there[1]]); change.z.push([there[2]]); which.push(3);
+    }
     if (execution !== shownExecution) {
       shownExecution = execution;
       const [x, y, z] = blockLine(execution);
@@ -395,6 +412,12 @@
     button.onclick = () => { if (each.time_s !== null) goTo(each.time_s); else if (each.row >= 0) goToRow(each.row); if (each.row >= 0) light(each.row); };
     element("remarks").appendChild(document.createElement("li")).append(button);
   }
+  for (const mark of other ? other.marks : []) {
+    const button = Object.assign(document.createElement("button"), { type: "button", textContent: `◇ ${mark.text}` });
+    button.onclick = () => { if (mark.time_s !== null) goTo(mark.time_s); };
+    element("remarks").appendChild(document.createElement("li")).append(button);
+  }
+  if (other) element("summary").textContent += ` · beside ${other.name}`;
   if (!points) say("The program moves no axis.");
   listing.onscroll = drawListing;
   rows.onclick = (event) => { const row = event.target.closest(".row"); if (row && data.line[row.dataset.row]) { say(""); goToRow(Number(row.dataset.row)); } };

@@ -1,0 +1,289 @@
+"""Comparison of paths: against closed forms, against shapely, and what `polycnc compare` makes of programs."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import polycnc
+from polycnc.errors import UsageError
+from polycnc.nc import ProgramText, dialect_for
+from polycnc.runner import TraceWriter
+from polycnc.runner.comparison import Boxes, first_difference, greatest_distance, in_one_order
+from support.command import polycnc as command
+
+MILL = """name = "compared"
+[[axis]]
+name = "X"
+vmax_mm_s = 250
+amax_mm_s2 = 3000
+[[axis]]
+name = "Y"
+vmax_mm_s = 250
+amax_mm_s2 = 3000
+[[axis]]
+name = "Z"
+vmax_mm_s = 250
+amax_mm_s2 = 3000
+"""
+PART = """G0 X3 Y2 Z5
+T4 M6
+G1 Z-1.5 F300
+G1 X43 F1700
+G1 Y22
+G1 X3
+G1 Y2
+G0 Z5
+T7 M6
+G0 X8 Y7
+G1 Z-2.5 F400
+G1 X33
+G0 Z5
+M30
+"""
+
+
+def _from(a: Sequence[tuple[float, ...]], b: Sequence[tuple[float, ...]]) -> tuple[float, int, float]:
+    one, other = np.array(a, float), np.array(b, float)
+    return greatest_distance(one[:-1], one[1:], Boxes(other[:-1], other[1:]))
+
+
+def test_farthest_between_the_points_of_both() -> None:
+    """From two posts at x = -7 and x = 5, a line along y = 0 is farthest where their middle crosses it."""
+    line = np.array([[-7.0, 0.0], [6.0, 0.0]])
+    posts = Boxes(np.array([[-7.0, -3.0], [5.0, -2.0]]), np.array([[-7.0, 4.0], [5.0, 9.0]]))
+    distance, segment, part = greatest_distance(line[:1], line[1:], posts)
+    assert distance == pytest.approx(6.0, abs=2e-6)
+    assert segment == 0
+    assert -7.0 + 13.0 * part == pytest.approx(-1.0, abs=3e-6)
+
+
+def test_the_two_directions_are_two_numbers() -> None:
+    """A spur of 4.25 that only one of them has is far from the other; the other is nowhere far from it."""
+    plain = [(0.0, 0.0, 1.0), (9.0, 0.0, 1.0), (30.0, 0.0, 1.0)]
+    with_spur = [*plain[:2], (9.0, 4.25, 1.0), *plain[1:]]
+    assert _from(plain, with_spur)[0] == 0.0
+    distance, *where = _from(with_spur, plain)
+    assert distance == pytest.approx(4.25, abs=2e-6)
+    assert where == [1, 1.0]
+
+
+def test_parallel_lines_of_many_pieces_are_one_distance() -> None:
+    x = np.linspace(0.0, 100.0, 3001)
+    line = np.column_stack((x, np.full_like(x, 2.75)))
+    found, _, _ = greatest_distance(
+        np.array([[0.0, 0.0]]), np.array([[100.0, 0.0]]), Boxes(line[:-1], line[1:])
+    )
+    assert found == pytest.approx(2.75, abs=2e-6)
+
+
+POINTS = st.lists(
+    st.tuples(st.floats(-50, 50, width=32), st.floats(-50, 50, width=32)),
+    min_size=2,
+    max_size=40,
+    unique=True,
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(POINTS, POINTS)
+def test_equals_the_distance_that_shapely_samples(
+    a: list[tuple[float, float]], b: list[tuple[float, float]]
+) -> None:
+    """shapely knows how far a point is: at many points of the one, that is below ours by no more than their spacing."""
+    shapely = pytest.importorskip("shapely")
+    other = shapely.LineString(b)
+    one = np.array(a, float)
+    share = np.linspace(0.0, 1.0, 201)[:, None]
+    sampled, spacing = 0.0, 0.0
+    for start, end in pairwise(one):
+        points = shapely.points(start + share * (end - start))
+        sampled = max(sampled, float(shapely.distance(points, other).max()))
+        spacing = max(spacing, float(np.hypot(*(end - start))) / 200.0)
+    found, segment, part = _from(a, b)
+    assert sampled - 2e-6 <= found <= sampled + 0.5 * spacing + 2e-6
+    place = shapely.Point(one[segment] + part * (one[segment + 1] - one[segment]))
+    assert shapely.distance(place, other) == pytest.approx(found, abs=1e-9)
+
+
+@settings(max_examples=60, deadline=None)
+@given(POINTS, POINTS)
+def test_order_equals_the_frechet_distance_of_shapely(
+    a: list[tuple[float, float]], b: list[tuple[float, float]]
+) -> None:
+    """shapely walks from point to point of densified lines: never nearer than walking freely, and hardly farther."""
+    shapely = pytest.importorskip("shapely")
+    one, other = shapely.LineString(a), shapely.LineString(b)
+    steps = shapely.frechet_distance(one, other, densify=0.1)
+    longest = max(math.dist(p, q) * 0.1 for line in (a, b) for p, q in pairwise(line))
+    assert in_one_order(np.array(a), np.array(b), steps + 1e-9)[0]
+    if steps > longest + 1e-6:
+        assert not in_one_order(np.array(a), np.array(b), steps - longest - 1e-6)[0]
+
+
+@pytest.fixture
+def mill(tmp_path: Path) -> Path:
+    path = tmp_path / "mill.toml"
+    path.write_text(MILL)
+    return path
+
+
+def test_a_program_equals_itself_and_its_traces(mill: Path, tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_text(PART)
+    result = polycnc.run(tmp_path / "part.nc", mill, trace=True)
+    assert result.trace is not None
+    found = polycnc.compare(tmp_path / "part.nc", tmp_path / "part.nc", mill)
+    assert found.ok
+    assert (found.deviation_mm, found.same_order, found.tools) == (0.0, True, ((0, 4, 7), (0, 4, 7)))
+    assert polycnc.compare(tmp_path / "part.nc", result, mill).deviation_mm == 0.0
+    with TraceWriter(tmp_path / "part.csv", polycnc.load_machine(mill), actual=False) as writer:
+        polycnc.run(tmp_path / "part.nc", mill, rows=writer.add)
+    read = polycnc.compare(tmp_path / "part.nc", tmp_path / "part.csv", mill)
+    assert read.ok
+    assert (read.deviation_mm, read.cuts_a_from_b, read.tools) == (0.0, None, None)
+    assert read.b.time_s == result.time_s
+    assert read.b.extents_mm["Z"] == pytest.approx(result.extents_mm["Z"])
+
+
+def test_a_bulge_is_as_far_as_its_sagitta(mill: Path) -> None:
+    """A chord of 40 and an arc over it of radius 41: the middle is R - sqrt(R^2 - 20^2) away."""
+    line = "G0 X5 Y5\nG1 X45 F900\nM30\n"
+    arc = line.replace("G1 X45 F900", "G3 X45 Y5 R41 F900")
+    found = polycnc.compare(line, arc, mill, tolerance_mm=5.3)
+    sagitta = 41.0 - math.sqrt(41.0**2 - 20.0**2)
+    assert found.b_from_a.mm == pytest.approx(sagitta, abs=2e-4)
+    assert found.b_from_a.position["X"] == pytest.approx(25.0, abs=0.5)
+    assert found.b_from_a.line == 2
+    assert found.a_from_b.mm == pytest.approx(sagitta, abs=2e-4)
+    assert found.ok
+    assert not polycnc.compare(line, arc, mill, tolerance_mm=5.1).ok
+    assert found.first_difference is not None
+    assert (found.first_difference.line_a, found.first_difference.text_b) == (2, "G3 X45 Y5 R41 F900")
+
+
+def test_a_pocket_the_other_way_round_is_not_the_same(mill: Path) -> None:
+    lines = PART.splitlines()
+    lines[3:7] = ["G1 Y22 F1700", "G1 X43", "G1 Y2", "G1 X3"]
+    found = polycnc.compare(PART, "\n".join(lines) + "\n", mill)
+    assert found.deviation_mm < 2e-3
+    assert found.same_order is False
+    assert not found.ok
+    assert found.parts_at == (("<text>", 4), ("<text>", 4))
+
+
+def test_a_second_pass_that_is_missing_is_not_the_same(mill: Path) -> None:
+    square = "G1 X43 F1700\nG1 Y22\nG1 X3\nG1 Y2\n"
+    twice = "G0 X3 Y2 Z5\nG1 Z-1.5 F300\n" + square * 2 + "G0 Z5\nM30\n"
+    found = polycnc.compare(twice, twice.replace(square, "", 1), mill)
+    assert found.deviation_mm < 2e-3
+    assert (found.same_order, found.ok) == (False, False)
+
+
+def test_a_cut_that_becomes_a_rapid_is_not_the_same(mill: Path) -> None:
+    found = polycnc.compare(PART, PART.replace("G1 X33", "G0 X33"), mill)
+    assert max(found.a_from_b.mm, found.b_from_a.mm) < 2e-3
+    assert found.cuts_a_from_b is not None
+    # What was cut at Y7 is nearest to the side at Y2, which is 1 mm higher.
+    assert found.cuts_a_from_b.mm == pytest.approx(math.hypot(5.0, 1.0), abs=0.01)
+    assert found.cuts_a_from_b.line == 12
+    assert not found.ok
+
+
+def test_a_cut_over_a_cut_that_becomes_a_rapid_is_not_the_same(mill: Path) -> None:
+    twice = "G0 X3 Y2 Z5\nG1 Z-1.5 F300\nX43\nX3\nG0 Z5\nM30\n"
+    found = polycnc.compare(twice, twice.replace("\nX3\n", "\nG0 X3\n"), mill)
+    assert found.deviation_mm < 0.01
+    assert (found.same_order, found.ok) == (False, False)
+
+
+def test_another_tool_is_not_the_same(mill: Path) -> None:
+    found = polycnc.compare(PART, PART.replace("T7", "T8"), mill)
+    assert found.tools == ((0, 4, 7), (0, 4, 8))
+    assert (found.deviation_mm, found.ok) == (0.0, False)
+
+
+def test_another_feed_changes_times_and_no_path(mill: Path) -> None:
+    found = polycnc.compare(PART, PART.replace("F1700", "F1250"), mill)
+    assert found.ok
+    slower_s = 60.0 * 120.0 / 1250.0 - 60.0 * 120.0 / 1700.0
+    assert found.b.time_s - found.a.time_s == pytest.approx(slower_s, abs=0.02)
+    assert (found.a.top_feed_mm_min, found.b.top_feed_mm_min) == pytest.approx((1700.0, 1250.0))
+
+
+def test_a_rotary_axis_that_one_machine_lacks(mill: Path, tmp_path: Path) -> None:
+    with_c = tmp_path / "mill_c.toml"
+    with_c.write_text(
+        MILL + '[[axis]]\nname = "C"\nkind = "rotary"\nvmax_deg_s = 90\namax_deg_s2 = 900\nmodulo = true\n'
+    )
+    still = polycnc.compare(PART, PART, mill, machine_b=with_c)
+    assert (still.ok, still.lone_axes) == (True, ())
+    turned = polycnc.compare(PART, PART.replace("G0 Z5\nT7", "G0 Z5 C35\nT7"), mill, machine_b=with_c)
+    assert (turned.ok, turned.lone_axes) == (False, ("C",))
+    both = polycnc.compare(
+        "G1 X5 F900\nG91\nC350\nC350\nM30\n", "G1 X5 F900\nG91\nC350\nC350.5\nM30\n", with_c
+    )
+    assert both.b_from_a.mm == pytest.approx(0.5, abs=1e-4)  # counted on over the full turn
+
+
+def test_an_alarm_in_one_of_them_is_not_the_same(mill: Path) -> None:
+    found = polycnc.compare(PART, PART.replace("M30", "G1 B7"), mill)
+    assert (found.a.ok, found.b.ok, found.ok) == (True, False, False)
+    assert found.as_dict()["b"]["alarms"][0]["line"] == 14
+
+
+def test_nothing_moves_anywhere() -> None:
+    assert polycnc.compare("M3\nM30\n", "M5\nM30\n").ok
+    lone = polycnc.compare("M3\nM30\n", "G1 X5 F100\nM30\n")
+    assert (lone.b_from_a.mm > 4.9, lone.ok) == (True, False)
+
+
+def test_first_difference_is_of_words_and_not_of_dress() -> None:
+    read = dialect_for("a.nc", "din")
+
+    def lines(a: str, b: str) -> tuple[int, int] | None:
+        found = first_difference(ProgramText.from_text(a), ProgramText.from_text(b), read, read)
+        return None if found is None else (found.line_a, found.line_b)
+
+    # A decimal point can mean another unit.
+    assert lines("N10 G1 X10 F5\nN20 Y7\n", "(part)\n\nG1X10.F5\n") == (1, 3)
+    assert lines("N10 G1 X10 F5\nN20 Y7\n", "(part)\n\nG1 X10 F05 (slow)\r\nN999 Y7.\n") == (2, 4)
+    assert lines("N10 G1 X10 F5\nN20 Y7\n", "(part)\n\nG1 X10 F05 (slow)\r\nN999 Y7\n") is None
+    assert lines("G1 X10\nY7\n", "G1 X10\nY7\nM30\n") == (0, 3)
+    assert lines("G1 X10\n/Y7\n", "G1 X10\nY7\n") == (2, 2)
+
+
+def test_refusals(mill: Path) -> None:
+    with pytest.raises(UsageError, match="a tolerance of -1"):
+        polycnc.compare(PART, PART, mill, tolerance_mm=-1.0)
+    with pytest.raises(UsageError, match="a tolerance of nan"):
+        polycnc.compare(PART, PART, mill, tolerance_mm=math.nan)
+    with pytest.raises(UsageError, match="no trace"):
+        polycnc.compare(PART, polycnc.run(PART, mill), mill)
+
+
+def test_the_command(mill: Path, tmp_path: Path) -> None:
+    (tmp_path / "a.nc").write_text(PART)
+    (tmp_path / "b.nc").write_text(PART.replace("G1 X33", "G1 X33.75"))
+    same = command("compare", "a.nc", "a.nc", "-m", mill, cwd=tmp_path)
+    assert same.stdout.endswith("the same within 0.01 mm\n")
+    found = command("compare", "a.nc", "b.nc", "-m", mill, "-o", "both.html", cwd=tmp_path, status=1)
+    assert "B from A 0.7500 mm at X33.750 Y7.000 Z-2.500, line 12" in found.stdout
+    assert "differs    A line 12: G1 X33\n" in found.stdout
+    page = (tmp_path / "both.html").read_text("utf-8")
+    assert 'content="polycnc view"' in page
+    command("compare", "a.nc", "b.nc", "-m", mill, "--tolerance", "0.8", cwd=tmp_path)
+    data = json.loads(command("compare", "a.nc", "b.nc", "-m", mill, "--json", cwd=tmp_path, status=1).stdout)
+    assert data["b_from_a"]["mm"] == pytest.approx(0.75, abs=2e-5)
+    alone = command("compare", "a.nc", cwd=tmp_path, status=2)
+    assert "nothing to be compared with" in alone.stderr
+    over = command("compare", "a.nc", "b.nc", "-o", "a.nc", cwd=tmp_path, status=2)
+    assert "error:" in over.stderr
+    assert (tmp_path / "a.nc").read_text() == PART
