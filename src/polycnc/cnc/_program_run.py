@@ -487,6 +487,11 @@ class ProgramRun:
         return self._tool_times.until(self._seconds())
 
     @property
+    def path_times(self) -> ToolTime:
+        """How long the path has cut and positioned so far, with whatever tool."""
+        return self._seconds()
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
         row = self._row
