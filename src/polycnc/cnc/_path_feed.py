@@ -109,8 +109,6 @@ class PathFeed:
         first = int(row["prepared"])
         prepare_path(state.seg, state.paths, path, state.limits, self.machine.config.cycle_s, state.work)
         probing = [each.tag for each in self.channel.writer.events.values() if each.stop is Stop.PROBE]
-        if not probing and (tag := self.channel.state.skip_tag) is not None and self.channel.waits:
-            probing = [tag]
         prepared = int(row["prepared"])
         if probing and first < prepared:  # what lies behind may not be gone along
             tags = self.tags(first, prepared)

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.cnc._path_feed import PathFeed
-from polycnc.kernel import PIDF, WAIT, drop_queue
+from polycnc.kernel import PIDF, drop_queue
 from polycnc.machine import Machine, first_contact
 from polycnc.nc import Channel
 
@@ -27,44 +27,28 @@ class Probing:
     before: tuple[float, ...]
     met: bool = False
 
-    def look(self, machine: Machine, channel: Channel) -> bool:
-        """Look at one cycle; tell whether the contact is in it, whose position the channel takes."""
+    def look(self, machine: Machine, channel: Channel, *, signal: bool = False) -> bool:
+        """Look at one cycle; tell whether the contact is in it, whose position the channel takes.
+
+        A `signal` from outside is a contact where the axes are.
+        """
         now = positions(machine)
         surfaces, names = machine.config.surfaces, machine.config.axis_names
-        found = first_contact(surfaces, names, self.before, now)
+        found = first_contact(surfaces, names, self.before, now) or (now if signal else None)
         self.before = now
         if found is None:
             return False
-        self.meet(channel, found)
-        return True
-
-    def meet(self, channel: Channel, found: tuple[float, ...]) -> None:
-        """Take note of the contact, whose position the channel takes."""
         self.met = True
         state = channel.state
         if state.probe is not None:
             state.probe = replace(state.probe, position=found)
         if state.skip_position is not None:
             state.skip_position = found
-
-
-def skip_segment(machine: Machine, channel: Channel) -> int | None:
-    """Return the count of the skip move that is in the queue, None if there is none; all behind it waits for it."""
-    tag = channel.state.skip_tag
-    if tag is None or not channel.waits:
-        return None
-    row, segments = machine.state.paths.row[channel.path], machine.state.seg.row
-    for count in range(int(row["tail"]) - 1, int(row["head"]) - 1, -1):
-        segment = segments[int(row["base"]) + count % int(row["capacity"])]
-        if segment["tag"] != tag:
-            return None
-        if segment["kind"] != WAIT:
-            return count
-    return None
+        return True
 
 
 def delete_rest(machine: Machine, channel: Channel, feed: PathFeed) -> None:
-    """Drop the move along which a path stands; functions, stops and the program behind it go on from there."""
+    """Drop what a path, which stands, has still to go along, but for functions; its program goes on from there."""
     drop_queue(machine.state.seg, machine.state.paths, channel.path)
     channel.writer.put_again()
     feed.drop_probing()

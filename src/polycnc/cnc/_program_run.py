@@ -17,7 +17,7 @@ from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
-from polycnc.cnc._probing import Probing, delete_rest, positions, skip_segment
+from polycnc.cnc._probing import Probing, delete_rest, positions
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
@@ -67,8 +67,7 @@ HIGHEST_OVERRIDE = 2.0
 _SAVED = (
     "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
     "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
-    "skip_signal", "_suppressed", "_held_back",
-    "_override_kept",
+    "skip_signal", "_suppressed", "_held_back", "_override_kept",
 )  # fmt: skip
 
 
@@ -92,7 +91,7 @@ class ProgramRun:
     names of the machine's axes in this channel, empty for those that it does not have.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The surfaces of the machine file do the same. `on_skip` is told when either is met.
+    The surfaces of the machine file give it as well. `on_skip` is told when it is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -540,10 +539,6 @@ class ProgramRun:
         self._take_suppressed()
         target = self.feed.target()
         done = 0
-        if self.skip_signal and (skipping := skip_segment(self.machine, self.channel)) is not None:
-            if skipping <= self._row["head"]:
-                return self.advance(1)
-            target = min(target, skipping)
         while self._state is RunState.ACTIVE and self._row["head"] < target:
             if self._probing is not None:
                 return done + self.advance(1)
@@ -572,7 +567,6 @@ class ProgramRun:
         self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        self._watch_skip()
         return cycles if self._probing is None else min(cycles, 1)
 
     def after_cycles(self, cycles: int) -> None:
@@ -767,9 +761,9 @@ class ProgramRun:
     def _probe(self, probing: Probing) -> None:
         """Look for the contact of a probing move; what is left of the move is dropped once the axes stand."""
         if not probing.met:
-            if probing.look(self.machine, self.channel) and probing.deletes:
+            if probing.look(self.machine, self.channel, signal=self.skip_signal) and probing.deletes:
                 self._set_hold()
-                if self.on_skip is not None:
+                if self.on_skip is not None and self.channel.state.skip_position is not None:
                     self.on_skip()
         elif probing.deletes and self.at_rest and self._state is RunState.ACTIVE:
             delete_rest(self.machine, self.channel, self.feed)
@@ -803,22 +797,6 @@ class ProgramRun:
         if self._held_back and not now.hold:
             self._held_back = False
             self.hold()
-
-    def _watch_skip(self) -> None:
-        """Let a skip move meet the signal that somebody gives."""
-        if not self.skip_signal or (self._probing is not None and self._probing.met):
-            return
-        row, skipping = self._row, skip_segment(self.machine, self.channel)
-        if skipping is None:
-            return
-        if skipping > row["head"]:
-            row["low_water"] = max(row["planned"] - skipping, 0)  # comes back when it begins
-            return
-        self._probing = self._probing or Probing(True, positions(self.machine))
-        self._probing.meet(self.channel, positions(self.machine))
-        self._set_hold()
-        if self.on_skip is not None:
-            self.on_skip()
 
     def _look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""

@@ -224,7 +224,8 @@ class MachineConfig(StrictModel):
 
     @model_validator(mode="after")
     def _fits_together(self) -> MachineConfig:
-        for error in (*self._axis_problems(), *self._offset_problems(), *self._start_problems()):
+        problems = self._axis_problems, self._offset_problems, self._start_problems
+        for error in (error for find in problems for error in find()):
             raise error
         for error in surface_problems(self.surfaces, self.axis_names):
             raise error

@@ -59,7 +59,6 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
-    skip_tag: int | None
     placement: Placement
     probe: Probe | None
     rigid_tap: bool
@@ -108,7 +107,7 @@ class ChannelState:
     compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops. `m_codes` are
     those of the last block that had any. `tables` are the tools and work offsets, `frame` how programmed
     positions are turned, scaled and mirrored, `placement` where they lie besides, `skip_position` where the
-    last skip move ended (machine coordinates), `skip_tag` the reference of its block, `probe` the last probing.
+    last skip move ended (machine coordinates), `probe` the last probing.
     With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
@@ -121,7 +120,6 @@ class ChannelState:
         self.placement = Placement()
         self.probe: Probe | None = None
         self.skip_position: tuple[float, ...] | None = None
-        self.skip_tag: int | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
         self.cycle = Cycle()
@@ -171,7 +169,6 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
-            self.skip_tag,
             self.placement,
             self.probe,
             self.rigid_tap,

@@ -295,8 +295,6 @@ class Interpreter:
         if self.dialect.notes_codes:
             self._note_codes(words)
         tagged = self._tagged(items, line, words_stand=bool(block.words))
-        if (g := words.g.get(Group.NON_MODAL)) and g.action is Action.SKIP_MOVE:
-            self.state.skip_tag = self._last_tag
         return outcome, self._compensated(tagged, change_compensation)
 
     def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:

@@ -70,8 +70,6 @@ class NonModal:
         move = replace(self.motion.line(self.motion.target(values), False, line), exact_stop=True)
         self.state.skip_position = move.end
         wait = Wait(0.0, line, stop=Stop.DRAIN)
-        if not self.state.machine.surfaces:
-            return [move, wait]
         self.state.probe = Probe(frozenset(values))
         return [Wait(0.0, line, stop=Stop.PROBE), move, wait]
 
