@@ -67,8 +67,7 @@ HIGHEST_OVERRIDE = 2.0
 _SAVED = (
     "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
     "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
-    "skip_signal", "_suppressed", "_held_back",
-    "_override_kept",
+    "skip_signal", "_suppressed", "_held_back", "_override_kept",
 )  # fmt: skip
 
 
@@ -494,13 +493,19 @@ class ProgramRun:
     @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
+        return self._by_axis(self.to_go)
+
+    @property
+    def to_go(self) -> Floats:
+        """What `distance_to_go` tells, by the place of the axis."""
         row = self._row
         here = self.machine.state.paths.position[self.path]
         if row["state"] not in (kernel.RUNNING, kernel.HELD):
-            return self._by_axis(np.zeros_like(here))
+            return np.zeros_like(here)
         last = self.feed.block_end(int(row["head"])) - 1
         k = int(row["base"]) + last % int(row["capacity"])
-        return self._by_axis(self.machine.state.seg.end[k] - here)
+        left: Floats = self.machine.state.seg.end[k] - here
+        return left
 
     # ------------------------------------------------------------------ time
 
