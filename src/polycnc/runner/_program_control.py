@@ -69,6 +69,11 @@ def control_for(
     return None if make is None else make(program, machine, surroundings)
 
 
+def needs_root(dialect: Dialect, program: ProgramText) -> bool:
+    """Say whether a program may read and write files of its control."""
+    return dialect.language in _CONTROLS and _holds_cpl(program)
+
+
 def root_of(program: str | Path | ProgramText, root: str | Path | None) -> Path:
     """Return the root of the control: a folder that is given, else that of the program.
 
@@ -98,9 +103,7 @@ def read_keys(path: str | Path) -> tuple[str, ...]:
 
 
 def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> ProgramControl | None:
-    from polycnc.nc.cpl import holds_cpl
-
-    if not holds_cpl(program.content):
+    if not _holds_cpl(program):
         return None
     from polycnc.controllers.bosch import Pnc
 
@@ -111,6 +114,12 @@ def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> 
         keys=surroundings.keys,
         skip_levels=surroundings.skip_levels,
     )
+
+
+def _holds_cpl(program: ProgramText) -> bool:
+    from polycnc.nc.cpl import holds_cpl
+
+    return holds_cpl(program.content)
 
 
 _CONTROLS: dict[str, Callable[[ProgramText, Machine, Surroundings], ProgramControl | None]] = {"cpl": _cpl}
