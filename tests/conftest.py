@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from pathlib import Path
 
 # Before polycnc is imported: tests may call compiled functions that are not entries.
@@ -18,6 +19,22 @@ REPOSITORY = Path(__file__).resolve().parents[1]
 os.environ["MPLBACKEND"] = "Agg"
 settings.register_profile("polycnc", deadline=None, derandomize=True, database=None)
 settings.load_profile("polycnc")
+
+# What tests may lack: a word of the reason they give, and what to do about it.
+HOW_TO_GET = {
+    "rs274": "the interpreter of LinuxCNC is not installed (Debian: apt-get install linuxcnc-uspace)",
+    "POLYCNC_DATA to": "no public NC programs: put them into nc/ of a folder and name it by POLYCNC_DATA",
+    "inventory": "no inventory of the manuals: put it beside the checkout as shared/inventory",
+    "Chromium": "no browser on the PATH (Debian: apt-get install chromium)",
+    "Playwright": "no Playwright (pip install -e '.[test]')",
+    "could not import": "a package of the test extra is missing (pip install -e '.[test]')",
+    "root may": "root may do everything: run the tests as another user",
+    "access rights": "access rights do not bind root: run the tests as another user",
+    "/dev/full": "no full device here (Linux has /dev/full)",
+    "needs fork": "this system cannot fork (POSIX systems can)",
+    "needs S": "this system has no such signal (POSIX systems have)",
+    "nothing is compiled": "compiling is off: run without NUMBA_DISABLE_JIT",
+}
 
 _claims_key = pytest.StashKey[list[tuple[str, str]]]()
 _problem_key = pytest.StashKey[str]()
@@ -72,6 +89,20 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_runtest_setup(item: pytest.Item) -> None:
     if problem := item.stash.get(_problem_key, ""):
         pytest.fail(problem, pytrace=False)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Say what was skipped for want of something, and how to get that."""
+    skipped = Counter(str(report.longrepr[2]) for report in terminalreporter.stats.get("skipped", ()))
+    lacking = {
+        hint: sum(number for reason, number in skipped.items() if word in reason)
+        for word, hint in HOW_TO_GET.items()
+    }
+    if any(lacking.values()):
+        terminalreporter.section("not tried here")
+        for hint, number in lacking.items():
+            if number:
+                terminalreporter.write_line(f"{number} skipped: {hint}")
 
 
 def _whole_tree(config: pytest.Config) -> bool:

@@ -9,6 +9,7 @@ import pytest
 from polycnc.cnc import (
     AfterManual,
     Answer,
+    ChannelData,
     Control,
     ControlData,
     ControlError,
@@ -715,7 +716,7 @@ def test_the_snapshot_of_another_thing_is_refused_before_anything_changes() -> N
     made = started()
     made.advance(300)
     others = (
-        Control(cnc_machine(), channels=2).snapshot(),
+        Control(cnc_machine(), channels=(ChannelData(("X", "Y")), ChannelData(("Z", "B")))).snapshot(),
         Control("mill3").snapshot(),
         Control(cnc_machine(cycle_s=0.002)).snapshot(),
         Control(cnc_machine(), dialect="fanuc").snapshot(),

@@ -50,6 +50,19 @@ def test_each_of_sixteen_coordinates_moves_its_axis() -> None:
 
 
 @pytest.mark.covers("imc.param.contouring")
+def test_contouring_shows_in_the_axes_of_the_group_while_points_are_carried_out() -> None:
+    card = ready_card()
+    group(card, 3, 1, cycles=6)
+    card.push_points([30, -42] * 4)
+    send(card, IFIFO, ("startgroup", FLAG))
+    for _ in range(4 * 6):
+        card.advance(1)
+        assert [card.read("contouring", i) for i in range(4)] == [0, FLAG, 0, FLAG]
+    card.advance(1)
+    assert [card.read("contouring", i) for i in range(4)] == [0] * 4
+    assert [card.read("curpos", i) for i in range(4)] == [0, -168, 0, 120]
+
+
 def test_an_empty_queue_ends_contouring_and_new_points_go_on() -> None:
     card = ready_card()
     group(card, 0, cycles=3)
@@ -86,7 +99,7 @@ def test_an_odd_displacement_arrives_whole() -> None:
     assert [card.read_raw(224, i, 3) for i in (0, 1)] == [4 * 65536, -4 * 65536]
 
 
-@pytest.mark.covers("imc.concept.capfifo", "imc.bit.encpctr.10")
+@pytest.mark.covers("imc.concept.capfifo", "imc.bit.encpctr.10", "imc.param.encpctr")
 def test_probe_pulses_are_captured_while_capture_is_on() -> None:
     card = ready_card("[[axis]]\nprobe = { first = 105.0, pitch = 100.0 }\n")
     set_now(card, ("mcsmaxvel", 30))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 
@@ -518,3 +519,18 @@ def test_a_path_or_contour_takes_a_slave_out_of_its_gear(mover: str) -> None:
     assert (card.read("curpos", 1), card.read("engear", 1)) == (began + 207, 0)
     card.advance(10)
     assert card.read("moving", 1) == 0
+
+
+def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
+    card = ready_card()
+    set_now(card, ("syntype", FLAG, 1), ("slavedist", 5000, 1), ("mcsdecel", 2, 1))
+    _timed(card, 400)
+    send(card, IFIFO, ("startsyn", FLAG, 1))
+    card.advance(150)
+    speed, place = card.read("curvel", 1), card.read("curpos", 1)
+    assert speed > 15
+    send(card, IFIFO, ("startsyn", 0, 1))
+    steps = trace(card, "curvel", 30, 1)
+    assert [a - b for a, b in pairwise(steps[1:6])] == [2.0] * 4
+    assert (steps[-1], card.read("moving", 1), card.read("pcsmoving", 1)) == (0, 0, 0)
+    assert place + speed * speed / 4 - speed < card.read("curpos", 1) < place + speed * speed / 4 + speed

@@ -195,3 +195,24 @@ def test_with_a_lagging_drive_the_origin_is_where_the_encoder_was_at_the_edge() 
     assert card.read("curpos") == 0
     assert card.kernel.servo.actual[0] == pytest.approx(5000, abs=1)
     assert abs(card.read("poserr")) <= 1
+
+
+@pytest.mark.parametrize("lacking", [("run", 0), ("highvel", 0)])
+def test_a_search_that_cannot_begin_takes_its_flag_back(lacking: tuple[str, float]) -> None:
+    card = ready_card(AXIS)
+    set_now(card, ("highvel", 7), lacking)
+    home(card)
+    card.advance(1)
+    assert (card.read("gohome"), card.read("curpos"), card.read("homed")) == (0, 0, 0)
+    card.advance(40)
+    assert (card.read("gohome"), card.read("curpos")) == (0, 0)
+
+
+def test_any_value_but_0_starts_a_search_and_shows_as_a_flag() -> None:
+    card = ready_card(AXIS)
+    set_now(card, ("highvel", 7))
+    home(card)
+    send(card, IFIFO, ("gohome", 5))
+    card.advance(2)
+    assert card.read("gohome") == FLAG
+    assert card.read("curvel") > 0

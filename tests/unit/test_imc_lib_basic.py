@@ -142,25 +142,54 @@ def test_clearing_ends_an_endless_wait(program: Program, endless: int) -> None:
     assert program.get("user16b0") == 2
 
 
-@pytest.mark.covers("imc.IMC_WaitParam", "imc.IMC_WaitParamBit", "imc.IMC_WaitParamMask")
-@pytest.mark.parametrize(
-    ("function", "arguments", "met"),
-    [
-        (lib.IMC_WaitParam, (-2,), 0xFFFE),
-        (lib.IMC_WaitParamBit, (3, 1), 0x0008),
-        (lib.IMC_WaitParamMask, (0x00FF, 0x0034), 0x1234),
-    ],
-)
+WAITS = [  # function, what is waited for, what the word is before and what it becomes
+    pytest.param("IMC_WaitParam", (-2,), 0xFFFA, 0xFFFE, marks=pytest.mark.covers("imc.IMC_WaitParam")),
+    *(
+        pytest.param("IMC_WaitParamBit", *each, marks=pytest.mark.covers("imc.IMC_WaitParamBit"))
+        for each in (((3, 1), 0xFFF7, 0x0008), ((13, 0), 0x2400, 0x5C3F))
+    ),
+    pytest.param(
+        "IMC_WaitParamMask",
+        (0x00F6, 0x0034),
+        0x1231,
+        0x4A3D,
+        marks=pytest.mark.covers("imc.IMC_WaitParamMask"),
+    ),
+]
+
+
+@pytest.mark.parametrize("timeout", [0, -1, 90])
+@pytest.mark.parametrize(("name", "arguments", "before", "met"), WAITS)
 def test_waits_for_a_parameter(
-    program: Program, function: object, arguments: tuple[int, ...], met: int
+    program: Program, name: str, arguments: tuple[int, ...], before: int, met: int, timeout: int
 ) -> None:
-    program.ok(function, lib.user16b0Loc, *arguments, 0, 0, Q)
-    program.set("user16b1", 1, fifo=Q)
-    program.run(100)
+    program.set("user16b4", before)
+    program.run(1)
+    program.ok(getattr(lib, name), lib.user16b4Loc, *arguments, timeout, 0, Q)
+    program.set("user16b1", 23, fifo=Q)
+    program.run(70)
     assert program.get("user16b1") == 0
-    program.set("user16b0", met)
+    program.set("user16b4", met)
     program.run(3)
-    assert program.get("user16b1") == 1
+    assert program.get("user16b1") == 23
+
+
+@pytest.mark.parametrize(("name", "arguments", "before", "met"), WAITS)
+def test_waits_end_with_their_time_and_without_an_error(
+    program: Program, name: str, arguments: tuple[int, ...], before: int, met: int
+) -> None:
+    program.set("user16b4", before)
+    program.run(1)
+    program.ok(getattr(lib, name), lib.user16b4Loc, *arguments, 57, 0, Q)
+    program.set("user16b1", 23, fifo=Q)
+    program.run(57)
+    assert program.get("user16b1") == 0
+    program.run(3)
+    assert (program.get("user16b1"), program.get("error"), program.get("user16b4") & 0xFFFF) == (
+        23,
+        0,
+        before,
+    )
 
 
 def test_a_mask_that_cannot_be_met_ends_with_its_time(program: Program) -> None:
@@ -219,49 +248,52 @@ def test_lines_run_one_after_the_other_and_hold_what_comes_behind(program: Progr
     assert max(math.dist(a, b) for a, b in itertools.pairwise(back)) == pytest.approx(40.0, abs=1.5)
 
 
-ARCS = {  # function, arguments for a quarter from (1000, 0) to (0, 1000) about the origin, counter-clockwise
-    "IMC_AddArc": (0, 1000, 0, 0, 0),
-    "IMC_AddArcWithVel": (10 * 65536, 0, 0, 1000, 0, 0, 0),
-    "IMC_AddArcLine": (lib.PFIFOSegData.of(0, 1000, center=(0, 0), direction=-1),),
-    "IMC_AddArcLineWithVel": (
-        lib.PFIFOSegInfo.of(10 * 65536, 0, lib.PFIFOSegData.of(0, 1000, center=(0, 0), direction=-1)),
-    ),
-    "IMC_AddSpiral": (0, 1000, 600, 0, 0, 0),
-    "IMC_AddSpiralWithVel": (10 * 65536, 0, 0, 1000, 600, 0, 0, 0),
-}
-CLOCKWISE = {
-    "IMC_AddArc": (0, 1000, 0, 0, 1),
-    "IMC_AddArcLine": (lib.PFIFOSegData.of(0, 1000, center=(0, 0), direction=0),),
-    "IMC_AddSpiral": (0, 1000, 600, 0, 0, 1),
-}
+CENTRE = (400, -800)
+START = (700, -400, 130)  # 500 from the centre, which lies on no axis
+END = (0, -500, 780)  # a quarter further counter-clockwise
 
 
+def arc_call(name: str, clockwise: bool) -> tuple[object, ...]:
+    """Return the arguments of a function for the arc from `START` to `END`; the structures count the other way."""
+    (x, y, z), speeds = END, (10 * 65536, 0) if name.endswith("WithVel") else ()
+    if "ArcLine" in name:
+        data = lib.PFIFOSegData.of(x, y, z, center=CENTRE, direction=0 if clockwise else -1)
+        return (lib.PFIFOSegInfo.of(*speeds, data) if speeds else data,)
+    return (*speeds, x, y, *((z,) if "Spiral" in name else ()), *CENTRE, int(clockwise))
+
+
+@pytest.mark.parametrize("clockwise", [False, True])
 @pytest.mark.parametrize(
-    ("name", "arguments", "turn"),
+    "name",
     [
-        pytest.param(name, arguments, turn, marks=pytest.mark.covers(f"imc.{name}"), id=f"{name}{turn}")
-        for turn, calls in ((90, ARCS), (-270, CLOCKWISE))
-        for name, arguments in calls.items()
+        pytest.param(f"IMC_Add{kind}{speeds}", marks=pytest.mark.covers(f"imc.IMC_Add{kind}{speeds}"))
+        for kind in ("Arc", "ArcLine", "Spiral")
+        for speeds in ("", "WithVel")
     ],
 )
-def test_arcs(program: Program, name: str, arguments: tuple[object, ...], turn: int) -> None:
-    spiral = "Spiral" in name
-    program.card.write("mcspos", 1000, axis=0)
-    prepare(program, 0, 1, *((2,) if spiral else ()))
-    start = program.get("mcspos", 0)
-    assert start == 1000
-    program.ok(getattr(lib, name), *arguments, P1)
+def test_arcs(program: Program, name: str, clockwise: bool) -> None:
+    third = name not in ("IMC_AddArc", "IMC_AddArcWithVel")
+    for axis, place in enumerate(START):
+        program.card.write("mcspos", place, axis=axis)
+    prepare(program, 0, 1, *((2,) if third else ()))
+    assert [program.get("mcspos", axis) for axis in range(3)] == list(START)
+    program.ok(getattr(lib, name), *arc_call(name, clockwise), P1)
     track = []
     for _ in range(3000):
         program.run(1)
         track.append(tuple(program.get("mcspos", axis) for axis in range(3)))
         if program.get("pathmoving1") == 0 and program.get("PFIFOcnt1") == 0:
             break
-    assert track[-1] == (0, 1000, 600 if spiral else 0)
-    assert all(abs(math.hypot(x, y) - 1000) < 1.5 for x, y, _ in track)
-    angles = [math.atan2(y, x) for x, y, _ in track]
-    turned = sum(math.remainder(b - a, math.tau) for a, b in itertools.pairwise(angles))
-    assert math.degrees(turned) == pytest.approx(turn, abs=1.0)
+    assert track[-1] == (END if third else (*END[:2], START[2]))
+    arms = [(x - CENTRE[0], y - CENTRE[1]) for x, y, _ in track]
+    assert all(abs(math.hypot(*arm) - 500) < 1.5 for arm in arms)
+    angles = [math.atan2(y, x) for x, y in arms]
+    turned = [math.degrees(math.remainder(b - a, math.tau)) for a, b in itertools.pairwise(angles)]
+    whole = -270 if clockwise else 90
+    assert sum(turned) == pytest.approx(whole, abs=1.0)
+    if third:  # the third axis keeps pace with the angle
+        part = sum(turned[: len(turned) // 3]) / whole
+        assert track[len(turned) // 3][2] == pytest.approx(130 + 650 * part, abs=5)
     speeds = [math.dist(a[:2], b[:2]) for a, b in itertools.pairwise(track)]
     if name.endswith("WithVel"):
         assert max(speeds) == pytest.approx(10.0, abs=1.5)
@@ -270,10 +302,12 @@ def test_arcs(program: Program, name: str, arguments: tuple[object, ...], turn: 
 def test_relative_segments_count_from_where_the_axes_are(program: Program) -> None:
     prepare(program, 0, 1, absolute=False)
     program.ok(lib.IMC_AddLineN, lib.PFIFOSegData.of(300, 100), P1)
-    program.ok(lib.IMC_AddArc, -200, 0, -100, 0, 0, P1)  # half a circle about 100 to the left
+    program.ok(lib.IMC_AddArc, -240, 180, -120, 90, 0, P1)  # half a circle about a point up to the left
     track = follow(program, 0, 1)
-    assert track[-1] == (100, 100)
-    assert max(y for _, y in track) == pytest.approx(200, abs=2)
+    assert track[-1] == (60, 280)
+    # counter-clockwise from its lower right end: over the top right of (180, 190), 150 away
+    assert max(x for x, _ in track) == pytest.approx(330, abs=2)
+    assert max(y for _, y in track) == pytest.approx(340, abs=2)
 
 
 @pytest.mark.covers("imc.IMC_AddContourData")

@@ -44,6 +44,37 @@ def test_a_limit_switch_stops_the_motion_towards_it_only(way: int, bit: int, lev
     assert (card.read("error"), card.read("aiolat")) == (0, 0)
 
 
+@pytest.mark.parametrize("way", [1, -1])
+def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> None:
+    card = ready_card(LIMITS)
+    set_now(card, ("aioctr", 0x000F))
+    send(card, IFIFO, ("mcstgvel", 20 * way))
+    card.advance(200)
+    here = card.read("curpos")
+    assert abs(here) > 1000
+    for towards in (
+        [("mcstgpos", here + 37 * way), ("mcsgo", FLAG)],
+        [("mcsdist", 41 * way), ("mcsgo", FLAG)],
+        [("mcstgvel", 7 * way)],
+        [("homeseq", 0x11 if way > 0 else 0x31), ("highvel", 5), ("gohome", FLAG)],
+    ):
+        send(card, IFIFO, *towards)
+        card.advance(30)
+        assert (card.read("curpos"), card.read("mcsgo"), card.read("gohome")) == (here, 0, 0)
+    send(card, IFIFO, ("mcstgpos", here), ("mcsgo", FLAG))  # to where it stands
+    card.advance(5)
+    assert (card.read("curpos"), card.read("mcsgo")) == (here, 0)
+    send(card, IFIFO, ("mcstgvel", -7 * way))
+    card.advance(3)
+    assert card.read("curvel") == -3 * way
+    send(card, IFIFO, ("mcstgvel", 0))
+    card.wait()
+    there = card.read("curpos")
+    send(card, IFIFO, ("mcsdist", -29 * way), ("mcsgo", FLAG))
+    card.wait()
+    assert card.read("curpos") == there - 29 * way
+
+
 @pytest.mark.covers("imc.param.aiolat", "imc.param.clraiolat")
 def test_limits_work_by_their_polarity_and_only_when_they_are_used() -> None:
     low = 'low_when_on = ["limit_positive"]\n'

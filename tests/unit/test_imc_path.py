@@ -117,23 +117,24 @@ def test_a_wait_between_segments_holds_the_path_until_it_is_met() -> None:
 
 
 @pytest.mark.covers("imc.const.dir_conflict")
-@pytest.mark.parametrize(("clockwise", "middle"), [(False, (71, 29)), (True, (-71, 171))])
+@pytest.mark.parametrize(("clockwise", "middle"), [(False, (-10, 45)), (True, (-109, -25))])
 def test_an_arc_goes_round_its_centre_in_its_direction(clockwise: bool, middle: tuple[int, int]) -> None:
-    # from (0, 0) about (0, 100): a quarter ends in (100, 100), the other way it is three quarters
+    # from (0, 0) about (-60, 10): a quarter ends in (-50, 70), the other way it is three quarters
     card = ready_card()
     enable_path(card, 0, 1)
-    assert card.push(PFIFO1, Segment((100, 100), (0, 100), clockwise, 5 * 65536))
+    assert card.push(PFIFO1, Segment((-50, 70), (-60, 10), clockwise, 5 * 65536))
     ways = []
     card.advance(1)
     while card.read("moving", 0):
         ways.append((card.read("curpos", 0), card.read("curpos", 1)))
         card.advance(1)
-    assert list(ways[-1]) == [100, 100]
-    assert all(abs(math.hypot(x, y - 100) - 100) < 1.5 for x, y in ways)
+    assert list(ways[-1]) == [-50, 70]
+    radius = math.hypot(60, 10)
+    assert all(abs(math.hypot(x + 60, y - 10) - radius) < 1.5 for x, y in ways)
     assert min(math.hypot(x - middle[0], y - middle[1]) for x, y in ways) < 5
     assert card.read("arcdir1") == (0 if clockwise else FLAG)
-    assert card.read("radius1") == 100
-    assert card.read("seglen1") == round(math.pi * (150 if clockwise else 50))
+    assert card.read("radius1") == round(radius)
+    assert card.read("seglen1") == round(math.pi / 2 * radius * (3 if clockwise else 1))
 
 
 def test_an_arc_that_ends_where_it_begins_is_a_full_circle() -> None:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import polycnc
+from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
+from polycnc.nc import BlockRecords
 from polycnc.runner import TRACE_FORMATS, TraceWriter, trace_columns
 
 MILL = polycnc.load_machine("mill3")
@@ -153,3 +156,74 @@ def test_files_that_are_no_traces(tmp_path: Path, name: str, content: str | None
         (tmp_path / name).write_text(content)
     with pytest.raises(polycnc.UsageError, match=message):
         polycnc.read_trace(tmp_path / name)
+
+
+MAIN = "N1 G1 X4.5 F900\nN2 M98 P31\nN3 G1 X0.5\nN4 M30\n"
+SUB = "O0031\nN7 G1 Y2.25\nN8 M98 P32\nN9 M99\n"
+INNER = "O0032\nG1 Z-1.25\nM99\n"
+
+
+@pytest.mark.parametrize("name", ["part.nc", 'a, "b"\u00e4.nc'])
+@pytest.mark.parametrize("ending", TRACE_FORMATS)
+def test_rows_of_sub_programs_in_files_of_their_own_name_them(tmp_path: Path, ending: str, name: str) -> None:
+    for file, text in ((name, MAIN), ("O0031.nc", SUB), ("O0032.nc", INNER)):
+        (tmp_path / file).write_text(text, encoding="utf-8")
+    path = tmp_path / f"trace{ending}"
+    program = tmp_path / name
+    with TraceWriter(path, MILL, actual=False) as writer:
+        given = polycnc.run(program, trace=True, tagged_rows=in_pieces(writer, 97)).trace
+    trace = polycnc.read_trace(path)
+    assert given is not None
+    assert given.program is not None
+    assert trace.program is not None
+    assert trace.program.tolist() == given.program.tolist()
+    assert np.array_equal(trace.setpoint, given.setpoint)
+    assert np.array_equal(trace.block, given.block)
+    # The axis that moves says which program a row belongs to; a cycle with a corner in it belongs to the block behind.
+    moves = np.diff(trace.setpoint, axis=0, prepend=np.zeros((1, 3)))
+    wanted = {0: str(program), 1: str(tmp_path / "O0031.nc"), 2: str(tmp_path / "O0032.nc")}
+    for axis, owner in wanted.items():
+        alone = (moves[:, axis] != 0.0) & (np.count_nonzero(moves, axis=1) == 1)
+        assert np.count_nonzero(alone) > 80
+        assert set(trace.program[alone].tolist()) == {owner}
+    assert sorted(each.name for each in tmp_path.iterdir()) == sorted(
+        [name, "O0031.nc", "O0032.nc", path.name]
+    )
+
+
+def in_pieces(writer: TraceWriter, size: int) -> Callable[[np.ndarray, np.ndarray, BlockRecords], None]:
+    """Return a sink that hands rows on in small pieces, so that programs begin within one and between two."""
+
+    def add(rows: np.ndarray, tags: np.ndarray, records: BlockRecords) -> None:
+        for start in range(0, len(rows), size):
+            writer.add_tagged(rows[start : start + size], tags[start : start + size], records)
+
+    return add
+
+
+@pytest.mark.parametrize("ending", TRACE_FORMATS)
+def test_one_program_needs_no_column(tmp_path: Path, ending: str) -> None:
+    text = "G1 X4.5 F900\nM98 P7\nM30\nO7\nG1 Y2.25\nM99\n"
+    (tmp_path / "part.nc").write_text(text)
+    path = tmp_path / f"trace{ending}"
+    with TraceWriter(path, MILL, actual=False) as writer:
+        given = polycnc.run(tmp_path / "part.nc", trace=True, tagged_rows=in_pieces(writer, 100)).trace
+    trace = polycnc.read_trace(path)
+    assert trace.program is None
+    assert given is not None
+    assert given.program is None
+    assert trace.setpoint[-1].tolist() == [4.5, 2.25, 0.0]
+
+
+def test_a_break_after_the_second_program_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "part.nc").write_text(MAIN)
+    (tmp_path / "O0031.nc").write_text(SUB)  # and no 32
+    path = tmp_path / "trace.csv"
+
+    def run() -> None:
+        with TraceWriter(path, MILL, actual=False) as writer:
+            polycnc.run(tmp_path / "part.nc", tagged_rows=writer.add_tagged)
+
+    with pytest.raises(ProgramError):
+        run()
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["O0031.nc", "part.nc"]

@@ -12,9 +12,18 @@ from polycnc.cnc._alarms import (
     OperatorMessages,
     PastAlarm,
 )
-from polycnc.cnc._control import Control, ControlEvent
+from polycnc.cnc._control import PROGRAM_MESSAGE, Control, ControlEvent
 from polycnc.cnc._control_channel import ControlChannel
-from polycnc.cnc._control_data import AfterManual, ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_data import (
+    AfterManual,
+    ChannelData,
+    ControlData,
+    Mode,
+    OnModeChange,
+    Overrides,
+    Search,
+    Switches,
+)
 from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
 from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
@@ -32,6 +41,7 @@ from polycnc.cnc._tool_times import ToolTime
 
 __all__ = [
     "ALARMS",
+    "PROGRAM_MESSAGE",
     "AfterManual",
     "Alarm",
     "AlarmKind",
@@ -42,6 +52,7 @@ __all__ = [
     "AxisMotion",
     "AxisStatus",
     "Breakpoint",
+    "ChannelData",
     "ChannelStatus",
     "ClearedBy",
     "Control",
@@ -81,6 +92,7 @@ __all__ = [
     "RunOptions",
     "RunState",
     "Script",
+    "Search",
     "Spindle",
     "SpindleMotion",
     "SpindleState",

@@ -62,12 +62,17 @@ ALARMS: AlarmTable = MappingProxyType({
     "emergency_stop":        AlarmRow(400, AlarmKind.EMERGENCY, "emergency stop", ClearedBy.CAUSE),
 })
 # fmt: on
-"""The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts."""
+"""The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts.
+
+Errors of a program are "program", or "program CODE" where a vendor has a number for the error's code."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alarm:
-    """An alarm that is on: `name` as the code knows it, `number` and `text` as the control shows them."""
+    """An alarm that is on: `name` as the code knows it, `number` and `text` as the control shows them.
+
+    `channel` is the one that it stops; None: all of them.
+    """
 
     name: str
     number: int
@@ -76,6 +81,12 @@ class Alarm:
     axis: str | None
     cycle: int
     cleared_by: ClearedBy
+    channel: int | None = None
+
+    @property
+    def key(self) -> tuple[str, str | None, int | None]:
+        """What tells alarms that are on apart."""
+        return self.name, self.axis, self.channel
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,14 +110,26 @@ class OperatorMessage:
 
 
 class AlarmList:
-    """Hold the alarms that are on, in the order in which they came, and a bounded durable history."""
+    """Hold the alarms that are on, in the order in which they came, and a bounded durable history.
 
-    def __init__(self, store: Store, clock: Clock, table: AlarmTable = ALARMS, *, keep: int = 100) -> None:
+    `owners` says which channel an axis belongs to where there are several.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        clock: Clock,
+        table: AlarmTable = ALARMS,
+        *,
+        keep: int = 100,
+        owners: Mapping[str, int] | None = None,
+    ) -> None:
         self._clock = clock
         self._table = table
         self._keep = keep
         self._history = store.history(_ALARMS)
-        self._active: dict[tuple[str, str | None], Alarm] = {}
+        self._owners = dict(owners or {})
+        self._active: dict[tuple[str, str | None, int | None], Alarm] = {}
 
     @property
     def active(self) -> tuple[Alarm, ...]:
@@ -116,17 +139,41 @@ class AlarmList:
     def __bool__(self) -> bool:
         return bool(self._active)
 
-    def has(self, name: str, axis: str | None = None) -> bool:
-        """Tell whether an alarm is on."""
-        return (name, axis) in self._active
+    def of(self, channel: int) -> tuple[Alarm, ...]:
+        """Return the alarms that stop a channel, oldest first."""
+        return tuple(alarm for alarm in self._active.values() if alarm.channel in (None, channel))
 
-    def put(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
-        """Put an alarm on and note it in the history; one that is on already stays as it is."""
-        if known := self._active.get((name, axis)):
+    def of_program(self, code: str) -> str:
+        """Return the name of the alarm for an error of a program: the table's row "program CODE", or "program"."""
+        name = f"program {code}"
+        return name if code and name in self._table else "program"
+
+    def owner(self, axis: str) -> int | None:
+        """Return the channel of an axis, None where there is only one."""
+        return self._owners.get(axis)
+
+    def has(self, name: str, axis: str | None = None, channel: int | None = None) -> bool:
+        """Tell whether an alarm is on."""
+        return (name, axis, self._channel(axis, channel)) in self._active
+
+    def _channel(self, axis: str | None, channel: int | None) -> int | None:
+        if not self._owners:
+            return None
+        return channel if axis is None else self._owners.get(axis)
+
+    def put(
+        self, name: str, *, axis: str | None = None, detail: str = "", channel: int | None = None
+    ) -> Alarm:
+        """Put an alarm on and note it in the history; one that is on already stays as it is.
+
+        It stops the channel of its axis, else `channel`, all of them if that is None.
+        """
+        channel = self._channel(axis, channel)
+        if known := self._active.get((name, axis, channel)):
             return known
         row = self._table[name]
         text = row.text.format(axis=axis, detail=detail)
-        alarm = Alarm(name, row.number, row.kind, text, axis, self._clock.cycles, row.cleared_by)
+        alarm = Alarm(name, row.number, row.kind, text, axis, self._clock.cycles, row.cleared_by, channel)
         self._history.append(
             {
                 "number": row.number,
@@ -137,20 +184,22 @@ class AlarmList:
             }
         )
         self._history.trim(self._keep)
-        self._active[name, axis] = alarm
+        self._active[alarm.key] = alarm
         return alarm
 
-    def reset(self) -> None:
-        """Take away the alarms that a reset clears."""
+    def reset(self, channel: int | None = None) -> None:
+        """Take away the alarms that a reset clears: of one channel alone, or all."""
         self._active = {
-            key: alarm for key, alarm in self._active.items() if alarm.cleared_by is not ClearedBy.RESET
+            key: alarm
+            for key, alarm in self._active.items()
+            if alarm.cleared_by is not ClearedBy.RESET or (channel is not None and alarm.channel != channel)
         }
 
     def cause_gone(self, name: str, axis: str | None = None) -> None:
         """Take an alarm away whose cause has gone, if that is what clears it."""
-        alarm = self._active.get((name, axis))
+        alarm = self._active.get((name, axis, self._channel(axis, None)))
         if alarm is not None and alarm.cleared_by is ClearedBy.CAUSE:
-            del self._active[name, axis]
+            del self._active[alarm.key]
 
     def history(self) -> tuple[PastAlarm, ...]:
         """Return the history, oldest first."""
@@ -175,7 +224,7 @@ class AlarmList:
 
     def restore(self, alarms: tuple[Alarm, ...]) -> None:
         """Go back to a snapshot."""
-        self._active = {(alarm.name, alarm.axis): alarm for alarm in alarms}
+        self._active = {alarm.key: alarm for alarm in alarms}
 
 
 class OperatorMessages:

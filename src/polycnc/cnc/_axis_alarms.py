@@ -8,12 +8,14 @@ from polycnc.machine import Machine
 _LIMIT_SWITCHES = (LIMIT_LOW, LIMIT_HIGH)
 
 
-def axis_alarm(machine: Machine, raised: int) -> tuple[str, str] | None:
-    """Return text and code of the first axis alarm among the reasons `raised` in a cycle, None if there is none."""
+def axis_alarm(machine: Machine, raised: int, path: int) -> tuple[str, str] | None:
+    """Return text and code of the first alarm of a path's axes by the reasons `raised` in a cycle, None for none."""
     if not raised & (FOLLOWING_ERROR | SWITCH_EDGE):
         return None
     state = machine.state
     for index, axis in enumerate(machine.config.axes):
+        if index not in state.paths.axis[path]:
+            continue
         if raised & FOLLOWING_ERROR and state.servo.error_tripped[index]:
             error = float(state.servo.row[index]["following_error"])
             text = f"axis {axis.name}: following error {error:.4f} {axis.unit} is above its limit"

@@ -6,20 +6,37 @@ Every command is carried out or refused whole: a refused one raises `ControlErro
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from enum import IntFlag
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._alarms import MOST_MESSAGE_CHARACTERS, Alarm, AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._auxiliary import AuxiliaryFunctions
 from polycnc.cnc._control_channel import ControlChannel
-from polycnc.cnc._control_checks import check_over, check_ready, wrong_mode
-from polycnc.cnc._control_data import ControlData, Mode, OnModeChange, Overrides, Switches
+from polycnc.cnc._control_checks import (
+    check_hands_off,
+    check_over,
+    check_ready,
+    check_referenced,
+    text_to_begin,
+    wrong_mode,
+)
+from polycnc.cnc._control_data import (
+    ChannelData,
+    ControlData,
+    Mode,
+    OnModeChange,
+    Overrides,
+    Search,
+    Switches,
+    check_channels,
+)
 from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot, copied, nested
 from polycnc.cnc._manual import ManualMotion
-from polycnc.cnc._plc import Function, PlcModel, Script, functions_of
-from polycnc.cnc._program_edit import ProgramEdit
+from polycnc.cnc._plc import PlcModel, Script
+from polycnc.cnc._program_edit import ProgramEdit, ProgramEdits
 from polycnc.cnc._program_memory import ProgramMemory
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
@@ -41,18 +58,14 @@ from polycnc.machine import (
     Store,
     load_machine,
 )
-from polycnc.nc import Dialect, Event, Group, MAction, ProgramText, load_dialect
+from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
-_MANUAL_MODES = frozenset({Mode.JOG, Mode.INC, Mode.HANDLE, Mode.REF})
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
-
-
-_ACTIONS = {action.title: action for action in MAction}
-_STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
-_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
+PROGRAM_MESSAGE = 3006
+"""Number of the message of a stop in a program of the first channel; those of the others follow."""
 
 
 class ControlEvent(IntFlag):
@@ -68,37 +81,47 @@ class ControlEvent(IntFlag):
 class Control:
     """A numerical control on a machine of its own.
 
+    `channels` share out its axes; without any there is one that has all of them, and the spindle. Each executes its own
+    program in its own mode. Commands that take a `channel` mean the first one where they change a program, and all of
+    them where they set or stop something, if it is not given.
     `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    `languages` are those of the channels' programs, one for each channel.
     """
 
     def __init__(
         self,
         config: MachineConfig | str | Path | None = None,
         *,
-        channels: int = 1,
+        channels: Sequence[ChannelData] = (),
         memory: str | Path | Store | None = None,
         dialect: Dialect | str | Path | None = None,
         data: ControlData | None = None,
         script: Script | None = None,
         servo: bool = False,
         record_cycles: int = 0,
+        languages: Sequence[Language | None] = (),
     ) -> None:
         self.data = data or ControlData()
+        file = load_machine(config)
+        shares = tuple(channels) or (ChannelData(file.axis_names, spindle=True),)
+        check_channels(shares, file.axis_names)
+        owners = {axis: n for n, share in enumerate(shares) for axis in share.axes} if channels else {}
         self.machine = Machine(
-            load_machine(config), servo=servo, paths=channels, memory=memory, record_cycles=record_cycles
+            file, servo=servo, paths=len(shares), memory=memory, record_cycles=record_cycles
         )
         self.dialect = load_dialect(dialect)
         store, clock, machine_file = self.machine.memory, self.machine.clock, self.machine.config
         self.programs = ProgramMemory(store, clock, self.data.memory)
         self.tools = ToolTable(store, machine_file)
         self.offsets = OffsetTable(store, machine_file)
-        self.alarms = AlarmList(store, clock, self.data.alarms, keep=self.data.history_length)
+        self.alarms = AlarmList(store, clock, self.data.alarms, keep=self.data.history_length, owners=owners)
         self.messages = OperatorMessages(store, clock, keep=self.data.history_length)
         self.timers = Timers(store, clock)
         self.parts = PartCounter(store)
         self.spindle = Spindle(clock, machine_file)
         self.plc = PlcModel(clock, machine_file.times, script, limit_s=self.data.answer_limit_s)
+        self.functions = AuxiliaryFunctions(clock, machine_file.times, self.spindle, self.plc)
         self.manual = ManualMotion(
             self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
         )
@@ -107,25 +130,21 @@ class Control:
             ControlChannel(
                 self.machine,
                 path,
+                share,
                 self.dialect,
                 self.manual,
                 config=self._live,
                 library=self._sub_program,
                 dry_run_mm_min=self.data.dry_run_mm_min,
                 on_event=self._meet,
+                language=languages[path] if path < len(languages) else None,
             )
-            for path in range(channels)
+            for path, share in enumerate(shares)
         )
         self.clock = clock
-        self._mode = Mode.AUTO
         self._emergency = Emergency.OFF
-        self._overrides = Overrides()
-        self._switches = Switches()
         self._relative_zero = [0.0] * len(machine_file.axes)
-        self._edits: list[ProgramEdit] = []
-        self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
-        surface = [code for code, name in self.dialect.g.items() if name == "constant_surface_speed"]
-        self._surface_speed = f"G{surface[0]}" if surface else ""
+        self._edits = ProgramEdits(self.programs)
         self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
 
@@ -165,25 +184,25 @@ class Control:
 
     @property
     def mode(self) -> Mode:
-        """The mode."""
-        return self._mode
+        """The mode of the first channel."""
+        return self.channels[0].mode
 
     @property
     def overrides(self) -> Overrides:
-        """The overrides."""
-        return self._overrides
+        """The overrides of the first channel."""
+        return self.channels[0].overrides
 
     @property
     def switches(self) -> Switches:
-        """What the operator has switched on for programs."""
-        return self._switches
+        """What the operator has switched on for programs of the first channel."""
+        return self.channels[0].switches
 
     @property
     def emergency(self) -> Emergency:
         """The state of the emergency stop."""
         return self._emergency
 
-    def select_mode(self, mode: Mode) -> None:
+    def select_mode(self, mode: Mode, *, channel: int | None = None) -> None:
         """Change the mode; manual motion of the old one brakes, an edit in the foreground ends.
 
         What it does to a program that is executed is `ControlData.mode_change_while_running`.
@@ -192,9 +211,8 @@ class Control:
             ControlError: A program is being executed and the control refuses to leave its mode then.
         """
         mode = Mode(mode)
-        if mode is self._mode:
-            return
-        running = [channel for channel in self.channels if channel.active]
+        changing = [each for each in self._chosen(channel) if each.mode is not mode]
+        running = [each for each in changing if each.active]
         what = self.data.mode_change_while_running
         if running and what is OnModeChange.REFUSE:
             raise ControlError(
@@ -202,18 +220,22 @@ class Control:
                 f"the mode cannot change to {mode} while a program is being executed",
                 hint="Hold the program first (feed hold), or wait for its end.",
             )
-        for channel in running:
-            if what is OnModeChange.HOLD:
-                channel.hold()
-            else:
-                channel.reset()
-        self.manual.stop_all()
-        for edit in [edit for edit in self._edits if not edit.background]:
-            edit.close()
-        self._mode = mode
+        if what is OnModeChange.RESET:
+            self._break_off(running)
+        for each in changing:
+            each.hold()
+            self.manual.stop_all(each.axes)
+            if each.mode is Mode.EDIT:
+                self._edits.close_foreground()
+            each.mode = mode
 
     def set_overrides(
-        self, *, feed: float | None = None, rapid: float | None = None, spindle: float | None = None
+        self,
+        *,
+        feed: float | None = None,
+        rapid: float | None = None,
+        spindle: float | None = None,
+        channel: int | None = None,
     ) -> None:
         """Set overrides, 1 is 100 %; what is None stays.
 
@@ -221,12 +243,14 @@ class Control:
             ControlError: One is out of range.
         """
         given = {"feed": feed, "rapid": rapid, "spindle": spindle}
-        wanted = replace(self._overrides, **{name: each for name, each in given.items() if each is not None})
-        self._overrides = wanted.checked(self.data)
-        self.manual.set_overrides(feed=wanted.feed, rapid=wanted.rapid)
-        self.spindle.set_override(wanted.spindle)
-        for channel in self.channels:
-            channel.set_overrides(wanted)
+        changes = {name: each for name, each in given.items() if each is not None}
+        chosen = self._chosen(channel)
+        wanted = [replace(each.overrides, **changes).checked(self.data) for each in chosen]
+        for each, overrides in zip(chosen, wanted, strict=True):
+            self.manual.set_overrides(feed=overrides.feed, rapid=overrides.rapid, axes=each.axes)
+            if each.data.spindle:
+                self.spindle.set_override(overrides.spindle)
+            each.set_overrides(overrides)
 
     def set_switches(
         self,
@@ -236,6 +260,7 @@ class Control:
         dry_run: bool | None = None,
         machine_lock: bool | None = None,
         block_delete: frozenset[int] | None = None,
+        channel: int | None = None,
     ) -> None:
         """Switch single block and its like on or off; what is None stays.
 
@@ -250,20 +275,19 @@ class Control:
             "machine_lock": machine_lock,
             "block_delete": block_delete,
         }
-        wanted = replace(self._switches, **{name: each for name, each in given.items() if each is not None})
-        if not wanted.block_delete <= frozenset(range(1, 10)):
+        if block_delete is not None and not block_delete <= frozenset(range(1, 10)):
             raise ControlError(
-                Refusal.DATA,
-                f"{sorted(wanted.block_delete)} are not skip marks",
-                hint="Give numbers from 1 to 9.",
+                Refusal.DATA, f"{sorted(block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
             )
-        if wanted.machine_lock != self._switches.machine_lock:
-            for channel in self.channels:
-                check_over(channel)
-                channel.check_rest()
-        self._switches = wanted
-        for channel in self.channels:
-            channel.set_switches(wanted)
+        chosen = self._chosen(channel)
+        changes = {name: each for name, each in given.items() if each is not None}
+        wanted = [replace(each.switches, **changes) for each in chosen]
+        for each, switches in zip(chosen, wanted, strict=True):
+            if switches.machine_lock != each.switches.machine_lock:
+                check_over(each)
+                each.check_rest()
+        for each, switches in zip(chosen, wanted, strict=True):
+            each.set_switches(switches)
 
     # ------------------------------------------------------------------ programs
 
@@ -277,6 +301,7 @@ class Control:
         check_over(chosen)
         text = self.programs.text(program) if isinstance(program, str) else program
         chosen.program = text
+        chosen.search = None
 
     def set_mdi(self, text: str, *, channel: int = 0) -> None:
         """Put in the text that a start in MDI executes.
@@ -285,33 +310,54 @@ class Control:
             ControlError: Not in MDI, no text, no such channel, or the channel executes a program.
         """
         chosen = self._channel(channel)
-        if self._mode is not Mode.MDI:
-            raise wrong_mode(self._mode, "a text can be put in", Mode.MDI)
+        if chosen.mode is not Mode.MDI:
+            raise wrong_mode(chosen.mode, "a text can be put in", Mode.MDI)
         check_over(chosen)
         if not text.strip():
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
-    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
-        """Begin the selected program or the MDI text at a line, or go on where a program is interrupted.
+    def search(
+        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+    ) -> int:
+        """Let the next start begin the selected program at a block; return its line.
 
-        `step` says how far.
+        It is the block on `line`, or the first one with a sequence number. With `calculate` everything before is
+        carried out without moving, and with the start the axes go straight at rapid to where that block begins; else
+        modal state and position are what they are. A reset, another selection and the start itself end the search.
+
+        Raises:
+            ControlError: Not in AUTO, nothing is selected, there is no such block, the program cannot begin there, or
+                something is being executed or moves.
+        """
+        chosen = self._channel(channel)
+        if chosen.mode is not Mode.AUTO:
+            raise wrong_mode(chosen.mode, "a block can be searched", Mode.AUTO)
+        check_over(chosen)
+        check_hands_off(chosen, self.manual)
+        check_ready(self._emergency, self.alarms.of(channel))
+        text = text_to_begin(chosen, self.programs, is_mdi=False)
+        return chosen.seek(text, Search(line, sequence, calculate))
+
+    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
+        """Begin the selected program or the MDI text, or go on where a program is interrupted.
+
+        `step` says how far. It begins at `line`; with 1, at the block that was searched.
 
         Raises:
             ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
                 move or are not referenced, or a program is being executed.
         """
         chosen = self._channel(channel)
-        check_ready(self._emergency, self.alarms)
-        if self._mode not in _PROGRAM_MODES:
-            raise wrong_mode(self._mode, "a program can start", *sorted(_PROGRAM_MODES))
+        check_ready(self._emergency, self.alarms.of(channel))
+        if chosen.mode not in _PROGRAM_MODES:
+            raise wrong_mode(chosen.mode, "a program can start", *sorted(_PROGRAM_MODES))
         if chosen.active:
             raise ControlError(
                 Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
             )
-        if self.manual.active:
-            raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
-        is_mdi = self._mode is Mode.MDI
+        check_hands_off(chosen, self.manual)
+        is_mdi = chosen.mode is Mode.MDI
         if chosen.interrupted:
             if chosen.is_mdi is not is_mdi:
                 raise ControlError(
@@ -320,13 +366,17 @@ class Control:
                     hint="Go on in that mode, or reset it.",
                 )
             chosen.go_on(self.data.after_manual, step)
+            self.messages.withdraw(PROGRAM_MESSAGE + chosen.path)
         else:
-            text = self._to_begin(chosen, is_mdi)
+            text = text_to_begin(chosen, self.programs, is_mdi=is_mdi)
+            if self.data.reference_required:
+                check_referenced(chosen, self.manual)
             if not 1 <= line <= text.content.count(b"\n") + 1:
                 raise ControlError(
                     Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is."
                 )
-            chosen.begin(text, self._switches, self._overrides, mdi=is_mdi, step=step, line=line)
+            search = Search(line) if line > 1 else None if is_mdi else chosen.search
+            chosen.begin(text, mdi=is_mdi, step=step, search=search)
             self._note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
         self._note_running()
@@ -338,24 +388,32 @@ class Control:
         Raises:
             ControlError: Nothing moves or is being executed.
         """
-        chosen = self.channels if channel is None else (self._channel(channel),)
+        chosen = self._chosen(channel)
         running = [each for each in chosen if each.active]
-        if not running and not self.manual.active:
+        axes = [axis for each in chosen for axis in each.axes]
+        if not running and not self.manual.moves(axes):
             raise ControlError(Refusal.IDLE, "nothing is being executed", hint="There is nothing to hold.")
         for each in running:
             each.hold()
-        self.manual.stop_all()
+        self.manual.stop_all(axes)
         self._raised |= ControlEvent.RUN_STATE
 
-    def reset(self) -> None:
-        """Break off everything, and take away the alarms whose causes are gone; the axes brake."""
-        self._break_off()
-        if self.data.reset_stops_spindle:
+    def reset(self, *, channel: int | None = None) -> None:
+        """Break off everything, and take away the alarms whose causes are gone; the axes brake.
+
+        The reset of one channel takes away its own alarms; those of the whole control, and what an emergency stop
+        leaves behind, need a reset of all.
+        """
+        chosen = self._chosen(channel)
+        self._break_off(chosen)
+        if self.data.reset_stops_spindle and any(each.data.spindle for each in chosen):
             self.spindle.stop()
-        if self._emergency is Emergency.RESET_NEEDED:
+        if self._emergency is Emergency.RESET_NEEDED and channel is None:
             self._emergency = Emergency.OFF
-        self.alarms.reset()
-        self.machine.state.servo.error_tripped[:] = 0
+        self.alarms.reset(channel)
+        names = self.machine.config.axis_names
+        for axis in (axis for each in chosen for axis in each.axes):
+            self.machine.state.servo.error_tripped[names.index(axis)] = 0
         self.manual.check_limit_switches()
         self._note_running()
         self._raised |= ControlEvent.RUN_STATE
@@ -366,7 +424,7 @@ class Control:
             self._emergency = Emergency.ON
             self.alarms.put("emergency_stop")
             self._raised |= ControlEvent.ALARM
-            self._break_off()
+            self._break_off(self.channels)
             self.spindle.stop()
             self._note_running()
         elif not on and self._emergency is Emergency.ON:
@@ -375,23 +433,33 @@ class Control:
             self._emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
 
     def put_alarm(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
-        """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
+        """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is.
+
+        With an axis it is an alarm of the channel that the axis belongs to.
+        """
         if self.alarms.has(name, axis):
             return self.alarms.put(name, axis=axis)
         alarm = self.alarms.put(name, axis=axis, detail=detail)
-        self.manual.stop_all()
-        for channel in self.channels:
-            channel.fail()
+        self._fail((alarm,))
         self._raised |= ControlEvent.ALARM
         return alarm
 
-    def _break_off(self) -> None:
+    def _fail(self, alarms: Iterable[Alarm]) -> None:
+        """Stop what these alarms stop."""
+        for alarm in alarms:
+            for channel in self._chosen(alarm.channel):
+                self.manual.stop_all(channel.axes)
+                channel.fail()
+
+    def _break_off(self, channels: Sequence[ControlChannel]) -> None:
         """Let everything brake, and forget what was under way."""
-        self.manual.stop_all()
-        for channel in self.channels:
+        for channel in channels:
+            self.manual.stop_all(channel.axes)
             channel.reset()
-        self._waiting.clear()
-        self.plc.cancel()
+            self.messages.withdraw(PROGRAM_MESSAGE + channel.path)
+        self.functions.withdraw(channels)
+        if len(channels) == len(self.channels):
+            self.plc.cancel()  # what nobody waits for as well
 
     # ------------------------------------------------------------------ editing
 
@@ -401,23 +469,14 @@ class Control:
         Raises:
             ControlError: Not in EDIT, such an edit is open, or the program is not there, protected or in use.
         """
-        if not background and self._mode is not Mode.EDIT:
-            raise wrong_mode(self._mode, "a program can be edited in the foreground", Mode.EDIT)
-        self._edits = [edit for edit in self._edits if edit.is_open]
-        if any(edit.background is background for edit in self._edits):
-            raise ControlError(
-                Refusal.IN_USE,
-                f"a program is being edited in the {'background' if background else 'foreground'}",
-                hint="Close that edit first.",
-            )
-        edit = ProgramEdit(self.programs, name, background=background)
-        self._edits.append(edit)
-        return edit
+        if not background and all(channel.mode is not Mode.EDIT for channel in self.channels):
+            raise wrong_mode(self.mode, "a program can be edited in the foreground", Mode.EDIT)
+        return self._edits.open(name, background=background)
 
     @property
     def is_editing(self) -> bool:
         """Whether a program is open for editing."""
-        return any(edit.is_open for edit in self._edits)
+        return self._edits.any_open
 
     # ------------------------------------------------------------------ axes by hand
 
@@ -428,7 +487,7 @@ class Control:
             ControlError: Not in JOG (letting go is always allowed), or as `ManualMotion.jog`.
         """
         if direction:
-            self._lend(Mode.JOG)
+            self._lend(axis, Mode.JOG)
         self.manual.jog(axis, direction, rapid=rapid)
 
     def increment(self, axis: str, direction: int, size: float, *, rapid: bool = False) -> None:
@@ -437,7 +496,7 @@ class Control:
         Raises:
             ControlError: Not in INC, or as `ManualMotion.increment`.
         """
-        self._lend(Mode.INC)
+        self._lend(axis, Mode.INC)
         self.manual.increment(axis, direction, size, rapid=rapid)
 
     def handwheel(self, axis: str, pulses: int, size: float) -> None:
@@ -446,7 +505,7 @@ class Control:
         Raises:
             ControlError: Not in HANDLE, or as `ManualMotion.handwheel`.
         """
-        self._lend(Mode.HANDLE)
+        self._lend(axis, Mode.HANDLE)
         self.manual.handwheel(axis, pulses, size)
 
     def reference(self, axis: str) -> None:
@@ -455,11 +514,12 @@ class Control:
         Raises:
             ControlError: Not in REF, a program is interrupted, or as `ManualMotion.reference`.
         """
-        if any(channel.interrupted for channel in self.channels):
+        owner = self._owner(axis)
+        if owner.interrupted:
             raise ControlError(
                 Refusal.RUNNING, "a program is interrupted", hint="Let it go on to its end, or reset it."
             )
-        self._lend(Mode.REF)
+        self._lend(axis, Mode.REF)
         self.manual.reference(axis)
 
     def set_relative(self, axis: str, position: float = 0.0) -> None:
@@ -515,8 +575,8 @@ class Control:
         alarms, manual = self.alarms.active, self.manual.active
         row = self.machine.state.clock[0]
         row["mask"] = 0
-        for number, channel in enumerate(self.channels):
-            self._take_answers(number, channel)  # somebody may have answered since
+        for channel in self.channels:
+            self._take_answers(channel)  # somebody may have answered since
             if channel.run is not None and not channel.returning:
                 cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
         due = self.plc.due_cycle()
@@ -551,18 +611,12 @@ class Control:
             if channel.run_state is not states[number]:
                 self._note_end(channel)
             channel.look()
-            self._take_answers(number, channel)
-        for request in self.plc.take_failed():
-            name = "function_not_answered" if request.timed_out else "function_failed"
-            detail = str(request) if request.timed_out else f"{request}: {request.alarm}"
-            self.alarms.put(name, detail=detail)
+            self._take_answers(channel)
+        self.functions.note_failures(self.alarms)
         for index, axis in enumerate(self.machine.config.axes):
             if self.machine.state.servo.error_tripped[index]:
                 self.alarms.put("following_error", axis=axis.name)
-        if any(alarm not in alarms for alarm in self.alarms.active):
-            self.manual.stop_all()
-            for channel in self.channels:
-                channel.fail()
+        self._fail(alarm for alarm in self.alarms.active if alarm not in alarms)
         self._note_running()
 
     def _sub_program(self, number: int) -> ProgramText | None:
@@ -574,10 +628,14 @@ class Control:
     def _note_end(self, channel: ControlChannel) -> None:
         """Count the part of a program that has ended, or put its error among the alarms."""
         run = channel.run
-        if channel.run_state is RunState.COMPLETED and self.data.count_parts and not channel.is_mdi:
+        counts = self.data.count_parts and channel.path == 0 and not channel.is_mdi
+        if channel.run_state is RunState.COMPLETED and counts:
             self.parts.count()
         if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
-            self.alarms.put("program", detail=str(run.error).splitlines()[0])
+            error = run.error
+            name = self.alarms.of_program(error.code)
+            detail = str(error).splitlines()[0] if name == "program" else error.what
+            self.alarms.put(name, detail=detail, channel=channel.path)
 
     def _note_running(self) -> None:
         self.programs.running = frozenset().union(*(channel.programs for channel in self.channels))
@@ -586,45 +644,18 @@ class Control:
 
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
-        block = channel.executed
-        if block is not None:
-            modal = block.modal
-            # Constant surface speed has no speed of its own here: the spindle keeps the last one.
-            rpm = None if modal.g.get(Group.SPINDLE_MODE) == self._surface_speed else modal.speed
-            self.spindle.turn(rpm=rpm, direction=modal.spindle_direction)
-        serials = [
-            self.plc.strobe(Function(letter), number, default_s=self._function_s(letter, number))
-            for letter, number in functions_of(event.word)
-        ]
+        if event.message:  # until the program goes on or is reset
+            self.messages.show(PROGRAM_MESSAGE + channel.path, event.message[:MOST_MESSAGE_CHARACTERS])
         self._raised |= ControlEvent.FUNCTION
-        waiting = [serial for serial in serials if not self.plc.finished(serial)]
-        if waiting:
-            self._waiting.setdefault(channel.path, []).extend(waiting)
-        return bool(waiting)
-
-    def _function_s(self, letter: str, number: int) -> float:
-        """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
-        times = self.machine.config.times
-        action = _ACTIONS.get(self.dialect.m.get(f"{number}", ""))
-        if letter != "M" or action in _STOPS:
-            return 0.0
-        if action in _SPINDLE:
-            return max(0, self.spindle.reached_cycle() - self.clock.cycles) * self.clock.cycle_s
-        return times.tool_change_s if action is MAction.TOOL_CHANGE else times.auxiliary_s
+        return self.functions.meet(channel, event, self.dialect)
 
     def waiting_functions(self, path: int) -> tuple[str, ...]:
         """Return the auxiliary functions, like "M8", that a channel waits for."""
-        waiting = self._waiting.get(path, [])
-        return tuple(str(each) for each in self.plc.pending if each.serial in waiting)
+        return self.functions.waiting(path)
 
-    def _take_answers(self, number: int, channel: ControlChannel) -> None:
-        """Let a channel go on whose functions have all been answered."""
-        waiting = self._waiting.get(number)
-        if waiting and all(self.plc.finished(serial) for serial in waiting):
-            del self._waiting[number]
+    def _take_answers(self, channel: ControlChannel) -> None:
+        if self.functions.take_answers(channel):
             self._raised |= ControlEvent.FUNCTION
-            if channel.run is not None:
-                channel.run.answered()
 
     # ------------------------------------------------------------------ state
 
@@ -665,13 +696,13 @@ class Control:
             )
         runs = tuple(copied(run, self._shared()) for run in snapshot.runs) or (None,) * len(self.channels)
         self.machine.restore(snapshot.machine)
-        for edit in self._edits:
-            edit.close()
+        self._edits.close_all()
         self._put_back(moment, runs)
 
     @property
     def _made_from(self) -> str:
-        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {len(self.channels)} {self.data!r}"
+        shares = tuple(channel.data for channel in self.channels)
+        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {shares!r} {self.data!r}"
 
     def _shared(self) -> list[object]:
         """Return what the copy of a run shares with it."""
@@ -680,19 +711,19 @@ class Control:
             self.machine,
             self.dialect,
             self.machine.config,
-            self._live,
+            self.tools,
+            self.offsets,
+            *(channel.config for channel in self.channels),
             *nested(self.machine.state),
+            *(channel.language for channel in self.channels if channel.language is not None),
         ]
 
     def _moment(self) -> ControlMoment:
         return ControlMoment(
-            mode=self._mode,
             emergency=self._emergency,
-            overrides=self._overrides,
-            switches=self._switches,
             relative_zero=self.relative_zero,
             raised=int(self._raised),
-            channels=tuple(channel.moment(self._waiting.get(channel.path, ())) for channel in self.channels),
+            channels=tuple(channel.moment(self.functions.serials(channel.path)) for channel in self.channels),
             manual=self.manual.snapshot(),
             spindle=self.spindle.snapshot(),
             plc=self.plc.snapshot(),
@@ -702,17 +733,12 @@ class Control:
         )
 
     def _put_back(self, moment: ControlMoment, runs: tuple[ProgramRun | None, ...]) -> None:
-        self._mode = moment.mode
         self._emergency = moment.emergency
-        self._overrides = moment.overrides
-        self._switches = moment.switches
         self._relative_zero = list(moment.relative_zero)
         self._raised = ControlEvent(moment.raised)
-        self._waiting = {}
         for channel, kept, run in zip(self.channels, moment.channels, runs, strict=True):
             channel.put_back(kept, run)
-            if kept.waiting:
-                self._waiting[channel.path] = list(kept.waiting)
+        self.functions.restore((n, kept.waiting) for n, kept in enumerate(moment.channels))
         self.manual.restore(moment.manual)
         self.spindle.restore(moment.spindle)
         self.plc.restore(moment.plc)
@@ -730,42 +756,29 @@ class Control:
             )
         return self.channels[number]
 
-    def _to_begin(self, channel: ControlChannel, is_mdi: bool) -> ProgramText:
-        """Return the text that a start executes now."""
-        text = channel.mdi if is_mdi else channel.program
-        if text is None:
-            raise ControlError(
-                Refusal.NOT_FOUND,
-                "there is no MDI text" if is_mdi else "no program is selected",
-                hint="Put in a text." if is_mdi else "Select a program.",
-            )
-        if self.data.reference_required:
-            missing = [axis for axis, done in self.manual.referenced.items() if not done]
-            if missing:
-                raise ControlError(
-                    Refusal.NOT_REFERENCED,
-                    f"axis {', '.join(missing)} is not referenced",
-                    hint="Reference it in REF.",
-                )
-        if not is_mdi and text.name in self.programs:
-            return self.programs.text(text.name)
-        return text
+    def _chosen(self, number: int | None) -> tuple[ControlChannel, ...]:
+        """Return the channel that a command means, all of them for None."""
+        return self.channels if number is None else (self._channel(number),)
 
-    def _lend(self, mode: Mode) -> None:
-        """Give the axes to manual motion in its mode."""
-        if self._mode is not mode:
-            raise wrong_mode(self._mode, f"axes can be moved in {mode}", mode)
-        if self._emergency is not Emergency.OFF:
-            check_ready(self._emergency, self.alarms)
-        serious = [alarm for alarm in self.alarms.active if alarm.kind is not AlarmKind.TRAVEL]
-        if serious:
-            check_ready(self._emergency, self.alarms)
-        for channel in self.channels:
-            channel.lend()
+    def _owner(self, axis: str) -> ControlChannel:
+        """Return the channel of an axis; the first one for an axis that there is not."""
+        return next((channel for channel in self.channels if axis in channel.axes), self.channels[0])
+
+    def _lend(self, axis: str, mode: Mode) -> None:
+        """Give the axes of a channel to manual motion in its mode."""
+        owner = self._owner(axis)
+        if owner.mode is not mode:
+            raise wrong_mode(owner.mode, f"axes can be moved in {mode}", mode)
+        alarms = self.alarms.of(owner.path)
+        serious = [alarm for alarm in alarms if alarm.kind is not AlarmKind.TRAVEL]
+        if self._emergency is not Emergency.OFF or serious:
+            check_ready(self._emergency, alarms)
+        owner.lend()
 
     def _cutting_s(self) -> float:
         return float(self.machine.state.paths.totals[:, FEED_S].sum())
 
     def _tool(self) -> int:
-        block = self.channels[0].executed
+        turning = next((channel for channel in self.channels if channel.data.spindle), self.channels[0])
+        block = turning.executed
         return 0 if block is None else block.modal.tool

@@ -2,18 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 
-from polycnc.cnc._control_data import AfterManual, Overrides, Switches
+from polycnc.cnc._block_search import block_line
+from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
 from polycnc.cnc._control_snapshot import ChannelMoment, KeptText
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step
+from polycnc.errors import UsageError
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText
+from polycnc.nc import (
+    BlockRecord,
+    BoundLanguage,
+    Dialect,
+    Event,
+    Language,
+    Library,
+    ProgramText,
+    of_another_channel,
+)
 
 INTERRUPTED = frozenset(
     {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
@@ -22,7 +34,7 @@ INTERRUPTED = frozenset(
 
 
 class ControlChannel:
-    """Execute programs on one path of a control's machine.
+    """Execute programs on one path of a control's machine, with the axes that it owns.
 
     `program` is what is selected for automatic, `text` what is executed: that or an MDI text. While a program is
     interrupted, the operator may move the axes by hand: they are lent, and must be back before it goes on.
@@ -32,6 +44,7 @@ class ControlChannel:
         self,
         machine: Machine,
         path: int,
+        data: ChannelData,
         dialect: Dialect,
         manual: ManualMotion,
         *,
@@ -39,8 +52,17 @@ class ControlChannel:
         library: Library,
         dry_run_mm_min: float,
         on_event: Callable[[ControlChannel, Event], bool],
+        language: Language | None = None,
     ) -> None:
         self.path = path
+        self.language = language
+        self.skip_signal = False
+        self.on_skip: Callable[[], None] | None = None
+        self.data = data
+        self.mode = Mode.AUTO
+        self.overrides = Overrides()
+        self.switches = Switches()
+        self.search: Search | None = None  # where the selected program begins
         self.program: ProgramText | None = None
         self.mdi: ProgramText | None = None
         self.run: ProgramRun | None = None
@@ -51,14 +73,32 @@ class ControlChannel:
         self._machine = machine
         self._dialect = dialect
         self._manual = manual
-        self._config = config
+        self.config = self._own(config)
         self._library = library
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
         self._lent: tuple[tuple[int, float], ...] | None = None  # axes and where they were
         self._changed = False  # the machine has other limits than the run knows
+        machine.state.paths.axis[path, [name not in data.axes for name in config.axis_names]] = -1
+        machine.state.paths.position[path] = machine.state.base
+        machine.state.paths.queued[path] = machine.state.base
+
+    def _own(self, config: MachineConfig) -> MachineConfig:
+        """Return the machine file as the programs of this channel see it: no word reaches the axes of others."""
+        axes = tuple(
+            axis
+            if axis.name in self.data.axes
+            else axis.model_copy(update={"name": of_another_channel(axis.name)})
+            for axis in config.axes
+        )
+        return config.model_copy(update={"axes": axes})
 
     # ------------------------------------------------------------------ what it does
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """The names of its axes, in the order of the machine."""
+        return tuple(name for name in self._machine.config.axis_names if name in self.data.axes)
 
     @property
     def run_state(self) -> RunState:
@@ -109,22 +149,72 @@ class ControlChannel:
 
     # ------------------------------------------------------------------ commands
 
-    def begin(
-        self,
-        text: ProgramText,
-        switches: Switches,
-        overrides: Overrides,
-        *,
-        mdi: bool,
-        step: Step,
-        line: int = 1,
-    ) -> None:
-        """Begin to execute a text at a line, from where the axes stand.
+    def seek(self, text: ProgramText, search: Search) -> int:
+        """Make the selected program ready to begin at a block; return its line.
 
         Raises:
-            ControlError: The axes are still braking.
+            ControlError: The axes are still braking, there is no such block, or the program cannot begin there.
         """
         self.check_rest()
+        try:
+            block_line(text, search.line, search.sequence)
+        except UsageError as error:
+            raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
+        with self._whole_or_nothing():
+            self._load(text, mdi=False)
+            line = self._find(search)
+        self.search = search
+        return line
+
+    @contextmanager
+    def _whole_or_nothing(self) -> Iterator[None]:
+        """Let a refusal within leave run and path as they were."""
+        state = self._machine.state
+        arrays = (state.owner, *(each[self.path] for each in (state.paths.position, state.paths.queued)))
+        kept = [each.copy() for each in arrays]
+        row, run = state.paths.row[self.path : self.path + 1], self.run
+        kept_row = row.copy()
+        saved = None if run is None else run.snapshot()
+        try:
+            yield
+        except ControlError:
+            row[:] = kept_row
+            for each, content in zip(arrays, kept, strict=True):
+                each[:] = content
+            if run is not None and saved is not None:
+                run.restore(saved)
+            self.run = run
+            raise
+
+    def _find(self, search: Search) -> int:
+        assert self.run is not None
+        try:
+            return self.run.search(line=search.line, sequence=search.sequence, calculate=search.calculate)
+        except UsageError as error:
+            raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
+
+    def begin(self, text: ProgramText, *, mdi: bool, step: Step, search: Search | None) -> None:
+        """Begin to execute a text, from where the axes stand.
+
+        Raises:
+            ControlError: The axes are still braking, or the program cannot begin at the block that is wanted.
+        """
+        self.check_rest()
+        self._load(text, mdi=mdi)
+        if search is not None:
+            self._find(search)
+        assert self.run is not None
+        self.search = None
+        self.is_mdi = mdi
+        self._lent = None
+        self.set_switches(self.switches)
+        self.set_overrides(self.overrides)
+        self.run.breakpoints = self.breakpoints
+        self.run.skip_signal = self.skip_signal
+        self.run.on_skip = self.on_skip
+        self._go(step)
+
+    def _load(self, text: ProgramText, *, mdi: bool) -> None:
         if self.run is None or self._changed:
             self._changed = False
             self.run = ProgramRun(
@@ -133,20 +223,13 @@ class ControlChannel:
                 self._dialect,
                 path=self.path,
                 options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
-                config=self._config,
+                config=self.config,
                 library=self._library,
+                language=self.language,
                 on_event=lambda event: self._on_event(self, event),
             )
         else:
             self.run.load(text, keeps_modal=mdi)
-        if line > 1:
-            self.run.search(line=line)
-        self.is_mdi = mdi
-        self._lent = None
-        self.set_switches(switches)
-        self.set_overrides(overrides)
-        self.run.breakpoints = self.breakpoints
-        self._go(step)
 
     def go_on(self, after_manual: AfterManual, step: Step) -> None:
         """Let an interrupted program go on; axes that were moved by hand go back first, if the control does that.
@@ -171,7 +254,7 @@ class ControlChannel:
 
     def look(self) -> None:
         """Go on once the axes are back where the program was interrupted."""
-        if self.returning and not self._manual.active:
+        if self.returning and not self._manual.moves(self.axes):
             self.returning = False
             if not self._displaced():
                 self._take_back(Step.RUN)
@@ -180,7 +263,7 @@ class ControlChannel:
         """Hold the program, or the return of axes."""
         if self.returning:
             self.returning = False
-            self._manual.stop_all()
+            self._manual.stop_all(self.axes)
         elif self.run is not None:
             self.run.hold()
 
@@ -188,6 +271,7 @@ class ControlChannel:
         """Break off whatever is being executed; the axes brake on the path."""
         self.returning = False
         self.broken = False
+        self.search = None
         if self.run is not None:
             self.run.reset()
             self._lent = None
@@ -213,7 +297,7 @@ class ControlChannel:
         self.check_rest()
         state = self._machine.state
         taken = []
-        for axis in range(len(state.base)):
+        for axis in self._indexes():
             if state.owner[axis] in (self.path, OTHER_SOURCE):
                 give_to_point_to_point(state, axis)
                 taken.append((axis, float(state.base[axis])))
@@ -221,6 +305,12 @@ class ControlChannel:
             self._lent = tuple(taken)
 
     # ------------------------------------------------------------------ settings
+
+    def set_skip_signal(self, on: bool) -> None:
+        """Give the signal that ends skip moves, or take it away."""
+        self.skip_signal = on
+        if self.run is not None:
+            self.run.skip_signal = on
 
     def set_breakpoints(self, breakpoints: frozenset[Breakpoint]) -> None:
         """Set where the program stops besides."""
@@ -230,11 +320,12 @@ class ControlChannel:
 
     def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
         """Let programs that begin from now on keep other limits, and be read in this dialect."""
-        self._config, self._dialect = config, dialect
+        self.config, self._dialect = self._own(config), dialect
         self._changed = True
 
     def set_switches(self, switches: Switches) -> None:
         """Take over what the operator has switched on."""
+        self.switches = switches
         if self.run is not None:
             self.run.single_block = switches.single_block
             self.run.optional_stop = switches.optional_stop
@@ -244,6 +335,7 @@ class ControlChannel:
 
     def set_overrides(self, overrides: Overrides) -> None:
         """Take over the overrides."""
+        self.overrides = overrides
         if self.run is not None:
             self.run.feed_override = overrides.feed
             self.run.rapid_override = overrides.rapid
@@ -253,8 +345,12 @@ class ControlChannel:
     def moment(self, waiting: Sequence[int]) -> ChannelMoment:
         """Return what the channel holds beside its run."""
         return ChannelMoment(
+            mode=self.mode,
+            overrides=self.overrides,
+            switches=self.switches,
             program=_kept(self.program),
             mdi=_kept(self.mdi),
+            search=self.search,
             is_mdi=self.is_mdi,
             broken=self.broken,
             returning=self.returning,
@@ -264,13 +360,21 @@ class ControlChannel:
 
     def put_back(self, moment: ChannelMoment, run: ProgramRun | None) -> None:
         """Go back to a moment, with a run that nobody else has."""
+        self.mode = moment.mode
+        self.overrides = moment.overrides
+        self.switches = moment.switches
         self.program = _text(moment.program)
         self.mdi = _text(moment.mdi)
+        self.search = moment.search
         self.is_mdi = moment.is_mdi
         self.broken = moment.broken
         self.returning = moment.returning
         self._lent = moment.lent
         self.run = run
+        if run is not None:
+            run.on_skip = self.on_skip
+        if run is not None and isinstance(self.language, BoundLanguage):
+            self.language.attach(run.channel)
 
     # ------------------------------------------------------------------ lent axes
 
@@ -282,6 +386,9 @@ class ControlChannel:
         """
         if not self.at_rest:
             raise ControlError(Refusal.RUNNING, "the axes are still braking", hint="Wait until they stand.")
+
+    def _indexes(self) -> tuple[int, ...]:
+        return tuple(axis for axis in self._machine.state.paths.axis[self.path].tolist() if axis >= 0)
 
     def _displaced(self) -> dict[str, float]:
         """Return where the axes that are elsewhere were when the program was interrupted."""

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
-from polycnc.cnc._alarms import AlarmList
+from collections.abc import Sequence
+
+from polycnc.cnc._alarms import Alarm
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import Mode
+from polycnc.cnc._manual import ManualMotion
+from polycnc.cnc._program_memory import ProgramMemory
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._status import Emergency
+from polycnc.nc import ProgramText
 
 
 def check_over(channel: ControlChannel) -> None:
@@ -23,7 +28,7 @@ def check_over(channel: ControlChannel) -> None:
         )
 
 
-def check_ready(emergency: Emergency, alarms: AlarmList) -> None:
+def check_ready(emergency: Emergency, alarms: Sequence[Alarm]) -> None:
     """Refuse to move anything by program while something is wrong.
 
     Raises:
@@ -37,8 +42,50 @@ def check_ready(emergency: Emergency, alarms: AlarmList) -> None:
             hint="Release it and reset." if on else "Reset first.",
         )
     if alarms:
-        first = alarms.active[0]
+        first = alarms[0]
         raise ControlError(Refusal.ALARM, f"alarm {first.number}: {first.text}", hint="Clear it and reset.")
+
+
+def check_hands_off(channel: ControlChannel, manual: ManualMotion) -> None:
+    """Refuse to execute a program with axes that are moved by hand.
+
+    Raises:
+        ControlError: One of the channel's axes is.
+    """
+    if manual.moves(channel.axes):
+        raise ControlError(Refusal.RUNNING, "axes are moved by hand", hint="Wait until they stand.")
+
+
+def check_referenced(channel: ControlChannel, manual: ManualMotion) -> None:
+    """Refuse to execute a program with axes that do not know where they are.
+
+    Raises:
+        ControlError: One of the channel's axes is not referenced.
+    """
+    referenced = manual.referenced
+    missing = [axis for axis in channel.axes if not referenced[axis]]
+    if missing:
+        raise ControlError(
+            Refusal.NOT_REFERENCED,
+            f"axis {', '.join(missing)} is not referenced",
+            hint="Reference it in REF.",
+        )
+
+
+def text_to_begin(channel: ControlChannel, programs: ProgramMemory, *, is_mdi: bool) -> ProgramText:
+    """Return the text that a start executes, as it is in the memory now.
+
+    Raises:
+        ControlError: There is none.
+    """
+    text = channel.mdi if is_mdi else channel.program
+    if text is None:
+        raise ControlError(
+            Refusal.NOT_FOUND,
+            "there is no MDI text" if is_mdi else "no program is selected",
+            hint="Put in a text." if is_mdi else "Select a program.",
+        )
+    return programs.text(text.name) if not is_mdi and text.name in programs else text
 
 
 def wrong_mode(mode: Mode, what: str, *modes: Mode) -> ControlError:

@@ -10,6 +10,7 @@ from polycnc.cnc._alarms import ALARMS, AlarmTable
 from polycnc.cnc._manual import ManualData
 from polycnc.cnc._program_memory import MemoryData
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import UsageError
 from polycnc.machine import LEAST_OVERRIDE
 
 
@@ -68,6 +69,49 @@ class ControlData:
     answer_limit_s: float | None = None
     dry_run_mm_min: float = 3000.0
     sub_program_names: tuple[str, ...] = ("O{number:04d}", "O{number}", "{number}")
+
+
+@dataclass(frozen=True, slots=True)
+class ChannelData:
+    """Say what a channel owns: `axes` by their names, which no other channel has, and perhaps the spindle.
+
+    Auxiliary functions of all channels go to the same PLC. Parts are counted by the program ends of the first channel.
+    """
+
+    axes: tuple[str, ...]
+    spindle: bool = False
+
+
+def check_channels(channels: tuple[ChannelData, ...], axes: tuple[str, ...]) -> None:
+    """Refuse channels that do not share out the axes of a machine.
+
+    Raises:
+        UsageError: An axis belongs to none of them or to two, there is no such axis, or two have the spindle.
+    """
+    given = [axis for channel in channels for axis in channel.axes]
+    for axis in (*axes, *given):
+        owners = given.count(axis)
+        if axis not in axes:
+            raise UsageError(f"there is no axis '{axis}'", hint=f"The axes are {', '.join(axes)}.")
+        if owners != 1:
+            belongs = "no channel" if owners == 0 else f"{owners} channels"
+            raise UsageError(f"axis {axis} belongs to {belongs}", hint="Give it to one channel.")
+    if any(not channel.axes for channel in channels):
+        raise UsageError("a channel has no axes", hint="Give it some, or leave it out.")
+    if sum(channel.spindle for channel in channels) > 1:
+        raise UsageError("the spindle belongs to several channels", hint="Give it to one.")
+
+
+@dataclass(frozen=True, slots=True)
+class Search:
+    """Where a program begins with its next start: the block on `line`, or with sequence number `sequence`.
+
+    With `calculate` what stands before is carried out without moving.
+    """
+
+    line: int = 0
+    sequence: int | None = None
+    calculate: bool = False
 
 
 @dataclass(frozen=True, slots=True)

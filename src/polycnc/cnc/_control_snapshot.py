@@ -14,7 +14,7 @@ from typing import Any, Self
 from pydantic import TypeAdapter, ValidationError
 
 from polycnc.cnc._alarms import Alarm, OperatorMessage
-from polycnc.cnc._control_data import Mode, Overrides, Switches
+from polycnc.cnc._control_data import Mode, Overrides, Search, Switches
 from polycnc.cnc._manual import ManualState
 from polycnc.cnc._plc import PlcState
 from polycnc.cnc._program_run import ProgramRun
@@ -38,8 +38,12 @@ class KeptText:
 class ChannelMoment:
     """What a channel holds beside its run; `waiting` are requests to the PLC."""
 
+    mode: Mode
+    overrides: Overrides
+    switches: Switches
     program: KeptText | None
     mdi: KeptText | None
+    search: Search | None
     is_mdi: bool
     broken: bool
     returning: bool
@@ -51,10 +55,7 @@ class ChannelMoment:
 class ControlMoment:
     """What a control holds beside machine and runs."""
 
-    mode: Mode
     emergency: Emergency
-    overrides: Overrides
-    switches: Switches
     relative_zero: tuple[float, ...]
     raised: int
     channels: tuple[ChannelMoment, ...]
@@ -88,7 +89,8 @@ class ControlSnapshot(Snapshot):
     ) -> Self:
         """Keep a moment; `under_way` says that a program is being executed or interrupted."""
         data = asdict(moment)
-        data["switches"]["block_delete"] = sorted(moment.switches.block_delete)
+        for kept in data["channels"]:
+            kept["switches"]["block_delete"] = sorted(kept["switches"]["block_delete"])
         plain = Snapshot.take(DEVICE, made_from, machine.cycle, (), data)
         return cls(DEVICE, plain.made_from, plain.cycle, (), plain.beside, machine, runs, under_way)
 

@@ -8,9 +8,12 @@ switch everything brakes, and the axis can only leave it.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+
+import numpy as np
+import numpy.typing as npt
 
 from polycnc.cnc._alarms import AlarmList
 from polycnc.cnc._reference_steps import Step, Until, reference_steps
@@ -98,8 +101,8 @@ class ManualState:
 
     motions: tuple[AxisMotion, ...]
     referenced: tuple[bool, ...]
-    feed_override: float
-    rapid_override: float
+    feed_overrides: tuple[float, ...]
+    rapid_overrides: tuple[float, ...]
 
 
 class ManualMotion:
@@ -119,8 +122,8 @@ class ManualMotion:
         self._axes: tuple[AxisConfig, ...] = machine.config.axes
         self._motions = [_REST] * len(self._axes)
         self._referenced = [referenced] * len(self._axes)
-        self._feed_override = 1.0
-        self._rapid_override = 1.0
+        self._feed_overrides = [1.0] * len(self._axes)
+        self._rapid_overrides = [1.0] * len(self._axes)
 
     # ------------------------------------------------------------------ what is known
 
@@ -138,21 +141,29 @@ class ManualMotion:
         """Whether an axis is moved by hand, or waits with its override at 0."""
         return any(motion is not _REST for motion in self._motions)
 
+    def moves(self, axes: Iterable[str]) -> bool:
+        """Tell whether one of these axes is moved by hand, or waits with its override at 0."""
+        return any(self._motions[self._index(axis)] is not _REST for axis in axes)
+
     # ------------------------------------------------------------------ commands
 
     def change_axes(self, axes: tuple[AxisConfig, ...]) -> None:
         """Move axes with other speeds and limits from now on; nothing may be moving by hand."""
         self._axes = axes
 
-    def set_overrides(self, *, feed: float | None = None, rapid: float | None = None) -> None:
-        """Set the overrides of jogging (0 to 2) and of rapid jogging and reference searches (0 to 1)."""
-        feed = self._feed_override if feed is None else feed
-        rapid = self._rapid_override if rapid is None else rapid
-        if (feed, rapid) == (self._feed_override, self._rapid_override):
-            return
-        self._feed_override, self._rapid_override = feed, rapid
-        for i, motion in enumerate(self._motions):
-            if motion is not _REST and not motion.stopping and not motion.braking:
+    def set_overrides(
+        self, *, feed: float | None = None, rapid: float | None = None, axes: Iterable[str] | None = None
+    ) -> None:
+        """Set the overrides of jogging (0 to 2) and of rapid jogging and reference searches (0 to 1).
+
+        They are those of `axes`, None: of all.
+        """
+        for i in range(len(self._axes)) if axes is None else map(self._index, axes):
+            before = self._feed_overrides[i], self._rapid_overrides[i]
+            now = before[0] if feed is None else feed, before[1] if rapid is None else rapid
+            self._feed_overrides[i], self._rapid_overrides[i] = now
+            motion = self._motions[i]
+            if now != before and motion is not _REST and not motion.stopping and not motion.braking:
                 self._plan(i)
 
     def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:
@@ -270,9 +281,9 @@ class ManualMotion:
         """
         self._stop(self._index(axis))
 
-    def stop_all(self) -> None:
-        """Brake all axes to rest and end what they were doing by hand."""
-        for i in range(len(self._motions)):
+    def stop_all(self, axes: Iterable[str] | None = None) -> None:
+        """Brake these axes (None: all) to rest and end what they were doing by hand."""
+        for i in range(len(self._motions)) if axes is None else map(self._index, axes):
             self._stop(i)
 
     # ------------------------------------------------------------------ time
@@ -289,9 +300,14 @@ class ManualMotion:
 
     def after(self) -> None:
         """Look at what the last cycle has brought: ends of profiles, switches, pulses; and go on from there."""
-        if self._machine.state.switches.rising[:, (LIMIT_LOW, LIMIT_HIGH)].any():
+        edges: npt.NDArray[np.uint8] = self._machine.state.switches.rising[:, (LIMIT_LOW, LIMIT_HIGH)]
+        if edges.any():
             self.check_limit_switches()
-            self.stop_all()
+            owners = [self._alarms.owner(axis.name) for axis in self._axes]
+            stopped = {owner for owner, edge in zip(owners, edges, strict=True) if edge.any()}
+            for i, owner in enumerate(owners):
+                if owner in stopped:
+                    self._stop(i)
         for i, motion in enumerate(self._motions):
             if motion is _REST:
                 continue
@@ -301,21 +317,24 @@ class ManualMotion:
                     self._motions[i] = _REST
             elif motion.kind is ManualKind.REFERENCE and not motion.home:
                 self._search(i, motion, at_rest)
-            elif at_rest and self._speed(motion) > 0.0:
+            elif at_rest and self._speed(i, motion) > 0.0:
                 self._arrive(i, motion)
 
     def snapshot(self) -> ManualState:
         """Return everything beside the kernel's arrays, to go back to."""
         return ManualState(
-            tuple(self._motions), tuple(self._referenced), self._feed_override, self._rapid_override
+            tuple(self._motions),
+            tuple(self._referenced),
+            tuple(self._feed_overrides),
+            tuple(self._rapid_overrides),
         )
 
     def restore(self, state: ManualState) -> None:
         """Go back to a snapshot; the kernel's arrays are the machine's to restore."""
         self._motions = [_REST if motion == _REST else motion for motion in state.motions]
         self._referenced = list(state.referenced)
-        self._feed_override = state.feed_override
-        self._rapid_override = state.rapid_override
+        self._feed_overrides = list(state.feed_overrides)
+        self._rapid_overrides = list(state.rapid_overrides)
 
     # ------------------------------------------------------------------ planning
 
@@ -348,14 +367,14 @@ class ManualMotion:
         beyond = (target - end) * direction > 0.0
         return AxisMotion(kind, direction, end if beyond else target, speed, rapid, beyond=beyond)
 
-    def _speed(self, motion: AxisMotion) -> float:
-        """Return the speed of a motion with its override."""
+    def _speed(self, i: int, motion: AxisMotion) -> float:
+        """Return the speed of an axis' motion with its override."""
         if motion.kind is ManualKind.HANDLE:
             return motion.speed
         if motion.kind is ManualKind.REFERENCE:
             fast = motion.home or motion.steps[motion.step].fast
-            return motion.speed * (self._rapid_override if fast else 1.0)
-        return motion.speed * (self._rapid_override if motion.rapid else self._feed_override)
+            return motion.speed * (self._rapid_overrides[i] if fast else 1.0)
+        return motion.speed * (self._rapid_overrides[i] if motion.rapid else self._feed_overrides[i])
 
     def _begin(self, i: int, motion: AxisMotion) -> None:
         self._motions[i] = motion
@@ -364,7 +383,7 @@ class ManualMotion:
     def _plan(self, i: int) -> None:
         """Plan the profile of an axis from where and how fast it is now."""
         motion, axis, state = self._motions[i], self._axes[i], self._machine.state
-        speed = min(self._speed(motion), axis.vmax)
+        speed = min(self._speed(i, motion), axis.vmax)
         if speed <= 0.0:
             self._brake(i)
             return
@@ -501,7 +520,7 @@ class ManualMotion:
         elif self._found(i, motion.steps[motion.step].until):
             self._motions[i] = replace(motion, braking=True)
             self._brake(i)
-        elif at_rest and self._speed(motion) > 0.0:
+        elif at_rest and self._speed(i, motion) > 0.0:
             self._stop(i)
             self._alarms.put(
                 "reference_not_found", axis=self._axes[i].name, detail=motion.steps[motion.step].until.value

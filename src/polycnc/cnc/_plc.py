@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import TypeAlias
@@ -165,10 +165,15 @@ class PlcModel:
         self._failed.clear()
         return failed
 
-    def cancel(self) -> None:
-        """Withdraw everything that waits, as a reset does."""
-        self._pending.clear()
-        self._failed.clear()
+    def cancel(self, serials: Iterable[int] | None = None) -> None:
+        """Withdraw what waits, as a reset does: these requests, or all."""
+        if serials is None:
+            self._pending.clear()
+            self._failed.clear()
+            return
+        withdrawn = set(serials)
+        self._pending = {n: each for n, each in self._pending.items() if n not in withdrawn}
+        self._failed = [each for each in self._failed if each.serial not in withdrawn]
 
     def snapshot(self) -> PlcState:
         """Return everything, to go back to."""

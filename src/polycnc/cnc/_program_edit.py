@@ -149,3 +149,44 @@ def _encoded(text: str) -> bytes:
     if b"\n" in line or b"\r" in line:
         raise ControlError(Refusal.DATA, f"{text[:40]!r} is not one line of text", hint="Edit line by line.")
     return line
+
+
+class ProgramEdits:
+    """The programs of a memory that are open for editing: one in the foreground and one in the background."""
+
+    def __init__(self, programs: ProgramMemory) -> None:
+        self._programs = programs
+        self._edits: list[ProgramEdit] = []
+
+    def open(self, name: str, *, background: bool) -> ProgramEdit:
+        """Open a program.
+
+        Raises:
+            ControlError: Such an edit is open, or the program is not there, protected or in use.
+        """
+        self._edits = [edit for edit in self._edits if edit.is_open]
+        if any(edit.background is background for edit in self._edits):
+            raise ControlError(
+                Refusal.IN_USE,
+                f"a program is being edited in the {'background' if background else 'foreground'}",
+                hint="Close that edit first.",
+            )
+        edit = ProgramEdit(self._programs, name, background=background)
+        self._edits.append(edit)
+        return edit
+
+    @property
+    def any_open(self) -> bool:
+        """Whether a program is open."""
+        return any(edit.is_open for edit in self._edits)
+
+    def close_foreground(self) -> None:
+        """Close what is open in the foreground."""
+        for edit in self._edits:
+            if not edit.background:
+                edit.close()
+
+    def close_all(self) -> None:
+        """Close everything."""
+        for edit in self._edits:
+            edit.close()

@@ -66,7 +66,10 @@ class Feed:
 
 @dataclass(frozen=True, slots=True)
 class ChannelStatus:
-    """One channel: the selected program, the executed block with its calls and modal words, and what it waits for."""
+    """One channel: the selected program, the executed block with its calls and modal words, and what it waits for.
+
+    `axes` are its own, in the order of the machine.
+    """
 
     run_state: RunState
     motion: Motion
@@ -76,11 +79,15 @@ class ChannelStatus:
     feed: Feed
     functions: tuple[str, ...]
     returning: bool
+    mode: Mode
+    overrides: Overrides
+    switches: Switches
+    axes: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """A control at one cycle."""
+    """A control at one cycle; mode, overrides and switches are those of the first channel."""
 
     cycle: int
     time_s: float

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from polycnc.cnc._manual import ManualKind
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Feed, Motion, Status
 from polycnc.cnc._timers import Timer
-from polycnc.kernel import HELD, RAPID, RUNNING, WAIT
+from polycnc.kernel import RAPID, RUNNING, WAIT
 
 if TYPE_CHECKING:
     from polycnc.cnc._control import Control
@@ -53,7 +53,7 @@ def _channel(control: Control, channel: ControlChannel) -> ChannelStatus:
             actual=float(row["speed"]) * _MM_MIN,
             rapid=bool(segment["flags"] & RAPID),
         )
-    by_hand = control.manual.active
+    by_hand = control.manual.moves(channel.axes)
     moving = bool(running and not dwells) or by_hand
     return ChannelStatus(
         run_state=channel.run_state,
@@ -64,6 +64,10 @@ def _channel(control: Control, channel: ControlChannel) -> ChannelStatus:
         feed=feed,
         functions=control.waiting_functions(channel.path),
         returning=channel.returning,
+        mode=channel.mode,
+        overrides=channel.overrides,
+        switches=channel.switches,
+        axes=channel.axes,
     )
 
 
@@ -71,17 +75,22 @@ def read_axes(control: Control) -> dict[str, AxisStatus]:
     """Return the axes of a control at the present cycle."""
     machine = control.machine
     state, config = machine.state, machine.config
-    main = control.channels[0]
-    block = main.executed
-    zero = (0.0,) * len(config.axes) if block is None else block.modal.zero
-    in_block = state.paths.row[main.path]["state"] in (RUNNING, HELD)
-    to_go = main.run.distance_to_go if main.run is not None and in_block else {}
+    to_go: dict[str, float] = {}
+    zero = {}
+    for channel in control.channels:
+        block = channel.executed
+        program_zero = (0.0,) * len(config.axes) if block is None else block.modal.zero
+        here = {} if channel.run is None else channel.run.distance_to_go
+        for axis_name, at in zip(config.axis_names, program_zero, strict=True):
+            if axis_name in channel.axes:
+                zero[axis_name] = at
+                to_go[axis_name] = here.get(axis_name, 0.0)
     referenced = control.manual.referenced
     found = {}
     for index, axis in enumerate(config.axes):
         actual = float(state.servo.actual[index])
         manual = control.manual.motion(axis.name)
-        left = to_go.get(axis.name, 0.0)
+        left = to_go[axis.name]
         if manual.kind is not ManualKind.NONE:
             left = 0.0 if manual.target is None else manual.target - float(state.base[index])
         velocity = float(state.velocity[index])
@@ -89,7 +98,7 @@ def read_axes(control: Control) -> dict[str, AxisStatus]:
             name=axis.name,
             unit=axis.unit,
             machine=actual,
-            work=actual - zero[index],
+            work=actual - zero[axis.name],
             relative=actual - control.relative_zero[index],
             to_go=left,
             setpoint=float(state.setpoint[index]),

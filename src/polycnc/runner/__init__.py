@@ -5,12 +5,12 @@ What posting and debugging need is loaded when it is first used.
 
 from typing import TYPE_CHECKING, Any
 
-from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
 from polycnc.runner._run import check, program_text, run
-from polycnc.runner._trace import TRACE_FORMATS, TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
+from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
@@ -71,14 +71,11 @@ __all__ = [
     "WallClock",
     "batch",
     "check",
-    "check_output",
     "check_plot_file",
     "check_view_file",
     "compare",
-    "complete_or_absent",
     "counted",
     "json_schema",
-    "keep_inputs",
     "machine_from",
     "open_in_browser",
     "plot",

@@ -68,7 +68,7 @@ class Trace:
     `axes` and `units` name the columns of `setpoint` [cycles, n] and `actual`, which is None without
     simulated servos. The first row is the end of the first cycle, the last row the end of the run.
     `execution` tells the block of each row apart from its neighbours, in whatever program it stands; None in a trace
-    that was read from a file.
+    that was read from a file. `program` [cycles] names the program of each row; None where there is only one.
     """
 
     axes: tuple[str, ...]
@@ -80,6 +80,7 @@ class Trace:
     setpoint: Floats
     actual: Floats | None = None
     execution: Execution | None = field(default=None, repr=False)
+    program: npt.NDArray[np.object_] | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.t_s)

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -16,29 +16,30 @@ from polycnc.errors import UsageError
 from polycnc.kernel import BLOCK, FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
-from polycnc.runner._blocks import ExecutionCollector
-from polycnc.runner._files import check_output, complete_or_absent
+from polycnc.outputs import check_output, complete_or_absent, format_of
+from polycnc.runner._blocks import Execution, ExecutionCollector
 from polycnc.runner._result import Trace
+from polycnc.runner._trace_formats import (
+    COLUMN_NAMES,
+    PROGRAM,
+    PROGRAMS,
+    TRACE_FORMATS,
+    WRITERS,
+    TraceFile,
+    read_columns,
+)
 
 Floats = npt.NDArray[np.float64]
 
-_COLUMNS = (TIME_S, BLOCK, FEED_MM_S)
-_COLUMN_NAMES = ("t_s", "block", "feed_mm_s")
 _AXIS_COLUMN = re.compile(r"([A-Z][0-9]*)(_actual)?_(mm|deg)")
 
 
 def trace_columns(config: MachineConfig, actual: bool) -> list[str]:
     """Return the names of a trace file's columns."""
-    names = [*_COLUMN_NAMES, *(f"{axis.name}_{axis.unit}" for axis in config.axes)]
+    names = [*COLUMN_NAMES, *(f"{axis.name}_{axis.unit}" for axis in config.axes)]
     if actual:
         names += [f"{axis.name}_actual_{axis.unit}" for axis in config.axes]
     return names
-
-
-def file_columns(rows: Floats) -> Floats:
-    """Return the columns of recorder rows that go into a file, in order."""
-    kept = [*_COLUMNS, *range(LEADING, rows.shape[1])]
-    return rows[:, kept]
 
 
 class TraceCollector:
@@ -66,6 +67,7 @@ class TraceCollector:
         axes = len(self._config.axes)
         width = LEADING + axes * (2 if self._actual else 1)
         rows = np.concatenate(self._pieces) if self._pieces else np.zeros((0, width))
+        execution = self._executions.execution() if self._tagged else None
         return Trace(
             axes=self._config.axis_names,
             units=tuple(axis.unit for axis in self._config.axes),
@@ -75,117 +77,34 @@ class TraceCollector:
             rapid=rows[:, IS_RAPID] != 0.0,
             setpoint=rows[:, LEADING : LEADING + axes],
             actual=rows[:, LEADING + axes :] if self._actual else None,
-            execution=self._executions.execution() if self._tagged else None,
+            execution=execution,
+            program=None if execution is None else _programs(execution, len(rows)),
         )
 
 
-class TraceFile(Protocol):
-    """A trace file that is written as the program runs."""
-
-    def add(self, rows: Floats) -> None:
-        """Write a piece of the record."""
-
-    def close(self, complete: bool) -> None:
-        """Finish the file; one that is not complete will be removed."""
-
-
-class CsvTrace:
-    """Write a trace as comma-separated text; numbers are the shortest that read back as the same double."""
-
-    def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        self._file = path.open("w", encoding="ascii", newline="\n")
-        self._file.write(",".join(columns) + "\n")
-
-    def add(self, rows: Floats) -> None:
-        """Write a piece of the record."""
-        texts = [_number_texts(column) for column in file_columns(rows).T]
-        texts[_COLUMNS.index(BLOCK)] = list(map(str, rows[:, BLOCK].astype(np.int64).tolist()))
-        self._file.writelines(f"{line}\n" for line in map(",".join, zip(*texts, strict=True)))
-
-    def close(self, complete: bool) -> None:
-        """Finish the file."""
-        self._file.close()
+def _programs(execution: Execution, rows: int) -> npt.NDArray[np.object_] | None:
+    """Return the program of each row, None where there is no more than one."""
+    of_block = np.array([block.program for block in execution.blocks], object)
+    names = _carried(of_block[execution.number], "")
+    known = {name for name in names.tolist() if name}
+    if len(known) < 2:
+        return None
+    names[names == ""] = next(name for name in names.tolist() if name)
+    return np.repeat(names, np.diff(execution.start, append=rows))
 
 
-def _number_texts(column: Floats) -> list[str]:
-    """Return the numbers of a column as text; one that repeats the number before it is written once."""
-    bits = np.ascontiguousarray(column).view(np.int64)
-    starts = np.flatnonzero(np.diff(bits, prepend=~bits[:1]))
-    texts = list(map(float.__repr__, column[starts].tolist()))
-    if len(texts) == len(column):
-        return texts
-    repeated: list[str] = np.repeat(np.array(texts, object), np.diff(starts, append=len(column))).tolist()
-    return repeated
-
-
-class NpzTrace:
-    """Collect a trace and write it as a NumPy archive, one array per column."""
-
-    def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        self._file = path.open("wb")
-        self._columns = list(columns)
-        self._pieces: list[Floats] = []
-
-    def add(self, rows: Floats) -> None:
-        """Keep a piece of the record."""
-        self._pieces.append(file_columns(rows))
-
-    def close(self, complete: bool) -> None:
-        """Write the file."""
-        with self._file:
-            if complete:
-                rows = np.concatenate(self._pieces) if self._pieces else np.zeros((0, len(self._columns)))
-                arrays: dict[str, Any] = {name: rows[:, i] for i, name in enumerate(self._columns)}
-                arrays["block"] = arrays["block"].astype(np.int64)
-                np.savez(self._file, **arrays)
-
-
-class ParquetTrace:
-    """Write a trace as a Parquet file, one row group per piece of the record."""
-
-    def __init__(self, path: Path, columns: Sequence[str]) -> None:
-        self._arrow = _pyarrow()
-        types = [self._arrow.int64() if name == "block" else self._arrow.float64() for name in columns]
-        self._schema = self._arrow.schema(list(zip(columns, types, strict=True)))
-        self._writer = self._arrow.parquet.ParquetWriter(str(path), self._schema)
-
-    def add(self, rows: Floats) -> None:
-        """Write a piece of the record."""
-        kept = file_columns(rows)
-        arrays = [
-            kept[:, i].astype(np.int64) if name == "block" else np.ascontiguousarray(kept[:, i])
-            for i, name in enumerate(self._schema.names)
-        ]
-        self._writer.write_table(self._arrow.table(arrays, schema=self._schema))
-
-    def close(self, complete: bool) -> None:
-        """Finish the file."""
-        self._writer.close()
-
-
-def _pyarrow() -> Any:
-    try:
-        import pyarrow
-        import pyarrow.parquet
-    except ImportError:
-        raise UsageError(
-            "a Parquet trace needs pyarrow", hint="Install it: pip install 'polycnc[parquet]'."
-        ) from None
-    return pyarrow
-
-
-_FORMATS: dict[str, type[CsvTrace] | type[NpzTrace] | type[ParquetTrace]] = {
-    ".csv": CsvTrace,
-    ".npz": NpzTrace,
-    ".parquet": ParquetTrace,
-}
-TRACE_FORMATS = tuple(_FORMATS)
+def _carried(names: npt.NDArray[np.object_], last: str) -> npt.NDArray[np.object_]:
+    """Return names with those that are not known, of rests before a block, taken from before."""
+    places = np.where(names != "", np.arange(len(names)), -1)
+    places = np.maximum.accumulate(places)
+    return np.where(places >= 0, names[places], last)
 
 
 class TraceWriter:
     """Write a trace to a file whose extension names the format: .csv, .npz or .parquet.
 
-    The file appears under its name when it is complete; a run that is broken off leaves none behind.
+    The file appears under its name when it is complete; a run that is broken off leaves none behind. Once a second
+    program is executed, a column says which one each row belongs to.
 
     Raises:
         UsageError: an unknown extension, no such folder, or pyarrow is needed and not installed.
@@ -194,10 +113,14 @@ class TraceWriter:
     def __init__(self, path: str | Path, config: MachineConfig, actual: bool) -> None:
         checked = check_output(path, TRACE_FORMATS, "a trace")
         with ExitStack() as stack:
-            partial = stack.enter_context(complete_or_absent(checked))
-            self._file: TraceFile = _FORMATS[checked.suffix.lower()](partial, trace_columns(config, actual))
+            partial = stack.enter_context(complete_or_absent(checked, rewritten=True))
+            columns = trace_columns(config, actual)
+            self._file: TraceFile = WRITERS[format_of(checked, TRACE_FORMATS)](partial, columns)
             stack.push(self._close)
             self._stack = stack.pop_all()
+        self._first = ""  # the program of all rows so far, if it is known
+        self._last = ""
+        self._several = False
 
     def __enter__(self) -> TraceWriter:
         return self
@@ -211,33 +134,59 @@ class TraceWriter:
         self._file.close(complete=kind is None)
 
     def add(self, rows: Floats) -> None:
-        """Write a piece of the record."""
-        self._file.add(rows)
+        """Write a piece of the record, which belongs to the same program as what came before."""
+        self._file.add(rows, np.full(len(rows), self._last, object) if self._several else None)
+
+    def add_tagged(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
+        """Write a piece of the record, and which program each row belongs to."""
+        starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
+        found = np.array([_as_text(records.program(tag)) for tag in tags[starts].tolist()], object)
+        names = _carried(found, self._last)
+        for name in dict.fromkeys(names.tolist()):
+            self._first = self._first or name
+            if name not in ("", self._first) and not self._several:
+                self._several = True
+                self._file.add_programs(self._first)
+        names[names == ""] = self._first
+        if len(names):
+            self._last = names[-1]
+        self._file.add(rows, np.repeat(names, np.diff(starts, append=len(tags))) if self._several else None)
+
+
+def _as_text(program: str | None) -> str:
+    """Return the name of a program without what no file can hold: bytes of a file name that are no text."""
+    return (program or "").encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def read_trace(path: str | Path) -> Trace:
     """Read a trace file; which moves were rapids is not in it, so none is marked.
 
     Raises:
-        UsageError: no such file, an unknown extension, or columns that are not those of a trace.
+        UsageError: no such file, an unknown extension, a damaged file, or columns that are not those of a trace.
     """
     path = Path(path)
-    readers = {".csv": _read_csv, ".npz": _read_npz, ".parquet": _read_parquet}
-    read = readers.get(path.suffix.lower())
-    if read is None:
+    if path.suffix.lower() not in TRACE_FORMATS:
         raise UsageError(
-            f"{path} is no trace file", hint=f"Its name must end with one of {', '.join(readers)}."
+            f"{path} is no trace file", hint=f"Its name must end with one of {', '.join(TRACE_FORMATS)}."
         )
     if not path.is_file():
         raise UsageError(f"no such file: {path}", hint="Check the name and the folder.")
-    columns = read(path)
+    try:
+        columns = read_columns(path)
+    except UsageError:
+        raise
+    except Exception as error:  # whatever the readers of three formats raise for what is no such file
+        why = (str(error).splitlines() or [""])[0]
+        raise UsageError(f"{path} cannot be read as a trace: {why}", hint=_WRITE_ANEW) from error
     axes = [match for name in columns if (match := _AXIS_COLUMN.fullmatch(name))]
-    if not axes or tuple(columns)[: len(_COLUMN_NAMES)] != _COLUMN_NAMES:
+    if not axes or tuple(columns)[: len(COLUMN_NAMES)] != COLUMN_NAMES:
         raise UsageError(
             f"{path} does not hold a trace", hint="Its columns begin with t_s, block, feed_mm_s."
         )
     setpoints = [match for match in axes if not match[2]]
     actual = [columns[match[0]] for match in axes if match[2]]
+    if trouble := _trouble(columns, len(setpoints), len(actual)):
+        raise UsageError(f"{path} is damaged: {trouble}", hint=_WRITE_ANEW)
     return Trace(
         axes=tuple(match[1] for match in setpoints),
         units=tuple(match[3] for match in setpoints),
@@ -247,22 +196,22 @@ def read_trace(path: str | Path) -> Trace:
         rapid=np.zeros(len(columns["t_s"]), np.bool_),
         setpoint=np.column_stack([columns[match[0]] for match in setpoints]),
         actual=np.column_stack(actual) if actual else None,
+        program=columns.get(PROGRAM),
     )
 
 
-def _read_csv(path: Path) -> dict[str, Floats]:
-    with path.open(encoding="utf-8") as file:
-        names = file.readline().rstrip("\n").split(",")
-        lines = file.readlines()
-    rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(names)))
-    return dict(zip(names, rows.T, strict=True))
+_WRITE_ANEW = "Write it anew: polycnc run --trace."
+_LARGEST_BLOCK = 2.0**53
 
 
-def _read_npz(path: Path) -> dict[str, Floats]:
-    with np.load(path) as archive:
-        return {name: archive[name] for name in archive.files}
-
-
-def _read_parquet(path: Path) -> dict[str, Floats]:
-    table = _pyarrow().parquet.read_table(path)
-    return {name: table[name].to_numpy() for name in table.column_names}
+def _trouble(columns: Mapping[str, npt.NDArray[Any]], setpoints: int, actual: int) -> str:
+    """Return what is wrong with the columns of a trace; empty if nothing is."""
+    rows = len(columns["t_s"]) if columns["t_s"].ndim == 1 else -1
+    for name, column in columns.items():
+        if name not in (PROGRAM, PROGRAMS) and column.dtype.kind not in "fiu":
+            return f"column {name} does not hold numbers"
+        if name != PROGRAMS and column.shape != (rows,):
+            return f"column {name} has another size than the others"
+    if not np.all(np.abs(columns["block"]) <= _LARGEST_BLOCK):
+        return "column block holds what is no number of a block"
+    return "" if setpoints and actual in (0, setpoints) else "positions of axes are missing"

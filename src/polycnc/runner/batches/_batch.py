@@ -5,13 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 from types import TracebackType
 from typing import Any
 
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
-from polycnc.nc import Dialect, ProgramText, dialect_for
+from polycnc.nc import Dialect, dialect_for
 from polycnc.runner._program_control import needs_root
 from polycnc.runner.batches._child import Limits
 from polycnc.runner.batches._job import Job, ProgramReport, Setup, blank_report
@@ -22,6 +23,8 @@ from polycnc.runner.batches._workers import Chunk, ClusterWorkers, LocalWorkers,
 
 _CHUNK_JOBS = 16
 _CHUNK_BYTES = 1 << 16
+_MOST_FILES = 500  # of a folder that is copied for a program
+_NAME_ROOT = "Name the folder with the files of the control: --root."
 
 Progress = Callable[[int, int], None]
 
@@ -208,8 +211,10 @@ class _Run:
         for path in self._programs:
             content, trouble = _read(path)
             for number, (setup, part) in enumerate(zip(self._setups, self._setup_parts, strict=True)):
-                root = None if trouble else self._root_of(path, content, setup)
+                root = None if trouble else self._root_of(path, setup)
                 folder = b"" if root is None else self._digest_of(root)
+                if root is not None and not folder:
+                    trouble = f"{path}: its folder {root} is too large to run it on a copy. {_NAME_ROOT}"
                 name = str(path).encode("utf-8", "surrogateescape")
                 key = key_of(
                     version_digest(), part, name, content, folder, trouble.encode("utf-8", "replace")
@@ -225,18 +230,15 @@ class _Run:
                 else:
                     yield job
 
-    def _root_of(self, path: Path, content: bytes, setup: Setup) -> Path | None:
-        """Return the folder with the control's files, where the program needs one."""
-        try:
-            text = ProgramText(str(path), content)
-            needed = needs_root(dialect_for(text.name, setup.dialect), text)
-        except UsageError:  # it will be in the report
-            return None
+    def _root_of(self, path: Path, setup: Setup) -> Path | None:
+        """Return the folder with the control's files, where programs of its dialect need one."""
+        needed = needs_root(dialect_for(str(path), setup.dialect))
         return (self._root or path.parent) if needed else None
 
     def _digest_of(self, root: Path) -> bytes:
         if root not in self._roots:
-            self._roots[root] = folder_digest(root)
+            few = sum(1 for _ in islice(root.rglob("*"), _MOST_FILES + 1)) <= _MOST_FILES
+            self._roots[root] = folder_digest(root) if few else b""
         return self._roots[root]
 
 

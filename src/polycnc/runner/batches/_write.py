@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from polycnc.errors import UsageError
-from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
+from polycnc.outputs import check_output, complete_or_absent, keep_inputs
 from polycnc.runner.batches._job import ProgramReport
 from polycnc.runner.batches._report import write_report
 

@@ -1,0 +1,96 @@
+"""Auxiliary functions of programs: handed to spindle and PLC, and awaited by the channel that came to them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from polycnc.cnc._alarms import AlarmList
+from polycnc.cnc._control_channel import ControlChannel
+from polycnc.cnc._plc import Function, PlcModel, functions_of
+from polycnc.cnc._spindle import Spindle
+from polycnc.machine import Clock, TimesConfig
+from polycnc.nc import Dialect, Event, Group, MAction
+
+_ACTIONS = {action.title: action for action in MAction}
+_STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
+_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
+
+
+class AuxiliaryFunctions:
+    """Hand functions over, and know which channel waits for which."""
+
+    def __init__(self, clock: Clock, times: TimesConfig, spindle: Spindle, plc: PlcModel) -> None:
+        self._clock = clock
+        self._times = times
+        self._spindle = spindle
+        self._plc = plc
+        self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
+
+    def meet(self, channel: ControlChannel, event: Event, dialect: Dialect) -> bool:
+        """Hand the functions of a block over; return whether the path has to wait for their answers."""
+        block = channel.executed
+        if block is not None and channel.data.spindle:
+            modal = block.modal
+            # Constant surface speed has no speed of its own here: the spindle keeps the last one.
+            rpm = None if modal.g.get(Group.SPINDLE_MODE) == _surface_speed(dialect) else modal.speed
+            self._spindle.turn(rpm=rpm, direction=modal.spindle_direction)
+        serials = [
+            self._plc.strobe(
+                Function(letter), number, default_s=self._default_s(channel, letter, number, dialect)
+            )
+            for letter, number in functions_of(event.word)
+        ]
+        waiting = [serial for serial in serials if not self._plc.finished(serial)]
+        if waiting:
+            self._waiting.setdefault(channel.path, []).extend(waiting)
+        return bool(waiting)
+
+    def _default_s(self, channel: ControlChannel, letter: str, number: int, dialect: Dialect) -> float:
+        """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""
+        action = _ACTIONS.get(dialect.m.get(f"{number}", ""))
+        if letter != "M" or action in _STOPS:
+            return 0.0
+        if action in _SPINDLE and channel.data.spindle:
+            return max(0, self._spindle.reached_cycle() - self._clock.cycles) * self._clock.cycle_s
+        return self._times.tool_change_s if action is MAction.TOOL_CHANGE else self._times.auxiliary_s
+
+    def waiting(self, path: int) -> tuple[str, ...]:
+        """Return the functions, like "M8", that a channel waits for."""
+        serials = self._waiting.get(path, [])
+        return tuple(str(each) for each in self._plc.pending if each.serial in serials)
+
+    def take_answers(self, channel: ControlChannel) -> bool:
+        """Let a channel go on whose functions have all been answered; tell whether it does."""
+        serials = self._waiting.get(channel.path)
+        if not serials or not all(self._plc.finished(serial) for serial in serials):
+            return False
+        del self._waiting[channel.path]
+        if channel.run is not None:
+            channel.run.answered()
+        return True
+
+    def note_failures(self, alarms: AlarmList) -> None:
+        """Put alarms on for the functions that were answered with one, or not in time."""
+        for request in self._plc.take_failed():
+            name = "function_not_answered" if request.timed_out else "function_failed"
+            detail = str(request) if request.timed_out else f"{request}: {request.alarm}"
+            paths = (path for path, serials in self._waiting.items() if request.serial in serials)
+            alarms.put(name, detail=detail, channel=next(paths, None))
+
+    def withdraw(self, channels: Iterable[ControlChannel]) -> None:
+        """Wait no longer for the functions of these channels."""
+        for channel in channels:
+            self._plc.cancel(self._waiting.pop(channel.path, ()))
+
+    def serials(self, path: int) -> tuple[int, ...]:
+        """Return the requests that a channel waits for, to go back to."""
+        return tuple(self._waiting.get(path, ()))
+
+    def restore(self, waiting: Iterable[tuple[int, tuple[int, ...]]]) -> None:
+        """Go back to what each channel waited for."""
+        self._waiting = {path: list(serials) for path, serials in waiting if serials}
+
+
+def _surface_speed(dialect: Dialect) -> str:
+    codes = [code for code, name in dialect.g.items() if name == "constant_surface_speed"]
+    return f"G{codes[0]}" if codes else ""

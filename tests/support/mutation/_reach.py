@@ -1,0 +1,45 @@
+"""Which tests reach which lines: candidates by what a test file names, then by running them once and looking."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+FOLDERS = (
+    "unit",
+    "property",
+    "conformance",
+)  # tests of commands run in processes of their own, which nothing sees
+
+
+@dataclass(frozen=True)
+class Reach:
+    """The time of each test in seconds and, for each file, the tests that ran each line."""
+
+    times_s: dict[str, float]
+    tests: dict[str, dict[int, list[str]]]
+
+    def of(self, file: str, lines: range) -> list[str]:
+        """Return the tests that ran one of a file's lines, the quickest first."""
+        found = {test for line in lines for test in self.tests.get(file, {}).get(line, ())}
+        return sorted(found, key=lambda test: (self.times_s.get(test, 0.0), test))
+
+
+def candidate_tests(root: Path, modules: Iterable[Path]) -> list[Path]:
+    """Return the test files that name a module's package, or use a support module that does."""
+    wanted = {".".join(_package(root, module)) for module in modules}
+    naming = {path for path in root.glob("tests/**/*.py") if _names(path, wanted)}
+    helpers = {f"support.{path.stem}" for path in naming if path.parent.name == "support"}
+    files = [path for folder in FOLDERS for path in sorted((root / "tests" / folder).glob("test_*.py"))]
+    return [path for path in files if path in naming or _names(path, helpers)]
+
+
+def _package(root: Path, module: Path) -> tuple[str, ...]:
+    parts = module.relative_to(root / "src").with_suffix("").parts
+    return parts[: 3 if parts[1] == "controllers" else 2]
+
+
+def _names(path: Path, dotted: Iterable[str]) -> bool:
+    text = path.read_text(encoding="utf-8")
+    return any(name in text for name in dotted)

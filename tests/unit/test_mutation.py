@@ -1,0 +1,104 @@
+"""The script that changes modules: which changes it makes, and what it says of tests that notice them and do not."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from support.mutation import Session, candidate_tests, mutants_of
+
+MODULE = b'''"""A module."""
+
+LARGEST = 7
+
+
+def share(part: float, whole: float) -> tuple[float, bool]:
+    """Return what `part` is of `whole`, and whether it is all of it."""
+    if part < 0.25 and (whole > 3):
+        part += 1
+    return (part + 2.0) / -whole, part == LARGEST
+
+
+def silent(values: list[int]) -> None:
+    values.insert(2, max(3, 5))
+'''
+TESTS = """
+from demo.thing import LARGEST, share
+
+
+def test_share():
+    assert LARGEST == 7
+    assert share(6.0, -4.0) == (2.0, False)
+    assert share(7.0, 3.0)[1]
+"""
+
+
+def test_every_kind_of_change_is_made_and_nothing_else_is_touched() -> None:
+    assert [(each.kind, each.lines[0], each.new.decode()) for each in mutants_of(MODULE)] == [
+        ("constant", 3, "8"),
+        ("condition", 8, "not (part < 0.25 and (whole > 3))"),
+        ("comparison", 8, "<="),
+        ("constant", 8, "-0.75"),
+        ("logic", 8, "or"),
+        ("comparison", 8, ">="),
+        ("constant", 8, "2"),
+        ("dropped", 9, "pass"),
+        ("constant", 9, "0"),
+        ("return", 10, "part == LARGEST, (part + 2.0) / -whole"),
+        ("arithmetic", 10, "-"),
+        ("constant", 10, "3.0"),
+        ("arithmetic", 10, "*"),
+        ("sign", 10, "whole"),
+        ("comparison", 10, "!="),
+        ("dropped", 14, "pass"),
+        ("constant", 14, "3"),
+        ("arguments", 14, "max(3, 5), 2"),
+        ("constant", 14, "2"),
+        ("constant", 14, "4"),
+    ]
+
+
+def test_a_changed_module_still_is_one_and_differs_in_one_line() -> None:
+    for each in mutants_of(MODULE):
+        compile(each.applied(MODULE), "module.py", "exec")
+        removed, added = each.diff(MODULE).splitlines()
+        assert (removed[0], added[0]) == ("-", "+")
+
+
+@pytest.fixture
+def repository(tmp_path: Path) -> Path:
+    """Return a small repository with a module and the test of it."""
+    root = tmp_path / "demo"
+    for name, text in (
+        ("src/demo/__init__.py", ""),
+        ("src/demo/thing.py", MODULE.decode()),
+        ("tests/unit/test_thing.py", TESTS),
+        ("tests/unit/test_other.py", "def test_other():\n    pass\n"),
+        ("pyproject.toml", "[tool.pytest.ini_options]\npythonpath = ['src']\n"),
+    ):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text(text, encoding="utf-8")
+    return root
+
+
+def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> None:
+    module = repository / "src" / "demo" / "thing.py"
+    tests = candidate_tests(repository, [module])
+    assert [path.name for path in tests] == ["test_thing.py"]
+    chosen = {
+        ("constant", 3): "killed",
+        ("return", 10): "killed",
+        ("logic", 8): "survived",  # the test has no part below a quarter of a small whole
+        ("dropped", 9): "unreached",
+        ("dropped", 14): "unreached",
+    }
+    with Session(repository) as session:
+        reach = session.reach([module], tests)
+        verdicts = {
+            place: session.outcome(module, each, reach).verdict
+            for each in mutants_of(MODULE)
+            if (place := (each.kind, each.lines[0])) in chosen
+        }
+        assert session.source(module) == MODULE == module.read_bytes()
+    assert verdicts == chosen
