@@ -50,9 +50,9 @@ def run(
     [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks and the records that
     read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
     are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
-    run ends at the first M0. `feed_override` is the operator's, up to 2. `progress` is called now and then with the part
-    that is done, 0 to 1; it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that count
-    as if they were not there.
+    run ends at the first M0. `feed_override` is the operator's, up to 2. `progress` is called now and then with the
+    part that is done, 0 to 1; it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that
+    count as if they were not there.
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
     absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to

@@ -183,7 +183,7 @@ def _batch() -> Schema:
             "machine": _TEXT,
             "dialect": _TEXT,
             "override_percent": _number("The feed override, %.", low=1.0),
-            "tolerance_mm": _length("How far the path may leave a corner"),
+            "tolerance_mm": _or_null(_length("How far the path may leave a corner; null: free")),
             "status": {"enum": ["ok", "error", "time-out", "memory", "lost"]},
             "time_s": time,
             "cutting_time_s": time,

@@ -66,7 +66,7 @@ class ProgramReport:
     machine: str
     dialect: str = ""
     override_percent: float = 100.0
-    tolerance_mm: float = 0.0
+    tolerance_mm: float | None = 0.0
     status: str = "ok"
     time_s: float | None = None
     cutting_time_s: float | None = None
@@ -97,11 +97,12 @@ class ProgramReport:
 
 def blank_report(job: Job, setup: Setup, status: str, *errors: str) -> ProgramReport:
     """Return the report of a program that gave no result."""
+    tolerance = setup.machine.path.path_tolerance_mm
     return ProgramReport(
         job.name,
         setup.machine.name,
         override_percent=setup.override_percent,
-        tolerance_mm=setup.machine.path.path_tolerance_mm,
+        tolerance_mm=None if tolerance == "free" else tolerance,
         status=status,
         errors=list(errors),
     )

@@ -131,6 +131,11 @@ def check_batch_file(path: str | Path, inputs: Iterable[str | Path] = ()) -> Pat
         UsageError: another ending, no such folder, one of `inputs`, or pyarrow is needed and not installed.
     """
     target = check_output(path, BATCH_FORMATS, "a report")
+    if target.suffix.lower() not in _WRITERS:
+        raise UsageError(
+            f"a report cannot be written to {target}: the name tells no format",
+            hint=f"Use a name that ends with {', '.join(BATCH_FORMATS)}.",
+        )
     keep_inputs(target, inputs, "a report")
     if target.suffix.lower() == ".parquet":
         _pyarrow()

@@ -24,7 +24,7 @@
     { title: "program", width: "minmax(140px, 3fr)", of: (each) => each.program, text: (each) => each.program },
     varies("machine") && { title: "machine", width: "minmax(60px, 1fr)", of: (each) => each.machine, text: (each) => each.machine },
     varies("override_percent") && { title: "override %", width: "80px", of: (each) => each.override_percent, text: (each) => String(each.override_percent), number: true },
-    varies("tolerance_mm") && { title: "tolerance mm", width: "96px", of: (each) => each.tolerance_mm, text: (each) => String(each.tolerance_mm), number: true },
+    varies("tolerance_mm") && { title: "tolerance mm", width: "96px", of: (each) => each.tolerance_mm, text: (each) => (each.tolerance_mm === null ? "free" : String(each.tolerance_mm)), number: true },
     { title: "result", width: "96px", of: (each) => [each.status === "ok" ? 1 : 0, each.status].join(), text: (each) => (each.status === "ok" ? "ok" : each.errors.length > 1 ? `${each.errors.length} errors` : each.status), bad: (each) => each.status !== "ok" },
     has("time_s") && { title: "time", width: "84px", of: (each) => each.time_s, text: (each) => clock(each.time_s), number: true },
     has("time_s") && { title: "cutting", width: "84px", of: (each) => each.cutting_time_s, text: (each) => clock(each.cutting_time_s), number: true },
