@@ -118,7 +118,7 @@ def test_an_address_that_belongs_to_something_names_it() -> None:
     assert channel.error is not None
     assert channel.error.what == "'R' has no meaning in this block"
     assert channel.error.hint == "It belongs to an arc (G2, G3) or a drilling cycle."
-    assert prepare("G1 F100 X1 H5\n", dialect="bosch").error is not None  # bosch ignores nothing
+    assert prepare("G1 F100 X1 L5\n", dialect="bosch").error is not None  # bosch ignores nothing
 
 
 # --- refused blocks change nothing

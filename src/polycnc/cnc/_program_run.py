@@ -6,7 +6,7 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
 
@@ -17,6 +17,7 @@ from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
+from polycnc.cnc._probing import Probing, delete_rest, positions
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
@@ -35,6 +36,7 @@ from polycnc.nc import (
     ModalWords,
     ProgramText,
     Stop,
+    Suppressed,
     load_dialect,
 )
 
@@ -63,20 +65,10 @@ HIGHEST_OVERRIDE = 2.0
 
 # Plain values that a run holds besides its channel.
 _SAVED = (
-    "optional_stop",
-    "alarm",
-    "_block_delete",
-    "_single_block",
-    "_state",
-    "_hold",
-    "_stop",
-    "_met",
-    "_dropping",
-    "_locked",
-    "_unanswered",
-    "_approach",
-    "_tool_times",
-)
+    "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
+    "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
+    "skip_signal", "_suppressed", "_held_back", "_override_kept",
+)  # fmt: skip
 
 
 class RunSnapshot(NamedTuple):
@@ -95,7 +87,11 @@ class ProgramRun:
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
-    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on.
+    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on. `axes` are the
+    names of the machine's axes in this channel, empty for those that it does not have.
+
+    `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
+    The surfaces of the machine file do the same. `on_skip` is told when either is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -112,6 +108,7 @@ class ProgramRun:
         config: MachineConfig | None = None,
         library: Library | None = None,
         language: Language | None = None,
+        axes: Sequence[str] | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
         before: ProgramRun | None = None,
@@ -123,10 +120,13 @@ class ProgramRun:
         self.path = path
         self.rows = rows
         self.on_event = on_event
+        self.on_skip: Callable[[], None] | None = None
+        self.skip_signal = False
         self.optional_stop = options.optional_stop
         self.alarm: RunAlarm | None = None
         self._options = options
         self._language = language
+        self._axes = axes
         self._config = config
         self._library = library
         self._block_delete = options.block_delete
@@ -136,12 +136,16 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
+        self._suppressed = Suppressed()  # what the program keeps from acting now
+        self._held_back = False  # a feed hold that comes when the program lets it
+        self._override_kept = 1.0  # the feed override while the program keeps it from acting
         self._locked = False
         self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
             None  # where a searched block begins, and its line
         )
         self._unanswered = False  # an auxiliary function at which the path stands
+        self._probing: Probing | None = None
         self._row = machine.state.paths.row[path]
         self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
         self.stopper = Stopper(self.channel.records, Step.INTO if self._single_block else Step.RUN)
@@ -158,6 +162,7 @@ class ProgramRun:
             config=self._config,
             library=self._library,
             language=self._language,
+            axes=self._axes,
             skip_levels=self._block_delete,
             stands_at_stops=self._options.stands_at_stops,
             answers=self._options.answers,
@@ -182,13 +187,18 @@ class ProgramRun:
         """
         self._check_start()
         if self._state in _OVER:
-            self._begin(Step.INTO if self._single_block else Step.RUN)
+            self._begin(self._step_of_switch)
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
     def hold(self) -> None:
-        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed."""
-        if self._state is RunState.ACTIVE:
+        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed.
+
+        While the program suppresses feed holds it comes as soon as it does no more.
+        """
+        if self._state is RunState.ACTIVE and self._suppressed.hold:
+            self._held_back = True
+        elif self._state is RunState.ACTIVE:
             self._hold = True
             self._state = RunState.HOLD
             self._set_hold()
@@ -203,7 +213,7 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._state.value}", hint="Start it."
             )
-        self._go(Step.INTO if self._single_block else Step.RUN)
+        self._go(self._step_of_switch)
 
     def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
         """Select another program; with `keeps_modal` it begins with the modal state that is in force.
@@ -305,6 +315,9 @@ class ProgramRun:
         """
         self.alarm = None
         self.channel.close()
+        self.channel.suppressed = Suppressed()
+        self._held_back = False
+        self._take_suppressed()
         if self._row["state"] == kernel.IDLE:
             self._state = RunState.RESET
             return
@@ -324,7 +337,7 @@ class ProgramRun:
         if on == self._single_block:
             return
         self._single_block = on
-        self.stopper.step = Step.INTO if on else Step.RUN
+        self.stopper.step = self._step_of_switch
         if self._state in (RunState.ACTIVE, RunState.HOLD):
             self.feed.look_again()
 
@@ -400,11 +413,14 @@ class ProgramRun:
     @property
     def feed_override(self) -> float:
         """Factor of the programmed feeds, 0 to 2; at 0 moves at feed stand."""
-        return float(self._row["override"])
+        return self._override_kept if self._suppressed.override else float(self._row["override"])
 
     @feed_override.setter
     def feed_override(self, factor: float) -> None:
         _check_factor(factor, HIGHEST_OVERRIDE, "the feed override")
+        if self._suppressed.override:
+            self._override_kept = factor
+            return
         self._row["override"] = factor
         self.feed.replan()
 
@@ -470,15 +486,26 @@ class ProgramRun:
         return self._tool_times.until(self._seconds())
 
     @property
+    def path_times(self) -> ToolTime:
+        """How long the path has cut and positioned so far, with whatever tool."""
+        return self._seconds()
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
+        return self._by_axis(self.to_go)
+
+    @property
+    def to_go(self) -> Floats:
+        """What `distance_to_go` tells, by the place of the axis."""
         row = self._row
         here = self.machine.state.paths.position[self.path]
         if row["state"] not in (kernel.RUNNING, kernel.HELD):
-            return self._by_axis(np.zeros_like(here))
+            return np.zeros_like(here)
         last = self.feed.block_end(int(row["head"])) - 1
         k = int(row["base"]) + last % int(row["capacity"])
-        return self._by_axis(self.machine.state.seg.end[k] - here)
+        left: Floats = self.machine.state.seg.end[k] - here
+        return left
 
     # ------------------------------------------------------------------ time
 
@@ -514,9 +541,12 @@ class ProgramRun:
         """
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         target = self.feed.target()
         done = 0
         while self._state is RunState.ACTIVE and self._row["head"] < target:
+            if self._probing is not None:
+                return done + self.advance(1)
             cycles = self.machine.skip(self.path, target)
             done += cycles
             if self._row["event"] >= 0:
@@ -539,13 +569,19 @@ class ProgramRun:
             return 0
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        return cycles
+        often = self._probing is not None or (
+            self._options.asks_often and self.at_rest and not self.channel.done
+        )
+        return min(cycles, 1) if often else cycles
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
         raised = int(self.machine.state.clock[0]["raised"])
+        if self._probing is not None:
+            self._probe(self._probing)
         if raised & kernel.PATH_EVENT and self._row["event"] >= 0:
             self._meet_event()
         if raised & kernel.RECORDER_FULL:
@@ -564,8 +600,6 @@ class ProgramRun:
             rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
-
-    # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> RunSnapshot:
         """Return everything that this run holds, to go back to with `restore`.
@@ -657,7 +691,8 @@ class ProgramRun:
         stands = (
             self._state is RunState.STOPPED_AT_BLOCK
         )  # before a segment that is in the look-ahead already
-        hold = self._hold or stands or self._stop is not None or self._unanswered
+        met = self._probing is not None and self._probing.met and self._probing.deletes
+        hold = self._hold or stands or met or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == kernel.RUNNING:
@@ -712,9 +747,15 @@ class ProgramRun:
         self._met = int(self._row["head"]), event.tag
         self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
-            self._unanswered = bool(self.on_event(event))
+            self._unanswered = bool(self.on_event(event)) and not self._suppressed.answers
             self._set_hold()
-        if event.stop is Stop.DRAIN:
+        if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
+            self._probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
+        elif event.stop is Stop.DRAIN:
+            if self._probing is not None:
+                self._probing = None
+                self.feed.keep_box()
+                self._set_hold()
             self.channel.go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self._stop = event
@@ -723,10 +764,45 @@ class ProgramRun:
         elif event.stop is not None and self._options.stands_at_stops:
             self.channel.go_on()
 
+    def _probe(self, probing: Probing) -> None:
+        """Look for the contact of a probing move; what is left of the move is dropped once the axes stand."""
+        if not probing.met:
+            if probing.look(self.machine, self.channel, signal=self.skip_signal) and probing.deletes:
+                self._set_hold()
+                if self.on_skip is not None and self.channel.state.skip_position is not None:
+                    self.on_skip()
+        elif probing.deletes and self.at_rest and self._state is RunState.ACTIVE:
+            delete_rest(self.machine, self.channel, self.feed)
+            self._probing = None
+            self._set_hold()
+
     def _pass_stop(self) -> None:
         if self._stop is not None:
             self._stop = None
             self.channel.go_on()
+
+    @property
+    def _step_of_switch(self) -> Step:
+        """How far a start goes as the switch of single blocks says, and the program lets it."""
+        return Step.INTO if self._single_block and not self._suppressed.single_block else Step.RUN
+
+    def _take_suppressed(self) -> None:
+        """Let what the program suppresses act no more, and what it did until now act again."""
+        was, now = self._suppressed, self.channel.suppressed
+        if now == was:
+            return
+        self._suppressed = now
+        if now.override is not was.override:
+            if now.override:
+                self._override_kept = float(self._row["override"])
+            self._row["override"] = 1.0 if now.override else self._override_kept
+            self.feed.replan()
+        if now.single_block is not was.single_block and self._single_block:
+            self.stopper.step = self._step_of_switch
+            self.feed.look_again()
+        if self._held_back and not now.hold:
+            self._held_back = False
+            self.hold()
 
     def _look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""
@@ -762,6 +838,7 @@ class ProgramRun:
         self._hold = False
         self._stop = None
         self._unanswered = False
+        self._probing = None
         self._met = None
         self._set_hold()
 

@@ -24,6 +24,7 @@ from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._path import (
+    EXACT_PATH,
     FEED_LENGTH,
     FEED_S,
     HELD,
@@ -68,6 +69,7 @@ from polycnc.kernel._segments import (
     RAPID,
     STOP,
     WAIT,
+    WAIT_EVENT,
     Segments,
     make_segments,
     set_arc,
@@ -97,6 +99,7 @@ __all__ = [
     "BLOCK",
     "BY_DEVIATION",
     "BY_SQUARE_CORNER",
+    "EXACT_PATH",
     "FEED_LENGTH",
     "FEED_MM_S",
     "FEED_S",
@@ -138,6 +141,7 @@ __all__ = [
     "TOP_SPEED",
     "VELOCITY",
     "WAIT",
+    "WAIT_EVENT",
     "WAIT_S",
     "AxisLimits",
     "KernelState",

@@ -16,6 +16,7 @@ from polycnc.machine._config import (
     ToolConfig,
 )
 from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
+from polycnc.machine._config_probe import SurfaceConfig, first_contact
 from polycnc.machine._describe import (
     AXIS_COLUMNS,
     axis_rows,
@@ -95,6 +96,7 @@ __all__ = [
     "Store",
     "StoreError",
     "StrictModel",
+    "SurfaceConfig",
     "Timed",
     "TimesConfig",
     "ToolConfig",
@@ -103,6 +105,7 @@ __all__ = [
     "arrays_of",
     "axis_rows",
     "describe_machine",
+    "first_contact",
     "is_nested_beyond",
     "load_machine",
     "load_toml",

@@ -14,13 +14,15 @@ from polycnc.nc._block_source import (
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel import Channel, ChannelSnapshot
+from polycnc.nc._channel import Channel, ChannelSnapshot, Suppressed
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._calls import Library
 from polycnc.nc.blocks._channel_state import ChannelState, Spindle, of_another_channel
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
+from polycnc.nc.blocks._placement import Placement
+from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._queue import Event
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
@@ -51,11 +53,14 @@ __all__ = [
     "Message",
     "ModalWords",
     "Pause",
+    "Placement",
+    "Probe",
     "ProgramText",
     "SourceItem",
     "Spindle",
     "Statement",
     "Stop",
+    "Suppressed",
     "TextRules",
     "TextSpan",
     "Word",

@@ -28,6 +28,7 @@ from polycnc.nc.blocks._channel_state import ModalSnapshot
 from polycnc.nc.blocks._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
+    EXACT_PATH,
     EXACT_STOP,
     FEED_INVERSE_TIME,
     FEED_MODE,
@@ -44,6 +45,7 @@ from polycnc.nc.blocks._modal import (
     PLANE_YZ,
     PLANE_ZX,
 )
+from polycnc.nc.blocks._placement import NO_PLACEMENT, Placement
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, scan, word_columns
 
@@ -51,6 +53,7 @@ LINE_MASK = (1 << 31) - 1
 AGAIN = 1 << 31  # told apart from the execution just before
 CONTEXT_SHIFT = 32
 _CONTEXTS = 1 << 20  # numbers of contexts: a reference stays exact as a float64, as the recorder keeps it
+_MOST_READ = 32
 _FEW = 4096  # so many contexts are kept without asking who needs them
 
 _SEQUENCE = re.compile(r"\s*(?:/[1-9]?)?\s*[Nn]\s*([0-9]+)")
@@ -87,7 +90,8 @@ class ModalWords:
 
     `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
     next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
-    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis.
+    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
+    offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
     """
 
     g: dict[Group, str]
@@ -101,6 +105,8 @@ class ModalWords:
     m: tuple[int, ...]
     inch: bool
     zero: tuple[float, ...]
+    work: tuple[str, ...] = ()
+    placement: Placement = NO_PLACEMENT
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,6 +168,7 @@ class BlockRecords:
         self._enough = _FEW
         self._last: tuple[_Key | None, int] = None, 0  # and what is added to a line
         self._codes = _codes(dialect)
+        self._read: dict[int, BlockRecord] = {}  # the last records that were read
 
     def reference(self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, line: int) -> int:
         """Return the reference of a block that leaves the modal state `modal` behind."""
@@ -175,6 +182,8 @@ class BlockRecords:
 
     def block(self, tag: int) -> BlockRecord | None:
         """Return the record of a block; None for a tag that is no reference, or of a context since dropped."""
+        if (known := self._read.get(tag)) is not None:
+            return known
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         if context is None:
             return None
@@ -182,7 +191,9 @@ class BlockRecords:
         offset = context.text.line_start(line)
         text = context.text.line(offset)
         number = _SEQUENCE.match(text)
-        return BlockRecord(
+        if len(self._read) >= _MOST_READ:
+            self._read.clear()
+        self._read[tag] = record = BlockRecord(
             program=context.text.name,
             line=line,
             offset=offset,
@@ -191,6 +202,11 @@ class BlockRecords:
             stack=context.stack,
             modal=self._words(context, line),
         )
+        return record
+
+    def words(self, text: ProgramText, modal: ModalSnapshot) -> ModalWords:
+        """Return the modal words of a state of preparation."""
+        return self._words(_Context(text, (), modal, None), 0)
 
     def depth(self, tag: int) -> int:
         """Return how many calls led to the block of a tag."""
@@ -233,6 +249,7 @@ class BlockRecords:
         """Go back to a snapshot."""
         contexts, self._next = saved
         self._contexts = {n: each for n, each in contexts.items() if isinstance(each, _Context)}
+        self._read.clear()
         self._known = {context.key(): n for n, context in self._contexts.items()}
         self._last = None, 0
 
@@ -246,6 +263,7 @@ class BlockRecords:
     def keep(self, tags: Iterable[int]) -> None:
         """Drop every context that none of these tags refers to."""
         needed = {tag >> CONTEXT_SHIFT for tag in tags}
+        self._read.clear()
         self._contexts = {n: context for n, context in self._contexts.items() if n in needed}
         self._known = {key: n for key, n in self._known.items() if n in needed}
         self._last = None, 0
@@ -293,6 +311,8 @@ class BlockRecords:
             m=modal.m_codes,
             inch=bool(whole[INCH]),
             zero=tuple(np.frombuffer(modal.offset).tolist()),
+            work=modal.work,
+            placement=modal.placement,
         )
 
     def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:
@@ -341,6 +361,12 @@ def _codes(dialect: Dialect) -> dict[Action, str]:
     return codes
 
 
+def _stopping(whole: list[int]) -> Action:
+    if whole[EXACT_STOP]:
+        return Action.EXACT_STOP
+    return Action.EXACT_PATH if whole[EXACT_PATH] else Action.CONTINUOUS
+
+
 def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
     """Return what is in force, one action of every modal group."""
     found = [
@@ -352,7 +378,7 @@ def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
         Action.CONSTANT_SURFACE_SPEED if modal.spindle.surface_speed else Action.SPINDLE_RPM,
         _SIDES[modal.side],
         _LENGTHS[modal.length_sign],
-        Action.EXACT_STOP if whole[EXACT_STOP] else Action.CONTINUOUS,
+        _stopping(whole),
         Action.RETRACT_INITIAL if modal.retract_to_initial else Action.RETRACT_R,
     ]
     if modal.cycle:

@@ -5,6 +5,7 @@ The interpreter knows actions, never code numbers of a vendor; a new control is 
 
 from __future__ import annotations
 
+import math
 import re
 import string
 from collections.abc import Iterable
@@ -18,7 +19,7 @@ import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
-from polycnc.machine import StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
 from polycnc.nc.blocks._cycles import CycleSettings, PeckTap
 from polycnc.nc.blocks._modal import (
@@ -213,7 +214,29 @@ class Dialect(StrictModel):
         default="none",
         description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro").',
     )
+    h_compensates: bool = Field(
+        default=False,
+        description="H alone compensates the tool length, H0 cancels; else G43 or G44 is needed.",
+    )
+    notes_codes: bool = Field(
+        default=False, description="The G codes that were programmed are kept, for those who ask for them."
+    )
+    diameter_axes: tuple[str, ...] = Field(
+        default=(),
+        description="Axes whose positions are diameters, besides those that the machine file names.",
+    )
+    incremental: dict[str, str] = Field(
+        default={}, description='Addresses of ways = the axis that goes them, like `U = "X"`.'
+    )
+    tool_word: Literal["select", "turret"] = Field(
+        default="select",
+        description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
+    )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
+    free_corners: bool = Field(
+        default=False,
+        description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter line.",
+    )
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
     scaling_unit: Annotated[float, Field(gt=0)] = Field(
@@ -240,9 +263,18 @@ class Dialect(StrictModel):
         return {int(code): M_ACTIONS[action] for code, action in self.m.items()}
 
     @property
+    def has_tool_change(self) -> bool:
+        """Whether programs can change the tool."""
+        return MAction.TOOL_CHANGE in self._by_m.values() or self.tool_word == "turret"
+
+    @property
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""
         return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())
+
+    def path_tolerance_mm(self, path: PathConfig) -> float:
+        """Return how far corners may be rounded where the program says nothing, mm; inf if it is free."""
+        return math.inf if self.free_corners and path.tolerance_mm == 0.0 else path.tolerance_mm
 
     def g_action(self, code: float) -> Action | None:
         """Return what a G code does, None if the dialect does not know it."""
@@ -326,7 +358,7 @@ class DialectTables(NamedTuple):
     least_input: float
 
 
-_SHIPPED = ("din", "fanuc", "haas", "grbl", "bosch")
+_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

@@ -40,6 +40,10 @@ class Action(IntEnum):
     ARC_CW = auto()
     ARC_CCW = auto()
     MOTION_OFF = auto()
+    THREAD = auto()
+    TURN_CYCLE = auto()
+    THREAD_CYCLE = auto()
+    FACE_CYCLE = auto()
     DWELL = auto()
     EXACT_STOP_BLOCK = auto()
     PLANE_XY = auto()
@@ -59,6 +63,7 @@ class Action(IntEnum):
     WORK_OFFSET = auto()
     WORK_OFFSET_OFF = auto()
     EXACT_STOP = auto()
+    EXACT_PATH = auto()
     CONTINUOUS = auto()
     ABSOLUTE = auto()
     INCREMENTAL = auto()
@@ -101,9 +106,38 @@ class Action(IntEnum):
     ADDITIONAL_OFFSET = auto()
     ADDITIONAL_OFFSET_110 = auto()
     SKIP_MOVE = auto()
+    TURN_FINISH = auto()
+    TURN_ROUGH = auto()
+    FACE_ROUGH = auto()
+    TURN_REPEAT = auto()
+    FACE_PECK = auto()
+    TURN_PECK = auto()
+    THREAD_PASSES = auto()
     UNSUPPORTED = auto()
     NOTHING = auto()
     IGNORED = auto()
+    CONTOUR_SHIFT = auto()
+    CONTOUR_SHIFT_OFF = auto()
+    PROGRAM_SHIFT = auto()
+    PROGRAM_SHIFT_ADD = auto()
+    PROGRAM_SHIFT_OFF = auto()
+    PROGRAM_SHIFT_ADD_OFF = auto()
+    WORKPIECE_POSITION = auto()
+    WORKPIECE_POSITION_OFF = auto()
+    POLE = auto()
+    POLE_SCALING = auto()
+    POLE_SCALING_OFF = auto()
+    EXTERNAL_OFFSET = auto()
+    EXTERNAL_OFFSET_OFF = auto()
+    EXTERNAL_TOOL = auto()
+    EXTERNAL_TOOL_OFF = auto()
+    GENERAL_TOOL = auto()
+    GENERAL_TOOL_OFF = auto()
+    SELECT_TABLES = auto()
+    PLANE_BY_AXES = auto()
+    PROBE_MOVE = auto()
+    PROBE_IN_PASSING = auto()
+    PROBE_FIXED_STOP = auto()
     LEFT_OUT = auto()
 
 
@@ -114,6 +148,10 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.ARC_CW,
         Action.ARC_CCW,
         Action.MOTION_OFF,
+        Action.THREAD,
+        Action.TURN_CYCLE,
+        Action.THREAD_CYCLE,
+        Action.FACE_CYCLE,
         Action.CYCLE_CHIP_BREAK,
         Action.CYCLE_FINE_BORE,
         Action.CYCLE_DRILL,
@@ -143,6 +181,35 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.MIRROR,
         Action.MIRROR_OFF,
         Action.SKIP_MOVE,
+        Action.TURN_FINISH,
+        Action.TURN_ROUGH,
+        Action.FACE_ROUGH,
+        Action.TURN_REPEAT,
+        Action.FACE_PECK,
+        Action.TURN_PECK,
+        Action.THREAD_PASSES,
+        Action.CONTOUR_SHIFT,
+        Action.CONTOUR_SHIFT_OFF,
+        Action.PROGRAM_SHIFT,
+        Action.PROGRAM_SHIFT_ADD,
+        Action.PROGRAM_SHIFT_OFF,
+        Action.PROGRAM_SHIFT_ADD_OFF,
+        Action.WORKPIECE_POSITION,
+        Action.WORKPIECE_POSITION_OFF,
+        Action.POLE,
+        Action.POLE_SCALING,
+        Action.POLE_SCALING_OFF,
+        Action.EXTERNAL_OFFSET,
+        Action.EXTERNAL_OFFSET_OFF,
+        Action.EXTERNAL_TOOL,
+        Action.EXTERNAL_TOOL_OFF,
+        Action.GENERAL_TOOL,
+        Action.GENERAL_TOOL_OFF,
+        Action.SELECT_TABLES,
+        Action.PLANE_BY_AXES,
+        Action.PROBE_MOVE,
+        Action.PROBE_IN_PASSING,
+        Action.PROBE_FIXED_STOP,
     ),
     Group.ROTATION: (Action.ROTATION, Action.ROTATION_OFF),
     Group.POLAR: (Action.POLAR, Action.POLAR_OFF),
@@ -161,7 +228,7 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.ADDITIONAL_OFFSET,
         Action.ADDITIONAL_OFFSET_110,
     ),
-    Group.STOPPING: (Action.EXACT_STOP, Action.CONTINUOUS),
+    Group.STOPPING: (Action.EXACT_STOP, Action.EXACT_PATH, Action.CONTINUOUS),
     Group.EXACT_STOP_BLOCK: (Action.EXACT_STOP_BLOCK,),
     Group.RETRACT: (Action.RETRACT_INITIAL, Action.RETRACT_R),
     Group.IGNORED: (Action.IGNORED, Action.NOTHING, Action.UNSUPPORTED, Action.LEFT_OUT),

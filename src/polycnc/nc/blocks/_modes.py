@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
-from polycnc.machine import LONGEST_BLOCK_S
+from polycnc.kernel import EXACT_PATH as EXACT_PATH_TOLERANCE
+from polycnc.machine import LONGEST_BLOCK_S, ToolConfig
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
@@ -19,6 +20,7 @@ from polycnc.nc.blocks._modal import (
     AXIS_P,
     AXIS_Q,
     AXIS_R,
+    EXACT_PATH,
     EXACT_STOP,
     FEED,
     FEED_INVERSE_TIME,
@@ -38,6 +40,7 @@ from polycnc.nc.blocks._modal import (
 )
 from polycnc.nc.blocks._moves import Wait
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, additional_offset
+from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
@@ -168,8 +171,14 @@ class Modes:
         g = words.g.get(Group.LENGTH_COMPENSATION)
         coordinates = self.state.coordinates
         sign = coordinates.length_sign if g is None else _LENGTH_SIGNS[g.action]
-        if g is None and (sign == 0 or "H" not in words.by_letter):
-            return  # an H that is left over is reported as such
+        if g is None and "H" not in words.by_letter:
+            return
+        if g is None and sign == 0:
+            if not self.dialect.h_compensates:
+                return  # an H that is left over is reported as such
+            sign = 1
+        if self.dialect.h_compensates and g is None and words.by_letter["H"].value == 0.0:
+            sign = 0
         h_word = words.take("H")
         axis = int(self.state.modal.letter_axis[ord("Z") - ord("A")])
         if axis == NO_AXIS:
@@ -225,6 +234,9 @@ class Modes:
             whole[EXACT_STOP] = stopping.action is Action.EXACT_STOP
             if stopping.action is Action.CONTINUOUS:
                 self._set_path_tolerance(words)
+            elif stopping.action is Action.EXACT_PATH:
+                state.path_tolerance_mm = EXACT_PATH_TOLERANCE
+            whole[EXACT_PATH] = stopping.action is Action.EXACT_PATH
         if distance := g.get(Group.DISTANCE):
             whole[ABSOLUTE] = distance.action is Action.ABSOLUTE
         if distance := g.get(Group.ARC_DISTANCE):
@@ -239,11 +251,11 @@ class Modes:
             self.messages.add(f"G{ignored.code} has no effect here and is ignored")
 
     def _set_path_tolerance(self, words: BlockWords) -> None:
-        """Take over how far corners may be rounded: P, else what the machine allows."""
+        """Take over how far corners may be rounded: P, else what the dialect and the machine allow."""
         tolerance = None if Group.DWELL in words.g else words.take("P")
         words.take("Q")
-        if tolerance is None:
-            self.state.path_tolerance_mm = self.state.machine.path.path_tolerance_mm
+        if tolerance is None or (tolerance.value == 0.0 and self.dialect.free_corners):
+            self.state.path_tolerance_mm = self.dialect.path_tolerance_mm(self.state.machine.path)
             return
         if tolerance.value < 0.0:
             raise self.fail("the path tolerance P is negative", "Write P from 0 up.", tolerance)
@@ -279,4 +291,19 @@ class Modes:
         tool = state.tool if state.compensation_tool is None else state.compensation_tool
         data = self.auxiliary.tool_data(tool)
         radius = data.radius_mm + data.wear_radius_mm
-        return lambda: state.compensation.start(Side(state.side), radius, plane, line)
+        radius += state.tables.tool_radius(state.placement.compensations)
+        tip = self._tip(data, radius)
+
+        def start() -> None:
+            state.compensation.start(Side(state.side), radius, plane, line)
+            if tip != state.tip.vector:
+                state.tip = TipShift(tip)
+
+        return start
+
+    def _tip(self, data: ToolConfig, radius: float) -> tuple[tuple[int, float], ...]:
+        """Return the way from the middle of a tool's nose to its tip, by axis; none for a tool without a tip."""
+        letters = self.state.modal.letter_axis
+        ways = zip("XZ", TIPS[data.tip], strict=True)
+        named = [(int(letters[ord(name) - ord("A")]), way * radius) for name, way in ways]
+        return tuple(named) if any(way for _, way in named) else ()

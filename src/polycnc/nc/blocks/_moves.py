@@ -19,6 +19,8 @@ class Stop(StrEnum):
     PROGRAM = "program stop"
     OPTIONAL = "optional stop"
     DRAIN = "preparation waits for execution"
+    PROBE = "probing begins"
+    PROBE_IN_PASSING = "measuring in passing begins"
 
 
 @dataclass(frozen=True, slots=True)

@@ -112,6 +112,15 @@ class QueueWriter:
         if self.marks is not None:
             self.marks.clear()
 
+    def put_again(self) -> None:
+        """Append the events that have not been come to anew, because the queue that they were in has been dropped."""
+        events = [self.events[number] for number in sorted(self.events)]
+        self.events.clear()
+        for event in events:
+            self._append_wait(0.0, self._next_event, event.tag)
+            self.events[self._next_event] = event
+            self._next_event += 1
+
     def snapshot(self) -> WriterSnapshot:
         """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
         marks = None if self.marks is None else tuple(self.marks)
@@ -175,7 +184,8 @@ class QueueWriter:
             time_s = item.duration_s if answered and word is words[-1] else 0.0
             self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag, item.message)
             self._next_event += 1
-        if item.stop is Stop.DRAIN or (item.stop is not None and self.stands_at_stops):
+        stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
+        if item.stop is Stop.DRAIN or stands:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)

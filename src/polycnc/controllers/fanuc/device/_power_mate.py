@@ -259,6 +259,7 @@ class PowerMate:
             raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
         if not channel.interrupted:
             self.custom_macros.begin()
+            self.signals.apply_lock()
         start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
         self.control.cycle_start(line=start + 1)
         self._cursor = 0
@@ -293,10 +294,17 @@ class PowerMate:
         self.control.set_switches(optional_stop=on)
 
     def skip_signal(self, on: bool = True) -> None:
-        """Give the skip signal, or take it away; its rising edge notes where the axes are."""
+        """Give the skip signal, or take it away; its rising edge notes where the axes are.
+
+        While it is on it ends skip moves (G31): the axes brake, and the next block goes on from there.
+        """
         if on and not self._skip:
-            self._skip_positions = tuple(each.absolute for each in self.positions.read())
+            self._note_skip()
         self._skip = on
+        self.control.channels[0].set_skip_signal(on)
+
+    def _note_skip(self) -> None:
+        self._skip_positions = tuple(each.absolute for each in self.positions.read())
 
     @property
     def skip_is_on(self) -> bool:
@@ -447,6 +455,7 @@ class PowerMate:
         """
         self.control.restore(snapshot.control)
         self._mode, self._cursor = snapshot.mode, snapshot.cursor
+        self.control.channels[0].set_skip_signal(snapshot.skip)
         self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
         self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
         self.protection_keys = snapshot.protection_keys
@@ -506,6 +515,7 @@ class PowerMate:
                 emergency_needs_reset=False,
             ),
         )
+        control.channels[0].on_skip = self._note_skip
         control.change_axes(axes)
         for axis, name in enumerate(names, 1):
             if self.parameters.value(1020, axis) != ord(name):
