@@ -85,7 +85,7 @@ def test_json_beyond_reason_is_refused(case: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("statement", ["LOADTL/1e400", "TOOLNO/1e400", "LOADTL/-1", "LOADTL/2.5"])
 def test_a_tool_number_that_is_none_is_refused(statement: str, tmp_path: Path) -> None:
     (tmp_path / "p.cls").write_text(f"FROM/0,0,9\n{statement}\nGOTO/1,2,3\nFINI\n")
-    with pytest.raises(ProgramError, match="must be a whole number|beyond all others"):
+    with pytest.raises(ProgramError, match=r"must be a whole number|beyond all others"):
         runner.post_file(tmp_path / "p.cls", "din")
 
 
