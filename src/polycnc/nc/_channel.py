@@ -64,6 +64,15 @@ _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
 
 
+class Suppressed(NamedTuple):
+    """What a program keeps from acting (#3003, #3004): single block, waits for functions, feed hold, feed override."""
+
+    single_block: bool = False
+    answers: bool = False
+    hold: bool = False
+    override: bool = False
+
+
 class ChannelSnapshot(NamedTuple):
     """Hold where a channel stood, to go back to."""
 
@@ -128,6 +137,7 @@ class Channel:
             None  # for whoever looks at the queue before it is executed
         )
         self.messages = Messages()
+        self.suppressed = Suppressed()
         self._collect_errors = collect_errors
         self._known_errors: set[str] = set()
         self._refused_calls: dict[tuple[str, int], Trouble] = {}

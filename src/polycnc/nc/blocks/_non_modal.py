@@ -84,8 +84,8 @@ class NonModal:
         move = self._measuring_move(g, line)
         probe = self.state.probe
         assert probe is not None
-        names = self.state.axis_names
-        if (met := first_contact(self.state.machine.surfaces, names, move.start, move.end)) is not None:
+        machine = self.state.machine
+        if (met := first_contact(machine.surfaces, machine.axis_names, move.start, move.end)) is not None:
             self.state.probe = replace(probe, position=met)
             move = replace(move, end=met)
         return [move, Wait(0.0, line, stop=Stop.DRAIN)]
