@@ -8,14 +8,17 @@ import typer
 
 from polycnc import __version__
 from polycnc.cli import (
+    _batch,
     _check,
     _compare,
     _conformance,
     _debug,
+    _focas,
     _machine,
     _post,
     _run,
     _sap,
+    _schema,
     _serve,
     _view,
     _warmup,
@@ -28,7 +31,7 @@ app = typer.Typer(
     help="A virtual CNC and motion controller: run, time and inspect NC programs without a machine.",
     epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 70 internal error, 130 interrupted.",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -54,6 +57,7 @@ app.command("run", short_help="Run a part program: times, path, alarms.")(guarde
 app.command("view", short_help="Write a page that shows a run: path, time, blocks, tools.")(
     guarded(_view.view_command)
 )
+app.command("batch", short_help="Run or check whole folders of programs.")(guarded(_batch.batch_command))
 app.command("compare", short_help="Compare two programs, or one on two machines.")(
     guarded(_compare.compare_command)
 )
@@ -69,9 +73,16 @@ app.command("serve", short_help="Serve a simulated control to clients on the net
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
 )
+app.command("schema", short_help="Print the JSON schema of outputs and files.")(
+    guarded(_schema.schema_command)
+)
 app.command("warmup", short_help="Compile beforehand what the first use would wait for.")(
     guarded(_warmup.warmup_command)
 )
+_focas.focas_app.command("dissect", short_help="Explain captured bytes of the protocol.")(
+    guarded(_focas.dissect_command)
+)
+app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 

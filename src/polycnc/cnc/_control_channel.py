@@ -180,7 +180,10 @@ class ControlChannel:
         kept = [each.copy() for each in arrays]
         row, run = state.paths.row[self.path : self.path + 1], self.run
         kept_row = row.copy()
-        saved = None if run is None else run.snapshot()
+        try:
+            saved = None if run is None else run.snapshot()
+        except UsageError:  # a language has executed it: it stands at its beginning then
+            saved = None
         try:
             yield
         except ControlError:

@@ -7,28 +7,28 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from typing import Any, NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
-from polycnc.cnc._block_search import block_line
-from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
+from polycnc.cnc._block_search import block_line, calculate_to
+from polycnc.cnc._path_feed import PathFeed
+from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._probing import Probing, delete_rest, positions
+from polycnc.cnc._run_snapshot import RunSnapshot, put_back, taken_of
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import LEAST_OVERRIDE, Machine, MachineConfig, Reason
+from polycnc.machine import Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
     Call,
     Channel,
-    ChannelSnapshot,
     Dialect,
     Event,
     Language,
@@ -36,6 +36,7 @@ from polycnc.nc import (
     ModalWords,
     ProgramText,
     Stop,
+    Suppressed,
     load_dialect,
 )
 
@@ -59,28 +60,7 @@ _STANDING = {
 }
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
-HIGHEST_OVERRIDE = 2.0
 _MOST_MARKS = 1000
-_SKIP_CYCLES = 1 << 12
-
-
-# Plain values that a run holds besides its channel.
-_SAVED = (
-    "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
-    "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
-    "skip_signal",
-)  # fmt: skip
-
-
-class RunSnapshot(NamedTuple):
-    """Everything that a run holds at one cycle, to go back to."""
-
-    program: ProgramText
-    channel: Channel
-    prepared: ChannelSnapshot
-    feed: FeedSnapshot
-    stopper: Stopper
-    fields: dict[str, Any]
 
 
 class ProgramRun:
@@ -92,7 +72,7 @@ class ProgramRun:
     names of the machine's axes in this channel, empty for those that it does not have.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The surfaces of the machine file give it as well. `on_skip` is told when it is met.
+    The surfaces of the machine file do the same. `on_skip` is told when either is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -137,6 +117,8 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
+        self._suppressed = Suppressed()  # what the program keeps from acting now
+        self._held_back = False  # a feed hold that comes when the program lets it
         self._locked = False
         self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
@@ -148,6 +130,12 @@ class ProgramRun:
         self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
         self.stopper = Stopper(self.channel.records, Step.INTO if self._single_block else Step.RUN)
         self.feed = PathFeed(machine, self.channel, self._ahead, self.stopper)
+        self.overrides = PathOverrides(
+            self._row,
+            self.feed.replan,
+            dry_run_mm_s=options.dry_run_mm_s,
+            rapid_f0_mm_s=options.rapid_f0_mm_s,
+        )
 
     def _new_channel(
         self, program: ProgramText, before: Channel | None, *, keeps_modal: bool = True
@@ -185,13 +173,18 @@ class ProgramRun:
         """
         self._check_start()
         if self._state in _OVER:
-            self._begin(Step.INTO if self._single_block else Step.RUN)
+            self._begin(self._step_of_switch)
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
     def hold(self) -> None:
-        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed."""
-        if self._state is RunState.ACTIVE:
+        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed.
+
+        While the program suppresses feed holds it comes as soon as it does no more.
+        """
+        if self._state is RunState.ACTIVE and self._suppressed.hold:
+            self._held_back = True
+        elif self._state is RunState.ACTIVE:
             self._hold = True
             self._state = RunState.HOLD
             self._set_hold()
@@ -206,7 +199,7 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._state.value}", hint="Start it."
             )
-        self._go(Step.INTO if self._single_block else Step.RUN)
+        self._go(self._step_of_switch)
 
     def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
         """Select another program; with `keeps_modal` it begins with the modal state that is in force.
@@ -246,31 +239,13 @@ class ProgramRun:
         if not calculate:
             self.channel.go_to(target)
             return target
-        state = self.machine.state
-        kernel.give_to_path(state, self.path)
-        self.channel.state.modal.position[:] = state.paths.position[self.path]
         try:
-            found = self.channel.calculate_to(target, self._skip_queue)
-            problem = (
-                None
-                if found
-                else UsageError(
-                    f"the program ends before line {target}",
-                    hint="Search a block that is executed." if self.error is None else str(self.error),
-                )
-            )
-        except UsageError as error:
-            problem = error
-        kernel.drop_queue(state.seg, state.paths, self.path)
-        if problem is not None:
+            calculate_to(self.machine, self.channel, target)
+        except UsageError:
             self._replace_channel(self.program, keeps_modal=False)
-            raise problem
+            raise
         self._approach = (tuple(self.channel.state.modal.position.tolist()), target)
         return target
-
-    def _skip_queue(self) -> None:
-        for name in ("head", "prepared", "planned"):
-            self._row[name] = self._row["tail"]
 
     def step_into(self) -> None:
         """Go on to the end of the next block, into a sub-program if it calls one.
@@ -308,6 +283,9 @@ class ProgramRun:
         """
         self.alarm = None
         self.channel.close()
+        self.channel.suppressed = Suppressed()
+        self._held_back = False
+        self._take_suppressed()
         if self._row["state"] == kernel.IDLE:
             self._state = RunState.RESET
             return
@@ -327,7 +305,7 @@ class ProgramRun:
         if on == self._single_block:
             return
         self._single_block = on
-        self.stopper.step = Step.INTO if on else Step.RUN
+        self.stopper.step = self._step_of_switch
         if self._state in (RunState.ACTIVE, RunState.HOLD):
             self.feed.look_again()
 
@@ -354,14 +332,11 @@ class ProgramRun:
     @property
     def dry_run(self) -> bool:
         """Whether moves at feed go with the feed of a dry run."""
-        return bool(self._row["dry_feed_mm_s"] > 0.0)
+        return self.overrides.dry_run
 
     @dry_run.setter
     def dry_run(self, on: bool) -> None:
-        if on and not self._options.dry_run_mm_s > 0.0:
-            raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
-        self._row["dry_feed_mm_s"] = self._options.dry_run_mm_s if on else 0.0
-        self.feed.replan()
+        self.overrides.dry_run = on
 
     @property
     def machine_lock(self) -> bool:
@@ -389,27 +364,20 @@ class ProgramRun:
     @property
     def rapid_override(self) -> float:
         """Factor of positioning speeds, 0 to 1; 0 is the lowest speed of the options (F0)."""
-        return 0.0 if self._row["rapid_top"] < np.inf else float(self._row["rapid_override"])
+        return self.overrides.rapid
 
     @rapid_override.setter
     def rapid_override(self, factor: float) -> None:
-        _check_factor(factor, 1.0, "the rapid override")
-        lowest = self._options.rapid_f0_mm_s
-        slow = factor == 0.0 and lowest > 0.0
-        self._row["rapid_override"] = 1.0 if slow else factor
-        self._row["rapid_top"] = lowest if slow else np.inf
-        self.feed.replan()
+        self.overrides.rapid = factor
 
     @property
     def feed_override(self) -> float:
         """Factor of the programmed feeds, 0 to 2; at 0 moves at feed stand."""
-        return float(self._row["override"])
+        return self.overrides.feed
 
     @feed_override.setter
     def feed_override(self, factor: float) -> None:
-        _check_factor(factor, HIGHEST_OVERRIDE, "the feed override")
-        self._row["override"] = factor
-        self.feed.replan()
+        self.overrides.feed = factor
 
     def stands_at(self, stop: Stop) -> bool:
         """Tell whether the program would stand at such a stop now."""
@@ -473,15 +441,26 @@ class ProgramRun:
         return self._tool_times.until(self._seconds())
 
     @property
+    def path_times(self) -> ToolTime:
+        """How long the path has cut and positioned so far, with whatever tool."""
+        return self._seconds()
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
+        return self._by_axis(self.to_go)
+
+    @property
+    def to_go(self) -> Floats:
+        """What `distance_to_go` tells, by the place of the axis."""
         row = self._row
         here = self.machine.state.paths.position[self.path]
         if row["state"] not in (kernel.RUNNING, kernel.HELD):
-            return self._by_axis(np.zeros_like(here))
+            return np.zeros_like(here)
         last = self.feed.block_end(int(row["head"])) - 1
         k = int(row["base"]) + last % int(row["capacity"])
-        return self._by_axis(self.machine.state.seg.end[k] - here)
+        left: Floats = self.machine.state.seg.end[k] - here
+        return left
 
     # ------------------------------------------------------------------ time
 
@@ -517,6 +496,7 @@ class ProgramRun:
         """
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         target = self.feed.target()
         done = 0
         while self._state is RunState.ACTIVE and self._row["head"] < target:
@@ -544,6 +524,7 @@ class ProgramRun:
             return 0
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
         often = self._probing is not None or (
@@ -583,27 +564,11 @@ class ProgramRun:
         Raises:
             UsageError: a language executes the program; where that stands cannot be kept.
         """
-        return RunSnapshot(
-            self.program,
-            self.channel,
-            self.channel.snapshot(),
-            self.feed.snapshot(),
-            replace(self.stopper),
-            {name: getattr(self, name) for name in _SAVED},
-        )
+        return taken_of(self)
 
     def restore(self, saved: RunSnapshot) -> None:
         """Go back to a snapshot of this run."""
-        self.program = saved.program
-        self.channel = self.feed.channel = saved.channel
-        self.channel.restore(saved.prepared)
-        self.feed.restore(saved.feed)
-        self.stopper.records = saved.stopper.records
-        self.stopper.step, self.stopper.depth = saved.stopper.step, saved.stopper.depth
-        self.stopper.breakpoints = saved.stopper.breakpoints
-        for name, value in saved.fields.items():
-            setattr(self, name, value)
-        self.channel.skip_levels = self._block_delete
+        put_back(self, saved)
 
     # ------------------------------------------------------------------ within
 
@@ -723,7 +688,7 @@ class ProgramRun:
         self._met = int(self._row["head"]), event.tag
         self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
-            self._unanswered = bool(self.on_event(event))
+            self._unanswered = bool(self.on_event(event)) and not self._suppressed.answers
             self._set_hold()
         if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
             self._probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
@@ -756,6 +721,25 @@ class ProgramRun:
         if self._stop is not None:
             self._stop = None
             self.channel.go_on()
+
+    @property
+    def _step_of_switch(self) -> Step:
+        """How far a start goes as the switch of single blocks says, and the program lets it."""
+        return Step.INTO if self._single_block and not self._suppressed.single_block else Step.RUN
+
+    def _take_suppressed(self) -> None:
+        """Let what the program suppresses act no more, and what it did until now act again."""
+        was, now = self._suppressed, self.channel.suppressed
+        if now == was:
+            return
+        self._suppressed = now
+        self.overrides.suppress_feed(now.override)
+        if now.single_block is not was.single_block and self._single_block:
+            self.stopper.step = self._step_of_switch
+            self.feed.look_again()
+        if self._held_back and not now.hold:
+            self._held_back = False
+            self.hold()
 
     def _look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""
@@ -805,9 +789,3 @@ class ProgramRun:
         return {
             name: float(value) for name, value in zip(self.machine.config.axis_names, values, strict=True)
         }
-
-
-def _check_factor(factor: float, highest: float, what: str) -> None:
-    if not (factor == 0.0 or LEAST_OVERRIDE <= factor <= highest):
-        hint = f"Give 0, or a factor from {LEAST_OVERRIDE:g} to {highest:g}."
-        raise UsageError(f"{what} cannot be {factor:g}", hint=hint)

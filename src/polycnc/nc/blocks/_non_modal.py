@@ -107,7 +107,7 @@ class NonModal:
                 f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
             )
         values = self.motion.axis_words()
-        if not values:
+        if not values and "S" not in self.motion.words.by_letter:  # S is the spindle's clamp
             raise self.fail(
                 f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
             )
@@ -142,7 +142,17 @@ class NonModal:
             for index, axis in enumerate(self.state.machine.axes)
         )
         self.motion.check_limits(home, "would go home to")
+        self._remark_home(g, [index for index in range(len(home)) if index in values or not values])
         return [Line(start, middle, Feed(), True, True, line), Line(middle, home, Feed(), True, True, line)]
+
+    def _remark_home(self, g: GWord, axes: list[int]) -> None:
+        """Say that home is the part's zero, where it is: on hardly any machine it is."""
+        machine, offset = self.state.machine, self.state.modal.offset
+        linear = [index for index in axes if machine.axes[index].kind == "linear"]
+        if linear and all(machine.axes[index].home == offset[index] for index in linear):
+            self.messages.add(
+                f"G{g.code}: home lies at the part's zero on machine '{machine.name}'; a machine file says where it is"
+            )
 
     def _machine_move(self, g: GWord, motion: int, line: int) -> list[Line]:
         self._refuse_compensation(g, self.state.side != 0)
