@@ -253,6 +253,16 @@ def test_a_snapshot_of_plain_programs_is_kept_and_one_of_macros_refused() -> Non
         control.snapshot()
 
 
+def test_a_snapshot_of_something_else_is_refused_and_none_goes_to_a_file() -> None:
+    control, _ = attached()
+    for snapshot in (control.machine.snapshot(), control.control.snapshot()):
+        with pytest.raises(SnapshotError, match="not of a Power Mate"):
+            control.restore(snapshot)
+    with pytest.raises(SnapshotError, match="file"):
+        control.snapshot().to_bytes()
+    assert control.snapshot() == control.snapshot()
+
+
 def until_rest(control: PowerMate) -> RunState:
     control.advance(100_000, until=ControlEvent.RUN_STATE)
     return control.status().channel.run_state

@@ -18,7 +18,7 @@ from polycnc.controllers.fanuc.data._macro_variables import (
     from_binary,
     from_decimal,
 )
-from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
+from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW, MAX_AXIS
 from polycnc.controllers.fanuc.library._structs_a import (
     IODBMR,
     IODBPSD,
@@ -181,9 +181,11 @@ def _positions(name: str) -> Callable[..., tuple[EW, ODBAXIS]]:
         _check(axis == ALL_AXES or axis >= 1, EW.EW_ATTRIB)
         _check(length >= _AXIS_HEADER + 4, EW.EW_LENGTH)
         values = link.values(Request(0x26, (_KINDS[name], axis, 0, 0)))
-        _check(length >= _AXIS_HEADER + 4 * len(values), EW.EW_LENGTH)
-        made = variant(ODBAXIS, data=max(len(values), 6))(type=axis)
-        made.data[: len(values)] = [each.mantissa for each in values]
+        count = min(
+            len(values), (length - _AXIS_HEADER) // 4
+        )  # of more axes than the control has nothing is known
+        made = variant(ODBAXIS, data=max(count, MAX_AXIS))(type=axis)
+        made.data[:count] = [each.mantissa for each in values[:count]]
         return EW.EW_OK, made
 
     return read
@@ -209,8 +211,8 @@ def cnc_rddynamic(link: RemoteLink, axis: int, length: int) -> tuple[EW, ODBDY]:
         values = [each.mantissa for each in _values(payload)]
         if axis == ALL_AXES:
             room = getattr(made.pos.faxis, name)
-            _check(length >= _DYNAMIC_HEADER + 16 * len(values), EW.EW_LENGTH)
-            room[: len(values)] = values[: len(room)]
+            count = min(len(values), len(room), (length - _DYNAMIC_HEADER) // 16)
+            room[:count] = values[:count]
         else:
             _check(bool(values), EW.EW_PROTOCOL)
             setattr(made.pos.oaxis, name, values[0])
