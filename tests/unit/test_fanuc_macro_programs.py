@@ -139,6 +139,10 @@ def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
         ("#2001=1000.", 119, "ILLEGAL ARGUMENT"),
         ("DO1", 124, "MISSING END STATEMENT"),
         ("DO4", 126, "ILLEGAL LOOP NUMBER"),
+        ("M98P1", 77, "SUB PROGRAM NESTING ERROR"),
+        ("M98P77", 78, "NUMBER NOT FOUND"),
+        ("G65P77", 78, "NUMBER NOT FOUND"),
+        ("G65P1", 122, "FOUR FOLD MACRO MODAL-CALL"),
     ],
 )
 def test_errors_of_macros_have_the_controls_numbers(block: str, number: int, text: str) -> None:

@@ -458,7 +458,8 @@ class Channel:
     def _call(self, text: ProgramText, call: CallProgram) -> None:
         trouble = self._calls.trouble(call.program)
         if trouble is not None:
-            raise ProgramError(trouble[0], position=text.position(call.offset), hint=trouble[1])
+            what, hint, code = trouble
+            raise ProgramError(what, position=text.position(call.offset), hint=hint, code=code)
         back = Back(self._here(), self._text_end, call.line, self._calls_within)
         if self._calls.enter(call.program, call.repeats, back, call.arguments):
             self._begin()
