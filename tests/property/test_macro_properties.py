@@ -112,7 +112,7 @@ class Writer:
 
 def run(text: str) -> tuple[Channel, MacroLanguage]:
     """Prepare a program to its end, or to its first error."""
-    language = MacroLanguage()
+    language = MacroLanguage(nat=True)  # angles are -180 to 180 there too
     language.longest_loop_pauses = 2
     made = ProgramRun(
         Machine(load_machine(None)),
