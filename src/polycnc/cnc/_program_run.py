@@ -91,7 +91,7 @@ class ProgramRun:
     names of the machine's axes in this channel, empty for those that it does not have.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The surfaces of the machine file give it as well. `on_skip` is told when it is met.
+    The surfaces of the machine file do the same. `on_skip` is told when either is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -486,6 +486,11 @@ class ProgramRun:
         return self._tool_times.until(self._seconds())
 
     @property
+    def path_times(self) -> ToolTime:
+        """How long the path has cut and positioned so far, with whatever tool."""
+        return self._seconds()
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
         return self._by_axis(self.to_go)
@@ -567,7 +572,10 @@ class ProgramRun:
         self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        return cycles if self._probing is None else min(cycles, 1)
+        often = self._probing is not None or (
+            self._options.asks_often and self.at_rest and not self.channel.done
+        )
+        return min(cycles, 1) if often else cycles
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
@@ -592,8 +600,6 @@ class ProgramRun:
             rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
-
-    # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> RunSnapshot:
         """Return everything that this run holds, to go back to with `restore`.

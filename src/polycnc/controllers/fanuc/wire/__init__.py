@@ -3,6 +3,7 @@
 from polycnc.controllers.fanuc.wire._blocks import (
     CNC,
     PMC,
+    REPLY_SIZE,
     Reply,
     Request,
     read_replies,
@@ -17,6 +18,7 @@ from polycnc.controllers.fanuc.wire._numbers import VACANT, VALUE8_SIZE, Value8,
 __all__ = [
     "CNC",
     "PMC",
+    "REPLY_SIZE",
     "VACANT",
     "VALUE8_SIZE",
     "Client",
