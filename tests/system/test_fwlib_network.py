@@ -119,6 +119,13 @@ def test_macros_and_parameters_and_pmc(served: Served, session: Any) -> None:
     served.control.macros.set(501, 0.375)
     _, many = session.cnc_rdmacror(handle, 500, 502, 24)
     assert [(each.mcr_val, each.dec_val) for each in many.data] == [(0, -1), (375, 3), (0, -1)]
+    data = fwlib.IODBMR(datano_s=510, datano_e=511)
+    data.data[0].mcr_val, data.data[1].mcr_val, data.data[1].dec_val = 7, -25, 1
+    assert session.cnc_wrmacror(handle, 18, data) == OK
+    assert [served.control.macros.get(number) for number in (510, 511)] == [7.0, -2.5]
+    data.data[1].dec_val = 9
+    assert session.cnc_wrmacror(handle, 18, data) == EW.EW_DATA
+    assert served.control.macros.get(510) == 7.0
     assert session.cnc_setmactype(handle, 1) == OK
     _, macro = session.cnc_rdmacro(handle, 501, 10)
     assert (macro.mcr_val, macro.dec_val) == (3, 3)

@@ -268,6 +268,19 @@ def cnc_rdmacror(link: RemoteLink, s_number: int, e_number: int, length: int) ->
     return EW.EW_OK, made
 
 
+def cnc_wrmacror(link: RemoteLink, length: int, macror: IODBMR) -> EW:
+    first, last = macror.datano_s, macror.datano_e
+    _check(last >= first, EW.EW_NUMBER)
+    count = last - first + 1
+    _check(length >= 6 + 6 * count and count <= len(macror.data), EW.EW_LENGTH)
+    values = [
+        _macro(link, entry.mcr_val, entry.dec_val)
+        for entry, _ in zip(macror.data, range(count), strict=False)
+    ]
+    link.ask(Request(0x16, (first, last, 0, 0), b"".join(map(bytes, values))))
+    return EW.EW_OK
+
+
 def cnc_getmactype(link: RemoteLink) -> tuple[EW, int]:
     return EW.EW_OK, link.macro_type
 
@@ -399,7 +412,7 @@ REMOTE: dict[str, Callable[..., Any]] = {
         function.__name__: function
         for function in (
             cnc_sysinfo, cnc_statinfo, cnc_alarm, cnc_rdprgnum, cnc_rdseqnum, cnc_actf, cnc_rddynamic,
-            cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_getmactype, cnc_setmactype, cnc_rdparam,
+            cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_wrmacror, cnc_getmactype, cnc_setmactype, cnc_rdparam,
             pmc_rdpmcrng, pmc_wrpmcrng, cnc_search, cnc_delete, cnc_upstart, cnc_upload, cnc_upend,
             cnc_dwnstart, cnc_download, cnc_dwnend,
         )
