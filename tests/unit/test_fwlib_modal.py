@@ -90,6 +90,11 @@ def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: 
     assert every.modal.g_rdata[group] == value | 0x80
 
 
+def _executes(control: PowerMate, block: str) -> bool:
+    executed = control.execution.block
+    return executed is not None and executed.text.startswith(block)
+
+
 @pytest.mark.covers("fanuc.modal.G.11.1", "fanuc.modal.addr.102")
 def test_a_modal_call_of_a_macro_and_the_argument_e() -> None:
     control = PowerMate()
@@ -104,7 +109,7 @@ def test_a_modal_call_of_a_macro_and_the_argument_e() -> None:
     assert g(library, handle, 11) == 1
     code, modal = library.cnc_modal(handle, 102, 0)
     assert (code, modal.modal.aux.aux_data) == (0, 7250)
-    control.advance(2000, until=lambda: control.execution.block.text.startswith("G4X1."))
+    control.advance(2000, until=lambda: _executes(control, "G4X1."))
     assert g(library, handle, 11) == 0
     assert control.macros.get(500) == 14.5
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import polycnc
-from polycnc.machine import load_machine
+from polycnc.machine import MachineConfig, load_machine
 from polycnc.runner import inspect
 from support.programs import LINEAR, SPINDLE, machine_config, prepare
 
@@ -28,8 +28,8 @@ def remarks(program: str, **options: object) -> list[tuple[str, int, int]]:
     return [(each.key, each.position.line, each.count) for each in report.remarks]
 
 
-def counted_nothing(program: str, config: object) -> str:
-    result = polycnc.run(program, config)  # type: ignore[arg-type]
+def counted_nothing(program: str, config: str | MachineConfig) -> str:
+    result = polycnc.run(program, config)
     return next((each.text for each in result.messages if "counted 0 s" in each.text), "")
 
 

@@ -43,7 +43,7 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import AxisStatus, Emergency, Status
-from polycnc.cnc._status_reading import read_axes, read_status
+from polycnc.cnc._status_reading import AxisFigures, read_axes, read_figures, read_status
 from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
@@ -685,6 +685,10 @@ class Control:
     def axes(self) -> dict[str, AxisStatus]:
         """Return the axes in the present cycle, as the status has them, for those who read them often."""
         return read_axes(self)
+
+    def figures(self) -> AxisFigures:
+        """Return positions and speeds of the axes in the present cycle, by their places; quicker than `axes`."""
+        return read_figures(self)
 
     def snapshot(self) -> ControlSnapshot:
         """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.

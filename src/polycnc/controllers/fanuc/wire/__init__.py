@@ -11,6 +11,7 @@ from polycnc.controllers.fanuc.wire._blocks import (
     write_replies,
     write_requests,
 )
+from polycnc.controllers.fanuc.wire._client import Client, Connection, WireRefusedError
 from polycnc.controllers.fanuc.wire._frames import Frame, FrameReader, FrameType, read_status, status_body
 from polycnc.controllers.fanuc.wire._numbers import VACANT, VALUE8_SIZE, Value8, text
 
@@ -20,12 +21,15 @@ __all__ = [
     "REPLY_SIZE",
     "VACANT",
     "VALUE8_SIZE",
+    "Client",
+    "Connection",
     "Frame",
     "FrameReader",
     "FrameType",
     "Reply",
     "Request",
     "Value8",
+    "WireRefusedError",
     "read_replies",
     "read_requests",
     "read_status",
