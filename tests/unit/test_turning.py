@@ -10,7 +10,7 @@ import polycnc
 from polycnc.machine import load_machine
 from polycnc.nc import load_dialect
 from polycnc.nc.blocks._turning import Threading, thread_depths
-from support.programs import machine_config, moves, notes, prepare, refusal
+from support.programs import machine_config, moves, prepare, refusal
 
 AXES = "".join(f'[[axis]]\nname = "{name}"\nvmax_mm_s = 500\namax_mm_s2 = 5000\n' for name in "XZ")
 LATHE = machine_config(
