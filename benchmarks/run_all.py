@@ -30,8 +30,8 @@ SCRIPTS = {
     "bench_imc.py": "iMC card",
     "bench_cycle_calls.py": "One cycle per call",
     "bench_post.py": "Post-processor macros",
-    "bench_batch.py": "Batches",
     "bench_focas.py": "FOCAS server",
+    "bench_batch.py": "Batches",
 }
 
 
