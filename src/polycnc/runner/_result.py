@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from polycnc.cnc import ToolTime
 from polycnc.errors import AlarmError, PolycncError, ProgramError, UsageError
+from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import Execution
 from polycnc.runner._operations import Operation
@@ -131,6 +132,7 @@ class RunResult:
     tool_times: dict[int, ToolTime]
     events: list[RunEvent] = field(repr=False)
     source: ProgramText | None = field(default=None, repr=False, compare=False)
+    config: MachineConfig | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)
     variables: dict[str, object] = field(default_factory=dict, repr=False)
     """Variables of a program's language by name, after the run: permanent and global ones."""
