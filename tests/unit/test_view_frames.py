@@ -124,3 +124,13 @@ def test_operations_have_their_lines() -> None:
     about, columns = _content(view_program(program, "mill3").html)
     assert [(each["name"], each["tool"]) for each in about["operations"]] == [("rough", 4), ("finish", 7)]
     assert [int(columns["line"][each["row"]]) for each in about["operations"]] == [2, 5]
+
+
+def test_a_notebook_shows_a_small_picture_of_a_traced_result() -> None:
+    program = "G0 X10 Y5\nG1 X70 F2400\nY45\nM30\n"
+    traced, plain = polycnc.run(program, trace=True)._repr_html_(), polycnc.run(program)._repr_html_()
+    assert traced.startswith(plain.removesuffix("</svg>"))
+    (cuts,) = re.findall(r'<path d="([^"]+)"[^>]*stroke="#0072b2"', traced)
+    # 60 x 40 mm fill the box of 96 x 64 but for its edge: one line to the right, one up.
+    assert cuts == "M4.5 61.0L91.5 61.0L91.5 3.0"
+    assert "<svg" not in plain

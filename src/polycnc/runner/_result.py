@@ -158,7 +158,19 @@ class RunResult:
             ),
             *((f"T{each.tool} {each.name}", time_text(each.time_s), "") for each in self.operations),
         ]
-        return html_table(str(self), ("", "", ""), rows)
+        return html_table(str(self), ("", "", ""), rows) + self._picture()
+
+    def _picture(self) -> str:
+        """Return a small picture of the path, where there is a trace of it."""
+        if self.trace is None or self.trace.execution is None or self.config is None:
+            return ""
+        from polycnc.runner.batches import svg, thumbnail
+        from polycnc.runner.view import TrackCollector
+
+        collector = TrackCollector(self.trace.units, most=2_000)
+        collector.add_trace(self.trace, self.trace.execution)
+        paths = thumbnail(collector.track(self.trace.execution), self.config)
+        return "" if paths is None else svg(paths, 240)
 
     @property
     def ok(self) -> bool:
