@@ -98,8 +98,8 @@ _BELONGS_TO = {
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
 
-Trouble = tuple[str, str]
-"""What is wrong and what to do, of something that is not a matter of the block's words alone."""
+Trouble = tuple[str, str, str]
+"""What is wrong, what to do and its code, of something that is not a matter of the block's words alone."""
 
 
 class Control(Enum):
@@ -739,7 +739,10 @@ class Interpreter:
         if l_word is None and program > 9999 and self.dialect.sub_program.repeats_in_p:
             repeats, program = divmod(program, 10_000)
         if trouble := self._call_trouble(program, self._text, p_word.place):
-            raise self.fail(*trouble, p_word)
+            what, hint, number = trouble
+            error = self.fail(what, hint, p_word)
+            error.code = number
+            raise error
         return Outcome(Control.CALL, program, repeats)
 
     def _take_parameters(self, words: BlockWords) -> None:
