@@ -51,6 +51,10 @@ class ControlFile:
         """Tell whether the text of a macro names a word."""
         return re.search(rf"\b{word}\b", self._texts.get(macro, ""), re.IGNORECASE) is not None
 
+    def names(self, word: str) -> bool:
+        """Tell whether any macro names a word."""
+        return any(self.uses(macro, word) for macro in self._texts)
+
     def start(self, write: Write) -> MacroRun:
         """Return a run for one output program; every block goes to `write` as a line with a line feed."""
         return MacroRun(self._macros, self._symbols, self._style, write, self._places.position)

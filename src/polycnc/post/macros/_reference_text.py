@@ -146,6 +146,12 @@ RULINGS = [
     ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds behind", "fixed"),
     ("TAN, ASIN, ACOS, ATAN", "in radians", "fixed"),
     ("`&&` and `||`", "`&&` binds closer; what is decided is not looked at further", "fixed"),
+    ("IF on texts", "refused: an expression is of words with numbers, constants and operators (8)", "fixed"),
+    (
+        "Words and events that the manual does not list",
+        "marked as additions; with `strict` there are none",
+        "`strict`",
+    ),
     ("Unknown search keys, words and macros", "refused when the file is read", "fixed"),
     ("`$V1$` for a variable without a format", "refused when the file is read", "fixed"),
     ("Division by zero and the like", "an error; no program is written", "fixed"),

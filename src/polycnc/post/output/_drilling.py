@@ -91,6 +91,7 @@ class Drilling:
         }
         words.update(self._feed_words(line, cycle))
         self._output.call(self._macro(cycle), words)
+        motion.began()
         steps = hole_steps(without_pecks(cycle), point, UPRIGHT, motion.position, levels, 0.0, 0.0)
         motion.travelled(steps, (x, y, out))
 

@@ -33,6 +33,7 @@ class Motion:
         self._parameters = output.parameters
         self._scale = output.scale
         self._must_write = True
+        self._first = 0.0
         self._tilt = self._turn = 0.0
         self._rotary: dict[str, float] = {}
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
@@ -57,6 +58,17 @@ class Motion:
     def set_position(self, position: Vector | None) -> None:
         """Take where the tool stands; its axis is written with the next move."""
         self.position = position
+
+    def first(self, rank: float) -> None:
+        """Say with FIRSTMOTION that the next move or hole is a first one; the higher rank counts."""
+        self._first = max(self._first, rank)
+        self._output.keep(FIRSTMOTION=self._first)
+
+    def began(self) -> None:
+        """Know that the first move or hole is written."""
+        if self._first:
+            self._first = 0.0
+            self._output.keep(FIRSTMOTION=0.0)
 
     def moved_by_macro(self) -> None:
         """Know that the machine may stand elsewhere: the next move is written, wherever it goes."""
@@ -101,6 +113,8 @@ class Motion:
             self._check("LINEAR", line)
             words["F"], words["FEEDMODE"] = self.feed_words(line)
             self._call("LINEAR", words)
+        if self._first:
+            self.began()
 
     def feed_words(self, line: int) -> tuple[float, float]:
         """Return F and FEEDMODE.
@@ -183,6 +197,8 @@ class Motion:
         self.position = arc.end
         self._must_write = False
         self._call("ARC_CW" if clockwise else "ARC_CCW", words)
+        if self._first:
+            self.began()
 
     def _check(self, macro: str, line: int) -> None:
         if not self._needs[macro]:
