@@ -23,7 +23,8 @@ Macros marked + are additions to those of Manual 001, as are the words marked so
 
 A record that nothing here takes calls `WORD`. A condition cannot compare texts, so a macro of its own can take it: by
 its name, like `WORD_AUXFUN`, or by its name and the first word behind the slash, like `WORD_OPSKIP_ON`. The narrowest
-is called; without any the record is remarked. What moves the tool or its coordinates is an error whatever macros there are.
+is called; without any the record is remarked. What moves the tool or its coordinates is an error, whatever macros there
+are.
 
 ```toml
 [nc_macros]

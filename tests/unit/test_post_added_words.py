@@ -75,7 +75,8 @@ def test_the_cycle_of_the_control_is_cancelled_before_it_and_called_again() -> N
     text = "FEDRAT/90,MMPM\nCYCLE/DRILL,DEPTH,5,CLEAR,2\nGOTO/1,2,0\nAUXFUN/17\nGOTO/4,2,0\n"
     blocks, _ = posted(text, control(macros={"WORD_AUXFUN": '"M"$NUMBER1$'}))
     place = blocks.index("M17")
-    assert blocks[place - 1].startswith("G80") and "G81" in "".join(blocks[place + 1 : place + 4])
+    assert blocks[place - 1].startswith("G80")
+    assert "G81" in "".join(blocks[place + 1 : place + 4])
 
 
 def test_what_the_tool_path_has_switched() -> None:

@@ -36,6 +36,15 @@ ENDIF
 
 ENTRIES = {
     "parameters": "Plain values. The first group says how moves are made, the second what blocks look like.",
+    "five_axis": """\
+A machine that turns the tool axis by two rotary axes. Of all positions of the two that give a tool axis within their
+limits the nearest are taken; where the tool axis lies along the first axis, that one stays. None is an error, a feed
+move that turns an axis by more than 90 degree is remarked.
+
+With `output = "machine"` a feed move that turns the tool axis is cut into pieces, so that the tip stays within
+`tolerance_mm` of its line although the machine moves its axes in proportion; arcs become lines, and holes moves, unless
+the rotary axes stand at 0. A head needs the length of the tool, from the tool path. `fanuc-5axis` is an example.""",
+    "rotary_axis": "Two of them, in their order from the part to the tool.",
     "nc_code": """\
 One entry for each search key of a code, function variable or reserved word that needs one, like
 `G00 = { code = "G0", order = 10 }`; `SEQUENCE_NUMBER` stands for the sequence number, whose order is -100 without an

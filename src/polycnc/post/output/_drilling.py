@@ -41,6 +41,7 @@ class Drilling:
             self._output.parameters.cycles == "macros"
             and self._output.control.has(self._macro(act.cycle))
             and math.dist(act.axis, UPRIGHT) < 1e-6
+            and not self._motion.turned_on_machine
         )
         if by_macro:
             self._by_macro(act)

@@ -68,10 +68,12 @@ class BlockMap:
     """Say for each line of the program which record of the tool path, and which line, it came from.
 
     Entry r is for record r, from 0: its last block, and its line. One more is for what ends the program, with line 0.
+    `tool_mm` is the length of the tool at each record, if a head of the control file turns it; otherwise it is empty.
     """
 
     last_block: array[int] = field(default_factory=lambda: array("q"))
     line: array[int] = field(default_factory=lambda: array("q"))
+    tool_mm: array[float] = field(default_factory=lambda: array("d"))
 
     def add(self, last_block: int, line: int) -> None:
         """Say that the blocks up to `last_block`, from where the last entry ended, came from `line`."""
@@ -100,11 +102,14 @@ def post_program(
     driver = _Driver(output, tools)
     handlers = driver.handlers()
     records = 0
+    has_head = driver.motion.has_head
     for record in tool_path:
         records += 1
         handlers[record.__class__](record)
         if block_map is not None:
             block_map.add(output.blocks, record.line)
+            if has_head:
+                block_map.tool_mm.append(driver.motion.tool_length_mm or 0.0)
         if not records % _CHUNK_RECORDS:
             output.flush()
             if progress is not None:
@@ -115,6 +120,8 @@ def post_program(
     driver.end()
     if block_map is not None and output.blocks > last_of_path:
         block_map.add(output.blocks, 0)
+        if has_head:
+            block_map.tool_mm.append(driver.motion.tool_length_mm or 0.0)
     output.flush()
     motion = driver.motion
     if motion.tangency.mostly_kinked:
@@ -161,6 +168,7 @@ class _Driver:
         self._path_number = 0
         self._started = self._in_path = False
         self._shape = ToolShape(0, "", 0.0, 0.0)
+        self._length_said = False
         self._tool_number = 0
         self._turning: Spindle | None = None
         # With the number of tool changes before them: what came before the last one must be said again.
@@ -287,6 +295,7 @@ class _Driver:
 
     def _tool_shape(self, record: ToolShape) -> None:
         old = self._shape
+        self._length_said |= record.length is not None
         self._shape = ToolShape(
             record.line,
             old.name if record.name is None else _plain(record.name),
@@ -301,6 +310,9 @@ class _Driver:
         self._tool_shape(ToolShape(record.line, record.name, None, record.length))
         self.tools += 1
         self._tool_number = record.number
+        # A length that was said of an earlier tool is not that of this one.
+        self.motion.tool_length_mm = self._shape.length if self._length_said else None
+        self._length_said = False
         self._keep_next_tool()
         self.motion.first(2.0)
         number = float(record.number)
