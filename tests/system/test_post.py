@@ -81,7 +81,7 @@ def test_post_prints_the_program_and_tells_the_rest_beside(tmp_path: Path) -> No
     assert "X1.000 Y2.000 Z3.000" in done.stdout
     told = done.stderr.splitlines()
     assert told[0] == "tool path  a.cl"
-    assert told[1].split() == ["5", "records,", "1", "tool,", "0", "arcs,", "0", "holes"]
+    assert told[1].split() == ["6", "records,", "1", "tool,", "0", "arcs,", "0", "holes"]
     assert "remark     line 3: FOO is not known and was left out" in told
     assert list(tmp_path.iterdir()) == [tmp_path / "a.cl"]
 

@@ -210,7 +210,8 @@ def test_between_blocks_the_tip_stays_on_its_line(name: str, tolerance_mm: float
 
 def frame_tip(frame: PartFrame, row: Floats) -> Floats:
     """Return where the tip is in a row."""
-    return frame.tips(row[None, :3], row[None, 3:], np.array([LENGTH_MM]))[0]
+    tips: Floats = frame.tips(row[None, :3], row[None, 3:], np.array([LENGTH_MM]))[0]
+    return tips
 
 
 def test_the_time_of_a_move_is_that_of_the_tip() -> None:

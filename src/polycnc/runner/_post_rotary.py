@@ -14,8 +14,12 @@ import numpy.typing as npt
 from polycnc.post import Parameters, RotaryAxis
 from polycnc.runner._post_geometry import Floats, Indices, to_segments
 
-_TABLES = {"ac_table": ("A", (1.0, 0.0, 0.0)), "bc_table": ("B", (0.0, 1.0, 0.0))}
 _Z = (0.0, 0.0, 1.0)
+_TURNS = RotaryAxis(letter="C", on="table", direction=_Z)
+_TABLES = {
+    "ac_table": (_TURNS, RotaryAxis(letter="A", on="table", direction=(1.0, 0.0, 0.0))),
+    "bc_table": (_TURNS, RotaryAxis(letter="B", on="table", direction=(0.0, 1.0, 0.0))),
+}
 
 
 class PartFrame:
@@ -25,12 +29,7 @@ class PartFrame:
         five_axis = parameters.five_axis
         self.axes: tuple[RotaryAxis, ...] = () if five_axis is None else five_axis.axis
         self.on_machine = five_axis is not None and five_axis.output == "machine"
-        if parameters.rotary in _TABLES:
-            letter, direction = _TABLES[parameters.rotary]
-            self.axes = (
-                RotaryAxis(letter="C", on="table", direction=_Z),
-                RotaryAxis(letter=letter, on="table", direction=direction),
-            )
+        self.axes = _TABLES.get(parameters.rotary, self.axes)
         self.letters = tuple(axis.letter for axis in self.axes)
         self.has_head = self.on_machine and any(axis.on == "head" for axis in self.axes)
         self.compared = "X Y Z"

@@ -287,9 +287,10 @@ class _Comparison:
         self._angle_columns = angle_columns(frame, config.axis_names)
         self._angles = np.array([[names.get(name, 0.0) for name in frame.letters]], dtype=np.float64)
         self._tool_mm = np.array(block_map.tool_mm if len(block_map.tool_mm) else [0.0] * records)
-        self._wanted_axes, self._moving = (
-            moves.last_axes() if frame.axes else (np.zeros((0, 3)), np.zeros(0, np.bool_))
-        )
+        self._wanted_axes: Floats = np.zeros((0, 3))
+        self._moving = np.zeros(0, np.bool_)
+        if frame.axes:
+            self._wanted_axes, self._moving = moves.last_axes()
         self._tool_axes = ToolAxisCheck(frame, records)
         self._begin: Floats | None = None
         self._record = 0
