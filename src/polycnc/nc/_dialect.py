@@ -161,6 +161,9 @@ class Text(StrictModel):
     semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
     parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
     unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
+    blanks_in_numbers: bool = Field(
+        default=False, description="Blanks between the digits of a number do not end it: X1 0 is X10."
+    )
     line_numbers: bool = Field(
         default=False, description="A block may begin with a bare number or a point: then it is a statement."
     )
@@ -227,6 +230,9 @@ class Dialect(StrictModel):
     )
     incremental: dict[str, str] = Field(
         default={}, description='Addresses of ways = the axis that goes them, like `U = "X"`.'
+    )
+    corner_words: bool = Field(
+        default=False, description="R and C of a straight move round or chamfer the corner to the next one."
     )
     tool_word: Literal["select", "turret"] = Field(
         default="select",
