@@ -420,3 +420,14 @@ def test_feedback_can_follow_the_command() -> None:
     move_absolute(card, 100)
     card.wait()
     assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["mcsgo", "pcsgo", "mcstgvel", "pcstgvel"])
+def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(name: str) -> None:
+    card = ready_card()
+    system = name[:3]
+    set_now(card, (f"{system}tgpos", 500, 3), (name, FLAG if name.endswith("go") else 7, 3))
+    shown = ("mcsmoving", "pcsmoving", "profiling", "moving", "motion")
+    expected = [FLAG if word[:3] in (system, "pro", "mov", "mot") else 0 for word in shown]
+    assert [card.read(word, 3) for word in shown] == expected
+    assert [card.read(word, 2) for word in shown] == [0] * 5

@@ -55,7 +55,7 @@ def test_every_kind_of_change_is_made_and_nothing_else_is_touched() -> None:
         ("constant", 14, "3"),
         ("arguments", 14, "max(3, 5), 2"),
         ("constant", 14, "2"),
-        ("constant", 14, "4"),
+        ("constant", 14, "6"),
     ]
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import os
 import shutil
@@ -105,12 +104,6 @@ class Session:
         """Return what the tests that reach a mutant say to it."""
         place = self.copy / module.relative_to(self._root)
         tests = reach.of(str(module), mutant.lines)
-        if not tests and not _inside_function(
-            place, mutant
-        ):  # it ran at import: ask the module's tests, or else all
-            tests = reach.of(str(module), range(1, 1 << 20)) or sorted(
-                reach.times_s, key=reach.times_s.__getitem__
-            )
         if not tests:
             return Outcome("unreached", 0)
         source = place.read_bytes()
@@ -160,14 +153,3 @@ class Session:
         worker.stdin.flush()
         answer: dict[str, Any] = json.loads(worker.stdout.readline())
         return answer
-
-
-def _inside_function(module: Path, mutant: Mutant) -> bool:
-    """Tell whether a change lies in the body of a function, which only a call runs."""
-    functions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
-    return any(
-        isinstance(node, functions)
-        and node.lineno <= mutant.lines[0]
-        and mutant.lines[-1] <= (node.end_lineno or 0)
-        for node in ast.walk(ast.parse(module.read_bytes()))
-    )

@@ -50,7 +50,8 @@ class Watch:
 
     def __init__(self, files: list[str]) -> None:
         self.lines: dict[str, dict[int, set[str]]] = {file: {} for file in files}
-        self.test = ""
+        self.test = ""  # imports belong to no test
+        sys.settrace(self.enter)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Any:
@@ -60,7 +61,7 @@ class Watch:
         try:
             return (yield)
         finally:
-            sys.settrace(None)
+            self.test = ""
             threading.settrace(None)
 
     def enter(self, frame: FrameType, event: str, argument: object) -> Any:
@@ -85,10 +86,14 @@ def run(request: dict[str, Any], answer: int) -> None:
     )
     for stream, to in ((0, nothing), (1, said), (2, said)):
         os.dup2(to, stream)
-    choice, watch = Choice(request["only"]), Watch(request["trace"])
-    status = pytest.main(request["arguments"], plugins=[choice, watch] if request["trace"] else [choice])
+    choice = Choice(request["only"])
+    watches = [Watch(request["trace"])] if request["trace"] else []
+    status = pytest.main(request["arguments"], plugins=[choice, *watches])
+    sys.settrace(None)
     lines = {
-        file: {line: sorted(tests) for line, tests in seen.items()} for file, seen in watch.lines.items()
+        file: {line: sorted(tests) for line, tests in seen.items()}
+        for watch in watches
+        for file, seen in watch.lines.items()
     }
     with os.fdopen(answer, "w") as pipe:
         json.dump({"status": int(status), "times_s": choice.times_s, "lines": lines}, pipe)
