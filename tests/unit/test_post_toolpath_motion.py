@@ -337,3 +337,52 @@ def test_tilted_holes_are_drilled_along_the_tool() -> None:
     assert moves[1][1:] == pytest.approx((13.0, 0.0, 4.0))
     assert moves[2][1:] == pytest.approx((4.0, 0.0, -8.0))
     assert moves[3][1:] == pytest.approx((13.0, 0.0, 4.0))
+
+
+TILTED_HOLES = (
+    "FROM/20,-1,53,3,4,12\nFEDRAT/100\nCYCLE/{},DEPTH,26,MMPM,150,CLEAR,13,RETURN,39\n"
+    "GOTO/11,-13,17,3,4,12\nGOTO/37,29,28,3,4,12\nCYCLE/OFF\n"
+)
+
+
+@pytest.mark.parametrize("cycles", ["macros", "moves"])
+def test_holes_of_a_tilted_tool_lie_along_its_axis_and_it_rises_before_it_goes_to_a_higher_one(
+    cycles: str,
+) -> None:
+    # (3, 4, 12) / 13 is the tool axis: 13 above a hole is 3, 4, 12 away from it, 26 below -6, -8, -24.
+    moves = points_of(moves_of(TILTED_HOLES.format("DRILL"), cycles=cycles, rotary="vector"))
+    first = [("RAPID", 20, -1, 53)]  # where the tool is, to turn it
+    first += [("RAPID", 14, -9, 29), ("LINEAR", 5, -21, -7), ("RAPID", 20, -1, 53)]
+    # The tool stands 129 / 13 above the second point and goes up to 39 first: by 378 / 13 along its axis.
+    rise = [("RAPID", 20 + 1134 / 169, -1 + 1512 / 169, 53 + 4536 / 169)]
+    second = [("RAPID", 46, 41, 64), ("RAPID", 40, 33, 40), ("LINEAR", 31, 21, 4), ("RAPID", 46, 41, 64)]
+    assert [macro for macro, *_ in moves] == [macro for macro, *_ in first + rise + second]
+    for (_, *found), (_, *expected) in zip(moves, first + rise + second, strict=True):
+        assert found == pytest.approx(expected)
+
+
+def test_a_deep_hole_of_a_tilted_tool_is_pecked_along_its_axis() -> None:
+    text = TILTED_HOLES.format("DEEP").replace("MMPM", "STEP,16.9,MMPM")
+    moves = points_of(moves_of(text, rotary="vector", reentry_mm=1.3))[1:9]
+    levels = [13, -3.9, 13, -2.6, -20.8, 13, -19.5, -26]  # along the axis, above the point at 11, -13, 17
+    expected = [(11 + 3 * level / 13, -13 + 4 * level / 13, 17 + 12 * level / 13) for level in levels]
+    assert [macro == "LINEAR" for macro, *_ in moves] == [False, True, False, False, True, False, False, True]
+    for (_, *found), place in zip(moves, expected, strict=True):
+        assert found == pytest.approx(place)
+
+
+def test_the_control_is_told_of_a_rise_between_holes_of_different_heights() -> None:
+    text = (
+        "FROM/5,6,30\nFEDRAT/100\nCYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3,RETURN,9\nGOTO/11,13,4\nGOTO/29,17,21\n"
+    )
+    moves = points_of(moves_of(text))
+    assert moves == [
+        *(("RAPID", 11.0, 13.0, 30.0), ("RAPID", 11.0, 13.0, 13.0), ("CYCLE_DRILL", 11.0, 13.0, -3.0)),
+        *(("RAPID", 11.0, 13.0, 30.0), ("CYCLE_DRILL", 29.0, 17.0, 14.0)),
+    ]
+    as_moves = points_of(moves_of(text, cycles="moves"))
+    assert as_moves[3:] == [
+        *(("LINEAR", 11.0, 13.0, -3.0), ("RAPID", 11.0, 13.0, 13.0)),
+        *(("RAPID", 11.0, 13.0, 30.0), ("RAPID", 29.0, 17.0, 30.0), ("RAPID", 29.0, 17.0, 24.0)),
+        *(("LINEAR", 29.0, 17.0, 14.0), ("RAPID", 29.0, 17.0, 30.0)),
+    ]
