@@ -95,6 +95,7 @@ def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> Non
     }
     with Session(repository) as session:
         reach = session.reach([module], tests)
+        assert reach.failed == ["tests/unit/test_thing.py::test_broken"]
         verdicts = {
             place: session.outcome(module, each, reach).verdict
             for each in mutants_of(MODULE)

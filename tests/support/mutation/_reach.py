@@ -15,10 +15,14 @@ FOLDERS = (
 
 @dataclass(frozen=True)
 class Reach:
-    """The time of each test in seconds and, for each file, the tests that ran each line, with "" for imports."""
+    """The time of each test in seconds and, for each file, the tests that ran each line, with "" for imports.
+
+    `failed` are tests that fail although nothing is changed; they are left out everywhere.
+    """
 
     times_s: dict[str, float]
     tests: dict[str, dict[int, list[str]]]
+    failed: list[str]
 
     def of(self, file: str, lines: range) -> list[str]:
         """Return the tests that ran one of a file's lines, the quickest first."""

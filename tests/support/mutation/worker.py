@@ -1,8 +1,8 @@
 """Runs tests in forked children of a process that has the heavy imports behind it; one request a line, as JSON.
 
 A request has `output` (the file for what pytest says), `arguments` for pytest, `only` (the tests to run, in that order,
-or null), `trace` (the files whose lines are watched) and `limit_s`; an answer has `status`, the tests' `times_s` and,
-for each traced file, its `lines`.
+or null), `trace` (the files whose lines are watched) and `limit_s`; an answer has `status`, the tests' `times_s`, those
+that `failed` and, for each traced file, its `lines`.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ class Choice:
     def __init__(self, only: list[str] | None) -> None:
         self.only = only
         self.times_s: dict[str, float] = {}
+        self.failed: set[str] = set()
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
@@ -43,6 +44,8 @@ class Choice:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.times_s[report.nodeid] = self.times_s.get(report.nodeid, 0.0) + report.duration
+        if report.failed:
+            self.failed.add(report.nodeid)
 
 
 class Watch:
@@ -96,7 +99,13 @@ def run(request: dict[str, Any], answer: int) -> None:
         for file, seen in watch.lines.items()
     }
     with os.fdopen(answer, "w") as pipe:
-        json.dump({"status": int(status), "times_s": choice.times_s, "lines": lines}, pipe)
+        found = {
+            "status": int(status),
+            "times_s": choice.times_s,
+            "failed": sorted(choice.failed),
+            "lines": lines,
+        }
+        json.dump(found, pipe)
 
 
 def answered(request: dict[str, Any]) -> str:
@@ -123,7 +132,7 @@ def answered(request: dict[str, Any]) -> str:
     if text:
         return text
     in_time = time.monotonic() - begun < request["limit_s"]
-    return json.dumps({"status": "crash" if in_time else TIMEOUT, "times_s": {}, "lines": {}})
+    return json.dumps({"status": "crash" if in_time else TIMEOUT, "times_s": {}, "failed": [], "lines": {}})
 
 
 def end(child: int) -> None:
