@@ -213,3 +213,13 @@ def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     set_now(card, ("run", 0, 1))
     card.advance(20)
     assert (card.read("curvel", 1), card.read("engear", 1), card.read("curvel", 0)) == (0, 0, 10)
+
+
+def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
+    card = ready_card(
+        "number_of_axes = 3\n[[axis]]\n[[axis]]\n"
+        "limit_positive = -0.5\nlimit_negative = -7.0\norigin = [-0.4, 0.6]\n"
+        '[[axis]]\nlimit_positive = 9.0\nlimit_negative = 0.25\norigin = [0.3, 2.0]\nlow_when_on = ["origin"]\n'
+    )
+    card.advance(1)
+    assert [card.read("aio", i) for i in range(3)] == [0, 1 + 4, 2 + 4]

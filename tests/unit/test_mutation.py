@@ -31,6 +31,10 @@ def test_share():
     assert LARGEST == 7
     assert share(6.0, -4.0) == (2.0, False)
     assert share(7.0, 3.0)[1]
+
+
+def test_broken():
+    assert share(6.0, -4.0) == (2.5, False)
 """
 
 
