@@ -17,8 +17,17 @@ import numpy.typing as npt
 from _measure import Figure, at_least, at_most
 from _programs import contour
 from _report import run_script
-from polycnc.kernel import STOP, KernelState, Paths, append_line, entry, prepare_path, skip, start_path
-from polycnc.kernel._limits import AxisLimits
+from polycnc.kernel import (
+    STOP,
+    AxisLimits,
+    KernelState,
+    Paths,
+    append_line,
+    entry,
+    prepare_path,
+    skip,
+    start_path,
+)
 from polycnc.kernel._segments import Segments
 from polycnc.machine import Machine, load_machine
 

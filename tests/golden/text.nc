@@ -1,4 +1,4 @@
-; all that may stand around the words, and two real peculiarities: arcs without a centre, blocks in small letters
+; all that may stand around the words, and a real peculiarity: blocks in small letters
 n10 g00 x+1. y-.5 (a remark) z = 2 ; and another
 N20
 / X5
@@ -7,6 +7,6 @@ N20
 g1x2f0100z1.(MSG, look here)
 
 G2 I-1
-X.75
+G1 X.75
 Y0 N40
 Q7

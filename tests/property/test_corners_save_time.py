@@ -29,6 +29,8 @@ SETTINGS = (
     PathSettings(jerkrel=0.3),
     PathSettings(jerkrel=1.0),
     PathSettings(depth=3),
+    PathSettings(tolerance=0.1),
+    PathSettings(tolerance=math.inf, jerkrel=0.3),
 )
 
 

@@ -43,7 +43,7 @@ def state(control: PowerMate) -> tuple[Any, ...]:
             for n, a in control.parameters._values
             if not 6750 <= n <= 6758
         },
-        {number: control.macros.get(number) for block in control.macros.common.blocks for number in block},
+        {number: control.macros.get(number) for number in (*range(100, 200), *range(500, 1000))},
         [control.tool_offsets.get(number) for number in range(1, 100)],
         [(each, control.programs.read(each.number)) for each in control.programs.directory()],
         (control.selected, control.cursor, control.mdi.blocks, control.mdi.start, control.alarm_bits),

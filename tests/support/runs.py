@@ -14,14 +14,15 @@ def program_run(
     program: str | ProgramText,
     config: MachineConfig = MILL,
     *,
+    dialect: str = "din",
     language: Language | None = None,
     segments: int = 1 << 16,
     **options: Any,
 ) -> ProgramRun:
-    """Return a run of a program (DIN) on a machine of its own."""
+    """Return a run of a program on a machine of its own."""
     text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
     machine = Machine(config, segments=segments)
-    return ProgramRun(machine, text, load_dialect("din"), options=RunOptions(**options), language=language)
+    return ProgramRun(machine, text, load_dialect(dialect), options=RunOptions(**options), language=language)
 
 
 def stands(run: ProgramRun) -> str:

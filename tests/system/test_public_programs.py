@@ -7,12 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.nc import ProgramText
+from polycnc.nc import ProgramText, load_dialect
+from polycnc.nc._dialect import Arcs
 from support.programs import LINEAR, channel_state, machine_config, prepare, queue_bytes
 
 CONFIG = machine_config(LINEAR)
 NAMES = (
-    *("arc-ijk", "arc-xz-plane", "arc-yz-plane", "circle", "circle-inch", "full-circle-without-xyz"),
+    *("arc-ijk", "arc-xz-plane", "arc-yz-plane", "circle", "circle-inch"),
     *("helical-thread-milling", "jsdc", "tball-pocket"),
 )
 
@@ -30,10 +31,16 @@ def test_a_public_program(name: str, data_nc: Path) -> None:
     assert channel_state(fast) == channel_state(ordinary)
 
 
-def test_the_engraving_with_an_arc_without_a_centre_runs_to_its_end(data_nc: Path) -> None:
-    """Its line 11 is `N55 X.75` with G2 in force: it goes straight, and that is said."""
+def test_the_engraving_with_an_arc_without_a_centre_is_refused_there(data_nc: Path) -> None:
+    """Its line 11 is `N55 X.75` with G2 in force: its author left out a G1."""
     text = ProgramText.from_path(data_nc / "full-circle-without-xyz.gcode")
     channel = prepare(text, config=CONFIG)
+    assert channel.error is not None
+    assert channel.error.position is not None
+    assert channel.error.position.line == 11
+    straight = load_dialect("din").model_copy(update={"arcs": Arcs(no_center="line")})
+    channel = prepare(text, config=CONFIG, dialect=straight)
+    assert channel.error is None
     assert channel.blocks == 18
     assert [(message.line, message.count) for message in channel.messages.all()] == [(11, 2)]
     assert channel.state.modal.position.tolist() == [-4.75, -3.4, 0.2]

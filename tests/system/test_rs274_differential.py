@@ -189,7 +189,6 @@ RULINGS: tuple[tuple[str, str, str], ...] = (
     ("ours", "G4 F1", "the dwell may be X or F"),
     ("ours", "G91 G53 G0 X1", "G53 counts from machine zero with G91 too"),
     ("ours", "G90.1 G2 X10 Y0 I5", "a missing centre word is the start point's"),
-    ("ours", "G2 X10 Y0", "an arc without centre or radius goes straight (`no_center`)"),
     ("ours", "G80 X1", "behind a cycle the motion before it is in force again"),
     ("ours", "G43 H99", "a tool that the table lacks has length 0, with a message"),
     ("ours", "G41 D99", "a tool that the table lacks has radius 0, with a message"),

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-SCRIPTS = [REPOSITORY / "scripts" / name for name in ("demo", "mutate", "reference", "test", "test_long")]
+_NAMES = ("build_cache", "check_wheel", "demo", "mutate", "reference", "test", "test_long")
+SCRIPTS = [REPOSITORY / "scripts" / name for name in _NAMES]
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)

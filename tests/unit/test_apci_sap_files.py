@@ -134,7 +134,7 @@ def test_the_command_reports_every_mistake_and_writes_nothing(tmp_path: Path) ->
     [
         (["none.sap"], "cannot read none.sap: No such file or directory"),
         (["part.sap", "--task", "4"], "there is no task 4"),
-        (["part.sap", "-o", "part.sap"], "part.sap is the program itself"),
+        (["part.sap", "-o", "part.sap"], "the command reads that file"),
     ],
 )
 def test_wrong_usage_ends_with_status_2(arguments: list[str], text: str, tmp_path: Path) -> None:

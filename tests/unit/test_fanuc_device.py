@@ -369,7 +369,7 @@ def test_everything_durable_is_in_the_file(tmp_path: Path) -> None:
     control.select_program(7)
     control.parameters.set(1320, 4000, 1)
     assert fwlib.cnc_wrtofs(handle, 12, 0, 8, -321) == OK
-    assert fwlib.cnc_wrmacro(handle, 100, 10, 25, 1) == OK
+    assert fwlib.cnc_wrmacro(handle, 531, 10, 2500, 3) == OK
     control.parameters.set(6711, 41)
     control.close()
     control, handle = attached(memory=file, axes=2)
@@ -378,7 +378,7 @@ def test_everything_durable_is_in_the_file(tmp_path: Path) -> None:
     assert control.parameters.value(1320, 1) == 4000
     assert control.machine.config.axes[0].soft_limits[1] == 40.0
     assert fwlib.cnc_rdtofs(handle, 12, 0, 8)[1].data == -321
-    assert fwlib.cnc_rdmacro(handle, 100, 10)[1].mcr_val == 25
+    assert fwlib.cnc_rdmacro(handle, 531, 10)[1].mcr_val == 2500
     assert control.parameters.value(6711) == 41
     control.close()
 

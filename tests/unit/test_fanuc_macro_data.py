@@ -11,7 +11,7 @@ import pytest
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW, IODBMR
 from polycnc.controllers.library import variant
-from support.power_mate import OK, attached, psd
+from support.power_mate import OK, attached, psd, registered, running
 
 MODES = ("MDI", "MEM", "EDIT", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT")
 
@@ -143,7 +143,8 @@ def test_ranges_of_common_variables(
 def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
     control, handle = attached()
     assert [macro(handle, number) for number in (1, 33)] == [(0, -1)] * 2  # no macro
-    control.local_variables = lambda: {1: 2.5, 33: None, 7: -4.0}
+    registered(control, O1="\nG65P9000A2.5D-4.\nM30\n", O9000="\nG4X1.\n#2=#1\nG4X1.\nM99\n")
+    running(control, 1, lambda: control.execution.numbers[0] == 9000)
     assert [macro(handle, number) for number in (1, 7, 33)] == [(25, 1), (-4, 0), (0, -1)]
     code, data = fwlib.cnc_rdmacror(handle, 1, 33, 6 + 6 * 33)
     assert code == OK

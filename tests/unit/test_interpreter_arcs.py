@@ -7,6 +7,8 @@ import math
 import pytest
 
 from polycnc.kernel import segment_point
+from polycnc.nc import DIALECTS, load_dialect
+from polycnc.nc._dialect import Arcs
 from support.programs import AXIS, MILL, accepted, machine_config, moves, notes, prepare, refusal
 
 
@@ -112,23 +114,45 @@ def test_arcs_that_are_none(block: str, text: str) -> None:
 # --- neither centre nor radius
 
 
-@pytest.mark.parametrize("dialect", ["din", "fanuc"])
-def test_an_arc_without_a_centre_goes_straight(dialect: str) -> None:
-    """As FANUC controls do by default (parameter 3403, bit 5 = 0)."""
+STRAIGHT = load_dialect("din").model_copy(update={"arcs": Arcs(no_center="line")})
+
+
+@pytest.mark.parametrize("dialect", DIALECTS)
+@pytest.mark.parametrize(
+    ("block", "place"),
+    [
+        ("G2 X13.5 Y-4.25", 1),
+        ("G3 X0 Y0", 1),  # no way to go is no centre either
+        ("G2 Z-7.5", 1),  # a helix that has lost its centre
+        ("G2 X13.5 Y-4.25 K0", 1),  # K is no centre in this plane, and 0 says nothing
+        ("G2 X13.5 P2", 1),
+    ],
+)
+def test_an_arc_without_a_centre_is_refused_in_every_dialect(dialect: str, block: str, place: int) -> None:
+    """Lost centre words must not cut the chord."""
+    assert refusal(f"F100\n{block}\n", dialect=dialect) == f"2:{place}: an arc needs a centre or a radius"
+
+
+def test_a_move_after_a_circle_without_its_own_motion_word_is_refused() -> None:
+    channel = prepare("F100 G2 I-1.1\nX.75\nZ.2\n", collect_errors=True)
+    assert [str(error).splitlines()[0] for error in channel.errors] == [
+        f"test.nc:{line}:1: an arc needs a centre or a radius" for line in (2, 3)
+    ]
+    assert "G1" in channel.errors[0].hint
+
+
+def test_a_dialect_can_let_it_go_straight() -> None:
+    """As FANUC controls do with bit 5 (CIR) of parameter 3403 at 0."""
     program = "F100 G2 I-1.1\nX.75\nZ.2\n"
-    channel = accepted(program, dialect=dialect)
+    channel = accepted(program, dialect=STRAIGHT)
     assert [message.text for message in channel.messages.all()] == [
         "an arc with neither centre nor radius goes straight to its end point"
     ]
-    assert moves(program, dialect=dialect) == [
+    assert moves(program, dialect=STRAIGHT) == [
         "arc X0 Y0 about X-1.1 Y0 by -360 F100",
         "line X0.75 F100",
         "line Z0.2 F100",
     ]
-
-
-def test_in_dialect_bosch_it_is_an_error() -> None:
-    assert refusal("F100\nG2 X1 Y1\n", dialect="bosch") == "2:1: an arc needs a centre or a radius"
 
 
 def test_an_arc_word_alone_only_selects_the_motion() -> None:
@@ -176,7 +200,7 @@ def test_the_real_program_with_arcs_without_centres_runs_to_its_end() -> None:
     program = (
         "G0 X.75 Y-3.4\nG1 Z-.5 F10.\nX.5 F30.\nG2 I-1.1\nX.75\nZ.2\nG0 X-4.75\nG1 X-4.5\nG2 I1.1\nG1 X-4.75"
     )
-    channel = prepare(program, config=MILL)
+    channel = prepare(program, config=MILL, dialect=STRAIGHT)
     assert channel.error is None
     assert channel.blocks == 10
     circle = channel.machine.state.seg.row[3]

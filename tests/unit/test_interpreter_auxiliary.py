@@ -113,7 +113,7 @@ def test_blocks_with_a_skip_mark_are_left_out(levels: set[int], ends: list[str])
 
 def test_else_they_are_blocks_like_others() -> None:
     assert moves("G0 X1\n/X2\n/9 X3\n") == ["rapid X1 stop", "rapid X2 stop", "rapid X3 stop"]
-    assert refusal(SKIPS).startswith("5:1: this statement needs a language")
+    assert refusal(SKIPS).startswith("5:1: dialect 'din' reads no variables")
 
 
 def test_every_block_counts() -> None:

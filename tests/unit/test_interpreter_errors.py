@@ -8,7 +8,7 @@ import pytest
 
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine
-from polycnc.nc import Channel, ProgramText, load_dialect
+from polycnc.nc import DIALECTS, Channel, ProgramText, load_dialect
 from support.programs import FIVE, MILL, channel_state, listing, prepare, queue_bytes, refusal
 
 
@@ -36,6 +36,9 @@ def test_the_program_is_prepared_up_to_the_error_and_no_further() -> None:
     assert channel.done
 
 
+NO_LANGUAGE = "dialect 'din' reads no variables, expressions or program flow (1 block has them)"
+
+
 @pytest.mark.parametrize(
     ("program", "text"),
     [
@@ -49,9 +52,20 @@ def test_the_program_is_prepared_up_to_the_error_and_no_further() -> None:
         ("G1.5", "1:1: G1.5 is not known in dialect 'din'"),
         ("G-1", "1:1: G-1 is not known in dialect 'din'"),
         ("G90.1 G91.1", "1:7: G90.1 and G91.1 exclude each other (group 'arc distance')"),
-        ("N5 #1=5", "1:1: this statement needs a language, and dialect 'din' has none"),
-        ("   G1 X[1+2]", "1:4: this statement needs a language, and dialect 'din' has none"),
-        ("IF GOTO 5", "1:1: this statement needs a language, and dialect 'din' has none"),
+        ("N5 #1=5", f"1:1: {NO_LANGUAGE}"),
+        ("   G1 X[1+2]", f"1:4: {NO_LANGUAGE}"),
+        ("IF GOTO 5", f"1:1: {NO_LANGUAGE}"),
+        ("while[#1 lt 5] do1", f"1:1: {NO_LANGUAGE}"),
+        # Slips of the pen, each at its word.
+        ("N5 G1 X1,5 F100", "1:7: 'X1,5' has a comma in its number"),
+        ("G1 F1200 Z - 1,25", "1:10: 'Z - 1,25' has a comma in its number"),
+        ("G1 Y,5", "1:4: 'Y,5' has a comma in its number"),
+        ("G1 (1,5) Y2,5", "1:10: 'Y2,5' has a comma in its number"),
+        ("G1 F1,250.5", "1:4: 'F1,250.5' is no number"),
+        ("G1 Y5 Xabc F100", "1:7: 'X' has no number"),
+        ("G1X10,Y5", "1:6: ',Y' (a chamfer or a rounding between blocks) is not known here"),
+        ("G1 X10,", "1:7: ',' may not stand in a block"),
+        ("G1 X10 ,C2", "1:8: ',C' (a chamfer or a rounding between blocks) is not known here"),
         ("G0 U5", "1:4: there is no axis 'U' on machine 'test'"),
         ("G0 X1=5", "1:4: there is no axis 'X1' on machine 'test'"),
         ("G64 P-1", "1:5: the path tolerance P is negative"),
@@ -67,6 +81,32 @@ def test_places(program: str, text: str) -> None:
     assert refusal(program + "\n") == text
 
 
+@pytest.mark.parametrize("dialect", DIALECTS)
+@pytest.mark.parametrize(
+    ("word", "written"), [("X1,5", "X1.5"), ("x-0,25", "x-0.25"), ("Y ,75", "Y.75"), ("Z+12,125", "Z+12.125")]
+)
+def test_a_decimal_comma_is_told_what_to_write(dialect: str, word: str, written: str) -> None:
+    channel = prepare(f"F100\nG1 {word} A5\n", dialect=dialect)
+    assert channel.error is not None
+    assert channel.error.hint == f"Write {written}: a decimal point, no comma."
+    assert channel.error.position is not None
+    assert channel.error.position.column == 4
+
+
+def test_statements_are_reported_once_with_their_number() -> None:
+    program = "O1 (#1, #2)\n#100=5\nG1 X[#100] F200\nX1,5\nIF [#100 EQ 5] GOTO 10\nG1 X3\nN10 #101=[1+2]\n"
+    channel = prepare(program, collect_errors=True)
+    assert [(error.position.line, error.what) for error in channel.errors if error.position] == [
+        (
+            2,
+            "dialect 'din' reads no variables, expressions or program flow (4 blocks have them, this is the first)",
+        ),
+        (4, "'X1,5' has a comma in its number"),
+        (6, "a feed move without a feed"),
+    ]
+    assert "--dialect fanuc" in channel.errors[0].hint
+
+
 def test_no_motion_in_force() -> None:
     din = load_dialect("din")
     none = din.model_copy(update={"initial": din.initial.model_copy(update={"motion": "none"})})
@@ -78,7 +118,7 @@ def test_an_address_that_belongs_to_something_names_it() -> None:
     assert channel.error is not None
     assert channel.error.what == "'R' has no meaning in this block"
     assert channel.error.hint == "It belongs to an arc (G2, G3) or a drilling cycle."
-    assert prepare("G1 F100 X1 H5\n", dialect="bosch").error is not None  # bosch ignores nothing
+    assert prepare("G1 F100 X1 L5\n", dialect="bosch").error is not None  # bosch ignores nothing
 
 
 # --- refused blocks change nothing

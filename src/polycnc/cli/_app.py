@@ -20,13 +20,13 @@ from polycnc.cli import (
     _view,
     _warmup,
 )
-from polycnc.cli._errors import end_on_termination, guarded
+from polycnc.cli._errors import INTERRUPTED, end_on_termination, end_with_report, guarded
 from polycnc.cli._output import print_remarks
 
 app = typer.Typer(
     name="polycnc",
     help="A virtual CNC and motion controller: run, time and inspect NC programs without a machine.",
-    epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 130 interrupted.",
+    epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 70 internal error, 130 interrupted.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -84,4 +84,9 @@ def main() -> None:
         sys.modules["scipy"] = None  # type: ignore[assignment]  # numba would load it: 0.3 s, for nothing here
     print_remarks()
     end_on_termination()
-    app(prog_name="polycnc")
+    try:
+        app(prog_name="polycnc")
+    except Exception as error:  # of the command line itself; the commands are guarded
+        end_with_report(error)
+    except KeyboardInterrupt:
+        sys.exit(INTERRUPTED)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from polycnc.cli._output import bold, print_json, say
-from polycnc.cli._run import DIALECT, MACHINE, ROOT
+from polycnc.cli._run import DIALECT, IGNORE, MACHINE, ROOT, codes_of
 
 if TYPE_CHECKING:
     from polycnc.errors import ProgramError
@@ -19,6 +19,7 @@ def check_command(
     programs: Annotated[list[Path], typer.Argument(help="The part programs.", metavar="PROGRAM")],
     machine: Annotated[str | None, MACHINE] = None,
     dialect: Annotated[str | None, DIALECT] = None,
+    ignore: Annotated[list[str] | None, IGNORE] = None,
     root: Annotated[Path | None, ROOT] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
@@ -28,7 +29,9 @@ def check_command(
 
     texts = [runner.program_text(program) for program in programs]
     config = load_machine(machine)
-    found = {text.name: runner.check(text, config, dialect, root=root) for text in texts}
+    found = {
+        text.name: runner.check(text, config, dialect, root=root, ignore=codes_of(ignore)) for text in texts
+    }
     total = sum(map(len, found.values()))
     if as_json:
         print_json(

@@ -1,17 +1,23 @@
 """How errors end a command: one message on standard error and an exit status, never a traceback.
 
-0 clean, 1 program error or alarm, 2 usage, 130 interrupted.
+0 clean, 1 program error or alarm, 2 usage, 70 a mistake of polycnc itself, 130 interrupted.
 """
 
 from __future__ import annotations
 
 import functools
 import os
+import platform
+import shlex
 import signal
 import sys
-from collections.abc import Callable
+import tempfile
+import traceback
+from collections.abc import Callable, Iterator
+from importlib.metadata import PackageNotFoundError, version
 from typing import NoReturn, ParamSpec
 
+from polycnc import __version__
 from polycnc.cli._output import bold_red, say_error
 from polycnc.errors import PolycncError, UsageError
 
@@ -19,7 +25,10 @@ P = ParamSpec("P")
 
 PROGRAM = 1
 USAGE = 2
+INTERNAL = 70  # EX_SOFTWARE
 INTERRUPTED = 128 + signal.SIGINT
+
+_STANDS_ON = ("numpy", "numba", "llvmlite", "pydantic", "typer")
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -43,8 +52,39 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except OSError as error:
             name = f"{error.filename}: " if error.filename else ""
             _end(f"{name}{error.strerror or error}", PROGRAM)
+        except Exception as error:  # whatever it is, it is ours: nobody is shown a traceback
+            end_with_report(error)
 
     return run
+
+
+def end_with_report(error: Exception) -> NoReturn:
+    """End the process with what a mistake of polycnc says to its user; the traceback goes into a file to send."""
+    text = "".join((*_circumstances(), "\n", *traceback.format_exception(error)))
+    what = f"{type(error).__name__}: {error}".split("\n", 1)[0][:200]
+    try:
+        handle, file = tempfile.mkstemp(prefix="polycnc-error-", suffix=".txt")
+        with open(handle, "w", encoding="utf-8", errors="backslashreplace") as out:
+            out.write(text)
+        hint = f"Please report it, with {file}; it holds versions, the command and where it happened."
+    except OSError:  # not even that: better on the screen than lost
+        hint = f"Please report it, with what follows.\n{text}"
+    _end(f"internal error, the mistake is not yours: {what}\n{hint}", INTERNAL)
+
+
+def _circumstances() -> Iterator[str]:
+    """Yield what is needed to repeat a failure, line by line."""
+    yield f"polycnc {__version__}, Python {platform.python_version()}, {platform.platform()}\n"
+    for name in _STANDS_ON:
+        try:
+            yield f"{name} {version(name)}\n"
+        except PackageNotFoundError:
+            yield f"{name} is not installed\n"
+    yield f"command: {shlex.join(sys.argv)}\n"
+    try:
+        yield f"folder: {os.getcwd()}\n"
+    except OSError as error:  # it may have been removed
+        yield f"folder: {error}\n"
 
 
 def _end(text: str, status: int) -> NoReturn:

@@ -68,7 +68,8 @@ def machine_command(
 
 
 def _print_from(source: Path, output: Path | None) -> None:
-    from polycnc.runner import check_output, complete_or_absent, keep_inputs, machine_from
+    from polycnc.outputs import check_output, complete_or_absent, keep_inputs
+    from polycnc.runner import machine_from
 
     if output is not None:
         keep_inputs(output, [source], "the machine file")

@@ -34,7 +34,17 @@ ROOT = typer.Option(
     help="The control's folder: sub-programs, files and permanent variables (default: the program's).",
     metavar="DIR",
 )
+IGNORE = typer.Option(
+    "--ignore",
+    help="Codes that count as if they were not there, like G43.4,M198; each is named in the messages.",
+    metavar="CODE,...",
+)
 _NUMBERS = (1, 2, 3)
+
+
+def codes_of(texts: list[str] | None) -> list[str]:
+    """Return the codes of all --ignore options."""
+    return [code for text in texts or () for code in text.replace(",", " ").split()]
 
 
 def run_command(
@@ -68,6 +78,7 @@ def run_command(
     stop_at_m0: Annotated[
         bool, typer.Option("--stop-at-m0", help="End the run at the first M0 instead of passing it.")
     ] = False,
+    ignore: Annotated[list[str] | None, IGNORE] = None,
     root: Annotated[Path | None, ROOT] = None,
     keys: Annotated[
         Path | None,
@@ -81,9 +92,12 @@ def run_command(
     """Run a part program on a simulated machine and say how long it takes and where it goes."""
     from polycnc import runner
     from polycnc.machine import load_machine
+    from polycnc.outputs import keep_apart, keep_inputs
 
-    for what, output in (("a trace", trace), ("a plot", plot), ("a screen", screen)):
-        runner.keep_inputs(output, (program, machine, dialect, keys), what)
+    outputs = (("a trace", trace), ("a plot", plot), ("a screen", screen))
+    for what, output in outputs:
+        keep_inputs(output, (program, machine, dialect, keys), what)
+    keep_apart(outputs)
     text = runner.program_text(program)
     config = load_machine(machine)
     with ExitStack() as stack:
@@ -112,6 +126,7 @@ def run_command(
                 root=root,
                 keys=() if keys is None else runner.read_keys(keys),
                 screen=screen,
+                ignore=codes_of(ignore),
             )
         if picture is not None and plot is not None:
             runner.plot(picture.with_trace(result), plot)

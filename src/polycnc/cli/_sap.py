@@ -37,23 +37,25 @@ def compile_command(
     """Compile a stand-alone program to a .CNC file, or report every error of it."""
     from polycnc.controllers.apci import sap
     from polycnc.errors import UsageError
+    from polycnc.outputs import check_output, complete_or_absent, keep_inputs
 
-    target = out or source.with_suffix(".CNC")
-    if target.resolve() == source.resolve():
-        raise UsageError(f"{target} is the program itself", hint="Name another file with -o.")
     try:
         text = source.read_text(encoding="utf-8-sig", errors="replace")
     except OSError as error:
         raise UsageError(
             f"cannot read {source}: {error.strerror}", hint="Give the path of a program."
         ) from None
+    target = check_output(out or source.with_suffix(".CNC"), (), "a program")
+    keep_inputs(target, (source,), "a program")
     program, errors = sap.check(text, str(source), task)
     for mistake in errors:
         say(str(mistake))
     if program is None:
         say(lead=bold(f"{len(errors)} error{'' if len(errors) == 1 else 's'}"))
         sys.exit(1)
-    target.write_bytes(sap.write_cnc(program))
+    content = sap.write_cnc(program)
+    with complete_or_absent(target, durable=True) as partial:
+        partial.write_bytes(content)
     say(f"wrote {target}: task {task}, {len(program.code)} instructions")
 
 

@@ -12,7 +12,7 @@ from polycnc.cnc._alarms import (
     OperatorMessages,
     PastAlarm,
 )
-from polycnc.cnc._control import Control, ControlEvent
+from polycnc.cnc._control import PROGRAM_MESSAGE, Control, ControlEvent
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import (
     AfterManual,
@@ -41,6 +41,7 @@ from polycnc.cnc._tool_times import ToolTime
 
 __all__ = [
     "ALARMS",
+    "PROGRAM_MESSAGE",
     "AfterManual",
     "Alarm",
     "AlarmKind",

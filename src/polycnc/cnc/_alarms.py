@@ -62,7 +62,9 @@ ALARMS: AlarmTable = MappingProxyType({
     "emergency_stop":        AlarmRow(400, AlarmKind.EMERGENCY, "emergency stop", ClearedBy.CAUSE),
 })
 # fmt: on
-"""The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts."""
+"""The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts.
+
+Errors of a program are "program", or "program CODE" where a vendor has a number for the error's code."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,6 +142,11 @@ class AlarmList:
     def of(self, channel: int) -> tuple[Alarm, ...]:
         """Return the alarms that stop a channel, oldest first."""
         return tuple(alarm for alarm in self._active.values() if alarm.channel in (None, channel))
+
+    def of_program(self, code: str) -> str:
+        """Return the name of the alarm for an error of a program: the table's row "program CODE", or "program"."""
+        name = f"program {code}"
+        return name if code and name in self._table else "program"
 
     def owner(self, axis: str) -> int | None:
         """Return the channel of an axis, None where there is only one."""

@@ -12,7 +12,7 @@ from enum import IntFlag
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from polycnc.cnc._alarms import Alarm, AlarmKind, AlarmList, OperatorMessages
+from polycnc.cnc._alarms import MOST_MESSAGE_CHARACTERS, Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._auxiliary import AuxiliaryFunctions
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_checks import (
@@ -58,12 +58,14 @@ from polycnc.machine import (
     Store,
     load_machine,
 )
-from polycnc.nc import Dialect, Event, ProgramText, load_dialect
+from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
 
 Condition: TypeAlias = Callable[[], bool]
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
+PROGRAM_MESSAGE = 3006
+"""Number of the message of a stop in a program of the first channel; those of the others follow."""
 
 
 class ControlEvent(IntFlag):
@@ -84,6 +86,7 @@ class Control:
     them where they set or stop something, if it is not given.
     `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
+    `languages` are those of the channels' programs, one for each channel.
     """
 
     def __init__(
@@ -97,6 +100,7 @@ class Control:
         script: Script | None = None,
         servo: bool = False,
         record_cycles: int = 0,
+        languages: Sequence[Language | None] = (),
     ) -> None:
         self.data = data or ControlData()
         file = load_machine(config)
@@ -133,6 +137,7 @@ class Control:
                 library=self._sub_program,
                 dry_run_mm_min=self.data.dry_run_mm_min,
                 on_event=self._meet,
+                language=languages[path] if path < len(languages) else None,
             )
             for path, share in enumerate(shares)
         )
@@ -361,6 +366,7 @@ class Control:
                     hint="Go on in that mode, or reset it.",
                 )
             chosen.go_on(self.data.after_manual, step)
+            self.messages.withdraw(PROGRAM_MESSAGE + chosen.path)
         else:
             text = text_to_begin(chosen, self.programs, is_mdi=is_mdi)
             if self.data.reference_required:
@@ -450,6 +456,7 @@ class Control:
         for channel in channels:
             self.manual.stop_all(channel.axes)
             channel.reset()
+            self.messages.withdraw(PROGRAM_MESSAGE + channel.path)
         self.functions.withdraw(channels)
         if len(channels) == len(self.channels):
             self.plc.cancel()  # what nobody waits for as well
@@ -625,7 +632,10 @@ class Control:
         if channel.run_state is RunState.COMPLETED and counts:
             self.parts.count()
         if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
-            self.alarms.put("program", detail=str(run.error).splitlines()[0], channel=channel.path)
+            error = run.error
+            name = self.alarms.of_program(error.code)
+            detail = str(error).splitlines()[0] if name == "program" else error.what
+            self.alarms.put(name, detail=detail, channel=channel.path)
 
     def _note_running(self) -> None:
         self.programs.running = frozenset().union(*(channel.programs for channel in self.channels))
@@ -633,6 +643,9 @@ class Control:
     # ------------------------------------------------------------------ auxiliary functions
 
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
+        """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
+        if event.message:  # until the program goes on or is reset
+            self.messages.show(PROGRAM_MESSAGE + channel.path, event.message[:MOST_MESSAGE_CHARACTERS])
         self._raised |= ControlEvent.FUNCTION
         return self.functions.meet(channel, event, self.dialect)
 
@@ -702,6 +715,7 @@ class Control:
             self.offsets,
             *(channel.config for channel in self.channels),
             *nested(self.machine.state),
+            *(channel.language for channel in self.channels if channel.language is not None),
         ]
 
     def _moment(self) -> ControlMoment:

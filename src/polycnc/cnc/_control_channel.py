@@ -16,7 +16,16 @@ from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import BlockRecord, Dialect, Event, Library, ProgramText, of_another_channel
+from polycnc.nc import (
+    BlockRecord,
+    BoundLanguage,
+    Dialect,
+    Event,
+    Language,
+    Library,
+    ProgramText,
+    of_another_channel,
+)
 
 INTERRUPTED = frozenset(
     {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
@@ -43,8 +52,12 @@ class ControlChannel:
         library: Library,
         dry_run_mm_min: float,
         on_event: Callable[[ControlChannel, Event], bool],
+        language: Language | None = None,
     ) -> None:
         self.path = path
+        self.language = language
+        self.skip_signal = False
+        self.on_skip: Callable[[], None] | None = None
         self.data = data
         self.mode = Mode.AUTO
         self.overrides = Overrides()
@@ -197,6 +210,8 @@ class ControlChannel:
         self.set_switches(self.switches)
         self.set_overrides(self.overrides)
         self.run.breakpoints = self.breakpoints
+        self.run.skip_signal = self.skip_signal
+        self.run.on_skip = self.on_skip
         self._go(step)
 
     def _load(self, text: ProgramText, *, mdi: bool) -> None:
@@ -210,6 +225,7 @@ class ControlChannel:
                 options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
                 config=self.config,
                 library=self._library,
+                language=self.language,
                 on_event=lambda event: self._on_event(self, event),
             )
         else:
@@ -290,6 +306,12 @@ class ControlChannel:
 
     # ------------------------------------------------------------------ settings
 
+    def set_skip_signal(self, on: bool) -> None:
+        """Give the signal that ends skip moves, or take it away."""
+        self.skip_signal = on
+        if self.run is not None:
+            self.run.skip_signal = on
+
     def set_breakpoints(self, breakpoints: frozenset[Breakpoint]) -> None:
         """Set where the program stops besides."""
         self.breakpoints = breakpoints
@@ -349,6 +371,10 @@ class ControlChannel:
         self.returning = moment.returning
         self._lent = moment.lent
         self.run = run
+        if run is not None:
+            run.on_skip = self.on_skip
+        if run is not None and isinstance(self.language, BoundLanguage):
+            self.language.attach(run.channel)
 
     # ------------------------------------------------------------------ lent axes
 

@@ -21,7 +21,7 @@ from polycnc.kernel import (
     replan_path,
 )
 from polycnc.machine import Machine
-from polycnc.nc import Channel
+from polycnc.nc import Channel, Stop
 
 Floats = npt.NDArray[np.float64]
 
@@ -61,6 +61,7 @@ class PathFeed:
         state = machine.state
         self.row = state.paths.row[channel.path]
         self._low_water = _LOW_WATER + int(self.row["depth"])
+        self._box: tuple[Floats, Floats] | None = None  # without a probing move that has been prepared
         self.low = state.setpoint.copy()
         self.high = state.setpoint.copy()
 
@@ -104,9 +105,29 @@ class PathFeed:
     def prepare(self) -> None:
         """Take what was appended into the look-ahead."""
         state, path = self.machine.state, self.channel.path
-        first = int(self.row["prepared"])
+        row = self.row
+        first = int(row["prepared"])
         prepare_path(state.seg, state.paths, path, state.limits, self.machine.config.cycle_s, state.work)
+        probing = [each.tag for each in self.channel.writer.events.values() if each.stop is Stop.PROBE]
+        prepared = int(row["prepared"])
+        if probing and first < prepared:  # what lies behind may not be gone along
+            tags = self.tags(first, prepared)
+            row["prepared"] = first + tags.index(probing[-1]) if probing[-1] in tags else first
+            measure_queue(state.seg, state.paths, path, first, self.low, self.high)
+            self._box = self._box or (self.low.copy(), self.high.copy())
+            first, row["prepared"] = int(row["prepared"]), prepared
         measure_queue(state.seg, state.paths, path, first, self.low, self.high)
+
+    def keep_box(self) -> None:
+        """Take note that a probing move has been gone along to its end."""
+        self._box = None
+
+    def drop_probing(self) -> None:
+        """Take back from the box of positions what a probing move has not gone along; the path stands where it ends."""
+        if self._box is not None:
+            here = self.machine.state.paths.position[self.channel.path]
+            self.low[:], self.high[:] = np.minimum(self._box[0], here), np.maximum(self._box[1], here)
+        self._box = None
 
     def replan(self) -> None:
         """Take over a new override, hold or limit."""

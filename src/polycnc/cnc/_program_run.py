@@ -6,7 +6,7 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeAlias
 
@@ -17,6 +17,7 @@ from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
+from polycnc.cnc._probing import Probing, delete_rest, positions
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
@@ -59,24 +60,15 @@ _STANDING = {
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 HIGHEST_OVERRIDE = 2.0
+_SKIP_CYCLES = 1 << 12
 
 
 # Plain values that a run holds besides its channel.
 _SAVED = (
-    "optional_stop",
-    "alarm",
-    "_block_delete",
-    "_single_block",
-    "_state",
-    "_hold",
-    "_stop",
-    "_met",
-    "_dropping",
-    "_locked",
-    "_unanswered",
-    "_approach",
-    "_tool_times",
-)
+    "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
+    "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
+    "skip_signal",
+)  # fmt: skip
 
 
 class RunSnapshot(NamedTuple):
@@ -95,7 +87,11 @@ class ProgramRun:
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
-    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on.
+    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on. `axes` are the
+    names of the machine's axes in this channel, empty for those that it does not have.
+
+    `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
+    The surfaces of the machine file give it as well. `on_skip` is told when it is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -112,6 +108,7 @@ class ProgramRun:
         config: MachineConfig | None = None,
         library: Library | None = None,
         language: Language | None = None,
+        axes: Sequence[str] | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
         before: ProgramRun | None = None,
@@ -123,10 +120,13 @@ class ProgramRun:
         self.path = path
         self.rows = rows
         self.on_event = on_event
+        self.on_skip: Callable[[], None] | None = None
+        self.skip_signal = False
         self.optional_stop = options.optional_stop
         self.alarm: RunAlarm | None = None
         self._options = options
         self._language = language
+        self._axes = axes
         self._config = config
         self._library = library
         self._block_delete = options.block_delete
@@ -142,6 +142,7 @@ class ProgramRun:
             None  # where a searched block begins, and its line
         )
         self._unanswered = False  # an auxiliary function at which the path stands
+        self._probing: Probing | None = None
         self._row = machine.state.paths.row[path]
         self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
         self.stopper = Stopper(self.channel.records, Step.INTO if self._single_block else Step.RUN)
@@ -158,6 +159,7 @@ class ProgramRun:
             config=self._config,
             library=self._library,
             language=self._language,
+            axes=self._axes,
             skip_levels=self._block_delete,
             stands_at_stops=self._options.stands_at_stops,
             answers=self._options.answers,
@@ -517,6 +519,8 @@ class ProgramRun:
         target = self.feed.target()
         done = 0
         while self._state is RunState.ACTIVE and self._row["head"] < target:
+            if self._probing is not None:
+                return done + self.advance(1)
             cycles = self.machine.skip(self.path, target)
             done += cycles
             if self._row["event"] >= 0:
@@ -541,11 +545,13 @@ class ProgramRun:
         self.feed.feed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        return cycles
+        return cycles if self._probing is None else min(cycles, 1)
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
         raised = int(self.machine.state.clock[0]["raised"])
+        if self._probing is not None:
+            self._probe(self._probing)
         if raised & kernel.PATH_EVENT and self._row["event"] >= 0:
             self._meet_event()
         if raised & kernel.RECORDER_FULL:
@@ -657,7 +663,8 @@ class ProgramRun:
         stands = (
             self._state is RunState.STOPPED_AT_BLOCK
         )  # before a segment that is in the look-ahead already
-        hold = self._hold or stands or self._stop is not None or self._unanswered
+        met = self._probing is not None and self._probing.met and self._probing.deletes
+        hold = self._hold or stands or met or self._stop is not None or self._unanswered
         if bool(self._row["hold"]) != hold:
             self._row["hold"] = hold
             if self._row["state"] == kernel.RUNNING:
@@ -714,7 +721,13 @@ class ProgramRun:
         if event.word and self.on_event is not None:
             self._unanswered = bool(self.on_event(event))
             self._set_hold()
-        if event.stop is Stop.DRAIN:
+        if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
+            self._probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
+        elif event.stop is Stop.DRAIN:
+            if self._probing is not None:
+                self._probing = None
+                self.feed.keep_box()
+                self._set_hold()
             self.channel.go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self._stop = event
@@ -722,6 +735,18 @@ class ProgramRun:
             self._set_hold()
         elif event.stop is not None and self._options.stands_at_stops:
             self.channel.go_on()
+
+    def _probe(self, probing: Probing) -> None:
+        """Look for the contact of a probing move; what is left of the move is dropped once the axes stand."""
+        if not probing.met:
+            if probing.look(self.machine, self.channel, signal=self.skip_signal) and probing.deletes:
+                self._set_hold()
+                if self.on_skip is not None and self.channel.state.skip_position is not None:
+                    self.on_skip()
+        elif probing.deletes and self.at_rest and self._state is RunState.ACTIVE:
+            delete_rest(self.machine, self.channel, self.feed)
+            self._probing = None
+            self._set_hold()
 
     def _pass_stop(self) -> None:
         if self._stop is not None:
@@ -762,6 +787,7 @@ class ProgramRun:
         self._hold = False
         self._stop = None
         self._unanswered = False
+        self._probing = None
         self._met = None
         self._set_hold()
 

@@ -14,6 +14,7 @@ _LOG = logging.getLogger("polycnc")
 
 _MAGIC = b"polycnc1"
 _DIGEST_BYTES = 16
+_LEFT_S = 3600.0  # what is in passing for so long was left by a process that was killed
 _KEPT = 24  # files of one function: some versions of it, each for some types of arguments
 
 if sys.platform == "win32":
@@ -141,6 +142,11 @@ class Files:
         for path in kept[:-_KEPT]:
             path.unlink(missing_ok=True)
             path.with_suffix(".lock").unlink(missing_ok=True)
+        if kept:
+            now_s = kept[-1].stat().st_mtime  # just written
+            for path in self._folder.glob("*.tmp"):
+                if now_s - path.stat().st_mtime > _LEFT_S:
+                    path.unlink(missing_ok=True)
 
 
 class Lock:

@@ -24,6 +24,7 @@ from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._path import (
+    EXACT_PATH,
     FEED_LENGTH,
     FEED_S,
     HELD,
@@ -97,6 +98,7 @@ __all__ = [
     "BLOCK",
     "BY_DEVIATION",
     "BY_SQUARE_CORNER",
+    "EXACT_PATH",
     "FEED_LENGTH",
     "FEED_MM_S",
     "FEED_S",

@@ -15,6 +15,7 @@ from polycnc.kernel._blend import blend_corner
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._path import Paths, free_slots, slot, slot_of
 from polycnc.kernel._segments import (
+    CORNER_STOP,
     RAPID,
     STOP,
     Floats,
@@ -48,8 +49,10 @@ def stop_before_next(seg: Segments, paths: Paths, g: int) -> None:
 
 
 @compiled
-def _keep_rapids_apart(row: Rows, path: Rows, g: int, flags: int) -> None:
-    """Let a path come to rest where positioning meets feed motion, unless the caller lets them blend."""
+def _set_ends(row: Rows, path: Rows, g: int, flags: int) -> None:
+    """Let a path come to rest where positioning meets feed motion, and in the corners of an exact path."""
+    if path[g]["tolerance_mm"] < 0.0:
+        row[slot_of(path, g, path[g]["tail"])]["flags"] |= CORNER_STOP
     if path[g]["tail"] > path[g]["head"]:
         k = slot_of(path, g, path[g]["tail"] - 1)
         if (row[k]["flags"] ^ flags) & RAPID:
@@ -95,7 +98,7 @@ def add_line(
     k = slot_of(path, g, path[g]["tail"])
     if not set_line(row, starts, ends, k, feed_axis, queued[g], end, speed_mm_s, flags, tag):
         return False
-    _keep_rapids_apart(row, path, g, flags)
+    _set_ends(row, path, g, flags)
     _appended(ends, path, queued, g, k)
     return True
 
@@ -135,7 +138,7 @@ def append_arc(
         tag,
     ):
         return False
-    _keep_rapids_apart(seg.row, paths.row, g, flags)
+    _set_ends(seg.row, paths.row, g, flags)
     _appended(seg.end, paths.row, paths.queued, g, k)
     return True
 
@@ -162,7 +165,7 @@ def append_circle3d(
         seg, k, start, axis_p, axis_q, axis_r, center, normal, sweep_deg, speed_mm_s, flags, tag
     ):
         return False
-    _keep_rapids_apart(seg.row, paths.row, g, flags)
+    _set_ends(seg.row, paths.row, g, flags)
     _appended(seg.end, paths.row, paths.queued, g, k)
     return True
 
@@ -187,7 +190,7 @@ def append_spline(
         needed += 1
     if needed > free_slots(paths, g):
         return 0
-    _keep_rapids_apart(seg.row, paths.row, g, flags)
+    _set_ends(seg.row, paths.row, g, flags)
     count = 0
     s = 0.0
     while s < length:

@@ -1,20 +1,24 @@
 """Round the corner between two lines with an arc, so that it can be passed with speed.
 
-The arc touches both lines and stays within a tolerance of the corner. It takes at most half of what is left
-of the line before it and half of the line after it, so every line keeps room for arcs at both ends.
+The arc touches both lines and stays within a tolerance of the corner. It takes at most half of the line before it and
+half of the line after it, so every line keeps room for arcs at both ends. An infinite tolerance is a quarter of the
+shorter line. Where coming to rest in the corner takes no longer than the arc, there is none.
 """
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._path import BLEND_COLUMNS, Paths, slot
+from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import (
     CIRCLE3D,
     CIRCLE3D_LENGTH,
+    CORNER_STOP,
     LINE,
     RAPID,
     STOP,
@@ -26,9 +30,11 @@ from polycnc.kernel._segments import (
 SMALLEST_TURN = 1e-6  # rad; a smaller corner is passed as it is
 LARGEST_TURN = math.radians(175.0)  # a reversal has no room for an arc
 SMALLEST_ARC = 1e-6  # mm
+TURNING_SHARE = 0.75  # of an axis' acceleration turns the path on an arc, see `_limits`
+FREE_SHARE = 0.25  # of the shorter line is the tolerance where none is set
 
 # Columns of the scratch `paths.blend`.
-_BEFORE, _AFTER, _START, _CENTER, _NORMAL = 0, 3, 6, 9, 12
+_BEFORE, _AFTER, _START, _CENTER, _NORMAL, _CUT = 0, 3, 6, 9, 12, 15  # cut: of the start of the last line, mm
 
 
 @compiled
@@ -41,35 +47,80 @@ def blend_corner(
     that count in the path length.
     """
     row = paths.row[g]
+    work = paths.blend[g]
+    cut_before = work[_CUT]
+    work[_CUT] = 0.0
     tolerance = row["tolerance_mm"]
     if tolerance <= 0.0 or row["tail"] <= row["prepared"]:  # what has been planned cannot be shortened
         return False
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]
-    if line["kind"] != LINE or line["flags"] & (RAPID | STOP) or math.isinf(speed_mm_s):
+    if line["kind"] != LINE or line["flags"] & (RAPID | STOP | CORNER_STOP) or math.isinf(speed_mm_s):
         return False
     p, q, r = _three_axes(seg, k, limits, end)
     if p < 0:
         return False
-    work = paths.blend[g]
     before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
     length_before = _direction(seg.start[k], seg.end[k], p, q, r, before)
     length_after = _direction(seg.end[k], end, p, q, r, after)
     if length_before <= 0.0 or length_after <= 0.0:
         return False
     cosine = before[0] * after[0] + before[1] * after[1] + before[2] * after[2]
-    turn = math.atan2(_cross(before, after, work[_NORMAL:BLEND_COLUMNS]), cosine)
+    turn = math.atan2(_cross(before, after, work[_NORMAL:_CUT]), cosine)
     if turn < SMALLEST_TURN or turn > LARGEST_TURN:
         return False
+    length_before += cut_before
+    if math.isinf(tolerance):
+        tolerance = FREE_SHARE * min(length_before, length_after)
     tangent = math.tan(0.5 * turn)
     quarter = math.sin(0.25 * turn)
     # Along the lines: what the tolerance allows, radius (1 / cos(turn / 2) - 1), within the room there is.
     cut = tolerance * math.sin(0.5 * turn) / (2.0 * quarter * quarter)
-    cut = min(cut, 0.5 * line["length"], 0.5 * length_after)
+    cut = min(cut, 0.5 * length_before, 0.5 * length_after, line["length"] - SMALLEST_ARC)
     radius = cut / tangent
-    if radius * turn < SMALLEST_ARC:
+    if radius * turn < SMALLEST_ARC or not _saves_time(
+        line, limits, (p, q, r), work, cut, radius, turn, speed_mm_s
+    ):
         return False
+    work[_CUT] = cut
     return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, speed_mm_s, tag)
+
+
+@compiled
+def _saves_time(
+    line: np.void,
+    limits: AxisLimits,
+    axes: tuple[int, int, int],
+    work: Floats,
+    cut_mm: float,
+    radius_mm: float,
+    turn_rad: float,
+    speed_mm_s: float,
+) -> bool:
+    """Tell whether the arc, gone along with the lower feed, is quicker than both lines with a rest between them."""
+    before_mm_s, after_mm_s = line["feed_mm_s"], speed_mm_s
+    accel_before, accel_after, accel = math.inf, math.inf, math.inf
+    for j in range(3):
+        allowed, speed = limits.acceleration[axes[j]], limits.speed[axes[j]]
+        u, w = abs(work[_BEFORE + j]), abs(work[_AFTER + j])
+        if u > 0.0:
+            before_mm_s, accel_before = min(before_mm_s, speed / u), min(accel_before, allowed / u)
+        if w > 0.0:
+            after_mm_s, accel_after = min(after_mm_s, speed / w), min(accel_after, allowed / w)
+        if u > 0.0 or w > 0.0:
+            accel = min(accel, allowed)
+    turning = min(before_mm_s, after_mm_s, math.sqrt(TURNING_SHARE * accel * radius_mm))
+    stopping = _stop_s(cut_mm, before_mm_s, accel_before) + _stop_s(cut_mm, after_mm_s, accel_after)
+    rounding = radius_mm * turn_rad / turning
+    rounding += (before_mm_s - turning) ** 2 / (2.0 * accel_before * before_mm_s)
+    rounding += (after_mm_s - turning) ** 2 / (2.0 * accel_after * after_mm_s)
+    return bool(rounding < stopping)
+
+
+@compiled
+def _stop_s(way_mm: float, speed_mm_s: float, accel_mm_s2: float) -> float:
+    """Return the time that the last `way_mm` before a rest and what slowing down takes of the way before cost."""
+    return float(way_mm / speed_mm_s + 0.5 * speed_mm_s / accel_mm_s2)
 
 
 @compiled
@@ -140,7 +191,7 @@ def _append_arc(
         center[i] = start[i] + radius_mm * (after[i] - cosine * before[i]) / sine
     arc = slot(paths, g, paths.row[g]["tail"])
     geo = seg.geo[arc]
-    if circle3d_setup(start, center, work[_NORMAL:BLEND_COLUMNS], math.degrees(turn_rad), geo) != 0:
+    if circle3d_setup(start, center, work[_NORMAL:_CUT], math.degrees(turn_rad), geo) != 0:
         return False
     line = seg.row[k]
     seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]

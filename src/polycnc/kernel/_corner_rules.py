@@ -25,6 +25,17 @@ STRAIGHT_ON = 1e-12  # of 1 - s; a smaller turn is none
 
 
 @compiled
+def turns(work: Floats, angle_rad: float) -> bool:
+    """Tell whether the tangents `work[0]` and `work[1]` differ by more than an angle."""
+    dot, before, behind = 0.0, 0.0, 0.0
+    for i in range(work.shape[1]):
+        dot += work[0, i] * work[1, i]
+        before += work[0, i] * work[0, i]
+        behind += work[1, i] * work[1, i]
+    return bool(dot < math.cos(angle_rad) * math.sqrt(before * behind))
+
+
+@compiled
 def corner_speed(
     seg: Segments, k: int, following: int, limits: AxisLimits, path: np.void, work: Floats, speed_mm_s: float
 ) -> float:

@@ -184,12 +184,17 @@ def in_ramp(paths: Paths, g: int, t: float) -> bool:
 def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     """Plan the running segment anew from where the path stands, unless the next sample is beyond it anyway.
 
-    An S-shaped ramp that is under way is finished first, so that the acceleration does not step. A corner less than a
-    cycle away is not passed faster than was planned before.
+    A wait that is held stands still: what is left of it passes when the hold ends. An S-shaped ramp that is under way
+    is finished first, so that the acceleration does not step. A corner less than a cycle away is not passed faster than
+    was planned before.
     """
     path, ramps = paths.row[g], paths.ramps[g]
     row = seg.row[slot(paths, g, path["head"])]
-    if path["state"] != RUNNING or row["kind"] == WAIT:
+    if path["state"] != RUNNING:
+        return
+    if row["kind"] == WAIT:
+        if path["hold"] != 0:
+            path["state"] = HELD
         return
     t = path["lead"] + path["cycles"] * dt
     if in_ramp(paths, g, t):
@@ -218,7 +223,8 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         _plan_from(seg, paths, g, 0.0, 0.0, 0.0, math.inf, dt)
     elif path["state"] == HELD and not is_held(path, seg.row[slot(paths, g, path["head"])]):
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, math.inf, dt)
+        if seg.row[slot(paths, g, path["head"])]["kind"] != WAIT:
+            _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, math.inf, dt)
     elif path["state"] != RUNNING:
         return STILL
     path["cycles"] += 1

@@ -19,7 +19,7 @@ import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._circle3d import circle3d_tangent_bound
-from polycnc.kernel._corner_rules import AS_AXES_ALLOW, corner_speed
+from polycnc.kernel._corner_rules import AS_AXES_ALLOW, corner_speed, turns
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._ramps import MOST_SHARE, beside_corner
@@ -27,6 +27,7 @@ from polycnc.kernel._segments import (
     ARC,
     CIRCLE3D,
     CIRCLE3D_RADIUS,
+    CORNER_STOP,
     LINE,
     RADIUS_END,
     RADIUS_START,
@@ -43,11 +44,12 @@ from polycnc.kernel._segments import (
 )
 from polycnc.kernel._spline import Splines, spline_bounds_between
 
-CURVE_CORNER_SHARE = 0.1  # the same beside a curve, which needs the rest for itself
+CURVE_CORNER_SHARE = 0.05  # the same beside a curve, which needs the rest for itself
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
-CENTRIPETAL_SHARE = 0.75  # highest part that the curvature of an arc may use
+CENTRIPETAL_SHARE = math.sqrt(0.75)  # highest part that the curvature of an arc may use
 SPLINE_CENTRIPETAL_SHARE = 0.45
 CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to unevenly
+LARGEST_BEND = 0.005  # rad; more is a corner, where an exact path comes to rest
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
 LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
 WORTH = 0.5  # of a corner's speed is what the ramp beside it may lose; more and stopping would be as good
@@ -231,6 +233,8 @@ def limit_junction(
         return
     segment_tangent(seg, k, 1.0, work[0])
     segment_tangent(seg, following, 0.0, work[1])
+    if row["flags"] & CORNER_STOP and turns(work, LARGEST_BEND):
+        return
     speed = min(row["cap"], after["cap"])
     if path["corner_rule"] != AS_AXES_ALLOW:
         row["junction"] = corner_speed(seg, k, following, limits, path, work, speed)

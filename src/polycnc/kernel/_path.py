@@ -23,7 +23,8 @@ HELD = 3  # at rest within a segment, until released
 
 NO_LIMIT = 1 << 62
 
-BLEND_COLUMNS = 15  # five points of three axes
+EXACT_PATH = -1.0  # a tolerance: corners are stops, and the path goes on where there is none
+BLEND_COLUMNS = 16  # see `_blend`
 
 # Columns of `totals`.
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6
@@ -48,10 +49,8 @@ PATH_ROW = np.dtype(
         ("rapid_top", np.float64),  # highest path speed of positioning
         ("dry_feed_mm_s", np.float64),  # path speed instead of every programmed feed, 0 = as programmed
         ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
-        (
-            "tolerance_mm",
-            np.float64,
-        ),  # how far the path may leave a corner between lines appended from now on
+        # How far the path may leave a corner between lines appended from now on; EXACT_PATH: it rests there.
+        ("tolerance_mm", np.float64),
         ("speed_limit_mm_s", np.float64),  # of the path, whatever its axes allow
         ("accel_limit_mm_s2", np.float64),  # of the path, whatever its axes allow
         ("corner_deviation_mm", np.float64),  # of a corner rule other than AS_AXES_ALLOW

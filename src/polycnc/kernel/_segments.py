@@ -27,6 +27,7 @@ WAIT = 4  # no motion: a dwell, or an event at a point of the path
 
 RAPID = 1  # flag: positioning at the axes' speed
 STOP = 2  # flag: come to rest at the end (exact stop)
+CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on in the same direction
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
 GEO = 16

@@ -16,6 +16,7 @@ from polycnc.machine._config import (
     ToolConfig,
 )
 from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
+from polycnc.machine._config_probe import SurfaceConfig, first_contact
 from polycnc.machine._describe import (
     AXIS_COLUMNS,
     axis_rows,
@@ -33,7 +34,15 @@ from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, par
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
 from polycnc.machine._store import Area, Entry, History, Store
 from polycnc.machine._store_file import StoreError
-from polycnc.machine._toml import StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.machine._toml import (
+    MOST_NESTING,
+    StrictModel,
+    is_nested_beyond,
+    load_toml,
+    parse_toml,
+    problem,
+    validate,
+)
 from polycnc.machine._toml_locator import KeyPath, Locator
 from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
 
@@ -43,6 +52,7 @@ __all__ = [
     "LARGEST_POSITION",
     "LEAST_OVERRIDE",
     "LONGEST_BLOCK_S",
+    "MOST_NESTING",
     "PIECE_CYCLES",
     "PRESETS",
     "AnyAxis",
@@ -86,6 +96,7 @@ __all__ = [
     "Store",
     "StoreError",
     "StrictModel",
+    "SurfaceConfig",
     "Timed",
     "TimesConfig",
     "ToolConfig",
@@ -94,6 +105,8 @@ __all__ = [
     "arrays_of",
     "axis_rows",
     "describe_machine",
+    "first_contact",
+    "is_nested_beyond",
     "load_machine",
     "load_toml",
     "machine_file_reference",

@@ -5,8 +5,9 @@ A key that nothing reads does not exist here, so a file cannot hold a setting wi
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from typing import Annotated, Literal, TypeAlias
 
@@ -15,6 +16,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine._bounds import LARGEST_POSITION, LONGEST_BLOCK_S, SHORTEST_CYCLE_S
 from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, Share
+from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
 
@@ -51,6 +53,14 @@ def _look_ahead(value: object) -> object:
     raise problem("'look_ahead_blocks' must be a whole number from 2 up", hint='or write "unlimited"')
 
 
+def _path_tolerance(value: object) -> object:
+    if value == "free":
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0.0 <= value <= LARGEST_POSITION:
+        return value
+    raise problem("'path_tolerance_mm' must be a number from 0 up", hint='or write "free"')
+
+
 def _some_axes(value: tuple[AnyAxis, ...]) -> tuple[AnyAxis, ...]:
     if not value:
         raise problem("the machine has no axis", hint="add a table [[axis]] for each axis")
@@ -63,8 +73,9 @@ class PathConfig(StrictModel):
     look_ahead_blocks: Annotated[int | Literal["unlimited"], BeforeValidator(_look_ahead)] = Field(
         default="unlimited", description='How many blocks the look-ahead sees: 2 or more, or "unlimited".'
     )
-    path_tolerance_mm: NotNegative = Field(
-        default=0.0, description="How far the path may leave a corner, mm."
+    path_tolerance_mm: Annotated[float | Literal["free"], BeforeValidator(_path_tolerance)] = Field(
+        default=0.0,
+        description='How far the path may leave a corner, mm: 0 or more, or "free", a quarter of the shorter line.',
     )
     jerkrel: Share = Field(
         default=0.0,
@@ -96,6 +107,11 @@ class PathConfig(StrictModel):
                 at=("square_corner_mm_s",),
             )
         return self
+
+    @property
+    def tolerance_mm(self) -> float:
+        """Return how far the path may leave a corner, mm; inf if it is free."""
+        return math.inf if self.path_tolerance_mm == "free" else self.path_tolerance_mm
 
     @property
     def look_ahead_limit(self) -> int | None:
@@ -202,10 +218,16 @@ class MachineConfig(StrictModel):
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
     )
     io: IoConfig = Field(default=IoConfig(), description="The I/O image, see `[io]`.")
+    surfaces: tuple[SurfaceConfig, ...] = Field(
+        default=(), alias="surface", description="What a probe meets, see `[[surface]]`."
+    )
 
     @model_validator(mode="after")
     def _fits_together(self) -> MachineConfig:
-        for error in (*self._axis_problems(), *self._offset_problems(), *self._start_problems()):
+        problems = self._axis_problems, self._offset_problems, self._start_problems
+        for error in (error for find in problems for error in find()):
+            raise error
+        for error in surface_problems(self.surfaces, self.axis_names):
             raise error
         return self
 
@@ -240,7 +262,7 @@ class MachineConfig(StrictModel):
                     else ("axis", index, home_key if has_home else f"soft_limits_{axis.unit}"),
                 )
 
-    def _unknown_axes(self, names: dict[str, float], at: KeyPath) -> Iterator[Exception]:
+    def _unknown_axes(self, names: Iterable[str], at: KeyPath) -> Iterator[Exception]:
         for name in names:
             if name not in self.axis_names:
                 yield problem(

@@ -49,6 +49,7 @@ Position: TypeAlias = Annotated[float, Field(ge=-LARGEST_POSITION, le=LARGEST_PO
 Share: TypeAlias = Annotated[float, Field(ge=0, le=1)]
 Limits: TypeAlias = Annotated[tuple[float, float], BeforeValidator(_pair), AfterValidator(_ordered)]
 AxisName: TypeAlias = Annotated[str, AfterValidator(_axis_name)]
+References: TypeAlias = Annotated[tuple[Position, ...], Field(max_length=3)]
 Unit: TypeAlias = Literal["mm", "deg"]
 
 _ENDLESS = (-math.inf, math.inf)
@@ -192,6 +193,16 @@ class AxisConfig(_InUnit):
         return float(self._value("home"))
 
     @property
+    def reference_positions(self) -> tuple[float, ...]:
+        """Return the second and further reference positions, as far as there are any."""
+        return tuple(self._value("reference_positions"))
+
+    def reference_position(self, number: int) -> float:
+        """Return reference position `number`, from 1 (home); home stands for one that is not given."""
+        others = self.reference_positions
+        return others[number - 2] if 2 <= number < len(others) + 2 else self.home
+
+    @property
     def resolution(self) -> float:
         """Return the step of the encoder; 0 is an ideal encoder."""
         return float(self._value("resolution"))
@@ -221,6 +232,7 @@ _TEXT = {
     "jump": "Speed step allowed at a block junction; absent: what the acceleration gives in one cycle.",
     "soft_limits": "Travel that programs may use; absent: no limit.",
     "home": "Position of the axis when it is referenced.",
+    "reference_positions": "Up to three more reference positions, from the second on.",
     "resolution": "Step of the encoder; 0 is an ideal encoder.",
     "limit_switches": "Where the limit switches trip; absent: none.",
     "reference_switch": "Where the reference switch trips; absent: none.",
@@ -238,6 +250,7 @@ class LinearAxis(AxisConfig):
     jump_mm_s: Jump | None = Field(default=None, description=_TEXT["jump"])
     soft_limits_mm: Limits | None = Field(default=None, description=_TEXT["soft_limits"])
     home_mm: Position = Field(default=0.0, description=_TEXT["home"])
+    reference_positions_mm: References = Field(default=(), description=_TEXT["reference_positions"])
     resolution_mm: NotNegative = Field(default=0.0, description=_TEXT["resolution"])
     limit_switches_mm: Limits | None = Field(default=None, description=_TEXT["limit_switches"])
     reference_switch_mm: float | None = Field(default=None, description=_TEXT["reference_switch"])
@@ -259,6 +272,7 @@ class RotaryAxis(AxisConfig):
     modulo: bool = Field(default=False, description="true: positions repeat every 360 degree.")
     soft_limits_deg: Limits | None = Field(default=None, description=_TEXT["soft_limits"])
     home_deg: Position = Field(default=0.0, description=_TEXT["home"])
+    reference_positions_deg: References = Field(default=(), description=_TEXT["reference_positions"])
     resolution_deg: NotNegative = Field(default=0.0, description=_TEXT["resolution"])
     limit_switches_deg: Limits | None = Field(default=None, description=_TEXT["limit_switches"])
     reference_switch_deg: float | None = Field(default=None, description=_TEXT["reference_switch"])

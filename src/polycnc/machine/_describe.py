@@ -19,6 +19,7 @@ from polycnc.machine._config import (
     ToolConfig,
 )
 from polycnc.machine._config_axis import AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
+from polycnc.machine._config_probe import SurfaceConfig
 from polycnc.machine._toml import range_text
 
 AXIS_COLUMNS = ("axis", "kind", "vmax", "amax", "soft limits", "home", "servo")
@@ -100,6 +101,12 @@ _SECTIONS: tuple[tuple[str, str, type[BaseModel], type[BaseModel]], ...] = (
     ("`[times]`", "The time of functions that are not motion.", TimesConfig, TimesConfig),
     ("`[spindle]`", "The spindle.", SpindleConfig, SpindleConfig),
     ("`[tools.N]`", "One table for each tool; N is its number.", ToolConfig, ToolConfig),
+    (
+        "`[[surface]]`",
+        "What a probe meets, in machine coordinates. One table each; an axis that is not named does not count.",
+        SurfaceConfig,
+        SurfaceConfig,
+    ),
     ("`[io]`", "The inputs and outputs: bits, and words of 32 bits with sign.", IoConfig, IoConfig),
 )
 
@@ -181,7 +188,9 @@ def _value_text(annotation: Any) -> str:
         case origin if origin is dict:
             return "table"
         case origin if origin is tuple:
-            return "tables" if choices[-1] is Ellipsis else "[low, high]"
+            if choices[-1] is not Ellipsis:
+                return "[low, high]"
+            return "numbers" if _value_text(choices[0]) == "number" else "tables"
         case _:
             return _PLAIN.get(annotation, "table")
 

@@ -69,7 +69,7 @@ class Snapshot:
         """
         try:
             found = json.loads(self.beside, object_hook=_decoded)
-        except (ValueError, TypeError, KeyError, RecursionError) as error:
+        except (ValueError, TypeError, LookupError, OverflowError, RecursionError) as error:
             raise SnapshotError(
                 f"the snapshot of a {self.device} is damaged: {error}", hint="use another one"
             ) from error
@@ -152,7 +152,15 @@ class Snapshot:
             raise _damaged("its check sum is wrong")
         try:
             return cls._read(zlib.decompress(body))
-        except (ValueError, TypeError, KeyError, RecursionError, struct.error, zlib.error) as error:
+        except (
+            ValueError,
+            TypeError,
+            LookupError,
+            OverflowError,
+            RecursionError,
+            struct.error,
+            zlib.error,
+        ) as error:
             raise _damaged(str(error)) from error
 
     @classmethod

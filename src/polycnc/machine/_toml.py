@@ -25,6 +25,16 @@ from polycnc.machine._toml_locator import KeyPath, Locator
 M = TypeVar("M", bound=BaseModel)
 
 
+MOST_NESTING = 32
+"""How deep tables and arrays may lie in each other: ten times what any file needs."""
+
+_TOO_DEEP = f"tables or arrays nested more than {MOST_NESTING} deep"
+_PART = r"""(?:[A-Za-z0-9_-]+|"(?:[^"\\\n]|\\.)*"|'[^'\n]*')[ \t]*"""
+_LONG_KEY = re.compile(rf"^[ \t]*(?:\[\[?[ \t]*)?(?:{_PART}\.[ \t]*){{{MOST_NESTING}}}", re.MULTILINE)
+_DEEP = re.compile(rf"(?:[\[{{][^\[\]{{}}\n]*){{{MOST_NESTING}}}")
+_LONG_NUMBER = re.compile(r"[0-9_]{1000,}")
+
+
 class StrictModel(BaseModel):
     """Base of every configuration table: unknown keys refused, no conversions, immutable, no NaN."""
 
@@ -44,13 +54,14 @@ def load_toml(path: str | Path) -> tuple[dict[str, Any], Locator]:
     """
     try:
         text = Path(path).read_bytes().decode("utf-8-sig")
-    except OSError as error:
-        raise ConfigurationError(
-            f"cannot read '{path}': {error.strerror}", hint="check the name and the access rights of the file"
-        ) from error
     except UnicodeDecodeError as error:
         raise ConfigurationError(
             f"'{path}' is not UTF-8 text: byte {error.start} is invalid", hint="save the file as UTF-8"
+        ) from error
+    except (OSError, ValueError) as error:  # ValueError: no file can have this name
+        why = error.strerror if isinstance(error, OSError) else error
+        raise ConfigurationError(
+            f"cannot read '{path}': {why}", hint="check the name and the access rights of the file"
         ) from error
     return parse_toml(text, str(path))
 
@@ -59,10 +70,14 @@ def parse_toml(text: str, file: str) -> tuple[dict[str, Any], Locator]:
     """Parse TOML text and return its data and the locator of its keys; `file` is the name used in errors.
 
     Raises:
-        ConfigurationError: The text is not TOML.
+        ConfigurationError: The text is not TOML, or nested deeper than any file needs.
     """
+    if found := _LONG_KEY.search(text):  # tomllib would take hours for a key of a million parts
+        raise _unreasonable(text, file, found.start(), _TOO_DEEP)
     try:
         data = tomllib.loads(text)
+        if is_nested_beyond(data, MOST_NESTING):
+            raise RecursionError
     except tomllib.TOMLDecodeError as error:
         what, line, column = _syntax_error(text, str(error))
         row = text.split("\n")[line - 1].rstrip("\r")
@@ -71,7 +86,38 @@ def parse_toml(text: str, file: str) -> tuple[dict[str, Any], Locator]:
             hint="correct the line; a file is TOML: [table] headers and key = value lines",
             position=SourcePosition(file, line, column, row),
         ) from None
+    except RecursionError:
+        found = _DEEP.search(text)
+        raise _unreasonable(text, file, found.start() if found else 0, _TOO_DEEP) from None
+    except ValueError:  # Python reads no number of so many digits
+        found = _LONG_NUMBER.search(text)
+        what = "a number with more digits than any number needs"
+        raise _unreasonable(text, file, found.start() if found else 0, what) from None
     return data, Locator(text, file)
+
+
+def is_nested_beyond(data: object, levels: int) -> bool:
+    """Tell whether tables and arrays lie deeper in each other than `levels`."""
+    here: list[object] = [data]
+    for _ in range(levels + 1):
+        here = [
+            inner
+            for each in here
+            if isinstance(each, Mapping | list)
+            for inner in (each.values() if isinstance(each, Mapping) else each)
+            if isinstance(inner, Mapping | list)
+        ]
+        if not here:
+            return False
+    return True
+
+
+def _unreasonable(text: str, file: str, offset: int, what: str) -> ConfigurationError:
+    line = text.count("\n", 0, offset) + 1
+    begin = text.rfind("\n", 0, offset) + 1
+    row = text[begin : text.find("\n", begin) if "\n" in text[begin:] else len(text)].rstrip("\r")
+    position = SourcePosition(file, line, offset - begin + 1, row)
+    return ConfigurationError(what, hint="correct the line", position=position)
 
 
 def validate(model: type[M], data: Mapping[str, Any], locator: Locator) -> M:

@@ -3,6 +3,7 @@
 from polycnc.nc._block_records import LINE_MASK, BlockRecord, BlockRecords, Call, ModalWords, line_of
 from polycnc.nc._block_source import (
     BlockSource,
+    BoundLanguage,
     CallProgram,
     Drain,
     EndSource,
@@ -20,6 +21,8 @@ from polycnc.nc.blocks._calls import Library
 from polycnc.nc.blocks._channel_state import ChannelState, Spindle, of_another_channel
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
+from polycnc.nc.blocks._placement import Placement
+from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._queue import Event
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
@@ -33,6 +36,7 @@ __all__ = [
     "BlockRecord",
     "BlockRecords",
     "BlockSource",
+    "BoundLanguage",
     "Call",
     "CallProgram",
     "Channel",
@@ -49,6 +53,8 @@ __all__ = [
     "Message",
     "ModalWords",
     "Pause",
+    "Placement",
+    "Probe",
     "ProgramText",
     "SourceItem",
     "Spindle",

@@ -28,6 +28,7 @@ from polycnc.nc.blocks._channel_state import ModalSnapshot
 from polycnc.nc.blocks._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
+    EXACT_PATH,
     EXACT_STOP,
     FEED_INVERSE_TIME,
     FEED_MODE,
@@ -44,6 +45,7 @@ from polycnc.nc.blocks._modal import (
     PLANE_YZ,
     PLANE_ZX,
 )
+from polycnc.nc.blocks._placement import NO_PLACEMENT, Placement
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, scan, word_columns
 
@@ -87,7 +89,8 @@ class ModalWords:
 
     `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
     next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
-    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis.
+    `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
+    offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
     """
 
     g: dict[Group, str]
@@ -101,6 +104,8 @@ class ModalWords:
     m: tuple[int, ...]
     inch: bool
     zero: tuple[float, ...]
+    work: tuple[str, ...] = ()
+    placement: Placement = NO_PLACEMENT
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,6 +196,10 @@ class BlockRecords:
             stack=context.stack,
             modal=self._words(context, line),
         )
+
+    def words(self, text: ProgramText, modal: ModalSnapshot) -> ModalWords:
+        """Return the modal words of a state of preparation."""
+        return self._words(_Context(text, (), modal, None), 0)
 
     def depth(self, tag: int) -> int:
         """Return how many calls led to the block of a tag."""
@@ -293,6 +302,8 @@ class BlockRecords:
             m=modal.m_codes,
             inch=bool(whole[INCH]),
             zero=tuple(np.frombuffer(modal.offset).tolist()),
+            work=modal.work,
+            placement=modal.placement,
         )
 
     def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:
@@ -341,6 +352,12 @@ def _codes(dialect: Dialect) -> dict[Action, str]:
     return codes
 
 
+def _stopping(whole: list[int]) -> Action:
+    if whole[EXACT_STOP]:
+        return Action.EXACT_STOP
+    return Action.EXACT_PATH if whole[EXACT_PATH] else Action.CONTINUOUS
+
+
 def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
     """Return what is in force, one action of every modal group."""
     found = [
@@ -352,7 +369,7 @@ def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
         Action.CONSTANT_SURFACE_SPEED if modal.spindle.surface_speed else Action.SPINDLE_RPM,
         _SIDES[modal.side],
         _LENGTHS[modal.length_sign],
-        Action.EXACT_STOP if whole[EXACT_STOP] else Action.CONTINUOUS,
+        _stopping(whole),
         Action.RETRACT_INITIAL if modal.retract_to_initial else Action.RETRACT_R,
     ]
     if modal.cycle:

@@ -7,7 +7,7 @@ program, through the ordinary interpreter. Where a language executes a program, 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from polycnc.errors import ProgramError, UsageError
@@ -83,7 +83,8 @@ class Channel:
     events like any other. With `answers` the path waits at auxiliary functions for whoever runs it, not for
     the machine file's times; with `marks` blocks that leave nothing in the queue are noted (see
     `QueueWriter`). `records` tells what block a segment belongs to. `before` is the channel that used the
-    path until now: with `keeps_modal` its modal state stays in force. With `collect_errors` a refused block
+    path until now: with `keeps_modal` its modal state stays in force. `axes` are the names of the machine's
+    axes in this channel, empty for those that it does not have. With `collect_errors` a refused block
     is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
     gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
     it, and once compiling it, takes longer than they do.
@@ -99,6 +100,7 @@ class Channel:
         config: MachineConfig | None = None,
         library: Library | None = None,
         language: Language | None = None,
+        axes: Sequence[str] | None = None,
         skip_levels: frozenset[int] = frozenset(),
         stands_at_stops: bool = False,
         answers: bool = False,
@@ -112,6 +114,7 @@ class Channel:
         self.machine = machine
         self.path = path
         self.blocks = 0
+        self._axes = axes
         self._ended = False
         self.errors: list[ProgramError] = []
         self.messages = Messages()
@@ -143,7 +146,11 @@ class Channel:
             if not keeps_modal:
                 self.state = self._initial_state(config or machine.config)
                 self.state.tool = before.state.tool
-        self._fast_work = make_fast_work(self.state.modal, _CHUNK_BLOCKS if marks else 0)
+        self._fast_work = make_fast_work(
+            self.state.modal,
+            _CHUNK_BLOCKS if marks else 0,
+            feed_needs_point=dialect.numbers.feed_least_input > 0.0,
+        )
         self.interpreter = Interpreter(
             dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
         )
@@ -320,8 +327,9 @@ class Channel:
 
     def _initial_state(self, config: MachineConfig) -> ChannelState:
         limits = [axis.soft_limits for axis in config.axes]
+        names = tuple(self._axes or config.axis_names)
         modal = make_modal(
-            config.axis_names,
+            names,
             [
                 LINEAR_AXIS if axis.kind == "linear" else MODULO_AXIS if axis.modulo else ROTARY_AXIS
                 for axis in config.axes
@@ -333,7 +341,11 @@ class Channel:
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
         state = ChannelState(config, modal)
-        if _START_OFFSET in config.offsets or self.dialect.macros:
+        state.path_tolerance_mm = self.dialect.path_tolerance_mm(config.path)
+        state.axis_names = names
+        given = getattr(config.offsets, "at_start", None)
+        begins = _START_OFFSET in config.offsets if given is None else given
+        if begins or self.dialect.sets_work_offsets:
             state.coordinates.select_work_offset(0, _START_OFFSET)
         return state
 
@@ -443,9 +455,11 @@ class Channel:
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self._stack(), self.state.snapshot(), line)
+        return self.records.reference(self._place.text, self.stack, self.state.snapshot(), line)
 
-    def _stack(self) -> tuple[Call, ...]:
+    @property
+    def stack(self) -> tuple[Call, ...]:
+        """The calls that led to what is prepared now, the outermost first."""
         return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
     def _here(self) -> Place:
@@ -467,7 +481,7 @@ class Channel:
         kernel = self.machine.state
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self._stack(), self.state.snapshot(), begin)
+        base = self.records.run_base(self._place.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)

@@ -5,7 +5,10 @@ The interpreter knows actions, never code numbers of a vendor; a new control is 
 
 from __future__ import annotations
 
+import math
+import re
 import string
+from collections.abc import Iterable
 from functools import cache, cached_property
 from importlib import resources
 from pathlib import Path
@@ -16,9 +19,9 @@ import numpy.typing as npt
 from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
-from polycnc.machine import StrictModel, load_toml, parse_toml, problem, validate
+from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
-from polycnc.nc.blocks._cycles import CycleSettings
+from polycnc.nc.blocks._cycles import CycleSettings, PeckTap
 from polycnc.nc.blocks._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -45,6 +48,7 @@ from polycnc.nc.text._program import TextRules
 
 G_CODES = 10000  # G0 to G999.9
 
+_CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
 _MOTIONS = {"none": MOTION_NONE, "rapid": MOTION_RAPID, "linear": MOTION_LINEAR}
 _ACTIONS = {action.name.lower(): action for action in Action}
@@ -88,6 +92,20 @@ class Numbers(StrictModel):
     least_input: Annotated[float, Field(gt=0)] = Field(
         default=0.001, description="Size of an increment in mm or degree; a tenth of the number in inch."
     )
+    feed_least_input: Annotated[float, Field(ge=0)] = Field(
+        default=0.0,
+        description="What F without a point counts, in mm; a tenth of the number in inch. 0: it is a plain number.",
+    )
+
+    @model_validator(mode="after")
+    def _feeds_count_where_lengths_do(self) -> Numbers:
+        if self.feed_least_input and self.decimal_point != "least_input":
+            raise problem(
+                "F counts increments only where lengths do",
+                hint='add decimal_point = "least_input"',
+                at=("feed_least_input",),
+            )
+        return self
 
 
 class Arcs(StrictModel):
@@ -99,6 +117,7 @@ class Arcs(StrictModel):
     relative_tolerance: Annotated[float, Field(ge=0, lt=0.1)] = Field(
         default=0.001, description="The same as a part of the radius; the larger of both counts."
     )
+    turns: bool = Field(default=True, description="P says how many turns an arc makes.")
     no_center: Literal["line", "error"] = Field(
         default="error",
         description='An arc with neither centre nor radius: "line" goes straight, "error" refuses it.',
@@ -122,6 +141,17 @@ class Cycles(StrictModel):
     )
     reentry_mm: Annotated[float, Field(ge=0)] = Field(
         default=1.0, description="How far above the last cut a deep-hole peck begins to feed."
+    )
+    shift: Literal["+1", "-1", "+2", "-2"] = Field(
+        default="+1", description="Axis of the plane and direction in which Q shifts a boring tool."
+    )
+    peck_tap: PeckTap = Field(
+        default="none",
+        description='What Q does in a tapping cycle: nothing, "chip_break" backs up, "retract" goes back to R.',
+    )
+    rigid_tap: bool = Field(default=False, description="Tapping cycles turn the spindle by themselves.")
+    repeats: tuple[Literal["L", "K"], ...] = Field(
+        default=("L", "K"), description="Addresses that say how many holes a block drills."
     )
 
 
@@ -180,16 +210,24 @@ class Dialect(StrictModel):
         default=None,
         description="How many blocks are prepared beyond the one that is executed; absent: as many as fit.",
     )
-    language: Literal["none", "cpl"] = Field(
+    language: Literal["none", "cpl", "macro"] = Field(
         default="none",
-        description='The language that programs may hold besides NC blocks; "cpl" is that of Bosch.',
+        description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro").',
+    )
+    h_compensates: bool = Field(
+        default=False,
+        description="H alone compensates the tool length, H0 cancels; else G43 or G44 is needed.",
+    )
+    notes_codes: bool = Field(
+        default=False, description="The G codes that were programmed are kept, for those who ask for them."
     )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
+    free_corners: bool = Field(
+        default=False,
+        description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter line.",
+    )
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
-    macros: bool = Field(
-        default=False, description="Programs may hold custom macros: variables, expressions and program flow."
-    )
     scaling_unit: Annotated[float, Field(gt=0)] = Field(
         default=0.001, description="What a scaling factor without a decimal point counts."
     )
@@ -213,6 +251,15 @@ class Dialect(StrictModel):
     def _by_m(self) -> dict[int, MAction]:
         return {int(code): M_ACTIONS[action] for code, action in self.m.items()}
 
+    @property
+    def sets_work_offsets(self) -> bool:
+        """Whether programs can set work offsets: then they begin in G54."""
+        return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())
+
+    def path_tolerance_mm(self, path: PathConfig) -> float:
+        """Return how far corners may be rounded where the program says nothing, mm; inf if it is free."""
+        return math.inf if self.free_corners and path.tolerance_mm == 0.0 else path.tolerance_mm
+
     def g_action(self, code: float) -> Action | None:
         """Return what a G code does, None if the dialect does not know it."""
         tenths = round(code * 10)
@@ -223,13 +270,43 @@ class Dialect(StrictModel):
         other = MAction.AUXILIARY if self.other_m == "auxiliary" else None
         return self._by_m.get(code, other)
 
+    def leaving_out(self, codes: Iterable[str]) -> Dialect:
+        """Return the same dialect without these G and M codes, which count as if they were not there.
+
+        Raises:
+            UsageError: something else than a G or M code, like G43.4 or M98.
+        """
+        g, m = dict(self.g), dict(self.m)
+        for code in codes:
+            found = _CODE.fullmatch(code.strip())
+            if found is None:
+                raise UsageError(f"'{code}' is no G or M code", hint="Write codes like G43.4 or M98.")
+            table, action = (g, "left_out") if found[1] in "Gg" else (m, "left_out")
+            number = f"{float(found[2]):g}"
+            if table is g and float(number) >= G_CODES / 10:
+                raise UsageError(f"'{code}' is no G code", hint="G codes are G0 to G999.9.")
+            if table is m and "." in number:
+                raise UsageError(f"'{code}' is no M code", hint="M codes are whole numbers.")
+            for key in [key for key in table if float(key) == float(number)]:
+                del table[key]
+            table[number] = action
+        changed = {name: getattr(self, name) for name in type(self).model_fields}
+        return type(self).model_construct(**{**changed, "g": g, "m": m})
+
     def text_rules(self) -> TextRules:
         """Return the rules of the block scanners."""
         return TextRules(**dict(self.text))
 
     def cycle_settings(self) -> CycleSettings:
         """Return the settings of the drilling cycles."""
-        return CycleSettings(chip_break_mm=self.cycles.chip_break_mm, reentry_mm=self.cycles.reentry_mm)
+        cycles = self.cycles
+        sign = 1.0 if cycles.shift[0] == "+" else -1.0
+        return CycleSettings(
+            chip_break_mm=cycles.chip_break_mm,
+            reentry_mm=cycles.reentry_mm,
+            shift_direction=(sign, 0.0) if cycles.shift[1] == "1" else (0.0, sign),
+            peck_tap=cycles.peck_tap,
+        )
 
     @property
     def increment(self) -> float:
@@ -265,7 +342,7 @@ class DialectTables(NamedTuple):
     least_input: float
 
 
-_SHIPPED = ("din", "fanuc", "bosch")
+_SHIPPED = ("din", "fanuc", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

@@ -5,7 +5,6 @@ What posting and debugging need is loaded when it is first used.
 
 from typing import TYPE_CHECKING, Any
 
-from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
@@ -63,13 +62,10 @@ __all__ = [
     "Violation",
     "WallClock",
     "check",
-    "check_output",
     "check_plot_file",
     "check_view_file",
     "compare",
-    "complete_or_absent",
     "counted",
-    "keep_inputs",
     "machine_from",
     "open_in_browser",
     "plot",

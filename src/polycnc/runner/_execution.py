@@ -54,7 +54,7 @@ def run_to_end(
     """
     run.start()
     if control is not None:
-        _run_with(control, run, every_cycle=every_cycle)
+        _run_with(control, run, every_cycle=every_cycle, progress=progress)
         return
     while run.active:
         if every_cycle:
@@ -66,7 +66,9 @@ def run_to_end(
     run.drain()
 
 
-def _run_with(control: ProgramControl, run: ProgramRun, *, every_cycle: bool) -> None:
+def _run_with(
+    control: ProgramControl, run: ProgramRun, *, every_cycle: bool, progress: Progress | None = None
+) -> None:
     idle = 0
     patience = run.machine.clock.cycles_for(_PATIENCE_S)
     while run.active:
@@ -74,6 +76,8 @@ def _run_with(control: ProgramControl, run: ProgramRun, *, every_cycle: bool) ->
             run.advance(1 if run.at_rest else _MOVING_CYCLES)
         else:
             run.skip()
+        if progress is not None:
+            progress(run.channel.progress)
         wakes_s = control.wakes_in_s()
         if wakes_s is None or not run.active or not run.at_rest:
             idle = 0

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from polycnc.errors import UsageError
 from polycnc.kernel import LEADING
 from polycnc.machine import MachineConfig
-from polycnc.runner._files import check_output, complete_or_absent
+from polycnc.outputs import check_output, complete_or_absent, format_of
 from polycnc.runner._result import RunResult, Trace, counted, time_text
 from polycnc.runner._trace import TraceCollector
 
@@ -94,9 +94,10 @@ def plot(result: RunResult, path: str | Path | None = None) -> Figure:
     if target is not None:
         import matplotlib
 
-        undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(target.suffix.lower())
+        extension = format_of(target, PLOT_FORMATS)
+        undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(extension)
         with complete_or_absent(target) as partial, matplotlib.rc_context({"svg.hashsalt": "polycnc"}):
-            figure.savefig(partial, dpi=150, metadata=undated)
+            figure.savefig(partial, dpi=150, metadata=undated, format=extension[1:])
     return figure
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
+from polycnc.outputs import check_output, is_special, keep_inputs
 from polycnc.post import (
     ArcAxis,
     BlockMap,
@@ -23,7 +24,6 @@ from polycnc.post import (
     program_file,
 )
 from polycnc.runner._execution import Progress
-from polycnc.runner._files import keep_inputs
 from polycnc.runner._verify_post import DEFAULT_TOLERANCE_MM, PostVerification, verify_post
 
 
@@ -85,7 +85,9 @@ def post_file(
         ProgramError: the tool path cannot be posted.
     """
     files = [each for each in (tool_path, control, machine) if isinstance(each, str | Path)]
-    keep_inputs(output, files, "a program")
+    if output is not None:
+        check_output(output, (), "a program")
+        keep_inputs(output, files, "a program")
     chosen = control if isinstance(control, ControlFile) else load_control(control)
     if arc_axis is not None and (
         isinstance(tool_path, ToolPath) or Path(tool_path).suffix.lower() == ".json"
@@ -103,8 +105,17 @@ def post_file(
     text = io.StringIO()
     with ExitStack() as stack:
         file = text if output is None else stack.enter_context(program_file(output, chosen.parameters))
+        keeps = verify and output is not None and is_special(Path(output))  # what a pipe took is gone
+
+        def write(piece: str) -> None:
+            file.write(piece)
+            if keeps:
+                text.write(piece)
+
         try:
-            summary = post_program(path, chosen, file.write, progress=progress, block_map=block_map)
+            summary = post_program(
+                path, chosen, write if keeps else file.write, progress=progress, block_map=block_map
+            )
         except UnicodeEncodeError as error:
             raise ProgramError(
                 f"the character '{error.object[error.start]}' cannot be written in {error.encoding}",
@@ -114,7 +125,7 @@ def post_file(
     if block_map is not None:
         written = (
             ProgramText.from_text(text.getvalue(), f"{path.name} posted")
-            if output is None
+            if output is None or keeps
             else ProgramText.from_path(output)
         )
         parameters = chosen.parameters

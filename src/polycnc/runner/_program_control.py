@@ -10,9 +10,9 @@ from typing import Protocol
 
 from polycnc.cnc import ProgramRun
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import Machine
+from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Language, ProgramText
-from polycnc.runner._files import check_output
+from polycnc.outputs import check_output
 
 
 class Screen(Protocol):
@@ -33,8 +33,15 @@ class ProgramControl(Protocol):
     def screen(self) -> Screen:
         """What the program has put on the screen."""
 
+    @property
+    def config(self) -> MachineConfig:
+        """The machine file with the tables that programs change."""
+
     def attach(self, run: ProgramRun) -> None:
         """Take the run whose channel executes the program."""
+
+    def has_statements(self, program: ProgramText) -> bool:
+        """Tell whether a program holds more than NC blocks."""
 
     def check(self, program: ProgramText) -> list[ProgramError]:
         """Return everything that is wrong with a program without running it."""
@@ -98,15 +105,10 @@ def read_keys(path: str | Path) -> tuple[str, ...]:
 
 
 def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> ProgramControl | None:
-    from polycnc.nc.cpl import holds_cpl
+    from polycnc.controllers.bosch import BoschSystem, ChannelHost
 
-    if not holds_cpl(program.content):
-        return None
-    from polycnc.controllers.bosch import Pnc
-
-    return Pnc(
-        surroundings.root,
-        machine.clock,
+    return ChannelHost(
+        BoschSystem(surroundings.root, machine.clock, machine.config),
         program=program.name,
         keys=surroundings.keys,
         skip_levels=surroundings.skip_levels,
@@ -127,7 +129,7 @@ def check_screen_file(path: str | Path, program: ProgramText, control: ProgramCo
         UsageError: The program shows nothing, no format has this ending, or the place is wrong.
     """
     target = check_output(path, SCREEN_FORMATS, "a screen")
-    if control is None:
+    if control is None or not control.has_statements(program):
         raise UsageError(
             f"{program.name} has no screen: it holds NC blocks only",
             hint="Leave --screen out, or name the dialect of a control with a language (bosch).",

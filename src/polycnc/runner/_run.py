@@ -14,6 +14,7 @@ from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
 from polycnc.nc.macro import language_for
+from polycnc.outputs import keep_inputs
 from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
@@ -38,6 +39,7 @@ def run(
     root: str | Path | None = None,
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
+    ignore: Iterable[str] = (),
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -48,7 +50,8 @@ def run(
     read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
     are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
     run ends at the first M0. `progress` is called now and then with the part that is done, 0 to 1;
-    it goes back where sub-programs repeat.
+    it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that count as if they were not
+    there.
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
     absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
@@ -77,17 +80,21 @@ def run(
         for tagged_sink in tagged:
             tagged_sink(piece, tags, execution.channel.records)
 
-    chosen = dialect_for(text.name, dialect)
+    chosen = _dialect_of(text, dialect, ignore)
     levels = frozenset(skip_levels)
     surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
     control = control_for(chosen, text, simulated, surroundings)
     if screen is not None:
+        keep_inputs(
+            screen, (each for each in (program, machine, dialect) if isinstance(each, str | Path)), "a screen"
+        )
         check_screen_file(screen, text, control)
     execution = ProgramRun(
         simulated,
         text,
         chosen,
         language=language_for(chosen) if control is None else control.language,
+        config=None if control is None else control.config,
         options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
         rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, execution),
@@ -98,7 +105,8 @@ def run(
     else:
         control.attach(execution)
         try:
-            run_to_end(execution, every_cycle=every_cycle, control=control)
+            told = None if every_cycle else progress
+            run_to_end(execution, every_cycle=every_cycle, control=control, progress=told)
         except ProgramError as error:
             stuck = error
         finally:
@@ -119,8 +127,11 @@ def check(
     dialect: str | Dialect | None = None,
     *,
     root: str | Path | None = None,
+    ignore: Iterable[str] = (),
 ) -> list[ProgramError]:
     """Return every error of a part program, not only the first; an empty list if there is none.
+
+    `ignore` names G and M codes that count as if they were not there.
 
     A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run.
 
@@ -129,14 +140,24 @@ def check(
     """
     text = program_text(program)
     simulated = Machine(load_machine(machine))
-    chosen = dialect_for(text.name, dialect)
+    chosen = _dialect_of(text, dialect, ignore)
     control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
-    if control is not None:
+    if control is not None and control.has_statements(text):
         return control.check(text)
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = ProgramRun(simulated, text, chosen, options=options, language=language_for(chosen))
+    language = language_for(chosen) if control is None else control.language
+    config = None if control is None else control.config
+    execution = ProgramRun(simulated, text, chosen, options=options, language=language, config=config)
+    if control is not None:
+        control.attach(execution)
     run_to_end(execution, every_cycle=False)
     return execution.channel.errors
+
+
+def _dialect_of(text: ProgramText, dialect: str | Dialect | None, ignore: Iterable[str]) -> Dialect:
+    chosen = dialect_for(text.name, dialect)
+    codes = tuple(ignore)
+    return chosen.leaving_out(codes) if codes else chosen
 
 
 def program_text(program: str | Path | ProgramText) -> ProgramText:

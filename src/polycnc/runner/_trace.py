@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +16,13 @@ from polycnc.errors import UsageError
 from polycnc.kernel import BLOCK, FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
+from polycnc.outputs import check_output, complete_or_absent, format_of
 from polycnc.runner._blocks import Execution, ExecutionCollector
-from polycnc.runner._files import check_output, complete_or_absent
 from polycnc.runner._result import Trace
 from polycnc.runner._trace_formats import (
     COLUMN_NAMES,
     PROGRAM,
+    PROGRAMS,
     TRACE_FORMATS,
     WRITERS,
     TraceFile,
@@ -110,8 +113,9 @@ class TraceWriter:
     def __init__(self, path: str | Path, config: MachineConfig, actual: bool) -> None:
         checked = check_output(path, TRACE_FORMATS, "a trace")
         with ExitStack() as stack:
-            partial = stack.enter_context(complete_or_absent(checked))
-            self._file: TraceFile = WRITERS[checked.suffix.lower()](partial, trace_columns(config, actual))
+            partial = stack.enter_context(complete_or_absent(checked, rewritten=True))
+            columns = trace_columns(config, actual)
+            self._file: TraceFile = WRITERS[format_of(checked, TRACE_FORMATS)](partial, columns)
             stack.push(self._close)
             self._stack = stack.pop_all()
         self._first = ""  # the program of all rows so far, if it is known
@@ -158,7 +162,7 @@ def read_trace(path: str | Path) -> Trace:
     """Read a trace file; which moves were rapids is not in it, so none is marked.
 
     Raises:
-        UsageError: no such file, an unknown extension, or columns that are not those of a trace.
+        UsageError: no such file, an unknown extension, a damaged file, or columns that are not those of a trace.
     """
     path = Path(path)
     if path.suffix.lower() not in TRACE_FORMATS:
@@ -167,7 +171,13 @@ def read_trace(path: str | Path) -> Trace:
         )
     if not path.is_file():
         raise UsageError(f"no such file: {path}", hint="Check the name and the folder.")
-    columns = read_columns(path)
+    try:
+        columns = read_columns(path)
+    except UsageError:
+        raise
+    except Exception as error:  # whatever the readers of three formats raise for what is no such file
+        why = (str(error).splitlines() or [""])[0]
+        raise UsageError(f"{path} cannot be read as a trace: {why}", hint=_WRITE_ANEW) from error
     axes = [match for name in columns if (match := _AXIS_COLUMN.fullmatch(name))]
     if not axes or tuple(columns)[: len(COLUMN_NAMES)] != COLUMN_NAMES:
         raise UsageError(
@@ -175,6 +185,8 @@ def read_trace(path: str | Path) -> Trace:
         )
     setpoints = [match for match in axes if not match[2]]
     actual = [columns[match[0]] for match in axes if match[2]]
+    if trouble := _trouble(columns, len(setpoints), len(actual)):
+        raise UsageError(f"{path} is damaged: {trouble}", hint=_WRITE_ANEW)
     return Trace(
         axes=tuple(match[1] for match in setpoints),
         units=tuple(match[3] for match in setpoints),
@@ -186,3 +198,20 @@ def read_trace(path: str | Path) -> Trace:
         actual=np.column_stack(actual) if actual else None,
         program=columns.get(PROGRAM),
     )
+
+
+_WRITE_ANEW = "Write it anew: polycnc run --trace."
+_LARGEST_BLOCK = 2.0**53
+
+
+def _trouble(columns: Mapping[str, npt.NDArray[Any]], setpoints: int, actual: int) -> str:
+    """Return what is wrong with the columns of a trace; empty if nothing is."""
+    rows = len(columns["t_s"]) if columns["t_s"].ndim == 1 else -1
+    for name, column in columns.items():
+        if name not in (PROGRAM, PROGRAMS) and column.dtype.kind not in "fiu":
+            return f"column {name} does not hold numbers"
+        if name != PROGRAMS and column.shape != (rows,):
+            return f"column {name} has another size than the others"
+    if not np.all(np.abs(columns["block"]) <= _LARGEST_BLOCK):
+        return "column block holds what is no number of a block"
+    return "" if setpoints and actual in (0, setpoints) else "positions of axes are missing"

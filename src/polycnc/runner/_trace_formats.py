@@ -7,6 +7,7 @@ the column of programs, and what is there is written once more when it turns out
 from __future__ import annotations
 
 import csv
+import shutil
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, Protocol, TextIO
@@ -67,7 +68,7 @@ class CsvTrace:
         """Write the file once more, each line with the program."""
         self._file.close()
         before = self._path.with_name(f"{self._path.name}.before")
-        self._path.replace(before)
+        shutil.copyfile(self._path, before)  # the file itself stays, and with it its lock
         try:
             self._file = _text_file(self._path)
             with before.open(encoding="utf-8") as lines:
@@ -172,7 +173,7 @@ class ParquetTrace:
         kind = self._arrow.dictionary(self._arrow.int32(), self._arrow.string())
         self._schema = self._schema.append(self._arrow.field(PROGRAM, kind))
         before = self._path.with_name(f"{self._path.name}.before")
-        self._path.replace(before)
+        shutil.copyfile(self._path, before)  # the file itself stays, and with it its lock
         try:
             self._writer = self._arrow.parquet.ParquetWriter(str(self._path), self._schema)
             with self._arrow.parquet.ParquetFile(str(before)) as file:
@@ -219,6 +220,8 @@ def _read_csv(path: Path) -> dict[str, npt.NDArray[Any]]:
         if names[-1] == PROGRAM:
             return _read_csv_with_programs(names, csv.reader(file))
         lines = file.readlines()
+    if len(set(names)) != len(names):
+        raise ValueError("two columns have the same name")
     rows = np.loadtxt(lines, delimiter=",", ndmin=2) if lines else np.zeros((0, len(names)))
     return dict(zip(names, rows.T, strict=True))
 
@@ -242,7 +245,7 @@ def _read_csv_with_programs(names: list[str], lines: Iterator[list[str]]) -> dic
 
 
 def _read_npz(path: Path) -> dict[str, npt.NDArray[Any]]:
-    with np.load(path) as archive:
+    with np.load(path, allow_pickle=False) as archive:
         columns: dict[str, npt.NDArray[Any]] = {name: archive[name] for name in archive.files}
     if PROGRAM in columns:
         columns[PROGRAM] = columns.pop(PROGRAMS).astype(object)[columns[PROGRAM]]

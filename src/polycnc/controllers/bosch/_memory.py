@@ -20,49 +20,48 @@ class KeptVariables:
     `memory` is what programs see, `errors` what is wrong with the declarations.
     """
 
-    def __init__(self, directory: Directory) -> None:
+    def __init__(self, directory: Directory, store: Store | None = None) -> None:
         self._path = directory.root / STORE
         self.memory = PermanentMemory()
         texts = ((name, directory.text(name)) for name in DECLARATIONS)
         self.errors: list[ProgramError] = self.memory.declare(
             [(name, text) for name, text in texts if text is not None]
         )
-        self._kept = self._read()
+        self._kept = self._read(store)
 
-    def keep(self) -> None:
-        """Write on disk what has changed since it was read, all of it or nothing.
+    def changed(self) -> dict[str, object]:
+        """Return what has changed since it was read or kept, as plain values."""
+        return {name: value for name, value in self.values().items() if value != self._kept.get(name)}
 
-        Raises:
-            UsageError: The disk refuses it, or another run has it open.
-        """
-        plain = {name: _plain(value) for name, value in self.memory.items()}
-        changed = {name: value for name, value in plain.items() if value != self._kept.get(name)}
-        if not changed:
-            return
-        store = Store(self._path)
-        try:
-            with store.transaction():
-                area = store.area(_AREA, dict)
-                for name, value in changed.items():
-                    area[name] = {"value": value}
-        finally:
-            store.close()
-        self._kept = plain
+    def keep(self, store: Store, changed: dict[str, object]) -> None:
+        """Write what has changed; the caller has a transaction, and says when it is `kept`."""
+        area = store.area(_AREA, dict)
+        for name, value in changed.items():
+            area[name] = {"value": value}
+
+    def kept(self) -> None:
+        """Take note that everything was written."""
+        self._kept = self.values()
 
     def values(self) -> dict[str, object]:
         """Return all variables as plain values: fields as lists, NUL as None."""
         return {name: _plain(value) for name, value in self.memory.items()}
 
-    def _read(self) -> dict[str, object]:
-        if self._path.exists():
-            store = Store(self._path)
+    def _read(self, store: Store | None) -> dict[str, object]:
+        if store is not None:
+            self._take(store)
+        elif self._path.exists():
+            opened = Store(self._path)
             try:
-                for name, kept in store.area(_AREA, dict).items():
-                    if name in self.memory:
-                        self.memory[str(name)] = _filled(self.memory[str(name)], kept["value"])
+                self._take(opened)
             finally:
-                store.close()
+                opened.close()
         return self.values()
+
+    def _take(self, store: Store) -> None:
+        for name, kept in store.area(_AREA, dict).items():
+            if name in self.memory:
+                self.memory[str(name)] = _filled(self.memory[str(name)], kept["value"])
 
 
 def plain_variable(value: object) -> object:

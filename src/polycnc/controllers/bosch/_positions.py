@@ -4,75 +4,130 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+import numpy as np
+import numpy.typing as npt
+
 from polycnc.cnc import ProgramRun
+from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.kernel import PIDF
 from polycnc.nc.cpl import OMITTED, Fault
 
-_PHYSICAL, _OWN = 0, 1
+Floats = npt.NDArray[np.float64]
+Runs = Callable[[int], ProgramRun | None]
 
 
 class Positions:
-    """What MPOS, SPOS, APOS, WPOS and CPOS read in the only channel of a run; all its axes are synchronous.
+    """What AXO, CPOS, WPOS, MPOS, SPOS, APOS, PPOS, PROBE and CPROBE read in a program of channel `number`.
 
-    MPOS, SPOS, APOS and WPOS tell where the axes are now, CPOS where the last prepared block ends. Lengths are mm or
-    inch as the channel has it, angles degrees.
+    WPOS, MPOS, SPOS and APOS tell where the axes are now, AXO and CPOS what the last prepared block says. Lengths are
+    mm or inch as the channel has it, of asynchronous axes always mm; angles are degrees.
     """
 
-    def __init__(self, run: Callable[[], ProgramRun]) -> None:
-        self._run = run
+    def __init__(self, axes: SystemAxes, number: int, runs: Runs) -> None:
+        self._axes = axes
+        self._number = number
+        self._runs = runs
         self.functions: Mapping[str, Callable[..., object]] = {
-            "MPOS": self._mpos, "SPOS": self._spos, "APOS": self._apos, "WPOS": self._wpos, "CPOS": self._cpos,
-            "PPOS": self._not_measured, "PROBE": self._not_measured, "CPROBE": self._not_measured,
+            "AXO": self._axo, "CPOS": self._cpos, "WPOS": self._wpos, "MPOS": self._mpos, "SPOS": self._spos,
+            "APOS": self._apos, "PPOS": self._ppos, "PROBE": self._probe, "CPROBE": self._cprobe,
         }  # fmt: skip
 
-    def _mpos(self, axis: object, kind: object = OMITTED, channel: object = OMITTED) -> float:
-        index = self._axis(axis, kind, channel)
-        return float(list(self._run().machine.setpoints.values())[index]) / self._scale(index)
+    @property
+    def _run(self) -> ProgramRun:
+        run = self._runs(self._number)
+        assert run is not None, "attach the run first"
+        return run
 
-    def _spos(self, axis: object) -> float:
-        return self._mpos(axis)
+    # ------------------------------------------------------------------ of the last prepared block
 
-    def _apos(self, axis: object) -> float:
-        index = self._axis(axis, OMITTED, OMITTED)
-        machine = self._run().machine
-        simulated = (
-            machine.state.servo.row[index]["mode"] == PIDF
-        )  # without servos an axis is where it should be
-        positions = machine.actual if simulated else machine.setpoints
-        return float(list(positions.values())[index]) / self._scale(index)
-
-    def _wpos(self, axis: object, kind: object = OMITTED, channel: object = OMITTED) -> float:
-        index = self._axis(axis, kind, channel)
-        offset = float(self._run().channel.state.modal.offset[index])
-        machine = float(list(self._run().machine.setpoints.values())[index])
-        return (machine - offset) / self._scale(index)
+    def _axo(self, axis: object, kind: object = OMITTED) -> float:
+        index, physical = self._own(axis, kind)
+        return float(self._run.channel.state.coordinates.shift[index]) / self._scale(physical)
 
     def _cpos(self, axis: object, kind: object = OMITTED) -> float:
-        index = self._axis(axis, kind, OMITTED)
-        modal = self._run().channel.state.modal
-        return float(modal.position[index] - modal.offset[index]) / self._scale(index)
+        index, physical = self._own(axis, kind)
+        modal = self._run.channel.state.modal
+        return self._programmed(modal.position)[index] / self._scale(physical)
 
-    def _not_measured(self, axis: object, kind: object = OMITTED) -> float:
-        self._axis(axis, kind, OMITTED)
-        raise Fault("NO PROBE POSITION", "no probe has switched: test SD(9)=0 before")
+    def _programmed(self, machine: Floats) -> list[float]:
+        """Return the program coordinates of a machine position."""
+        state = self._run.channel.state
+        return state.frame.back((machine - state.modal.offset).tolist())
 
-    def _scale(self, index: int) -> float:
-        return float(self._run().channel.state.modal.scale[index])
+    # ------------------------------------------------------------------ of now
 
-    def _axis(self, axis: object, kind: object, channel: object) -> int:
-        """Return the index of an axis from 0 on."""
-        if kind is not OMITTED and kind not in (_PHYSICAL, _OWN):
-            raise Fault("INVALID PARAMETER", "0 selects the physical axis, 1 that of the channel")
-        if channel is not OMITTED:
-            if kind == _PHYSICAL:
-                raise Fault("INVALID PARAMETER", "a physical axis takes no channel")
-            if channel != 1:
-                raise Fault("INVALID PARAMETER", f"there is no channel {channel}")
-        names = self._run().machine.config.axis_names
-        if isinstance(axis, str):
-            if axis in names:
-                return names.index(axis)
-            raise Fault("INVALID PARAMETER", f"there is no axis {axis}; there are {', '.join(names)}")
-        if type(axis) is not int or not 1 <= axis <= len(names):
-            raise Fault("INVALID PARAMETER", f"axes are 1 to {len(names)}")
-        return axis - 1
+    def _mpos(self, axis: object, kind: object = OMITTED, channel: object = OMITTED) -> float:
+        physical = self._axes.axis(self._number, axis, kind, channel)
+        return float(self._run.machine.state.setpoint[self._axes.index(physical)]) / self._scale(physical)
+
+    def _spos(self, axis: object) -> float:
+        physical = self._axes.physical(axis)
+        return float(self._run.machine.state.setpoint[self._axes.index(physical)]) / self._scale(physical)
+
+    def _apos(self, axis: object) -> float:
+        physical = self._axes.physical(axis)
+        index, state = self._axes.index(physical), self._run.machine.state
+        simulated = state.servo.row[index]["mode"] == PIDF  # without a servo an axis is where it should be
+        return float((state.servo.actual if simulated else state.setpoint)[index]) / self._scale(physical)
+
+    def _wpos(self, axis: object, kind: object = OMITTED, channel: object = OMITTED) -> float:
+        physical = self._axes.axis(self._number, axis, kind, channel)
+        index = self._axes.index(physical)
+        owner = self._axes.channel_of(physical)
+        run = None if owner is None else self._runs(owner)
+        setpoint = self._run.machine.state.setpoint
+        return workpiece(run, setpoint)[index] / self._scale(physical)
+
+    # ------------------------------------------------------------------ measured
+
+    def _probe(self, axis: object, kind: object = OMITTED) -> float:
+        index, physical = self._own(axis, kind)
+        return float(self._measured(index)[index]) / self._scale(physical)
+
+    def _ppos(self, axis: object, kind: object = OMITTED) -> float:
+        index, physical = self._own(axis, kind)
+        state = self._run.channel.state
+        coordinates, placement = state.coordinates, state.placement
+        shifts = coordinates.zero_offset + coordinates.tool_offset
+        for vector in (placement.program, placement.additive):
+            shifts = shifts + np.array(vector or (0.0,) * len(shifts))
+        return float(self._measured(index)[index] - shifts[index]) / self._scale(physical)
+
+    def _cprobe(self, axis: object, kind: object = OMITTED) -> float:
+        index, physical = self._own(axis, kind)
+        probe = self._run.channel.state.probe
+        if probe is not None and probe.in_passing:
+            raise Fault(
+                "NO PROBE POSITION", "on-the-fly measurement (G275) has one axis only: use PPOS or PROBE"
+            )
+        return self._programmed(self._measured(index))[index] / self._scale(physical)
+
+    def _measured(self, index: int) -> Floats:
+        probe = self._run.channel.state.probe
+        if probe is None or probe.position is None or index not in probe.axes:
+            raise Fault("NO PROBE POSITION", "no probe has switched: test SD(9)=0 before")
+        return np.array(probe.position)
+
+    # ------------------------------------------------------------------ within
+
+    def _own(self, axis: object, kind: object) -> tuple[int, int]:
+        """Return place and physical index of an axis of the own channel."""
+        physical = self._axes.own_axis(self._number, axis, kind)
+        return self._axes.index(physical), physical
+
+    def _scale(self, physical: int) -> float:
+        """Return mm per unit of the own channel: asynchronous axes are in mm."""
+        if self._axes.channel_of(physical) is None:
+            return 1.0
+        return float(self._run.channel.state.modal.scale[self._axes.index(physical)])
+
+
+def workpiece(run: ProgramRun | None, machine: Floats) -> list[float]:
+    """Return the workpiece coordinates of a machine position, in the channel of a run."""
+    if run is None:
+        return list(map(float, machine))
+    coordinates = run.channel.state.coordinates
+    found = (machine - coordinates.zero_offset - coordinates.tool_offset - coordinates.outer).tolist()
+    if (turn := coordinates.turn) is not None:
+        found[turn.p], found[turn.q] = turn.turned(found[turn.p], found[turn.q], -1.0)
+    return [float(each) for each in found]

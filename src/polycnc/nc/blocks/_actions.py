@@ -39,6 +39,7 @@ class Action(IntEnum):
     LINEAR = auto()
     ARC_CW = auto()
     ARC_CCW = auto()
+    MOTION_OFF = auto()
     DWELL = auto()
     EXACT_STOP_BLOCK = auto()
     PLANE_XY = auto()
@@ -47,6 +48,7 @@ class Action(IntEnum):
     INCH = auto()
     METRIC = auto()
     REFERENCE_RETURN = auto()
+    REFERENCE_POINT = auto()
     COMP_OFF = auto()
     COMP_LEFT = auto()
     COMP_RIGHT = auto()
@@ -57,6 +59,7 @@ class Action(IntEnum):
     WORK_OFFSET = auto()
     WORK_OFFSET_OFF = auto()
     EXACT_STOP = auto()
+    EXACT_PATH = auto()
     CONTINUOUS = auto()
     ABSOLUTE = auto()
     INCREMENTAL = auto()
@@ -76,14 +79,17 @@ class Action(IntEnum):
     CYCLE_DWELL = auto()
     CYCLE_DEEP = auto()
     CYCLE_TAP = auto()
+    CYCLE_TAP_LEFT = auto()
     CYCLE_BORE = auto()
     CYCLE_BORE_STOP = auto()
     CYCLE_BACK_BORE = auto()
+    CYCLE_BACK_BORE_UP = auto()
     CYCLE_BORE_MANUAL = auto()
     CYCLE_BORE_DWELL = auto()
     RETRACT_INITIAL = auto()
     RETRACT_R = auto()
     SET_DATA = auto()
+    SET_WORK_ZERO = auto()
     LOCAL_COORDINATES = auto()
     SCALING = auto()
     SCALING_OFF = auto()
@@ -94,10 +100,34 @@ class Action(IntEnum):
     POLAR = auto()
     POLAR_OFF = auto()
     ADDITIONAL_OFFSET = auto()
+    ADDITIONAL_OFFSET_110 = auto()
     SKIP_MOVE = auto()
     UNSUPPORTED = auto()
     NOTHING = auto()
     IGNORED = auto()
+    CONTOUR_SHIFT = auto()
+    CONTOUR_SHIFT_OFF = auto()
+    PROGRAM_SHIFT = auto()
+    PROGRAM_SHIFT_ADD = auto()
+    PROGRAM_SHIFT_OFF = auto()
+    PROGRAM_SHIFT_ADD_OFF = auto()
+    WORKPIECE_POSITION = auto()
+    WORKPIECE_POSITION_OFF = auto()
+    POLE = auto()
+    POLE_SCALING = auto()
+    POLE_SCALING_OFF = auto()
+    EXTERNAL_OFFSET = auto()
+    EXTERNAL_OFFSET_OFF = auto()
+    EXTERNAL_TOOL = auto()
+    EXTERNAL_TOOL_OFF = auto()
+    GENERAL_TOOL = auto()
+    GENERAL_TOOL_OFF = auto()
+    SELECT_TABLES = auto()
+    PLANE_BY_AXES = auto()
+    PROBE_MOVE = auto()
+    PROBE_IN_PASSING = auto()
+    PROBE_FIXED_STOP = auto()
+    LEFT_OUT = auto()
 
 
 _BY_GROUP: dict[Group, tuple[Action, ...]] = {
@@ -106,31 +136,58 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.LINEAR,
         Action.ARC_CW,
         Action.ARC_CCW,
+        Action.MOTION_OFF,
         Action.CYCLE_CHIP_BREAK,
         Action.CYCLE_FINE_BORE,
         Action.CYCLE_DRILL,
         Action.CYCLE_DWELL,
         Action.CYCLE_DEEP,
         Action.CYCLE_TAP,
+        Action.CYCLE_TAP_LEFT,
         Action.CYCLE_BORE,
         Action.CYCLE_BORE_STOP,
         Action.CYCLE_BACK_BORE,
+        Action.CYCLE_BACK_BORE_UP,
         Action.CYCLE_BORE_MANUAL,
         Action.CYCLE_BORE_DWELL,
     ),
     Group.CYCLE_CANCEL: (Action.CYCLE_CANCEL,),
     Group.NON_MODAL: (
         Action.REFERENCE_RETURN,
+        Action.REFERENCE_POINT,
         Action.MACHINE_COORDINATES,
         Action.SET_POSITION,
         Action.CLEAR_SET_POSITION,
         Action.SET_DATA,
+        Action.SET_WORK_ZERO,
         Action.LOCAL_COORDINATES,
         Action.SCALING,
         Action.SCALING_OFF,
         Action.MIRROR,
         Action.MIRROR_OFF,
         Action.SKIP_MOVE,
+        Action.CONTOUR_SHIFT,
+        Action.CONTOUR_SHIFT_OFF,
+        Action.PROGRAM_SHIFT,
+        Action.PROGRAM_SHIFT_ADD,
+        Action.PROGRAM_SHIFT_OFF,
+        Action.PROGRAM_SHIFT_ADD_OFF,
+        Action.WORKPIECE_POSITION,
+        Action.WORKPIECE_POSITION_OFF,
+        Action.POLE,
+        Action.POLE_SCALING,
+        Action.POLE_SCALING_OFF,
+        Action.EXTERNAL_OFFSET,
+        Action.EXTERNAL_OFFSET_OFF,
+        Action.EXTERNAL_TOOL,
+        Action.EXTERNAL_TOOL_OFF,
+        Action.GENERAL_TOOL,
+        Action.GENERAL_TOOL_OFF,
+        Action.SELECT_TABLES,
+        Action.PLANE_BY_AXES,
+        Action.PROBE_MOVE,
+        Action.PROBE_IN_PASSING,
+        Action.PROBE_FIXED_STOP,
     ),
     Group.ROTATION: (Action.ROTATION, Action.ROTATION_OFF),
     Group.POLAR: (Action.POLAR, Action.POLAR_OFF),
@@ -143,11 +200,16 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
     Group.SPINDLE_MODE: (Action.CONSTANT_SURFACE_SPEED, Action.SPINDLE_RPM),
     Group.RADIUS_COMPENSATION: (Action.COMP_OFF, Action.COMP_LEFT, Action.COMP_RIGHT),
     Group.LENGTH_COMPENSATION: (Action.LENGTH_PLUS, Action.LENGTH_MINUS, Action.LENGTH_OFF),
-    Group.WORK_OFFSET: (Action.WORK_OFFSET, Action.WORK_OFFSET_OFF, Action.ADDITIONAL_OFFSET),
-    Group.STOPPING: (Action.EXACT_STOP, Action.CONTINUOUS),
+    Group.WORK_OFFSET: (
+        Action.WORK_OFFSET,
+        Action.WORK_OFFSET_OFF,
+        Action.ADDITIONAL_OFFSET,
+        Action.ADDITIONAL_OFFSET_110,
+    ),
+    Group.STOPPING: (Action.EXACT_STOP, Action.EXACT_PATH, Action.CONTINUOUS),
     Group.EXACT_STOP_BLOCK: (Action.EXACT_STOP_BLOCK,),
     Group.RETRACT: (Action.RETRACT_INITIAL, Action.RETRACT_R),
-    Group.IGNORED: (Action.IGNORED, Action.NOTHING, Action.UNSUPPORTED),
+    Group.IGNORED: (Action.IGNORED, Action.NOTHING, Action.UNSUPPORTED, Action.LEFT_OUT),
 }
 
 GROUP_OF: dict[Action, Group] = {action: group for group, actions in _BY_GROUP.items() for action in actions}
@@ -169,7 +231,10 @@ class MAction(Enum):
     COOLANT_OFF = ("coolant_off", "")
     SUB_CALL = ("sub_call", "stop")
     SUB_RETURN = ("sub_return", "stop")
+    RIGID_TAP = ("rigid_tap", "")
     AUXILIARY = ("auxiliary", "")
+    UNSUPPORTED = ("unsupported", "")
+    LEFT_OUT = ("left_out", "")
 
     @property
     def group(self) -> str:

@@ -27,11 +27,13 @@ _BEFORE_MOTION = (
     MAction.COOLANT_MIST,
     MAction.COOLANT_FLOOD,
     MAction.COOLANT_OFF,
+    MAction.RIGID_TAP,
     MAction.AUXILIARY,
 )
 _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
+_WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 LARGEST_NUMBER = 99_999_999
 
@@ -42,7 +44,7 @@ def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBE
     Raises:
         ProgramError: it is negative, too large or not whole.
     """
-    if word.value != int(word.value) or not 0 <= word.value <= largest:
+    if not word.value.is_integer() or not 0 <= word.value <= largest:
         text = f"{word.letter}{code_text(word.value)}"
         raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
     return int(word.value)
@@ -65,7 +67,7 @@ class Auxiliary:
             self._set_mode(g, speed)
         if speed is not None:
             self._set_speed(speed)
-            if not any(m.action in _DIRECTION for m in words.m):
+            if not any(m.action in _WITH_SPEED for m in words.m):
                 waits.append(Wait(0.0, line, (f"S{code_text(speed.value)}",)))
         tool = words.take("T")
         if tool is not None:
@@ -75,10 +77,10 @@ class Auxiliary:
                 waits += [self._function(m, speed, line) for m in words.m if m.action is action]
         return waits
 
-    def after_motion(self, words: BlockWords, line: int) -> list[Wait]:
-        """Return the waits of program stops and the program end."""
+    def after_motion(self, words: BlockWords, line: int, message: str = "") -> list[Wait]:
+        """Return the waits of program stops, with a message to the operator, and of the program end."""
         return [
-            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action))
+            Wait(0.0, line, (f"M{m.code}",), _STOPS.get(m.action), message=message)
             for m in words.m
             if m.action in _AFTER_MOTION
         ]
@@ -130,6 +132,12 @@ class Auxiliary:
             self.state.tool = self.state.selected_tool
             self.tool_data(self.state.tool)
             return Wait(times.tool_change_s, line, (f"{name} T{self.state.tool}",))
+        if m.action is MAction.RIGID_TAP:
+            turned = self.state.spindle.direction != 0
+            self.state.rigid_tap = True
+            self.state.spindle = replace(self.state.spindle, direction=0)
+            word = name if speed is None else f"{name} S{code_text(speed.value)}"
+            return Wait(times.spindle_start_s if turned else times.auxiliary_s, line, (word,))
         if m.action in _DIRECTION:
             spindle = self.state.spindle
             changed = spindle.direction != _DIRECTION[m.action] or speed is not None

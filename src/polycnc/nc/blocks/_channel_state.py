@@ -14,6 +14,8 @@ from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._frame import Frame
 from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.blocks._placement import Placement
+from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tables import ProgramTables
 
 
@@ -57,6 +59,9 @@ class Plain(NamedTuple):
     m_codes: tuple[int, ...]
     frame: Frame
     skip_position: tuple[float, ...] | None
+    placement: Placement
+    probe: Probe | None
+    rigid_tap: bool
 
 
 class ModalSnapshot(NamedTuple):
@@ -76,6 +81,7 @@ class ModalSnapshot(NamedTuple):
     length_sign: int
     length_tool: int
     m_codes: tuple[int, ...]
+    placement: Placement
 
 
 class SavedState(NamedTuple):
@@ -95,12 +101,14 @@ def of_another_channel(axis: str) -> str:
 class ChannelState:
     """Hold everything that a block may change, besides the queue.
 
-    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of
-    the present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path,
-    -1 right, 0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose
-    length is compensated. `path_tolerance_mm` is how far corners may be rounded. `m_codes` are those of the last block
-    that had any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and
-    mirrored, `skip_position` where the last skip move ended (machine coordinates).
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
+    present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
+    0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
+    compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops. `m_codes` are
+    those of the last block that had any. `tables` are the tools and work offsets, `frame` how programmed
+    positions are turned, scaled and mirrored, `placement` where they lie besides, `skip_position` where the
+    last skip move ended (machine coordinates), `probe` the last probing.
+    With `rigid_tap` a tapping cycle turns the spindle itself.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -109,6 +117,8 @@ class ChannelState:
         self.tables = ProgramTables(machine)
         self.coordinates = Coordinates(self.tables, modal)
         self.frame = Frame()
+        self.placement = Placement()
+        self.probe: Probe | None = None
         self.skip_position: tuple[float, ...] | None = None
         self.compensation = RadiusCompensation()
         self.spindle = Spindle()
@@ -116,7 +126,8 @@ class ChannelState:
         self.tool = 0
         self.selected_tool = 0
         self.feed_word = 0.0
-        self.path_tolerance_mm = machine.path.path_tolerance_mm
+        self.path_tolerance_mm = machine.path.tolerance_mm
+        self.rigid_tap = False
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -158,6 +169,9 @@ class ChannelState:
             self.m_codes,
             self.frame,
             self.skip_position,
+            self.placement,
+            self.probe,
+            self.rigid_tap,
         )
 
     def snapshot(self) -> ModalSnapshot:
@@ -178,4 +192,5 @@ class ChannelState:
             coordinates.length_sign,
             self.length_tool,
             self.m_codes,
+            self.placement,
         )

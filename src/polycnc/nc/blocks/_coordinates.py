@@ -1,4 +1,4 @@
-"""Where program zero is: work offsets, the G92 shift and tool length, summed into one offset per axis."""
+"""Where program zero is: work offsets, shifts of the program and tool length, summed into one offset per axis."""
 
 from __future__ import annotations
 
@@ -7,11 +7,23 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.nc.blocks._frame import Rotation
 from polycnc.nc.blocks._modal import Modal
 from polycnc.nc.blocks._tables import COMMON_OFFSET, ProgramTables
 
 Floats: TypeAlias = npt.NDArray[np.float64]
-SavedCoordinates: TypeAlias = tuple[tuple[str, ...], Floats, Floats, Floats, int]
+SavedCoordinates: TypeAlias = tuple[
+    tuple[str, ...],
+    Floats,
+    Floats,
+    Floats,
+    int,
+    Floats,
+    Floats,
+    Rotation | None,
+    tuple[str, ...],
+    tuple[int, ...],
+]
 
 MACHINE_ZERO = ""
 WORK_GROUPS = 3
@@ -27,7 +39,9 @@ class Coordinates:
     """Hold the zero shifts of one channel; every vector has one value per axis, mm or degree.
 
     `work` names the active work offset of each group, MACHINE_ZERO for none. `length_sign` is 1 or -1 while
-    tool length compensation is active, else 0. The vectors are replaced, never changed in place.
+    tool length compensation is active, else 0. `inner` are shifts of programmed positions besides, `outer` those of a
+    workpiece that `turn` turns; `external` names further offsets in force, `compensations` codes of further tool data.
+    The vectors are replaced, never changed in place.
     """
 
     def __init__(self, tables: ProgramTables, modal: Modal) -> None:
@@ -39,15 +53,26 @@ class Coordinates:
         self.local: Floats = np.zeros(axes)  # G52
         self.length: Floats = np.zeros(axes)
         self.length_sign = 0
+        self.inner: Floats = np.zeros(axes)
+        self.outer: Floats = np.zeros(axes)
+        self.turn: Rotation | None = None
+        self.external: tuple[str, ...] = ()
+        self.compensations: tuple[int, ...] = ()
         self._revision = tables.revision
 
     def save(self) -> SavedCoordinates:
         """Return what to go back to; the sum in `modal.offset` is the modal state's business."""
-        return self.work, self.shift, self.local, self.length, self.length_sign
+        return (
+            self.work, self.shift, self.local, self.length, self.length_sign,
+            self.inner, self.outer, self.turn, self.external, self.compensations,
+        )  # fmt: skip
 
     def restore(self, saved: SavedCoordinates) -> None:
         """Go back to a saved state."""
-        self.work, self.shift, self.local, self.length, self.length_sign = saved
+        (
+            self.work, self.shift, self.local, self.length, self.length_sign,
+            self.inner, self.outer, self.turn, self.external, self.compensations,
+        ) = saved  # fmt: skip
 
     def select_work_offset(self, group: int, name: str) -> None:
         """Take work offset `name` (G54, ...) of a group; MACHINE_ZERO for none."""
@@ -79,16 +104,47 @@ class Coordinates:
         self.length[axis] = sign * length_mm
         self._renew()
 
+    def place(self, inner: list[float], outer: list[float], turn: Rotation | None) -> None:
+        """Shift programmed positions by `inner`, and put the workpiece where `outer` and `turn` say."""
+        self.inner, self.outer, self.turn = np.array(inner), np.array(outer), turn
+        self._renew()
+
+    def set_external(self, offsets: tuple[str, ...], compensations: tuple[int, ...]) -> None:
+        """Take further offsets by name, and further tool data by code."""
+        self.external, self.compensations = offsets, compensations
+        self._renew()
+
     def take_changes(self) -> None:
         """Take over work offsets that have been changed in the table since."""
         if self._tables.revision != self._revision:
             self._renew()
 
+    @property
+    def tool_offset(self) -> Floats:
+        """What tools shift every axis by (mm)."""
+        found = self.length
+        if self.compensations:
+            found = found + np.array(self._tables.tool_shift(self.compensations, self._modal))
+        return found
+
+    @property
+    def zero_offset(self) -> Floats:
+        """What zero offsets, without those of the program, shift every axis by (mm or degree)."""
+        found = np.zeros_like(self.length)
+        names = (COMMON_OFFSET, *self.work) if self._tables.has_offset(COMMON_OFFSET) else self.work
+        for name in (*names, *self.external):
+            if name != MACHINE_ZERO:
+                found = found + self._tables.work_offset(name)
+        return found
+
     def _renew(self) -> None:
         self._revision = self._tables.revision
-        total = self.shift + self.local + self.length
+        within = self.shift + self.local + self.inner
+        if (turn := self.turn) is not None:
+            within[turn.p], within[turn.q] = turn.turned(float(within[turn.p]), float(within[turn.q]))
+        total = within + self.tool_offset + self.outer
         names = (COMMON_OFFSET, *self.work) if self._tables.has_offset(COMMON_OFFSET) else self.work
-        for name in names:
+        for name in (*names, *self.external):
             if name != MACHINE_ZERO:
                 total = total + self._tables.work_offset(name)
         self._modal.offset[:] = total

@@ -13,6 +13,8 @@ from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState, Cycle
 from polycnc.nc.blocks._cycles import (
     CYCLES,
+    SHIFTING,
+    TAPPING,
     CycleError,
     CyclePlace,
     CycleStep,
@@ -26,8 +28,10 @@ from polycnc.nc.blocks._modal import (
     AXIS_P,
     AXIS_Q,
     AXIS_R,
+    FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
+    FEED_PER_REVOLUTION,
     NO_AXIS,
     PLANE,
     PLANE_LETTERS,
@@ -77,6 +81,7 @@ class CycleBlocks:
         """Leave the cycle and forget its words."""
         if self.active:
             self.state.cycle = Cycle(retract_to_initial=self.state.cycle.retract_to_initial)
+            self.state.rigid_tap = False
 
     def expand(self, words: BlockWords, line: int) -> list[QueueItem]:
         """Return the moves of a block with an active cycle; none if it has no position.
@@ -129,6 +134,8 @@ class CycleBlocks:
         hole = self.motion.target(values)
         incremental = not whole[ABSOLUTE]
         spindle = self.state.spindle
+        rigid = self._is_rigid
+        direction = TAPPING[cycle.action] * (spindle.speed > 0.0) if rigid else spindle.direction
         offset = float(self.state.modal.offset[axes[2]])
         place = CyclePlace(
             hole_mm=(hole[axes[0]], hole[axes[1]]),
@@ -138,15 +145,29 @@ class CycleBlocks:
             increment_mm=(hole[axes[0]] - start[axes[0]], hole[axes[1]] - start[axes[1]])
             if incremental
             else (0.0, 0.0),
-            spindle=_SPINDLES[spindle.direction],
+            spindle=_SPINDLES[direction],
             spindle_rpm=self.motion.rpm(start, start),
+            rigid=rigid,
         )
         try:
-            steps = expand_cycle(cycle.action, cycle.words, place, self.dialect.cycle_settings())
+            steps = expand_cycle(cycle.action, self._with_pitch(cycle), place, self.dialect.cycle_settings())
         except CycleError as error:
             at = words.first(*_TROUBLE_LETTERS.get(error.reason, "")) or self.motion.place()
             raise self.fail(error.what, error.hint, at) from None
         return self._items(steps, start, hole, axes, line) if steps else []
+
+    @property
+    def _is_rigid(self) -> bool:
+        """Whether the active cycle is a tapping cycle that turns the spindle itself."""
+        rigid = self.state.rigid_tap or self.dialect.cycles.rigid_tap
+        return rigid and self.state.cycle.action in TAPPING
+
+    def _with_pitch(self, cycle: Cycle) -> CycleWords:
+        """Return the words of a cycle; with feed per revolution the feed is the pitch of a thread."""
+        modal = self.state.modal
+        if cycle.action in TAPPING and modal.whole[FEED_MODE] == FEED_PER_REVOLUTION:
+            return replace(cycle.words, pitch_mm=float(modal.real[FEED]))
+        return cycle.words
 
     def _words(self, words: BlockWords, axes: tuple[int, int, int]) -> CycleWords:
         modal = self.state.modal
@@ -171,7 +192,7 @@ class CycleBlocks:
             if back is not None and bottom is not None:
                 back += bottom
         dwell = words.take("P")
-        shift_p, shift_q = length("I"), length("J")
+        shift_p, shift_q = (length("I"), length("J")) if cycle.action in SHIFTING else (None, None)
         return CycleWords(
             depth_mm=depth,
             retract_mm=retract,
@@ -184,7 +205,8 @@ class CycleBlocks:
 
     def _repeats(self, words: BlockWords, is_back_bore: bool) -> int:
         """Take L, or K where it is no level: how many holes."""
-        found: list[Word] = [w for w in (words.take("L"), None if is_back_bore else words.take("K")) if w]
+        letters = [each for each in self.dialect.cycles.repeats if not (each == "K" and is_back_bore)]
+        found: list[Word] = [word for each in letters if (word := words.take(each))]
         if len(found) > 1:
             raise self.fail("L and K both say how many holes to drill", "Write one of them.", found[1])
         return whole_number(found[0], "a number of holes", self.fail, MOST_HOLES) if found else 1
@@ -228,7 +250,8 @@ class CycleBlocks:
 
     def _event(self, kind: StepKind) -> str:
         """Return the auxiliary function of a step as a program would write it; overrides have none."""
-        direction = self.state.spindle.direction
+        rigid = self._is_rigid
+        direction = TAPPING[self.state.cycle.action] if rigid else self.state.spindle.direction
         return {
             StepKind.SPINDLE_STOP: "M5",
             StepKind.SPINDLE_START: _TURN.get(direction, "M5"),

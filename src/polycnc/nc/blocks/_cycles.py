@@ -1,6 +1,7 @@
 """Drilling cycles (G73, G81-G89) as a table: each cycle is a row of steps at one hole.
 
-A cycle drills from the R level down to the depth, always in the negative direction of the drilling axis.
+A cycle drills from the R level down to the depth, always in the negative direction of the drilling axis; one bores
+from below.
 Expansion is pure: words, place and settings go in, a list of steps comes out; the interpreter turns them into
 moves. Sequences follow the public NIST RS274NGC description; where they differ is said in
 docs/reference/drilling-cycles.md.
@@ -23,6 +24,7 @@ MOST_PECKS = 100_000
 _SAME_LEVEL_MM = 1e-9
 
 Spindle: TypeAlias = Literal["forward", "reverse", "stopped"]
+PeckTap: TypeAlias = Literal["none", "chip_break", "retract"]
 
 
 class StepKind(Enum):
@@ -33,7 +35,7 @@ class StepKind(Enum):
     FEED_AXIS = auto()  # feed along the drilling axis to `level_mm`; `feed_mm_s`, `synchronous`
     DWELL = auto()  # wait `duration_s`
     SPINDLE_STOP = auto()
-    SPINDLE_START = auto()  # turn as before the cycle
+    SPINDLE_START = auto()  # turn as before the cycle, or as its thread asks
     SPINDLE_REVERSE = auto()  # turn the other way than before the cycle
     SPINDLE_ORIENT = auto()  # stop at the angle at which the tool can shift
     PROGRAM_STOP = auto()  # wait for the operator (M0)
@@ -96,7 +98,7 @@ class CyclePlace:
 
     `hole_mm` is the first hole in the plane, `increment_mm` the way to each further one (G91 with repeats).
     Levels are on the drilling axis: `initial_mm` before the first cycle block, `level_mm` now. `retract` is
-    G98 (initial) or G99 (r).
+    G98 (initial) or G99 (r). `rigid`: a tapping cycle turns the spindle itself, and leaves it at rest.
     """
 
     hole_mm: tuple[float, float]
@@ -106,6 +108,7 @@ class CyclePlace:
     increment_mm: tuple[float, float] = (0.0, 0.0)
     spindle: Spindle = "forward"
     spindle_rpm: float = 0.0
+    rigid: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,12 +116,14 @@ class CycleSettings:
     """What a control's parameters say about its cycles.
 
     `chip_break_mm` is how far G73 backs up, `reentry_mm` how far above the last cut G83 changes from rapid to
-    feed. `shift_direction` is where Q shifts the tool when a block gives no I and J.
+    feed. `shift_direction` is where Q shifts the tool when a block gives no I and J. `peck_tap` is what Q does in a
+    tapping cycle: nothing, back by `chip_break_mm`, or back to R.
     """
 
     chip_break_mm: float = 1.0
     reentry_mm: float = 1.0
     shift_direction: tuple[float, float] = (1.0, 0.0)
+    peck_tap: PeckTap = "none"
 
 
 class CycleError(ProgramError):
@@ -141,11 +146,13 @@ class _Hole:
     shifted: tuple[float, float]
     bottom: float
     r: float
+    initial: float
     out: float
     back: float
     peck: float
     dwell_s: float
     tap_feed_mm_s: float
+    rigid: bool
     settings: CycleSettings
 
 
@@ -157,12 +164,30 @@ def _axis(kind: StepKind, level: str) -> _Part:
     return lambda hole: iter((CycleStep(kind, level_mm=getattr(hole, level)),))
 
 
-def _tap(level: str) -> _Part:
-    def part(hole: _Hole) -> Iterator[CycleStep]:
-        to, feed = getattr(hole, level), hole.tap_feed_mm_s
-        yield CycleStep(StepKind.FEED_AXIS, level_mm=to, feed_mm_s=feed, synchronous=True)
+def _tap(hole: _Hole) -> Iterator[CycleStep]:
+    """Tap to the depth, in pecks where there are any, and back to R."""
 
-    return part
+    def to(level_mm: float) -> CycleStep:
+        return CycleStep(
+            StepKind.FEED_AXIS, level_mm=level_mm, feed_mm_s=hole.tap_feed_mm_s, synchronous=True
+        )
+
+    stop, start = CycleStep(StepKind.SPINDLE_STOP), CycleStep(StepKind.SPINDLE_START)
+    reverse = CycleStep(StepKind.SPINDLE_REVERSE)
+    yield CycleStep(StepKind.OVERRIDE_OFF)
+    if hole.rigid:
+        yield start
+    for depth in _peck_depths(hole) if hole.peck > 0.0 else ():
+        back = hole.r
+        if hole.settings.peck_tap == "chip_break":
+            back = min(depth + hole.settings.chip_break_mm, hole.r)
+        yield from (to(depth), stop, reverse, to(back), stop, start)
+    yield from (to(hole.bottom), stop, reverse)
+    yield from _dwell(hole)
+    yield from (to(hole.r), stop)
+    if not hole.rigid:
+        yield start
+    yield CycleStep(StepKind.OVERRIDE_ON)
 
 
 def _always(*kinds: StepKind) -> _Part:
@@ -207,21 +232,19 @@ _FEED_R = _axis(StepKind.FEED_AXIS, "r")
 _FEED_BACK = _axis(StepKind.FEED_AXIS, "back")
 _RAPID_IN = _axis(StepKind.RAPID_AXIS, "bottom")
 _OUT = _axis(StepKind.RAPID_AXIS, "out")
-_TAP_IN = _tap("bottom")
-_TAP_R = _tap("r")
 _STOP = _always(StepKind.SPINDLE_STOP)
 _START = _always(StepKind.SPINDLE_START)
-_REVERSE = _always(StepKind.SPINDLE_STOP, StepKind.SPINDLE_REVERSE)
-_FORWARD = _always(StepKind.SPINDLE_STOP, StepKind.SPINDLE_START)
 _ORIENT = _always(StepKind.SPINDLE_STOP, StepKind.SPINDLE_ORIENT)
 _OPERATOR = _always(StepKind.PROGRAM_STOP)
-_OVERRIDE_OFF = _always(StepKind.OVERRIDE_OFF)
-_OVERRIDE_ON = _always(StepKind.OVERRIDE_ON)
 _BORE_BACK = (
     *(_shift, _ORIENT, _RAPID_IN, _unshift, _START),
     *(_FEED_BACK, _FEED_IN, _ORIENT, _shift, _OUT, _unshift, _START),
 )
-_TAP = (_OVERRIDE_OFF, _TAP_IN, _REVERSE, _dwell, _TAP_R, _FORWARD, _OVERRIDE_ON, _OUT)
+# From below: R lies under the hole, Z above it; the way out is always to the initial level.
+_BORE_UP = (
+    *(_ORIENT, _shift, _axis(StepKind.RAPID_AXIS, "r"), _unshift, _START),
+    *(_FEED_IN, _dwell, _ORIENT, _shift, _axis(StepKind.RAPID_AXIS, "initial"), _unshift, _START),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,6 +254,11 @@ class _Row:
     code: str
     parts: tuple[_Part, ...]
     needs: frozenset[str] = frozenset()
+
+    @property
+    def upwards(self) -> bool:
+        """Whether the cycle works from R up to Z, and comes to R beside the hole."""
+        return "upwards" in self.needs
 
 
 _PECK = frozenset({"peck"})
@@ -243,15 +271,21 @@ _ROWS: dict[str, _Row] = {
     "cycle_drill": _Row("G81", (_FEED_IN, _OUT)),
     "cycle_dwell": _Row("G82", (_FEED_IN, _dwell, _OUT)),
     "cycle_deep": _Row("G83", (_pecks_to_r, _FEED_IN, _OUT), _PECK),
-    "cycle_tap": _Row("G84", _TAP, _SPINDLE),
+    "cycle_tap": _Row("G84", (_tap, _OUT), _SPINDLE | {"tap"}),
+    "cycle_tap_left": _Row("G74", (_tap, _OUT), _SPINDLE | {"tap", "left"}),
     "cycle_bore": _Row("G85", (_FEED_IN, _FEED_R, _OUT)),
     "cycle_bore_stop": _Row("G86", (_FEED_IN, _dwell, _STOP, _OUT, _START), _SPINDLE),
     "cycle_back_bore": _Row("G87", _BORE_BACK, _SHIFT | {"back"}),
+    "cycle_back_bore_up": _Row("G87", _BORE_UP, _SHIFT | {"upwards"}),
     "cycle_bore_manual": _Row("G88", (_FEED_IN, _dwell, _STOP, _OPERATOR, _OUT, _START), _SPINDLE),
     "cycle_bore_dwell": _Row("G89", (_FEED_IN, _dwell, _FEED_R, _OUT)),
 }
 
 CYCLES: dict[str, str] = {name: row.code for name, row in _ROWS.items()}
+SHIFTING = frozenset(name for name, row in _ROWS.items() if "shift" in row.needs)
+"""Cycles whose I and J say where the tool shifts."""
+TAPPING = {name: -1 if "left" in row.needs else 1 for name, row in _ROWS.items() if "tap" in row.needs}
+"""Tapping cycles, and which way the spindle turns into their thread."""
 
 
 def expand_cycle(
@@ -277,12 +311,18 @@ def expand_cycle(
 
 def _expand_hole(row: _Row, hole: _Hole, level: float, steps: list[CycleStep]) -> float:
     """Append the steps of one hole, without moves to the level at hand; return the level they end at."""
-    if level < hole.r:
-        steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r))
-    steps.append(CycleStep(StepKind.RAPID_PLANE, hole.first, hole.second))
-    if level > hole.r:
-        steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r))
-    level = hole.r
+    if row.upwards:
+        if level < hole.initial:
+            steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.initial))
+            level = hole.initial
+        steps.append(CycleStep(StepKind.RAPID_PLANE, hole.first, hole.second))
+    else:
+        if level < hole.r:
+            steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r))
+        steps.append(CycleStep(StepKind.RAPID_PLANE, hole.first, hole.second))
+        if level > hole.r:
+            steps.append(CycleStep(StepKind.RAPID_AXIS, level_mm=hole.r))
+        level = hole.r
     for part in row.parts:
         for step in part(hole):
             if step.kind in (StepKind.RAPID_AXIS, StepKind.FEED_AXIS):
@@ -305,7 +345,9 @@ def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSet
         raise CycleError(f"{code} repeats {words.repeats} times", reason="repeats", hint="Use 0 or more.")
     bottom = _required(words.depth_mm, f"{code} needs a depth (Z)", "depth_missing")
     r = _required(words.retract_mm, f"{code} needs a retract level (R)", "retract_missing")
-    if r < bottom:
+    if row.upwards:
+        _check_upwards(code, bottom, r, place)
+    elif r < bottom:
         raise CycleError(
             f"{code} would drill upwards: R {r:.6g} lies below Z {bottom:.6g}",
             reason="upwards",
@@ -314,10 +356,7 @@ def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSet
     dwell = words.dwell_s or 0.0
     if dwell < 0.0:
         raise CycleError(f"{code} dwells {dwell:.6g} s", reason="dwell", hint="Give P 0 or more.")
-    if "spindle" in row.needs and place.spindle == "stopped":
-        raise CycleError(
-            f"{code} needs a turning spindle", reason="spindle_stopped", hint="Program M3 or M4 first."
-        )
+    _check_spindle(row, place)
     first, second = place.hole_mm
     shift = _shift_of(code, words, settings) if "shift" in row.needs else (0.0, 0.0)
     return _Hole(
@@ -326,13 +365,55 @@ def _settled(row: _Row, words: CycleWords, place: CyclePlace, settings: CycleSet
         shifted=(first + shift[0], second + shift[1]),
         bottom=bottom,
         r=r,
+        initial=place.initial_mm,
         out=max(place.initial_mm, r) if place.retract == "initial" else r,
         back=_back_of(code, words, bottom, r) if "back" in row.needs else bottom,
-        peck=_peck_of(code, words, r - bottom) if "peck" in row.needs else 0.0,
+        peck=_peck_of(code, words, r - bottom) if _pecks(row, words, settings) else 0.0,
         dwell_s=dwell,
         tap_feed_mm_s=(words.pitch_mm or 0.0) * place.spindle_rpm / 60.0,
+        rigid=place.rigid,
         settings=settings,
     )
+
+
+def _check_upwards(code: str, top: float, r: float, place: CyclePlace) -> None:
+    """Refuse a cycle from below that would not go up, or whose hole lies above where the tool came from."""
+    if top <= r:
+        raise CycleError(
+            f"{code} bores from R up to Z here, and Z {top:.6g} does not lie above R {r:.6g}",
+            reason="upwards",
+            hint="Give R below the hole, and Z above R.",
+        )
+    if top > place.initial_mm:
+        raise CycleError(
+            f"{code} would bore up to Z {top:.6g}, above the initial level {place.initial_mm:.6g}",
+            reason="upwards",
+            hint="Go above the hole before the cycle.",
+        )
+    if place.retract == "r":
+        raise CycleError(
+            f"{code} goes out to the initial level only", reason="retract", hint="Program G98 in its block."
+        )
+
+
+def _check_spindle(row: _Row, place: CyclePlace) -> None:
+    if "spindle" not in row.needs:
+        return
+    if place.spindle == "stopped":
+        raise CycleError(
+            f"{row.code} needs a turning spindle", reason="spindle_stopped", hint="Program M3 or M4 first."
+        )
+    if "left" in row.needs and place.spindle != "reverse":
+        raise CycleError(
+            f"{row.code} taps a left-hand thread, and the spindle turns clockwise (M3)",
+            reason="spindle_direction",
+            hint="Program M4 first, or tap with G84.",
+        )
+
+
+def _pecks(row: _Row, words: CycleWords, settings: CycleSettings) -> bool:
+    """Tell whether the cycle goes in by pecks: where it must, and where a tapping cycle has a Q that it uses."""
+    return "peck" in row.needs or ("tap" in row.needs and settings.peck_tap != "none" and bool(words.peck_mm))
 
 
 def _required(value: float | None, what: str, reason: str) -> float:

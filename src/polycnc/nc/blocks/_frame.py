@@ -49,17 +49,21 @@ class Polar:
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """Hold what is active: mirrors (axis -> centre in mm), scales (axis -> centre in mm, factor), rotation, polar."""
+    """Hold what is active: mirrors (axis -> centre in mm), scales (axis -> centre in mm, factor), rotation, polar.
+
+    `outer` turns the workpiece on the machine, behind all of these.
+    """
 
     mirrors: Mapping[int, float] = field(default_factory=dict)
     scales: Mapping[int, tuple[float, float]] = field(default_factory=dict)
     rotation: Rotation | None = None
     polar: Polar | None = None
+    outer: Rotation | None = None
 
     @property
     def active(self) -> bool:
         """Whether anything is."""
-        return bool(self.mirrors or self.scales or self.rotation or self.polar)
+        return bool(self.mirrors or self.scales or self.rotation or self.polar or self.outer)
 
     @property
     def scaled(self) -> bool:
@@ -86,11 +90,15 @@ class Frame:
         if (turn := self.rotation) is not None:
             u, v = turn.turned(found[turn.p] - turn.center_p, found[turn.q] - turn.center_q)
             found[turn.p], found[turn.q] = turn.center_p + u, turn.center_q + v
+        if (turn := self.outer) is not None:
+            found[turn.p], found[turn.q] = turn.turned(found[turn.p], found[turn.q])
         return found
 
     def back(self, point: list[float]) -> list[float]:
         """Return the programmed position of a workpiece position (mm or degree)."""
         found = list(point)
+        if (turn := self.outer) is not None:
+            found[turn.p], found[turn.q] = turn.turned(found[turn.p], found[turn.q], -1.0)
         if (turn := self.rotation) is not None:
             u, v = turn.turned(found[turn.p] - turn.center_p, found[turn.q] - turn.center_q, -1.0)
             found[turn.p], found[turn.q] = turn.center_p + u, turn.center_q + v
@@ -103,10 +111,10 @@ class Frame:
     def vector(self, p: int, q: int, u: float, v: float) -> tuple[float, float]:
         """Return what a programmed vector in the plane of `p` and `q` becomes (mm)."""
         u, v = u * self.factor(p), v * self.factor(q)
-        turn = self.rotation
-        if turn is None or {turn.p, turn.q} != {p, q}:
-            return u, v
-        return turn.turned(u, v) if turn.p == p else turn.turned(v, u)[::-1]
+        for turn in (self.rotation, self.outer):
+            if turn is not None and {turn.p, turn.q} == {p, q}:
+                u, v = turn.turned(u, v) if turn.p == p else turn.turned(v, u)[::-1]
+        return u, v
 
     def turns_over(self, p: int, q: int) -> bool:
         """Tell whether arcs in the plane change their direction."""

@@ -61,6 +61,8 @@ class Frames:
                 state.frame = replace(frame, mirrors=kept)
             case Action.LOCAL_COORDINATES:
                 self._local(g)
+            case Action.SET_WORK_ZERO:
+                self._set_work_zero(g, words)
             case _:
                 self._set_data(g, words)
 
@@ -201,6 +203,29 @@ class Frames:
                 "L2 and L20 set work offsets, L10 to L13 tool offsets.",
                 table_word,
             )
+
+    def _set_work_zero(self, g: GWord, words: BlockWords) -> None:
+        """Set G54 to G59 (P1 to P6; P0: the active one): L2 to the values, L20 so that the position reads them."""
+        table_word, number_word = words.take("L"), words.take("P")
+        if table_word is None or number_word is None:
+            raise self.fail(f"G{g.code} without L and P", "Add L2 or L20, and P0 to P6.", g.word)
+        table = whole_number(table_word, "a kind of data", self.fail)
+        if table not in (2, 20):
+            raise self.fail(
+                f"G{g.code} L{table} is not supported", "L2 and L20 set work offsets.", table_word
+            )
+        number = whole_number(number_word, "a work offset", self.fail, 6)
+        active = self.state.coordinates.work[0]
+        name = f"G{53 + number}" if number else active
+        values = self._axes(g)
+        if table == 20:
+            modal, tables = self.state.modal, self.state.tables
+            here = (modal.position - modal.offset).tolist()
+            old = tables.work_offset(active) if active else (0.0,) * len(here)
+            values = {axis: old[axis] + here[axis] - value for axis, value in values.items()}
+        self._refuse_rest(words)
+        self.state.tables.set_offset(name, values)
+        self.state.coordinates.take_changes()
 
     def _set_work_offset(self, g: GWord, table: int, number: int, words: BlockWords) -> None:
         if table == 20 and number == 0:

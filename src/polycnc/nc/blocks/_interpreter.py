@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from polycnc.errors import ProgramError
@@ -38,8 +38,10 @@ from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
+from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._words import BlockWords, code_text, sort_words
+from polycnc.nc.text._not_words import slip, statements
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
 from polycnc.nc.text._scan_plain import Block, Word
@@ -49,15 +51,22 @@ _MOTIONS = {
     Action.LINEAR: MOTION_LINEAR,
     Action.ARC_CW: MOTION_ARC_CW,
     Action.ARC_CCW: MOTION_ARC_CCW,
+    Action.MOTION_OFF: MOTION_NONE,
 }
 _FRAME_ACTIONS = {
     Action.SET_DATA,
+    Action.SET_WORK_ZERO,
     Action.LOCAL_COORDINATES,
     Action.SCALING,
     Action.SCALING_OFF,
     Action.MIRROR,
     Action.MIRROR_OFF,
 }
+_STATED = (Group.MOTION, Group.DISTANCE)
+_LANGUAGES = (
+    "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
+    "or post the program without them."
+)
 _NUMBERS = "NO:"  # block and program numbers
 _AXIS_LETTERS = "XYZABCUVW"
 # What the words belong to that need a function beside them.
@@ -73,6 +82,9 @@ _BELONGS_TO = {
     "H": "tool length compensation (G43, G44)",
     "F": "a dwell that has its time already, or a feed",
 }
+
+_REMARKS = re.compile(rb"\([^)\r\n]*\)")
+_WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
 
 Trouble = tuple[str, str]
 """What is wrong and what to do, of something that is not a matter of the block's words alone."""
@@ -134,11 +146,16 @@ class Interpreter:
         self._text = ProgramText.from_text("")
         self._held_text = self._text  # of the move that radius compensation holds back
         self._block: Block | None = None
+        self._rules = dialect.text_rules()
+        self._statements: tuple[ProgramText, int, int] | None = (
+            None  # a program, its first statement, how many
+        )
         self._motion = MotionBuilder(state, dialect, messages, self.fail)
         self._auxiliary = Auxiliary(state, messages, self._motion, self.fail)
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
-        self._non_modal = NonModal(state, self._motion, self.fail)
+        self._non_modal = NonModal(state, messages, self._motion, self.fail)
         self._frames = Frames(state, dialect, self._motion, self.fail)
+        self._placing = Placing(state, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
@@ -200,6 +217,23 @@ class Interpreter:
         """Return an error about the present block, at `word` if there is one."""
         return ProgramError(what, position=self._text.position(self._place(word)), hint=hint)
 
+    def _no_words(self, block: Block) -> ProgramError:
+        """Return what is wrong with a line that is no words; statements of a language make one error a program."""
+        text, rules = self._text, self._rules
+        wrong = slip(text.content[block.offset : text.line_end(block.offset)].decode("latin-1"), rules)
+        if wrong is not None:
+            position = text.position(block.offset + wrong.place)
+            return ProgramError(wrong.what, position=position, hint=wrong.hint)
+        if self._statements is None or self._statements[0] is not text:
+            self._statements = (text, *statements(text, rules))
+        _, first, count = self._statements
+        blocks = "1 block has them" if count <= 1 else f"{count} blocks have them, this is the first"
+        return ProgramError(
+            f"dialect '{self.dialect.name}' reads no variables, expressions or program flow ({blocks})",
+            position=text.line_position(first or block.line),
+            hint=_LANGUAGES,
+        )
+
     def _place(self, word: Word | None) -> int:
         if word is not None:
             return word.place
@@ -213,12 +247,8 @@ class Interpreter:
     def _count(self, code: str) -> int:
         """Return in how many blocks of the present program text a G code stands."""
         pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
-        return len(
-            {
-                self._text.content.rfind(b"\n", 0, found.start())
-                for found in re.finditer(pattern, self._text.content)
-            }
-        )
+        content = _REMARKS.sub(lambda found: b" " * len(found[0]), self._text.content)
+        return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
 
     def _placed(self, error: CompensationError) -> ProgramError:
         """Add the place to an error of radius compensation, which knows its line only."""
@@ -230,16 +260,13 @@ class Interpreter:
 
     def _execute(self, block: Block) -> tuple[Outcome, list[QueueItem]]:
         if block.flags & STATEMENT:
-            raise ProgramError(
-                f"this statement needs a language, and dialect '{self.dialect.name}' has none",
-                position=self._text.line_position(block.line),
-                hint="Expressions, variables and program flow are no part of DIN 66025: write plain words.",
-            )
+            raise self._no_words(block)
         if block.flags & MESSAGE and block.message:
             self.messages.add(f"MSG: {block.message}")
         line = block.line
         words = sort_words(block, self.dialect, self.fail, self._count)
         self._refuse_contradictions(words)
+        self._leave_out(words)
         self._motion.begin(words)
         for letter in _NUMBERS:
             words.take(letter)
@@ -256,16 +283,19 @@ class Interpreter:
             if g := words.g.get(group):
                 self._frames.set_modal(g, words)
         items += self._move(words, line)
+        if words.left_out:
+            self._take_parameters(words)
         self._refuse_unused(words)
         if words.m:
-            items += self._auxiliary.after_motion(words, line)
+            items += self._auxiliary.after_motion(words, line, block.message)
             if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
                 self.state.m_codes = codes
         self._motion.check_times(items)
         self._note_position(items)
-        return outcome, self._compensated(
-            self._tagged(items, line, words_stand=bool(block.words)), change_compensation
-        )
+        if self.dialect.notes_codes:
+            self._note_codes(words)
+        tagged = self._tagged(items, line, words_stand=bool(block.words))
+        return outcome, self._compensated(tagged, change_compensation)
 
     def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
         """Return the items with the reference of the block's record, another one than the block just before has.
@@ -335,6 +365,16 @@ class Interpreter:
         self.state.compensation.reset()
         self.state.side = 0
 
+    def _leave_out(self, words: BlockWords) -> None:
+        """Say which codes are left out, and leave out the words that belong to them.
+
+        Axis words belong to the block's own motion word, if it has one.
+        """
+        for code in words.left_out:
+            self.messages.add(f"{code} is left out, as told")
+        if words.takes_words and words.g.keys().isdisjoint(_WORDS_OF_THEIR_OWN):
+            words.take_all()
+
     def _refuse_contradictions(self, words: BlockWords) -> None:
         """Refuse functions of different groups that cannot share a block."""
         g = words.g
@@ -389,6 +429,9 @@ class Interpreter:
             if g.action in _FRAME_ACTIONS:
                 self._frames.carry_out(g, words)
                 return []
+            if g.action in PLACING:
+                self._placing.carry_out(g, words)
+                return []
             return list(self._non_modal.carry_out(g, motion, line))
         if self._cycles.active:
             return self._cycles.expand(words, line)
@@ -412,6 +455,20 @@ class Interpreter:
             if isinstance(item, (Line, Arc)):
                 self.state.modal.position[:] = item.end
                 return
+
+    def _note_codes(self, words: BlockWords) -> None:
+        """Keep the G codes of the block, the latest last; motion and distance are in the modal state."""
+        said = {int(g.word.value) for group, g in words.g.items() if group not in _STATED}
+        said |= {int(g.word.value) for g in words.ignored}
+        placement = self.state.placement
+        alone = words.g.get(Group.NON_MODAL) or words.g.get(Group.DWELL)
+        once = int(alone.word.value) if alone else 0
+        new = said and not said <= {*placement.codes[-1:]}
+        if new or once != placement.once:
+            kept = (code for code in placement.codes if code not in said)
+            plane = None if Group.PLANE in words.g else placement.plane
+            codes = (*kept, *sorted(said))
+            self.state.placement = replace(placement, codes=codes, once=once, plane=plane)
 
     # ------------------------------------------------------------------ the rest of the block
 
@@ -440,6 +497,12 @@ class Interpreter:
         if trouble := self._call_trouble(program):
             raise self.fail(*trouble, p_word)
         return Outcome(Control.CALL, program, repeats)
+
+    def _take_parameters(self, words: BlockWords) -> None:
+        """Take what is left of words that are no axes: it belonged to codes that are left out."""
+        for letter, word in list(words.unused()):
+            if letter not in self.state.axis_names and word.letter not in _AXIS_LETTERS:
+                words.take(letter)
 
     def _refuse_unused(self, words: BlockWords) -> None:
         for name, word in words.unused():

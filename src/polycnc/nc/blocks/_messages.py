@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+_SHOWN = "MSG: "
+
 
 @dataclass(frozen=True, slots=True)
 class Message:
@@ -16,9 +18,10 @@ class Message:
 
 @dataclass
 class Messages:
-    """Collect messages; a text that comes again is only counted."""
+    """Collect messages; a text that comes again is only counted. `latest` is what the program has shown last."""
 
     line: int = 0
+    latest: str = ""
     _found: dict[str, Message] = field(default_factory=dict)
     _undo: list[tuple[str, Message | None]] = field(default_factory=list)
 
@@ -31,6 +34,7 @@ class Messages:
         """Add a message about the present line."""
         old = self._found.get(text)
         self._undo.append((text, old))
+        self._show(text)
         self._found[text] = (
             Message(text, self.line) if old is None else Message(text, old.line, old.count + 1)
         )
@@ -39,6 +43,11 @@ class Messages:
         """Add a message about any line, outside of a block; it cannot be taken back."""
         old = self._found.get(text)
         self._found[text] = Message(text, line) if old is None else Message(text, old.line, old.count + 1)
+        self._show(text)
+
+    def _show(self, text: str) -> None:
+        if text.startswith(_SHOWN):
+            self.latest = text.removeprefix(_SHOWN)
 
     def take_back(self) -> None:
         """Take back what the present block has added, because it is refused."""

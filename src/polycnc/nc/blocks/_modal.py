@@ -23,7 +23,8 @@ Ints = npt.NDArray[np.int64]
 MOTION, PLANE, AXIS_P, AXIS_Q, AXIS_R, WORD_P, WORD_Q, ABSOLUTE, ARC_ABSOLUTE, FEED_MODE = range(10)
 EXACT_STOP, RAPID_STOP, INCH = 10, 11, 12
 ORDINARY = 13  # something is active that only the ordinary path knows
-WHOLE_COLUMNS = 14
+EXACT_PATH = 14  # the path rests in corners, and goes on where there are none
+WHOLE_COLUMNS = 15
 
 # Columns of `real`.
 FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from polycnc.kernel import EXACT_PATH as EXACT_PATH_TOLERANCE
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group
@@ -19,6 +20,7 @@ from polycnc.nc.blocks._modal import (
     AXIS_P,
     AXIS_Q,
     AXIS_R,
+    EXACT_PATH,
     EXACT_STOP,
     FEED,
     FEED_INVERSE_TIME,
@@ -106,14 +108,19 @@ class Modes:
         word = words.take("F")
         if word is None:
             return
-        if word.value <= 0.0:
-            raise self.fail(
-                f"the feed {code_text(word.value)} is not above zero", "Write a positive F.", word
+        value = word.value
+        if value <= 0.0:
+            raise self.fail(f"the feed {code_text(value)} is not above zero", "Write a positive F.", word)
+        if (least := self.dialect.numbers.feed_least_input) and not word.point:
+            value *= least * (_INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0)
+            self.messages.add(
+                f"F without a decimal point counts {least:g} mm in dialect '{self.dialect.name}': "
+                f"F{code_text(word.value)} is {code_text(value)}"
             )
-        state.feed_word = word.value
+        state.feed_word = value
         if modal.whole[FEED_MODE] != FEED_INVERSE_TIME:
-            modal.real[FEED] = word.value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
-            modal.real[FEED_NUMBER] = word.value
+            modal.real[FEED] = value * (MM_PER_INCH if modal.whole[INCH] else 1.0)
+            modal.real[FEED_NUMBER] = value
 
     def dwell(self, words: BlockWords, line: int) -> list[Wait]:
         """Return the wait of a dwell, if there is one.
@@ -163,8 +170,14 @@ class Modes:
         g = words.g.get(Group.LENGTH_COMPENSATION)
         coordinates = self.state.coordinates
         sign = coordinates.length_sign if g is None else _LENGTH_SIGNS[g.action]
-        if g is None and (sign == 0 or "H" not in words.by_letter):
-            return  # an H that is left over is reported as such
+        if g is None and "H" not in words.by_letter:
+            return
+        if g is None and sign == 0:
+            if not self.dialect.h_compensates:
+                return  # an H that is left over is reported as such
+            sign = 1
+        if self.dialect.h_compensates and g is None and words.by_letter["H"].value == 0.0:
+            sign = 0
         h_word = words.take("H")
         axis = int(self.state.modal.letter_axis[ord("Z") - ord("A")])
         if axis == NO_AXIS:
@@ -187,12 +200,15 @@ class Modes:
         g = words.g.get(Group.WORK_OFFSET)
         if g is None:
             return
-        group = work_group(g.word.value)
+        additional = g.action in (Action.ADDITIONAL_OFFSET, Action.ADDITIONAL_OFFSET_110)
+        group = 0 if additional else work_group(g.word.value)
         if g.action is Action.WORK_OFFSET_OFF:
             self.state.coordinates.select_work_offset(group, MACHINE_ZERO)
             return
         if g.action is Action.ADDITIONAL_OFFSET:
             name = additional_offset(self._additional_number(words))
+        elif g.action is Action.ADDITIONAL_OFFSET_110:
+            name = additional_offset(int(g.word.value) - 109)
         else:
             name = f"G{g.code}"
         offsets = self.state.machine.offsets
@@ -217,6 +233,9 @@ class Modes:
             whole[EXACT_STOP] = stopping.action is Action.EXACT_STOP
             if stopping.action is Action.CONTINUOUS:
                 self._set_path_tolerance(words)
+            elif stopping.action is Action.EXACT_PATH:
+                state.path_tolerance_mm = EXACT_PATH_TOLERANCE
+            whole[EXACT_PATH] = stopping.action is Action.EXACT_PATH
         if distance := g.get(Group.DISTANCE):
             whole[ABSOLUTE] = distance.action is Action.ABSOLUTE
         if distance := g.get(Group.ARC_DISTANCE):
@@ -231,11 +250,11 @@ class Modes:
             self.messages.add(f"G{ignored.code} has no effect here and is ignored")
 
     def _set_path_tolerance(self, words: BlockWords) -> None:
-        """Take over how far corners may be rounded: P, else what the machine allows."""
+        """Take over how far corners may be rounded: P, else what the dialect and the machine allow."""
         tolerance = None if Group.DWELL in words.g else words.take("P")
         words.take("Q")
-        if tolerance is None:
-            self.state.path_tolerance_mm = self.state.machine.path.path_tolerance_mm
+        if tolerance is None or (tolerance.value == 0.0 and self.dialect.free_corners):
+            self.state.path_tolerance_mm = self.dialect.path_tolerance_mm(self.state.machine.path)
             return
         if tolerance.value < 0.0:
             raise self.fail("the path tolerance P is negative", "Write P from 0 up.", tolerance)
@@ -271,4 +290,5 @@ class Modes:
         tool = state.tool if state.compensation_tool is None else state.compensation_tool
         data = self.auxiliary.tool_data(tool)
         radius = data.radius_mm + data.wear_radius_mm
+        radius += state.tables.tool_radius(state.placement.compensations)
         return lambda: state.compensation.start(Side(state.side), radius, plane, line)

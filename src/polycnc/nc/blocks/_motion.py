@@ -156,9 +156,9 @@ class MotionBuilder:
             others = axis_values
         for axis, value in others.items():
             programmed[axis] = value if absolute else programmed[axis] + value
-        turn = frame.rotation
-        if turn is not None and changed & {turn.p, turn.q}:
-            changed |= {turn.p, turn.q}
+        for turn in (frame.rotation, frame.outer):
+            if turn is not None and changed & {turn.p, turn.q}:
+                changed |= {turn.p, turn.q}
         found = frame.forward(programmed)
         for axis in changed:
             wanted = found[axis] + offset[axis]
@@ -370,7 +370,11 @@ class MotionBuilder:
             if self.dialect.arcs.no_center == "line":
                 self.messages.add("an arc with neither centre nor radius goes straight to its end point")
                 return self.line(end, False, line)
-            raise self.fail("an arc needs a centre or a radius", "Add I J K or R.", self.place())
+            raise self.fail(
+                "an arc needs a centre or a radius",
+                "Add I J K or R, or write G1 if the move is straight.",
+                self.place(),
+            )
         if center and radius is not None:
             raise self.fail(
                 "an arc has both a radius R and a centre", "Write one of them.", self.words.first("R")
@@ -412,10 +416,10 @@ class MotionBuilder:
         return center
 
     def _turns(self) -> int:
-        turns = self.words.value("P")
+        turns = self.words.value("P") if self.dialect.arcs.turns else None
         if turns is None:
             return 1
-        if turns != int(turns) or not 1 <= turns <= LARGEST:
+        if not turns.is_integer() or not 1 <= turns <= LARGEST:
             raise self.fail(
                 f"the number of turns P{code_text(turns)} of an arc is not a whole number from 1 up",
                 "Write P1, P2, ...",

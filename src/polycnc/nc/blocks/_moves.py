@@ -19,6 +19,8 @@ class Stop(StrEnum):
     PROGRAM = "program stop"
     OPTIONAL = "optional stop"
     DRAIN = "preparation waits for execution"
+    PROBE = "probing begins"
+    PROBE_IN_PASSING = "measuring in passing begins"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +80,7 @@ class Wait:
     """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order.
 
     A `stop` is a point where the program may stand: then preparation goes on when whoever runs the path says so.
+    `message` is what the operator is told there.
     """
 
     duration_s: float
@@ -85,10 +88,11 @@ class Wait:
     events: tuple[str, ...] = field(default=())
     stop: Stop | None = None
     tag: int = 0
+    message: str = ""
 
     def tagged(self, tag: int) -> Wait:
         """Return the same wait as part of another block."""
-        return Wait(self.duration_s, self.line, self.events, self.stop, tag)
+        return Wait(self.duration_s, self.line, self.events, self.stop, tag, self.message)
 
 
 Move: TypeAlias = Line | Arc

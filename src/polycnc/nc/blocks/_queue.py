@@ -30,7 +30,8 @@ class Event:
     """Something that the path has come to: an auxiliary function by its words, or a point where it may stand.
 
     `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
-    that the function takes, where the queue does not wait for it (`QueueWriter.answers`).
+    that the function takes, where the queue does not wait for it (`QueueWriter.answers`). `message` is what the
+    operator is told there.
     """
 
     word: str
@@ -38,6 +39,7 @@ class Event:
     stop: Stop | None = None
     default_s: float = 0.0
     tag: int = field(default=0, compare=False)
+    message: str = ""
 
 
 class WriterSnapshot(NamedTuple):
@@ -110,6 +112,15 @@ class QueueWriter:
         if self.marks is not None:
             self.marks.clear()
 
+    def put_again(self) -> None:
+        """Append the events that have not been come to anew, because the queue that they were in has been dropped."""
+        events = [self.events[number] for number in sorted(self.events)]
+        self.events.clear()
+        for event in events:
+            self._append_wait(0.0, self._next_event, event.tag)
+            self.events[self._next_event] = event
+            self._next_event += 1
+
     def snapshot(self) -> WriterSnapshot:
         """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
         marks = None if self.marks is None else tuple(self.marks)
@@ -171,9 +182,10 @@ class QueueWriter:
         for word in words:
             self._append_wait(0.0, self._next_event, item.tag)
             time_s = item.duration_s if answered and word is words[-1] else 0.0
-            self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag)
+            self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag, item.message)
             self._next_event += 1
-        if item.stop is Stop.DRAIN or (item.stop is not None and self.stands_at_stops):
+        stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
+        if item.stop is Stop.DRAIN or stands:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)

@@ -5,10 +5,11 @@ Where the machine's tables can be set themselves (those of a control), what a pr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from polycnc.machine import MachineConfig, ToolConfig
+from polycnc.nc.blocks._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, Modal
 
 COMMON_OFFSET = "EXT"
 """The work offset that counts with every other one."""
@@ -33,7 +34,8 @@ class ProgramTables:
     @property
     def revision(self) -> int:
         """How often the tables of work offsets have been changed."""
-        return self._changes + int(getattr(self._machine.offsets, "revision", 0))
+        tables = self._machine.offsets, self._machine.tools
+        return self._changes + sum(int(getattr(table, "revision", 0)) for table in tables)
 
     def has_tool(self, number: int) -> bool:
         """Tell whether there is a tool."""
@@ -53,6 +55,26 @@ class ProgramTables:
         old = self.tool(number)
         values = {each: getattr(old, each) for each in ToolConfig.model_fields}
         self._tools[number] = ToolConfig.model_construct(**{**values, **changes})
+
+    def select(self, letter: str, number: int) -> bool:
+        """Select a table of tools (K) or work offsets (V); tell whether there is one of this number."""
+        tables = self._machine.tools if letter == "K" else self._machine.offsets
+        chosen: Any = getattr(tables, "select", None)
+        return chosen is not None and bool(chosen(number))
+
+    def tool_shift(self, codes: Collection[int], modal: Modal) -> list[float]:
+        """Return what further tool data shift the axes by (mm)."""
+        found: Any = getattr(self._machine.tools, "shift", None)
+        values = [0.0] * len(modal.position)
+        for column, length in zip((AXIS_R, AXIS_P, AXIS_Q), found(codes) if found else (), strict=False):
+            if modal.whole[column] != NO_AXIS:
+                values[modal.whole[column]] += length
+        return values
+
+    def tool_radius(self, codes: Collection[int]) -> float:
+        """Return what further tool data add to the radius (mm)."""
+        found: Any = getattr(self._machine.tools, "radius", None)
+        return float(found(codes)) if found else 0.0
 
     def work_offset(self, name: str) -> tuple[float, ...]:
         """Return a work offset of every axis; zeros if there is none of this name."""

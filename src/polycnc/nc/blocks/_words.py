@@ -13,6 +13,7 @@ from polycnc.nc.text._scan_plain import Block, Word
 Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
+_OF_MOVES = range(40, 50)  # offsets, behind which axis words are still a move
 _NOT_YET = "What it does would be left out: take it out, or post the program without it."
 _OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
@@ -41,14 +42,17 @@ class BlockWords:
     """Hold a block's G words by modal group, its M words in order, and all other words by address.
 
     Each word of an address is for one function: who takes it first has it. `increment` is the size of a
-    length without a decimal point, 0 if such numbers are as they stand.
+    length without a decimal point, 0 if such numbers are as they stand. `left_out` are codes that the user told to
+    leave out, `takes_words` says that the words beside them go with them.
     """
 
     g: dict[Group, GWord] = field(default_factory=dict)
     ignored: list[GWord] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
     m: list[MWord] = field(default_factory=list)
     by_letter: dict[str, Word] = field(default_factory=dict)
     increment: float = 0.0
+    takes_words: bool = False
     _used: set[str] = field(default_factory=set)
 
     def take(self, letter: str) -> Word | None:
@@ -70,6 +74,10 @@ class BlockWords:
         if word is None:
             return None
         return word.value * self.increment if self.increment and not word.point else word.value
+
+    def take_all(self) -> None:
+        """Take every word that nothing has taken."""
+        self._used.update(self.by_letter)
 
     def first(self, *letters: str) -> Word | None:
         """Return the word of the first of `letters` that stands in the block, taken or not."""
@@ -124,6 +132,10 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: C
             blocks = count(code)
             where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
             raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
+        if action is Action.LEFT_OUT:
+            words.left_out.append(f"G{code}")
+            words.takes_words = words.takes_words or int(word.value) not in _OF_MOVES
+            return
         words.ignored.append(entry)
         return
     if group in words.g:
@@ -132,12 +144,17 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: C
 
 
 def _add_m(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
-    if word.value != int(word.value) or not 0 <= word.value <= LARGEST_M:
+    if not word.value.is_integer() or not 0 <= word.value <= LARGEST_M:
         raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
     code = int(word.value)
     action = dialect.m_action(code)
     if action is None:
         raise fail(f"M{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
+    if action is MAction.UNSUPPORTED:
+        raise fail(f"M{code} is not supported yet", _NOT_YET, word)
+    if action is MAction.LEFT_OUT:
+        words.left_out.append(f"M{code}")
+        return
     for other in words.m:
         if other.code == code or (action.group and other.action.group == action.group):
             raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)

@@ -108,10 +108,15 @@ class FastWork(NamedTuple):
     marks: Ints  # [blocks, 2] of blocks with words and without motion: segment count before which they stand, tag
 
 
-def make_fast_work(modal: Modal, marks: int = 0) -> FastWork:
-    """Allocate the scratch for the axes of `modal`; `marks` is the most blocks of one call, or 0 for no marks."""
+def make_fast_work(modal: Modal, marks: int = 0, *, feed_needs_point: bool = False) -> FastWork:
+    """Allocate the scratch for the axes of `modal`; `marks` is the most blocks of one call, or 0 for no marks.
+
+    With `feed_needs_point` F counts increments where lengths do, if it has no decimal point.
+    """
     role = np.full(_LETTERS, _UNKNOWN, np.int8)
     role[[_N, _F]] = _NUMBER
+    if feed_needs_point:
+        role[_F] = _LENGTH
     role[[_I, _J, _K, _R]] = _LENGTH
     axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
     said = np.zeros(_SAID_COLUMNS, np.int64)

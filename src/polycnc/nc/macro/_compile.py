@@ -36,8 +36,6 @@ from polycnc.nc.macro._syntax import (
 )
 from polycnc.nc.macro._variables import LARGEST
 
-PAUSE_JUMPS = 20_000
-"""Jumps back after which a program gives a pause."""
 ALARM, MESSAGE_STOP = 3000, 3006
 _ANGLES_AND_LENGTHS = "ABCIJKQRUVWXYZ"
 _SMALL = 1e6  # adding so little at a time never gets a variable out of range
@@ -177,7 +175,7 @@ class _Compiler:
 
     def turn(self) -> None:
         self.out.put("n += 1")
-        with self.out.block(f"if n > {PAUSE_JUMPS}:"):
+        with self.out.block("if n > JUMPS:"):
             self.out.put("n = 0", "yield PAUSE")
 
     def leave_loop(self) -> None:

@@ -8,6 +8,7 @@ from typing import Any, NoReturn
 
 from polycnc.errors import ProgramError
 from polycnc.language import Flaw, Frame, frame_of
+from polycnc.nc._block_records import Call
 from polycnc.nc._block_source import (
     CallProgram,
     EndSource,
@@ -29,9 +30,12 @@ from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, MacroVariabl
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word, scan_block
 
+PAUSE_JUMPS = 20_000
+"""Jumps back after which a program gives a pause."""
 LONGEST_LOOP_PAUSES = 2_500
-"""So many pauses (of 20,000 jumps each) in a row without a block are a loop without end."""
+"""So many pauses in a row without a block are a loop without end."""
 _COMMON_LAST = 999
+_LEVELS_REMEMBERED = 64
 _ALARM_BASE = 3000
 _LARGEST_ALARM = 999
 _WHOLE = frozenset("DHLMNOPST")
@@ -65,10 +69,12 @@ class _Compiled:
 class MacroLanguage:
     """Execute programs with custom macros.
 
-    `variables` may be shared with whoever else reads and writes them, `system` are the control's own variables,
-    `calls` the codes that call programs. With `nat` ASIN and ATAN give -90 to 90 and -180 to 180 degrees. With
-    `main_repeats` M99 in the main program begins it anew instead of ending it. With `endless_loops` a loop may go
-    round without a block for ever, pausing now and then; else that is an error after 50,000,000 rounds.
+    `turns` counts how often programs were asked for a block: whoever keeps variables sees by it that they may have
+    changed. `variables` may be shared with whoever else reads and writes them, `system` are the control's own
+    variables, `calls` the codes that call programs. With `nat` ASIN and ATAN give -90 to 90 and -180 to 180 degrees.
+    With `main_repeats` M99 in the main program begins it anew instead of ending it. With `endless_loops` a loop may go
+    round without a block for ever; else that is an error after 50,000,000 rounds. It pauses after `pause_jumps` of
+    them.
     """
 
     def __init__(
@@ -80,6 +86,7 @@ class MacroLanguage:
         nat: bool = False,
         main_repeats: bool = False,
         endless_loops: bool = False,
+        pause_jumps: int = PAUSE_JUMPS,
     ) -> None:
         self.variables = variables or MacroVariables()
         self.system = system or SystemVariables()
@@ -94,15 +101,16 @@ class MacroLanguage:
         self._compiled: dict[tuple[int, int, bool], _Compiled | None] = {}
         self._returns: dict[int, bool] = {}
         self._latin: dict[int, tuple[ProgramText, str, bytes]] = {}
-        self._names = names()
-        if nat:
-            self._names["f_ASIN"] = lambda value: asin(value, True)
-        self._names["f_ATAN2"] = lambda value, below: atan2(value, below, nat)
+        self.turns = 0
+        self._levels: dict[tuple[Call, ...], list[Value]] = {}
+        self._pause_jumps = pause_jumps
 
     def attach(self, channel: Channel) -> None:
         """Work for a channel: its positions, modal state and tables are what system variables read."""
         self._channel = channel
+        self._levels.clear()
         self.system.attach(channel)
+        self.variables.leave_all()
         self.modal = self.pending = None
         self.codes_off = 0
         self._compiled.clear()
@@ -114,6 +122,20 @@ class MacroLanguage:
         """The channel that the language works for."""
         assert self._channel is not None
         return self._channel
+
+    def locals_of(self, stack: tuple[Call, ...]) -> list[Value]:
+        """Return the local variables of a block that calls led to; preparation may have left its macro already."""
+        for depth in range(len(stack), 0, -1):
+            if (found := self._levels.get(stack[:depth])) is not None:
+                return found
+        return self.variables.locals_of(0)
+
+    def note_level(self) -> None:
+        """Remember the local variables of the macro that begins, for those who look at the block executed."""
+        self._levels.pop(self.channel.stack, None)
+        self._levels[self.channel.stack] = self.variables.local
+        if len(self._levels) > _LEVELS_REMEMBERED:
+            del self._levels[next(iter(self._levels))]
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> MacroSource | None:
         """Return a source for the program that begins at byte `offset`, None where plain text needs none."""
@@ -176,8 +198,14 @@ class MacroLanguage:
         return self.system.waits(number)
 
     def bindings(self) -> dict[str, object]:
-        """Return the functions and operators as compiled programs call them."""
-        return self._names
+        """Return the functions and operators as compiled programs call them, and what they are set to."""
+        nat = self.nat
+        return {
+            **names(),
+            "JUMPS": self._pause_jumps,
+            "f_ASIN": lambda value: asin(value, nat),
+            "f_ATAN2": lambda value, below: atan2(value, below, nat),
+        }
 
 
 class MacroSource:
@@ -201,6 +229,7 @@ class MacroSource:
             language.codes_off += 1
         if arguments is not None and arguments.values is not None:
             language.variables.enter(arguments.values)
+            language.note_level()
         self._inch = 1.0
         nothing: tuple[SourceItem, ...] = ()
         self._generator: Generator[Any, None, None] = (item for item in nothing)
@@ -215,6 +244,7 @@ class MacroSource:
         """
         if self._errors:
             raise self._errors.pop(0)
+        self._language.turns += 1
         try:
             item: SourceItem | None = next(self._generator, None)
         except (MacroError, ArithmeticError, TypeError, ValueError) as error:
@@ -558,4 +588,4 @@ def _program_number(text: str, offset: int) -> int:
 
 def language_for(dialect: Dialect) -> MacroLanguage | None:
     """Return the language of a dialect for one run, None if it has none."""
-    return MacroLanguage() if dialect.macros else None
+    return MacroLanguage() if dialect.language == "macro" else None

@@ -135,6 +135,14 @@ class _Statements:
                 "Write them in two blocks.",
                 code="PS0127",
             )
+        if isinstance(before, Words) and token.word == "," and before.words:
+            at = before.words[-1].at
+            return Flaw(
+                at,
+                f"'{before.words[-1].letter}' has a comma in its number",
+                "Write a decimal point, like 1.5.",
+                code=_FORMAT,
+            )
         return Flaw(token.at, f"the statement does not go on with {token}", "Check it.", code=_STATEMENT)
 
     def _skip(self, level: int) -> int:
@@ -154,7 +162,7 @@ class _Statements:
 
     @staticmethod
     def _label(value: float, at: int) -> int:
-        if not 0 <= value <= LARGEST_LABEL or value != int(value):
+        if not 0 <= value <= LARGEST_LABEL or not value.is_integer():
             raise Flaw(
                 at,
                 f"{value:g} is not a block number",
@@ -318,9 +326,9 @@ class _Statements:
             if word.letter == "M" and code is not None:
                 if code == _RETURN:
                     return self._return(word, words)
-                if int(code) in self.calls.m and code == int(code):
+                if code in self.calls.m:
                     return self._by_code(word, self.calls.m[int(code)], index, words)
-                if int(code) in self.calls.m_sub and code == int(code):
+                if code in self.calls.m_sub:
                     return self._sub_call(word, self.calls.m_sub[int(code)], words)
             if word.letter == "T" and self.calls.t is not None:
                 return self._sub_call(word, self.calls.t, words, word.value)

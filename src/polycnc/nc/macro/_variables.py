@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final, Literal, TypeAlias
 
+from polycnc.machine import Store
+
 Value: TypeAlias = float | None
 """What a variable holds: None is vacant (`<null>` on the control's screen)."""
 MacroType: TypeAlias = Literal["a", "b", "c"]
@@ -13,8 +15,8 @@ Kind: TypeAlias = Literal["null", "local", "common", "permanent"]
 LOCALS = 33
 LEVELS = 4
 """How deep macros may be nested below the main program, each level with its own local variables."""
-LARGEST = 1e47
-"""Variables hold numbers below this (the control's range is about +-10**47)."""
+LARGEST = 2.0**159
+"""Variables hold numbers below this: 31 bits with an exponent of up to 128, about 7.3e47."""
 
 _RANGES: Final[Mapping[str, tuple[tuple[int, int], ...]]] = {
     "a": ((100, 149), (500, 531)),
@@ -23,6 +25,7 @@ _RANGES: Final[Mapping[str, tuple[tuple[int, int], ...]]] = {
 }
 _FIRST_PERMANENT = 500
 _SIZE = 1000
+_AREA = "nc.macro_variables"
 
 
 class MacroError(Exception):
@@ -39,14 +42,22 @@ class MacroVariables:
     """Hold the variables of one control; `common` is the macro type that the control has.
 
     Type "a" has #100 to #149 and #500 to #531, "b" #100 to #199 and #500 to #999, "c" #100 to #199 and #500 to
-    #699. Programs write the lists directly, so `revision` counts only what came through `set` and `restore`.
+    #699. Those from #500 on outlast switching off in `store`, if there is one: what `set` and `set_all` write is
+    there when they return. Programs write the lists directly; `save` keeps what they have written.
     """
 
-    def __init__(self, common: MacroType = "b") -> None:
+    def __init__(self, common: MacroType = "b", *, store: Store | None = None) -> None:
         self.ranges = _RANGES[common]
         self.revision = 0
         self.common: list[Value] = [None] * _SIZE
         self._levels: list[list[Value]] = [_vacant()]
+        self._store = store
+        self._area = None if store is None else store.area(_AREA, float)
+        if self._area is not None:
+            for number, value in self._area.load().items():
+                if isinstance(number, int) and self.kind(number) == "permanent":
+                    self.common[number] = value
+        self._kept = self.common[_FIRST_PERMANENT:]
 
     @property
     def level(self) -> int:
@@ -102,18 +113,48 @@ class MacroVariables:
         Raises:
             MacroError: There is none of this number, it is #0, or the value is beyond the control's range.
         """
-        kind = self.kind(number)
-        if kind is None:
-            raise no_variable(number)
-        if kind == "null":
-            raise MacroError("#0 is always vacant and cannot be written", "Write another variable.", "PS0116")
-        if value is not None:
-            value = checked(float(value))
-        if kind == "local":
-            self._levels[-1][number] = value
-        else:
-            self.common[number] = value
+        self.set_all({number: value})
+
+    def set_all(self, values: Mapping[int, Value]) -> None:
+        """Give variables values, all or none; see `set`.
+
+        Raises:
+            MacroError: As `set`; nothing has changed.
+        """
+        new: dict[int, Value] = {}
+        for number, value in values.items():
+            kind = self.kind(number)
+            if kind is None:
+                raise no_variable(number)
+            if kind == "null":
+                raise MacroError(
+                    "#0 is always vacant and cannot be written", "Write another variable.", "PS0116"
+                )
+            new[number] = None if value is None else checked(float(value))
+        self._keep({number: value for number, value in new.items() if number >= _FIRST_PERMANENT})
+        for number, value in new.items():
+            (self.local if number <= LOCALS else self.common)[number] = value
         self.revision += 1
+
+    def save(self) -> None:
+        """Keep durably what programs have written to the variables from #500 on."""
+        now = self.common[_FIRST_PERMANENT:]
+        if self._area is None or now == self._kept:
+            return
+        pairs = enumerate(zip(now, self._kept, strict=True), _FIRST_PERMANENT)
+        self._keep({number: new for number, (new, old) in pairs if new != old})
+
+    def _keep(self, values: Mapping[int, Value]) -> None:
+        if self._area is None or self._store is None or not values:
+            return
+        with self._store.transaction():
+            for number, value in values.items():
+                if value is not None:
+                    self._area[number] = value
+                else:
+                    self._area.pop(number, None)
+        for number, value in values.items():
+            self._kept[number - _FIRST_PERMANENT] = value
 
     def clear_common(self) -> None:
         """Make #100 to #199 vacant, as switching the control on does."""
@@ -122,6 +163,10 @@ class MacroVariables:
     def clear_locals(self) -> None:
         """Leave all macros and make the local variables of the main program vacant, as a reset does."""
         self._levels[:] = [_vacant()]
+
+    def leave_all(self) -> None:
+        """Leave all macros; the local variables of the main program stay."""
+        del self._levels[1:]
 
     def permanent(self) -> dict[int, float]:
         """Return the variables from #500 on that are not vacant, to be kept."""
@@ -133,9 +178,13 @@ class MacroVariables:
 
     def restore(self, values: Mapping[int, float]) -> None:
         """Take over what `permanent` gave; all other variables from #500 on become vacant."""
-        self.common[_FIRST_PERMANENT:] = [None] * (_SIZE - _FIRST_PERMANENT)
-        for number, value in values.items():
-            self.set(number, value)
+        vacant: dict[int, Value] = {
+            number: None
+            for first, last in self.ranges
+            if first >= _FIRST_PERMANENT
+            for number in range(first, last + 1)
+        }
+        self.set_all(vacant | dict(values))
 
 
 def no_variable(number: int) -> MacroError:
@@ -150,7 +199,7 @@ def checked(value: float) -> float:
         MacroError: It is too large, or no number.
     """
     if not -LARGEST < value < LARGEST:
-        raise MacroError("the value is too large for a variable", "Variables hold up to 1e47.", "PS0111")
+        raise MacroError("the value is too large for a variable", "Variables hold up to 7e47.", "PS0111")
     return value
 
 

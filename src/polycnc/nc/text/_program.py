@@ -57,8 +57,9 @@ class ProgramText:
             content = Path(path).read_bytes()
         except FileNotFoundError:
             raise UsageError(f"no such file: {path}", hint="Check the name and the folder.") from None
-        except OSError as error:
-            raise UsageError(f"cannot read {path}: {error.strerror}", hint="Give a readable file.") from None
+        except (OSError, ValueError) as error:  # ValueError: no file can have this name
+            why = error.strerror if isinstance(error, OSError) else error
+            raise UsageError(f"cannot read {path}: {why}", hint="Give a readable file.") from None
         return cls(str(path), content)
 
     @classmethod

@@ -73,8 +73,9 @@ def load_control(source: str | Path) -> ControlFile:
             f"there is no control file '{source}'",
             hint=f"Use {', '.join(CONTROLS)}, or the path of a control file.",
         ) from None
-    except OSError as error:
-        raise UsageError(f"cannot read '{source}': {error.strerror}") from error
+    except (OSError, ValueError) as error:  # ValueError: no file can have this name
+        why = error.strerror if isinstance(error, OSError) else error
+        raise UsageError(f"cannot read '{source}': {why}", hint="Check the name.") from error
     return parse_control(_decoded(data, str(source)), str(source))
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TextIO
 
 from polycnc.errors import UsageError
+from polycnc.outputs import complete_or_absent
 from polycnc.post.macros._control_parameters import CODECS, Parameters
 
 _LINE_ENDS = {"lf": "\n", "crlf": "\r\n"}
@@ -23,23 +23,14 @@ def program_file(path: str | Path, parameters: Parameters) -> Iterator[TextIO]:
     Raises:
         UsageError: The file cannot be written.
     """
-    path = Path(path)
-    partial = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    if path.is_dir():
-        raise UsageError(f"{path} is a folder", hint="give the name of a file")
-    try:
-        file = open(  # noqa: SIM115 (closed below, before the file gets its name)
-            partial, "w", encoding=CODECS[parameters.encoding], newline=_LINE_ENDS[parameters.line_end]
-        )
-    except OSError as error:
-        raise UsageError(
-            f"{path} cannot be written: {error.strerror}", hint="check the folder and its access rights"
-        ) from error
-    try:
+    with complete_or_absent(Path(path), durable=True) as partial:
+        try:
+            file = partial.open(
+                "w", encoding=CODECS[parameters.encoding], newline=_LINE_ENDS[parameters.line_end]
+            )
+        except OSError as error:
+            raise UsageError(
+                f"{path} cannot be written: {error.strerror}", hint="Check the folder and its access rights."
+            ) from error
         with file:
             yield file
-            file.flush()
-            os.fsync(file.fileno())
-        partial.replace(path)
-    finally:
-        partial.unlink(missing_ok=True)

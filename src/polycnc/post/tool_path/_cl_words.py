@@ -170,7 +170,7 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     if (token := statement.peek()) is not None and token.text in ("TOOL", "TURRET"):
         next(iter(statement))
     number = statement.number("a tool number")
-    if number != int(number) or number < 0:
+    if not number.is_integer() or number < 0:
         raise statement.fail(
             f"a tool number must be a whole number, not {number:g}", "Write it like LOADTL/3."
         )

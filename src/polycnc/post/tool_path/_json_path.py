@@ -6,6 +6,7 @@ Each kind of object is a model below; the names are those of the reference.
 from __future__ import annotations
 
 import json
+import math
 import re
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, TypeAlias
@@ -13,7 +14,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 from pydantic import Field, TypeAdapter, ValidationError
 
 from polycnc.errors import ProgramError
-from polycnc.machine import StrictModel
+from polycnc.machine import MOST_NESTING, StrictModel, is_nested_beyond
 from polycnc.post.tool_path import _records as records
 from polycnc.post.tool_path._arcs import dot, off_circle
 from polycnc.post.tool_path._records import LARGEST_MM, MOST_TURNS, Record
@@ -222,6 +223,7 @@ _Doing: TypeAlias = (
 )  # fmt: skip
 _DOING: TypeAdapter[_Doing] = TypeAdapter(Annotated[_Doing, Field(discriminator="do")])
 _PATH = re.compile(r'"path"\s*:\s*\[\s*')
+_MOST_DIGITS = 300
 _NEXT = re.compile(r"\s*,?\s*")
 
 
@@ -233,11 +235,19 @@ def read_json(source: Source, remarks: Remarks) -> Iterator[Record]:
     """
     text = source.text()
     try:
-        whole = json.loads(text)
+        whole = json.loads(text, parse_int=_whole)
+        if is_nested_beyond(whole, MOST_NESTING):
+            raise RecursionError
     except json.JSONDecodeError as error:
         position = source.position(error.lineno, error.colno)
         raise ProgramError(
             f"not valid JSON: {error.msg}", position=position, hint="Correct the text."
+        ) from None
+    except RecursionError:
+        raise ProgramError(
+            f"lists or objects nested more than {MOST_NESTING} deep",
+            position=source.position(1),
+            hint="The path is a list of flat objects.",
         ) from None
     found = _PATH.search(text)
     if not isinstance(whole, dict) or not isinstance(whole.get("path"), list) or found is None:
@@ -259,8 +269,13 @@ def read_json(source: Source, remarks: Remarks) -> Iterator[Record]:
     yield from _doings(source, text, found.end(), scale)
 
 
+def _whole(digits: str) -> int | float:
+    """Return a whole number; one with more digits than Python reads is no length or count of anything."""
+    return int(digits) if len(digits) <= _MOST_DIGITS else math.inf
+
+
 def _doings(source: Source, text: str, place: int, scale: float) -> Iterator[Record]:
-    decoder = json.JSONDecoder()
+    decoder = json.JSONDecoder(parse_int=_whole)
     line, counted = 1, 0
     here: records.Vector | None = None
     while text[place] != "]":

@@ -32,8 +32,9 @@ class Source:
                 return cls(str(path), path)
         except FileNotFoundError:
             raise UsageError(f"no such file: {path}", hint="Check the name and the folder.") from None
-        except OSError as error:
-            raise UsageError(f"cannot read {path}: {error.strerror}", hint="Give a readable file.") from None
+        except (OSError, ValueError) as error:  # ValueError: no file can have this name
+            why = error.strerror if isinstance(error, OSError) else error
+            raise UsageError(f"cannot read {path}: {why}", hint="Give a readable file.") from None
 
     @classmethod
     def from_text(cls, text: str, name: str = "<text>") -> Source:

@@ -14,7 +14,8 @@ from polycnc.nc import BlockRecords, Dialect, ProgramText, dialect_for
 from polycnc.runner._execution import Progress
 from polycnc.runner._result import RunResult, Trace
 from polycnc.runner._run import program_text, run
-from polycnc.runner._trace import TRACE_FORMATS, read_trace
+from polycnc.runner._trace import read_trace
+from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner.comparison._distance import PRECISION_MM, Boxes, greatest_distance, in_one_order
 from polycnc.runner.comparison._first_difference import BlockDifference, first_difference
 from polycnc.runner.comparison._path import (

@@ -20,10 +20,6 @@ CONTROL = "a LinuxCNC configuration"
 MM_PER_INCH = 25.4
 INCH = ("inch", "imperial", "in")
 TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)", re.IGNORECASE)
-FREE = LeftOut(
-    "G64 without P",
-    "the control rounds corners as far as it likes; path_tolerance_mm says how far it may go here",
-)
 LEFT_OUT = {
     "RS274NGC.PARAMETER_FILE": "work offsets and variables are in that file",
     "EMCIO.TOOL_TABLE": "tools are in that file",
@@ -54,13 +50,14 @@ def read(text: str, file: str) -> Facts:
     )
     if not axes:
         raise coordinates.error("no axis is named", "Write them like COORDINATES = X Y Z.")
-    path: dict[str, float] = {}
+    path: dict[str, float | str] = {}
     for key, name in (
         ("speed_limit_mm_s", "TRAJ.MAX_LINEAR_VELOCITY"),
         ("acceleration_limit_mm_s2", "TRAJ.MAX_LINEAR_ACCELERATION"),
     ):
         if (entry := settings.get(name)) is not None:
             path[key] = entry.positive * to_mm
+    path["path_tolerance_mm"] = "free"  # G64 without P
     start = settings.get("RS274NGC.RS274NGC_STARTUP_CODE")
     tolerance = TOLERANCE.search(start.text) if start is not None else None
     if start is not None and tolerance is not None:
@@ -70,8 +67,6 @@ def read(text: str, file: str) -> Facts:
     period = settings.get("EMCMOT.SERVO_PERIOD")
     top = settings.get("SPINDLE_0.MAX_FORWARD_VELOCITY")
     left = others(settings, LEFT_OUT)
-    if tolerance is None:
-        left = (FREE, *left)
     if kinematics is not None and not kinematics.text.startswith("trivkins"):
         left = (LeftOut(f"kinematics {kinematics.text}", "axes and joints count as the same"), *left)
     return Facts(

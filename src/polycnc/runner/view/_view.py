@@ -11,9 +11,9 @@ from pathlib import Path
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText
+from polycnc.outputs import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._blocks import Execution
 from polycnc.runner._execution import Progress
-from polycnc.runner._files import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._result import RunResult, Trace
 from polycnc.runner._run import program_text, run
 from polycnc.runner.view._page import page, plotly_source

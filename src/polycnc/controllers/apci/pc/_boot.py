@@ -90,7 +90,7 @@ class Application:
         try:
             with (self._folders[0] / filename).open("rb") as file:
                 magic = file.read(len(ELF_MAGIC))
-        except OSError:
+        except (OSError, ValueError):  # ValueError: no file can have this name
             return BootCode.CANNOT_OPEN
         if magic != ELF_MAGIC:
             return BootCode.UNKNOWN_FORMAT
@@ -237,6 +237,6 @@ class Application:
         for folder in self._folders:
             try:
                 return (folder / filename).read_bytes()
-            except OSError:
+            except (OSError, ValueError):
                 continue
         return None

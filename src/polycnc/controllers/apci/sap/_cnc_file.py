@@ -110,4 +110,6 @@ def _cells(read: Any) -> tuple[tuple[str, int], ...]:
     cells = tuple((str(kind), int(count)) for kind, count in read)
     if any(kind not in _KINDS or not 0 <= count <= 1 << 16 for kind, count in cells):
         raise ValueError
+    if sum(count for _, count in cells) > MAX_BYTES:
+        raise ValueError
     return cells

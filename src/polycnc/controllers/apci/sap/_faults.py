@@ -14,6 +14,7 @@ UNKNOWN_AXIS = 6
 REFUSED = 7
 BUFFER_RANGE = 8
 TASK_NUMBER = 9
+ILLEGAL = 10
 
 FAULTS = {
     DIVISION_BY_ZERO: "division by zero",
@@ -25,6 +26,7 @@ FAULTS = {
     REFUSED: "refused by the board",
     BUFFER_RANGE: "outside the common buffer",
     TASK_NUMBER: "no such task",
+    ILLEGAL: "an instruction that no compiler writes",
 }
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
 
 from polycnc.controllers.apci.sap._cnc_file import read_cnc, write_cnc
-from polycnc.controllers.apci.sap._faults import REFUSED, VALUE_RANGE, Fault
+from polycnc.controllers.apci.sap._faults import FAULTS, ILLEGAL, REFUSED, STACK_OVERFLOW, VALUE_RANGE, Fault
 from polycnc.controllers.apci.sap._linker import Acts, link, only_polling
 from polycnc.controllers.apci.sap._machine import CELL_BYTES, FRAME_CELLS, STACK_CELLS, Pause, Step
 from polycnc.controllers.apci.sap._polling import CELLS_MOST, TURNS_MOST, Circle, Observer, Patience
@@ -24,6 +25,12 @@ HALT_AT_WRITELN = 1 << 26  # in MODEREG
 
 RUNNING, HALTED_BY_WRITELN, WAITING = 0x1, 0x4, 0x8  # 0x2, single step, is declared as not implemented
 INCOMPLETE, COMPLETE = 0x1, 0x2
+
+_ILLEGAL = (ArithmeticError, AssertionError, AttributeError, LookupError, TypeError, ValueError, struct.error)
+"""What forged instructions raise: a program file may hold any (`CNCTS.errnum` tells)."""
+
+_CONDITION_MOST = 1 << 16  # instructions of one look at the condition of an event
+_STACK_MOST = STACK_CELLS * 2
 
 # What makes up the state of a task beside its program and what it waits for.
 _CELLS = ("stack", "memory", "frames", "_armed")
@@ -101,8 +108,13 @@ class Task:
         if self.program is not None:
             self.memory.extend(cell_values(self.program.variables))
             self._armed = [True] * len(self.program.events)
-            self._steps = link(self, self.program)
-            self._polling_steps = only_polling(self.program, self._steps)
+            try:
+                self._steps = link(self, self.program)
+                self._polling_steps = only_polling(self.program, self._steps)
+            except _ILLEGAL as error:
+                self._steps = []
+                self._fail(0, ILLEGAL, f"{FAULTS[ILLEGAL]}: {error}")
+                return
             self._patience = Patience(self.host.scan + 1)
             self.state = State.RUNNING
 
@@ -158,16 +170,20 @@ class Task:
             for _ in range(budget):
                 at = steps[at]()
             self.next = at
+            if len(self.stack) > _STACK_MOST:  # only a forged program leaves values behind
+                raise Fault(STACK_OVERFLOW)
         except Pause:
             pass
         except Fault as fault:
             self._fail(at, fault.number, str(fault))
         except PolycncError as error:
             self._fail(at, REFUSED, str(error))
+        except _ILLEGAL as error:
+            self._fail(at, ILLEGAL, f"{FAULTS[ILLEGAL]}: {error}")
 
     def _fail(self, at: int, number: int, text: str) -> None:
         self.state, self.waiting = State.IDLE, None
-        self.next = at
+        self.next = at = at if 0 <= at < len(self._steps) else 0
         self._errnum, self._errline, self.error = number, self._line(at), text
 
     def _raise_event(self) -> None:
@@ -195,15 +211,20 @@ class Task:
     def _holds(self, condition: int) -> bool:
         at = condition
         try:
-            while at >= 0:
+            for _ in range(_CONDITION_MOST):
                 at = self._steps[at]()
+                if at < 0:
+                    return bool(self.stack.pop())
+            raise Fault(ILLEGAL, "a condition without end")
         except Fault as fault:
             self._fail(condition, fault.number, str(fault))
             raise Pause from None
         except PolycncError as error:
             self._fail(condition, REFUSED, str(error))
             raise Pause from None
-        return bool(self.stack.pop())
+        except _ILLEGAL as error:
+            self._fail(condition, ILLEGAL, f"{FAULTS[ILLEGAL]}: {error}")
+            raise Pause from None
 
     # Polling
 

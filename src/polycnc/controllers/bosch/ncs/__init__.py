@@ -21,6 +21,7 @@ from polycnc.controllers.bosch.ncs._image import (
 )
 from polycnc.controllers.bosch.ncs._partner import Partner, Station
 from polycnc.controllers.bosch.ncs._process_services import (
+    MODES,
     PROCESS_SERVICES,
     WHOLE_SYSTEM,
     ProcessService,
@@ -31,6 +32,7 @@ from polycnc.controllers.bosch.ncs._process_services import (
 __all__ = [
     "DATA_SERVICES",
     "MAGIC",
+    "MODES",
     "NOT_IN_TELEGRAM",
     "OVERVIEW",
     "PROCESS_SERVICES",

@@ -22,7 +22,7 @@ def integer(value: object, what: str) -> int:
     Raises:
         Fault: It is not whole.
     """
-    if isinstance(value, int | float) and not isinstance(value, bool) and value == int(value):
+    if isinstance(value, int | float) and not isinstance(value, bool) and float(value).is_integer():
         return int(value)
     raise Fault(INVALID_PARAMETER, f"the {what} has to be a whole number")
 

@@ -10,6 +10,10 @@ from xml.sax.saxutils import escape
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.outputs import complete_or_absent, format_of
+
+SCREEN_FORMATS = (".txt", ".svg", ".png")
+
 COLUMNS, LINES = 79, 46
 WIDTH, HEIGHT = 633, 415
 CELL_WIDTH, CELL_HEIGHT = 8, 9
@@ -100,13 +104,19 @@ class Surface:
         return ["".join(row) for row in rows]
 
     def save(self, path: Path) -> None:
-        """Write the window to a .txt, .svg or .png file (the last needs matplotlib)."""
-        if path.suffix.lower() == ".txt":
-            path.write_text("".join(f"{line}\n" for line in self.lines()), "utf-8")
-        elif path.suffix.lower() == ".svg":
-            path.write_text(self.svg(), "utf-8")
-        else:
-            self._save_png(path)
+        """Write the window to a .txt, .svg or .png file (the last needs matplotlib).
+
+        Raises:
+            UsageError: The file cannot be written.
+        """
+        extension = format_of(path, SCREEN_FORMATS)
+        with complete_or_absent(path) as partial:
+            if extension == ".txt":
+                partial.write_text("".join(f"{line}\n" for line in self.lines()), "utf-8")
+            elif extension == ".svg":
+                partial.write_text(self.svg(), "utf-8")
+            else:
+                self._save_png(partial)
 
     def rgb(self, code: int) -> str:
         """Return a colour of the active table as #rrggbb."""
@@ -197,7 +207,7 @@ class Surface:
             axes.text((column - 1) * CELL_WIDTH, HEIGHT - line * CELL_HEIGHT, part, fontsize=6, family="monospace",
                       color=self.rgb(self.softkey_colours[0]), backgroundcolor=self.rgb(self.softkey_colours[1]),
                       parse_math=False)  # fmt: skip
-        figure.savefig(path, metadata={"Software": None})
+        figure.savefig(path, format="png", metadata={"Software": None})
 
 
 _FAMILIES = (

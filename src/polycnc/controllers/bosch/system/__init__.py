@@ -1,26 +1,36 @@
 """System functions of CPL: interface signals, PLC data, errors, tool data, time."""
 
+from polycnc.controllers.bosch.system._drives import Drives, Ident, Parameter
 from polycnc.controllers.bosch.system._error_list import ALL_CHANNELS, Category, ErrorList, PresentError
 from polycnc.controllers.bosch.system._interface import Interface, Signals
 from polycnc.controllers.bosch.system._plc_data import PlcData, PlcRange
 from polycnc.controllers.bosch.system._programmed import LastFunctions, Macoda, ProgrammedShifts
-from polycnc.controllers.bosch.system._shift_tables import Column, ShiftTable, ZeroShifts
-from polycnc.controllers.bosch.system._system_data import Area, AxisCoupling, Moment, SystemData
+from polycnc.controllers.bosch.system._shift_tables import DATABASE as DATABASE_SHIFTS
+from polycnc.controllers.bosch.system._shift_tables import SHIFT_CODES, Column, ShiftTable, ZeroShifts
+from polycnc.controllers.bosch.system._system_data import SD_GROUPS, Area, AxisCoupling, Moment, SystemData
 from polycnc.controllers.bosch.system._time import clock_ms, date_text, time_text
 from polycnc.controllers.bosch.system._tool_data import ToolDatabase
+from polycnc.controllers.bosch.system._tool_tables import DATABASE as DATABASE_TOOLS
 from polycnc.controllers.bosch.system._tool_tables import ToolCompensations, ToolTable
 
 __all__ = [
     "ALL_CHANNELS",
+    "DATABASE_SHIFTS",
+    "DATABASE_TOOLS",
+    "SD_GROUPS",
+    "SHIFT_CODES",
     "Area",
     "AxisCoupling",
     "Category",
     "Column",
+    "Drives",
     "ErrorList",
+    "Ident",
     "Interface",
     "LastFunctions",
     "Macoda",
     "Moment",
+    "Parameter",
     "PlcData",
     "PlcRange",
     "PresentError",

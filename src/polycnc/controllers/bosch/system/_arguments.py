@@ -17,7 +17,7 @@ def whole(value: object, what: str, allowed: Container[int], default: int | None
     """
     if value is OMITTED and default is not None:
         value = default
-    if isinstance(value, int | float) and not isinstance(value, bool) and value == int(value):
+    if isinstance(value, int | float) and not isinstance(value, bool) and float(value).is_integer():
         if int(value) in allowed:
             return int(value)
         shown = (

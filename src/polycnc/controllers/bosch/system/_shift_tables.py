@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Protocol
 
 from polycnc.controllers.bosch.system._arguments import INVALID_PARAMETER, whole
 from polycnc.nc.cpl import OMITTED, Fault, text_of
@@ -13,6 +14,8 @@ EXTERNAL = (160, 260, 360)
 GROUPS = tuple(range(54, 60)), tuple(range(154, 160)), tuple(range(254, 260))
 DATABASE = {1: "V1", 2: "V2", 3: "V3"}
 _TABLE_ADDRESSES = frozenset(code for group in GROUPS for code in group)
+SHIFT_CODES = _TABLE_ADDRESSES | frozenset(EXTERNAL)
+"""The G functions of axis zero shifts."""
 _MOST_COLUMNS = 64
 
 
@@ -34,6 +37,16 @@ class ShiftTable:
     strict: bool = False
 
 
+class TableFiles(Protocol):
+    """Where tables with names of their own are kept."""
+
+    def read(self, name: str) -> ShiftTable | None:
+        """Return a table, None if there is none."""
+
+    def write(self, name: str, table: ShiftTable) -> None:
+        """Keep a table."""
+
+
 @dataclass(slots=True)
 class ZeroShifts:
     """The zero shift tables by name, V1 to V3 among them, and the external shifts of a channel.
@@ -52,10 +65,29 @@ class ZeroShifts:
     external: dict[tuple[int, str], float] = field(default_factory=dict)
     inch: bool = False
     new_inch: bool = False
+    files: TableFiles | None = None
+    revision: int = 0
 
     def __post_init__(self) -> None:
         for name in DATABASE.values():
             self.tables.setdefault(name, self._new(0))
+
+    def select(self, name: str) -> None:
+        """Let a table be in force."""
+        self._table(name)
+        self.active = name
+        self.revision += 1
+
+    def shift_mm(self, code: int) -> dict[str, float]:
+        """Return a shift of every axis as it is in force (mm, degree)."""
+        if code in EXTERNAL:
+            return {axis: value for (each, axis), value in self.external.items() if each == code}
+        table = self.tables[self.active]
+        return {
+            column.name: column.shifts[code] * _factor(table, column)
+            for column in table.columns
+            if code in column.shifts
+        }
 
     def fxc(
         self, axis: object, address: object = OMITTED, table: object = OMITTED, unit: object = OMITTED
@@ -97,11 +129,13 @@ class ZeroShifts:
             column = self._own(chosen, table, unit)
             old = self.external.get((code, column.name), 0.0) if adds else 0.0
             self.external[code, column.name] = old + value * self._external_mm(column)
+            self.revision += 1
             return
         found = self._table(table)
         column = _column(found, chosen)
         old = column.shifts.get(code, 0.0) if adds else 0.0
         column.shifts[code] = old + value * _scale(found, column, unit)
+        self._changed(table)
 
     def fxcr(self, layout: object, name: object, classification: object = OMITTED) -> int:
         """Make a table for the axes of a channel, of the system (0), or like another table; return 0.
@@ -118,6 +152,7 @@ class ZeroShifts:
             new = ShiftTable([Column(each.name, each.rotary) for each in sample.columns], self.new_inch)
         new.strict = strict
         self.tables[path] = new
+        self._changed(name)
         return 0
 
     def fxdel(self, name: object, axis: object) -> int:
@@ -128,6 +163,7 @@ class ZeroShifts:
         """
         table = self._table(name)
         table.columns.remove(_column(table, _selection(axis, names_only=True)[0]))
+        self._changed(name)
         return 0
 
     def fxins(self, name: object, position: object, axis: object, kind: object = OMITTED) -> int:
@@ -142,6 +178,7 @@ class ZeroShifts:
         if any(each.name == column.name for each in table.columns) or len(table.columns) >= _MOST_COLUMNS:
             raise Fault(INVALID_PARAMETER, f"the table has {column.name} already, or {_MOST_COLUMNS} columns")
         table.columns.insert(place, column)
+        self._changed(name)
         return 0
 
     def _new(self, channel: int) -> ShiftTable:
@@ -156,9 +193,25 @@ class ZeroShifts:
             path = DATABASE[whole(name, "table", DATABASE.keys())]
         else:
             path = _name(name)
+        if self.files is not None and path not in DATABASE.values():
+            read = self.files.read(path)
+            if read is not None:
+                self.tables[path] = read
+            else:
+                self.tables.pop(path, None)
         if path not in self.tables:
             raise Fault(INVALID_PARAMETER, f"there is no table {path}")
         return self.tables[path]
+
+    def _changed(self, name: object) -> None:
+        """Take note that a table was changed; one that is a file is written."""
+        self.revision += 1
+        if name is OMITTED or isinstance(name, int | float):
+            path = self.active if name is OMITTED else ""
+        else:
+            path = _name(name)
+        if self.files is not None and path and path not in DATABASE.values():
+            self.files.write(path, self.tables[path])
 
     def _own(self, chosen: int | str, table: object, unit: object) -> Column:
         whole(table, "table of external shifts", range(1), 0)

@@ -15,7 +15,7 @@ _G63 = 63
 _EIGHT = range(1, 9)
 _AXES = range(1, 65)
 
-_GROUPS: dict[int, tuple[int, ...]] = {
+SD_GROUPS: dict[int, tuple[int, ...]] = {
     2: (0, 1, 2, 3, 5, 11, 12, 13, 73),
     3: (70, 71),
     4: (90, 91, 189, 190, 191),
@@ -170,7 +170,7 @@ def _fits(wanted: Index, given: object) -> bool:
 
 
 def _function(moment: Moment, group: int) -> int:
-    return next((code for code in _GROUPS.get(group, ()) if code in moment.functions), -1)
+    return next((code for code in SD_GROUPS.get(group, ()) if code in moment.functions), -1)
 
 
 def _last_function(data: SystemData, group: int) -> int:

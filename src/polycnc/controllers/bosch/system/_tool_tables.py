@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container
+from collections.abc import Callable, Container
 from dataclasses import dataclass, field
 
 from polycnc.controllers.bosch.system._arguments import INVALID_PARAMETER, whole
@@ -41,6 +41,29 @@ class ToolCompensations:
     groups: dict[str, int] = field(default_factory=dict)
     values: dict[tuple[int, int], float] = field(default_factory=dict)
     inch: bool = False
+    read_file: Callable[[str], ToolTable | None] | None = None
+    write_file: Callable[[str, ToolTable], None] | None = None
+    revision: int = 0
+
+    def select(self, name: str) -> None:
+        """Let a table be in force."""
+        self._table(name)
+        self.selected = name
+        self.revision += 1
+
+    def group_mm(self, group: int) -> tuple[float, float]:
+        """Return length and radius of a group of the selected table (mm); KeyError if nothing is in it."""
+        table = self.tables[self.selected]
+        if (group, LENGTH) not in table.values and (group, RADIUS) not in table.values:
+            raise KeyError(group)
+        return (
+            table.values.get((group, LENGTH), 0.0) * _factor(table.inch),
+            table.values.get((group, RADIUS), 0.0) * _factor(table.inch),
+        )
+
+    def filled_groups(self) -> list[int]:
+        """Return the groups of the selected table that hold something."""
+        return sorted({group for group, _ in self.tables[self.selected].values})
 
     def read(
         self, selection: object, group: object = OMITTED, table: object = OMITTED, unit: object = OMITTED
@@ -81,6 +104,17 @@ class ToolCompensations:
         else:
             kept, new = self.values, value * self._mm(place[1], table, unit)
         kept[place] = (kept.get(place, 0.0) if chosen < 0 else 0.0) + new
+        self.revision += 1
+        if which == "standard" and self.write_file is not None:
+            name = (
+                self.selected
+                if table is OMITTED
+                else text_of(table)
+                if not isinstance(table, int | float)
+                else ""
+            )
+            if name and name not in DATABASE.values():
+                self.write_file(name, found)
 
     def _group(self, group: object) -> tuple[str, int]:
         number = whole(group, "group", {*STANDARD, *EXTERNAL, *GENERAL})
@@ -93,7 +127,11 @@ class ToolCompensations:
             name = DATABASE[whole(table, "table", DATABASE.keys())]
         else:
             name = text_of(table)
-        if name not in self.tables:
+        if self.read_file is not None and name and name not in DATABASE.values():
+            read = self.read_file(name)
+            if read is not None:
+                self.tables[name] = read
+        if name is None or name not in self.tables:
             raise Fault(INVALID_PARAMETER, f"there is no table {name}")
         return self.tables[name]
 

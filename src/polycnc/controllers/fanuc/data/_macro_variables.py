@@ -1,16 +1,16 @@
-"""The common variables of custom macros, and the two number forms in which programs on a PC see them."""
+"""Macro variables as programs on a PC see them: in two number forms, and as they were written."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import Any
 
 from polycnc.machine import Store
+from polycnc.nc.macro import LARGEST, LOCALS, MacroVariables
 
-LOCALS = 33
-_AREA = "fanuc.macro_variables"
+_AREA = "fanuc.macro_pairs"
 MOST_MANTISSA = 99_999_999
 MOST_DECIMALS = 8
 VACANT = 0, -1
@@ -24,14 +24,8 @@ class CommonRange(IntEnum):
     LARGE = 1
     MIDDLE = 2
 
-    @property
-    def blocks(self) -> tuple[range, range]:
-        """Return the numbers of the volatile and of the permanent ones."""
-        return {
-            0: (range(100, 150), range(500, 532)),
-            1: (range(100, 200), range(500, 1000)),
-            2: (range(100, 200), range(500, 700)),
-        }[self.value]
+
+_MACRO_TYPES = {CommonRange.SMALL: "a", CommonRange.LARGE: "b", CommonRange.MIDDLE: "c"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,67 +36,69 @@ class Value:
     pair: tuple[int, int] | None = None
 
 
-class MacroVariables:
-    """Keep the common variables, durably with each change; None is vacant."""
+class SharedMacros:
+    """Read and write the variables of a control's programs (`variables`) from outside.
+
+    A pair that was written stays that variable's as long as its value does; pairs are as durable as values.
+    """
 
     def __init__(self, store: Store, common: CommonRange) -> None:
         self.common = common
+        self.variables = MacroVariables(_MACRO_TYPES[common], store=store)  # type: ignore[arg-type]
         self._store = store
-        self._area = store.area(_AREA, dict)
-        self._values: dict[int, Value] = {}
-        for key, row in self._area.load().items():
-            pair = row.get("pair")
-            self._values[int(key)] = Value(
-                float.fromhex(row["number"]), None if pair is None else tuple(pair)
-            )
+        self._area = store.area(_AREA, str)
+        self._pairs = {int(key): _pair(text) for key, text in self._area.load().items()}
 
     def __contains__(self, number: object) -> bool:
-        return any(number in block for block in self.common.blocks)
+        return isinstance(number, int) and self.variables.kind(number) in ("common", "permanent")
 
     def block(self, number: int) -> range | None:
         """Return the numbers that belong together with `number`: locals, volatile or permanent ones."""
-        blocks = (range(1, LOCALS + 1), *self.common.blocks)
-        return next((block for block in blocks if number in block), None)
+        blocks = ((1, LOCALS), *self.variables.ranges)
+        return next((range(first, last + 1) for first, last in blocks if first <= number <= last), None)
 
     def get(self, number: int) -> float | None:
         """Return a common variable; KeyError if there is none of this number."""
         if number not in self:
             raise KeyError(number)
-        kept = self._values.get(number)
-        return None if kept is None else kept.number
+        return self.variables.get(number)
 
     def pair(self, number: int) -> tuple[int, int] | None:
         """Return the decimal pair that a variable was written with, if it has not changed since."""
-        kept = self._values.get(number)
-        return None if kept is None else kept.pair
+        pair = self._pairs.get(number)
+        return None if pair is None or _number(pair) != self.variables.get(number) else pair
 
     def set(self, number: int, value: float | None, pair: tuple[int, int] | None = None) -> None:
         """Set a common variable, or make it vacant; KeyError if there is none of this number."""
         self.set_all({number: None if value is None else Value(value, pair)})
 
-    def set_all(self, values: dict[int, Value | None]) -> None:
+    def set_all(self, values: Mapping[int, Value | None]) -> None:
         """Set several, all or none; KeyError if there is none of a number."""
         for number in values:
             if number not in self:
                 raise KeyError(number)
+        pairs = {number: value.pair for number, value in values.items() if value is not None and value.pair}
         with self._store.transaction():
-            for number, value in values.items():
-                if value is not None:
-                    row: dict[str, Any] = {"number": value.number.hex()}
-                    if value.pair is not None:
-                        row["pair"] = list(value.pair)
-                    self._area[number] = row
-                elif number in self._values:
-                    del self._area[number]
-        for number, value in values.items():
-            if value is None:
-                self._values.pop(number, None)
-            else:
-                self._values[number] = value
+            for number, pair in pairs.items():
+                if self._pairs.get(number) != pair:
+                    self._area[number] = f"{pair[0]} {pair[1]}"
+            self.variables.set_all(
+                {number: None if value is None else value.number for number, value in values.items()}
+            )
+        self._pairs.update(pairs)
 
     def clear_volatile(self) -> None:
         """Make the volatile ones vacant."""
-        self.set_all(dict.fromkeys(self.common.blocks[0]))
+        self.variables.clear_common()
+
+
+def _pair(text: str) -> tuple[int, int]:
+    mantissa, decimals = text.split()
+    return int(mantissa), int(decimals)
+
+
+def _number(pair: tuple[int, int]) -> float:
+    return pair[0] / 10.0 ** pair[1]
 
 
 def decimal_pair(value: float | None) -> tuple[int, int]:
@@ -155,7 +151,7 @@ def from_decimal(mantissa: int, decimals: int) -> Value | None:
         return None
     if not (abs(mantissa) <= MOST_MANTISSA and 0 <= decimals <= MOST_DECIMALS):
         raise ValueError(f"{mantissa} with {decimals} decimals")
-    return Value(mantissa / 10.0**decimals, (mantissa, decimals))
+    return Value(_number((mantissa, decimals)), (mantissa, decimals))
 
 
 def from_binary(mantissa: int, places: int) -> Value | None:
@@ -166,6 +162,7 @@ def from_binary(mantissa: int, places: int) -> Value | None:
     """
     if (mantissa, places) == VACANT:
         return None
-    if not -128 <= places <= 127:
+    value = math.ldexp(mantissa, -places) if -128 <= places <= 127 else LARGEST
+    if not abs(value) < LARGEST:
         raise ValueError(f"{mantissa} with exponent {places}")
-    return Value(math.ldexp(mantissa, -places))
+    return Value(value)

@@ -28,6 +28,11 @@ class ToolOffsets:
     def _scale(self) -> Scale:
         return scale(self._power_mate.increment, linear=True, inch=self._power_mate.inch_input)
 
+    @property
+    def decimals(self) -> int:
+        """How many decimals the values have."""
+        return self._scale.decimals
+
     def get(self, number: int) -> int:
         """Return an offset; KeyError if there is none of this number."""
         if not 1 <= number <= self.count:

@@ -56,10 +56,36 @@ def _of(number: int) -> tuple[AlarmBit, AlarmKind]:
     return next(((bit, kind) for numbers, bit, kind in _RANGES if number in numbers), _OTHER)
 
 
+# fmt: off
+_MACRO_TEXTS = {
+    76: "ADDRESS P NOT DEFINED",             77: "SUB PROGRAM NESTING ERROR",
+    78: "NUMBER NOT FOUND",                 111: "CALCULATED DATA OVERFLOW",
+    112: "DIVIDED BY ZERO",                 113: "IMPROPER COMMAND",
+    114: "FORMAT ERROR IN MACRO",           115: "ILLEGAL VARIABLE NUMBER",
+    116: "WRITE PROTECTED VARIABLE",        118: "PARENTHESIS NESTING ERROR",
+    119: "ILLEGAL ARGUMENT",                122: "FOUR FOLD MACRO MODAL-CALL",
+    124: "MISSING END STATEMENT",           125: "FORMAT ERROR IN MACRO",
+    126: "ILLEGAL LOOP NUMBER",             127: "NC, MACRO STATEMENT IN SAME BLOCK",
+    128: "ILLEGAL MACRO SEQUENCE NUMBER",   129: "ILLEGAL ARGUMENT ADDRESS",
+}
+# fmt: on
+_PROGRAM = "program "
+_MACRO_ALARM = "program MC"  # raised by the program itself (#3000): its text is the program's
+_MACRO_ERROR = "program PS"
+
+
 class _Table(dict[str, AlarmRow]):
-    """The alarms that the control puts on itself, and every number by the name "alarm NUMBER"."""
+    """The alarms that the control puts on itself, every number by the name "alarm NUMBER", errors of macros."""
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or (
+            isinstance(name, str) and name.startswith((PREFIX, _MACRO_ALARM, _MACRO_ERROR))
+        )
 
     def __missing__(self, name: str) -> AlarmRow:
+        if name.startswith(_PROGRAM):
+            number = int(name[len(_MACRO_ALARM) :])
+            return AlarmRow(number, AlarmKind.PROGRAM, _MACRO_TEXTS.get(number, "{detail}"))
         number = int(name.removeprefix(PREFIX))
         text, cleared_by = _TEXTS.get(number, ("{detail}", ClearedBy.RESET))
         return AlarmRow(number, _of(number)[1], text, cleared_by)

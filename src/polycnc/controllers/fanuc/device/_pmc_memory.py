@@ -37,6 +37,7 @@ PARTS = (
 )
 # fmt: on
 _DURABLE = "TKCD"
+_SKIP_ADDRESS, _SKIP_BIT = 4, 0x80
 
 
 def parts_of(letter: str) -> tuple[Part, ...]:
@@ -88,6 +89,8 @@ class PmcMemory:
     def set_input(self, address: int, value: int) -> None:
         """Let the machine give a byte of X signals."""
         self._put("X", address, value)
+        if address == _SKIP_ADDRESS:
+            self._power_mate.skip_signal(bool(value & _SKIP_BIT))
 
     def clear(self) -> None:
         """Forget what does not outlast switching off."""

@@ -5,7 +5,7 @@ It is a control without a vendor (`cnc.Control`) with this one's modes, alarms, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from polycnc.cnc import (
 from polycnc.controllers.fanuc.data._bindings import bind
 from polycnc.controllers.fanuc.data._configuration import Configuration
 from polycnc.controllers.fanuc.data._increment import Increment, Scale, scale
-from polycnc.controllers.fanuc.data._macro_variables import CommonRange, MacroVariables
+from polycnc.controllers.fanuc.data._macro_variables import CommonRange, SharedMacros
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
@@ -44,6 +44,8 @@ from polycnc.controllers.fanuc.device._machine_file import (
     machine_of,
     usable_names,
 )
+from polycnc.controllers.fanuc.device._macros import OPTION as MACRO_OPTION
+from polycnc.controllers.fanuc.device._macros import Macros
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
 from polycnc.controllers.fanuc.device._modal_data import ModalData
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
@@ -114,7 +116,6 @@ class PowerMate:
         self.protection_keys: frozenset[int] = frozenset()
         self.parameters_writable = True
         self.transfer: Transfer | None = None
-        self.local_variables: Callable[[], Mapping[int, float | None]] = dict
         self._script = script
         self._servo = servo
         self._sizes = characters, most_programs
@@ -129,7 +130,7 @@ class PowerMate:
             self.store, self.axes, _defaults(names, Increment(increment), inch_input, inch_output)
         )
         self._inch = self.parameters.bit(0, 2)
-        self.macros = MacroVariables(self.store, self._common_range())
+        self.macros = SharedMacros(self.store, self._common_range())
         self.programs = Programs(self)
         self.mdi = MdiProgram(self)
         self.execution = Execution(self)
@@ -144,6 +145,7 @@ class PowerMate:
         self.configuration = Configuration()
         bind(self)
         self.parameters.on_change = self._parameters_changed
+        self.custom_macros = Macros(self, self.macros)
         self.control = self._switched_on(None)
         if self.selected not in self.programs:
             self.unselect()
@@ -255,6 +257,8 @@ class PowerMate:
         channel = self.control.channels[0]
         if self._mode is PowerMateMode.RMT and not channel.interrupted:
             raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
+        if not channel.interrupted:
+            self.custom_macros.begin()
         start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
         self.control.cycle_start(line=start + 1)
         self._cursor = 0
@@ -276,8 +280,7 @@ class PowerMate:
         self.axis_motion.drop()
         self.control.reset()
         self._cursor = 0
-        if not self.parameters.bit(6001, 6):
-            self.macros.clear_volatile()
+        self.custom_macros.reset()
 
     def emergency_stop(self, on: bool = True) -> None:
         """Press or release the emergency stop."""
@@ -290,10 +293,17 @@ class PowerMate:
         self.control.set_switches(optional_stop=on)
 
     def skip_signal(self, on: bool = True) -> None:
-        """Give the skip signal, or take it away; its rising edge notes where the axes are."""
+        """Give the skip signal, or take it away; its rising edge notes where the axes are.
+
+        While it is on it ends skip moves (G31): the axes brake, and the next block goes on from there.
+        """
         if on and not self._skip:
-            self._skip_positions = tuple(each.absolute for each in self.positions.read())
+            self._note_skip()
         self._skip = on
+        self.control.channels[0].set_skip_signal(on)
+
+    def _note_skip(self) -> None:
+        self._skip_positions = tuple(each.absolute for each in self.positions.read())
 
     @property
     def skip_is_on(self) -> bool:
@@ -326,7 +336,7 @@ class PowerMate:
 
     def local_variable(self, number: int) -> float | None:
         """Return local variable #1 to #33 of the macro that is being executed; None is vacant, as without a macro."""
-        return self.local_variables().get(number)
+        return self.custom_macros.local(number)
 
     def start_compare(self) -> None:
         """Begin to compare what `take` of the transfer gets with the registered programs, as on the screen.
@@ -369,6 +379,7 @@ class PowerMate:
         self._skip, self._skip_positions, self._cursor = False, (), 0
         self.mdi.clear()
         self._inch = self.parameters.bit(0, 2)
+        self.custom_macros.switched_on()
         self.control = self._switched_on(old.machine)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self._mode = PowerMateMode.MEM
@@ -385,6 +396,7 @@ class PowerMate:
         channel = self.control.channels[0]
         active = channel.active
         done = self._pass(cycles, until)
+        self.custom_macros.keep()
         block = channel.executed if active else None
         if block is not None and block.modal.inch is not self._inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
@@ -427,6 +439,7 @@ class PowerMate:
             protection_keys=self.protection_keys,
             parameters_writable=self.parameters_writable,
             inch=self._inch,
+            user_outputs=self.custom_macros.user_outputs,
             signals=self.signals.snapshot(),
             axis_motion=self.axis_motion.snapshot(),
             pmc=self.pmc.snapshot(),
@@ -441,11 +454,13 @@ class PowerMate:
         """
         self.control.restore(snapshot.control)
         self._mode, self._cursor = snapshot.mode, snapshot.cursor
+        self.control.channels[0].set_skip_signal(snapshot.skip)
         self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
         self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
         self.protection_keys = snapshot.protection_keys
         self.parameters_writable = snapshot.parameters_writable
         self._inch = snapshot.inch
+        self.custom_macros.user_outputs = snapshot.user_outputs
         self.signals.restore(snapshot.signals)
         self.axis_motion.restore(snapshot.axis_motion)
         self.pmc.restore(snapshot.pmc)
@@ -487,6 +502,7 @@ class PowerMate:
             dialect=self._dialect(),
             script=self._script,
             servo=self._servo,
+            languages=self.custom_macros.languages,
             data=ControlData(
                 memory=memory_data(characters, most_programs),
                 alarms=POWER_MATE_ALARMS,
@@ -498,6 +514,7 @@ class PowerMate:
                 emergency_needs_reset=False,
             ),
         )
+        control.channels[0].on_skip = self._note_skip
         control.change_axes(axes)
         for axis, name in enumerate(names, 1):
             if self.parameters.value(1020, axis) != ord(name):
@@ -510,6 +527,7 @@ class PowerMate:
         data = load_dialect("fanuc").model_dump()
         data["name"] = "power mate"
         data["blocks_ahead"] = _BLOCKS_AHEAD
+        data["language"] = "macro" if self.has_option(MACRO_OPTION) else "none"
         data["numbers"] = {
             "decimal_point": "calculator" if self.parameters.bit(3401, 0) else "least_input",
             "least_input": 10.0**-self.increment.decimals,

@@ -379,6 +379,8 @@ class Signals:
                 )
             case 7:
                 return _bits({_FUNCTION_BITS[each[0]]: True for each in channel.functions})
+            case 54 | 55:
+                return power_mate.custom_macros.user_outputs >> 8 * (address - 54) & 0xFF
             case 94:
                 at = [power_mate.positions.read(status)[k].machine == 0 for k in range(power_mate.axes)]
                 return _bits(dict(enumerate(at)))

@@ -24,6 +24,7 @@ class PowerMateSnapshot:
     protection_keys: frozenset[int]
     parameters_writable: bool
     inch: bool
+    user_outputs: int
     signals: SignalState
     axis_motion: AxisMotionState
     pmc: dict[tuple[str, int], int]

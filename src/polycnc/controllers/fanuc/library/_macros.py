@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Annotated
 
 from polycnc.controllers.fanuc.data._macro_variables import (
-    LOCALS,
     Value,
     binary_pair,
     decimal_pair,
@@ -18,6 +17,7 @@ from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
 from polycnc.controllers.fanuc.library._structs_a import IODBMR, ODBM, ODBMVINF
 from polycnc.controllers.library import IN, LONG, SHORT, LengthOf, Out, Refused, variant
+from polycnc.nc.macro import LOCALS
 
 _SINGLE = 10
 _HEADER = 6

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from polycnc.cnc import PROGRAM_MESSAGE
 from polycnc.controllers.fanuc.data._configuration import (
     CNC_SOFTWARE,
     DRAM_MODULES,
@@ -36,6 +37,7 @@ from polycnc.controllers.library import INOUT, LONG, SHORT, LengthOf, Out, Refus
 _END = -1
 _ALARM_SIZES = (4, 38)
 _USED_BITS = int(AlarmBit(0x857F))
+_MACRO_MESSAGE = 4
 _MESSAGE_NUMBERS = (range(100, 1000), range(2000, 2100))
 _MESSAGE_OPTIONS = ("external_message", "external_data_input")
 _MESSAGE_HEADER = 6
@@ -222,13 +224,15 @@ def cnc_rdloopgain(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("gain
 # ---------------------------------------------------------------------- messages
 
 
-def _messages(device: PowerMate) -> list[OPMSG]:
-    """Return the messages that are shown, oldest first."""
+def _messages(device: PowerMate, *types: int) -> list[OPMSG]:
+    """Return the messages of these types that are shown, oldest first: 0 from outside, 4 stops in macros (#3006)."""
     found = []
     for each in device.control.messages.shown:
-        if any(each.number in numbers for numbers in _MESSAGE_NUMBERS):
+        outside = any(each.number in numbers for numbers in _MESSAGE_NUMBERS)
+        kind = 0 if outside else _MACRO_MESSAGE if each.number == PROGRAM_MESSAGE else -1
+        if kind in types:
             text = each.text.encode("ascii", "replace")[: MSG_SIZE - 1]
-            found.append(OPMSG(datano=each.number, type=0, char_num=len(text), data=text))
+            found.append(OPMSG(datano=each.number, type=kind, char_num=len(text), data=text))
     return found
 
 
@@ -246,7 +250,7 @@ def cnc_rdopmsg(
     if type != 0:
         raise Refused(EW.EW_ATTRIB)
     _check_message_options(link.device)
-    found = _messages(link.read("cnc_rdopmsg"))
+    found = _messages(link.read("cnc_rdopmsg"), 0)
     return EW.EW_OK, found[0] if found else OPMSG(datano=_END)
 
 
@@ -254,13 +258,13 @@ def cnc_rdopmsg(
 def cnc_rdopmsg3(
     link: Link, type: SHORT, num: Annotated[SHORT, INOUT]
 ) -> tuple[EW, SHORT, Annotated[list[OPMSG], Out("opmsg", c="OPMSG *")]]:
-    """Read at most `num` messages to the operator, -1 for all kinds, and how many there were."""
+    """Read at most `num` messages to the operator, 0 from outside, 4 of macros, -1 all; return how many there were."""
     if num < 1:
         raise Refused(EW.EW_LENGTH)
-    if type not in (-1, 0):
+    if type not in (-1, 0, _MACRO_MESSAGE):
         raise Refused(EW.EW_ATTRIB)
     _check_message_options(link.device)
-    found = _messages(link.read("cnc_rdopmsg3"))[:num]
+    found = _messages(link.read("cnc_rdopmsg3"), *((0, _MACRO_MESSAGE) if type == -1 else (type,)))[:num]
     return EW.EW_OK, len(found), found
 
 

@@ -38,7 +38,10 @@ def _values(value: object) -> object:
         found = PARAMETERS.get(name)
         if found is None:
             raise problem(f"there is no parameter '{name}'", hint="names are those of the parameter header")
-        raw = found.to_raw(number) if isinstance(number, int | float) else 0
+        try:
+            raw = found.to_raw(number) if isinstance(number, int | float) else 0
+        except (OverflowError, ValueError):  # inf, nan
+            raise problem(f"{number} does not fit '{name}'", hint=f"it is {found.type}") from None
         bits = 16 * found.words
         if not -(1 << bits - 1) <= raw < 1 << (bits - 1 if found.is_signed else bits):
             raise problem(f"{number} does not fit '{name}'", hint=f"it is {found.type}")

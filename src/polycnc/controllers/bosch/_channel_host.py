@@ -1,0 +1,301 @@
+"""One channel of a control that runs CPL programs: what its programs need of it, its files, its screen."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from polycnc.cnc import ProgramRun
+from polycnc.controllers.bosch._memory import plain_variable
+from polycnc.controllers.bosch._services import Services
+from polycnc.controllers.bosch._system import BoschSystem
+from polycnc.controllers.bosch.files import FileCommands
+from polycnc.controllers.bosch.ncs import Coupling, Mmc, NcsServer
+from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
+from polycnc.controllers.bosch.system import Category
+from polycnc.errors import ProgramError
+from polycnc.machine import MachineConfig
+from polycnc.nc import ProgramText
+from polycnc.nc.cpl import (
+    OMITTED,
+    CplLanguage,
+    CplSource,
+    Fault,
+    Linker,
+    PermanentMemory,
+    holds_cpl,
+    text_of,
+    undeclared,
+)
+
+_WORD = re.compile(
+    r"(?P<letter>[A-Za-z]) *(?:(?P<extension>[0-9]{1,2}) *= *)?(?P<value>[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))"
+)
+
+
+class ChannelHost:
+    """What CPL programs of channel `number` need of their control (nc.cpl.Host).
+
+    Sub-programs, files and permanent variables lie in the root of the `system`. Give the run that the language is used
+    in to `attach`, and call `finish` when it is over. `functions` and `setters` may be added to. `server` is the
+    control that MCODS and MCOPS ask, this one if None.
+    """
+
+    def __init__(
+        self,
+        system: BoschSystem,
+        number: int = 1,
+        *,
+        program: str | Path | None = None,
+        keys: Iterable[str] = (),
+        skip_levels: Iterable[int] = (),
+        server: NcsServer | None = None,
+        stepping: bool = False,
+    ) -> None:
+        self.system = system
+        self.number = number
+        self.directory = system.directory
+        self.kept = system.kept
+        self.language = _Language(self, skip_levels=frozenset(skip_levels), stepping=stepping)
+        self.files = FileCommands(self.directory, self._say, self._running_files)
+        self.dialog = Dialog(
+            Keyboard(keys), lambda: self.files.left_justified, self._bitmap, lambda text: self._say(text)
+        )
+        self.coupling = Coupling(server or NcsServer(Services(system)), system.shown.image, number)
+        self._clock = system.clock
+        self._main = None if program is None else Path(program).resolve()
+        self._unplaced: list[str] = []
+        self.functions: dict[str, Callable[..., object]] = {
+            **system.functions(number),
+            **self.files.functions,
+            **self.dialog.functions,
+            "AXP": self._axis_word,
+            "MCODS": self.coupling.mcods,
+            "MCOPS": self.coupling.mcops,
+            "MMC": Mmc(system.clients).call,
+        }
+        self.setters: dict[str, Callable[..., None]] = system.setters(number)
+
+    # ------------------------------------------------------------------ nc.cpl.Host
+
+    @property
+    def permanent(self) -> PermanentMemory:
+        """Permanent variables by name."""
+        return self.kept.memory
+
+    def function(self, name: str) -> Callable[..., object]:
+        """Return a function of the control; one that it does not have refuses when it is called."""
+        return self.functions.get(name) or _missing(name)
+
+    def setter(self, name: str) -> Callable[..., None]:
+        """Return what an assignment to a system value does; one that cannot be set refuses when it is tried."""
+        return self.setters.get(name) or _missing(name)
+
+    def insert(self, value: object) -> tuple[tuple[str, int | None, float], ...]:
+        """Return the words of a text in brackets, or the axis word of AXP.
+
+        Raises:
+            Fault: The text holds something else.
+        """
+        if isinstance(value, _AxisWord):
+            return ((value.letter, value.extension, value.value),)
+        return _words(text_of(value) or "")
+
+    def program(self, address: str, name: str) -> tuple[str, str] | None:
+        """Return file and text of a sub-program in the root."""
+        for file in _file_names(address, name):
+            try:
+                text = self.directory.text(file)
+            except Fault:
+                continue
+            if text is not None:
+                return file, text
+        return None
+
+    # ------------------------------------------------------------------ for who runs it
+
+    @property
+    def screen(self) -> Surface:
+        """What the program has put on the screen."""
+        return self.dialog.surface
+
+    def attach(self, run: ProgramRun) -> None:
+        """Take the run whose channel this control is."""
+        self.system.runs[self.number] = run
+        self.system.machine = run.machine
+
+    @property
+    def config(self) -> MachineConfig:
+        """The machine file with the tables that programs change."""
+        return self.system.live_config()
+
+    def has_statements(self, program: ProgramText) -> bool:
+        """Tell whether a program holds CPL."""
+        return holds_cpl(program.content)
+
+    def check(self, program: ProgramText) -> list[ProgramError]:
+        """Link a program with its sub-programs without running it; return everything that is wrong."""
+        linker = Linker(self.program)
+        _, errors = linker.link(_decoded(program.content), program.name)
+        for each in linker.programs():
+            errors += undeclared(each, self.permanent)
+        return [*self.system.errors_of_files, *errors]
+
+    def wakes_in_s(self) -> float | None:
+        """Return when the WAIT of the program ends at the latest (s from now), None if it is in none."""
+        source = self.language.running[-1] if self.language.running else None
+        if source is None or not source.waits:
+            return None
+        deadline = source.wait_ends_ms
+        return float("inf") if deadline is None else max(deadline / 1000.0 - self._clock.now_s, 0.0)
+
+    def stuck(self) -> ProgramError | None:
+        """Return the error of a program that waits for what will not come."""
+        if not self.language.running:
+            return None
+        hint = "give WAIT a duration, or the control the keys that the program asks for"
+        return self.language.running[-1].execution.error_here("the program waits without end", hint)
+
+    def finish(self) -> None:
+        """End everything that does not outlive a program, and keep the permanent variables.
+
+        Raises:
+            UsageError: They cannot be kept.
+        """
+        try:
+            self.files.close_all()
+        except Fault as fault:
+            self._say(f"{fault.what}: {fault.hint}")
+        self.dialog.finish()
+        self.coupling.release()
+        self._note_errors()
+        self.system.keep()
+
+    def _note_errors(self) -> None:
+        """Let GETERR tell what the run has ended with."""
+        run = self.system.runs.get(self.number)
+        if run is None:
+            return
+        for error in run.channel.errors:
+            self.system.note_error(self.number, error.code, Category.PART_PROGRAM)
+        if run.alarm is not None:
+            self.system.note_error(self.number, run.alarm.code, Category.CONTROL_OR_DRIVE)
+
+    def variables(self) -> dict[str, object]:
+        """Return permanent and global variables as plain values, by name."""
+        if not self.language.used:
+            return {}
+        return {
+            **self.kept.values(),
+            **{name: _shown(value) for name, value in self.language.globals.items()},
+        }
+
+    # ------------------------------------------------------------------ within
+
+    def _attached(self) -> ProgramRun:
+        run = self.system.runs.get(self.number)
+        assert run is not None, "attach the run first"
+        return run
+
+    def _axis_word(self, axis: object, position: object, kind: object = OMITTED) -> _AxisWord:
+        """Return the word of an axis that is selected by its index (AXP)."""
+        if not isinstance(axis, int | float) or isinstance(axis, bool):
+            raise Fault("INVALID PARAMETER", "AXP takes an axis by its index")
+        axes = self.system.axes
+        found = axes.axis(self.number, int(axis) if axis == int(axis) else axis, kind)
+        if found not in axes.channels[self.number]:
+            raise Fault(
+                "INVALID PARAMETER", f"axis {axes.physical_name(found)} does not belong to this channel"
+            )
+        if not isinstance(position, int | float) or isinstance(position, bool):
+            raise Fault("INVALID PARAMETER", "AXP takes a number as the position")
+        name = axes.logical_name(self.number, found)
+        return _AxisWord(name[0], int(name[1:]) if name[1:] else None, float(position))
+
+    def _say(self, text: str) -> None:
+        line = self.language.running[-1].execution.statement_line if self.language.running else 0
+        self._attached().channel.messages.note(f"MSG: {text}", line)
+
+    def _bitmap(self, name: str) -> Image | None:
+        folder = self.directory.root / "cplbmp"
+        path = (folder / f"{name}.bmp").resolve()
+        inside = path.is_relative_to(self.directory.root) and path.parent == folder
+        return read_bitmap(path) if inside and path.is_file() else None
+
+    def _running_files(self) -> set[Path]:
+        files = {self.directory.root / source.execution.program.file for source in self.language.running}
+        return files if self._main is None else files | {self._main}
+
+
+class _AxisWord(NamedTuple):
+    """A word of an axis: letter, extension (X2 has 2) or None, position."""
+
+    letter: str
+    extension: int | None
+    value: float
+
+
+class _Language(CplLanguage):
+    """CPL on a control whose declarations of permanent variables are right."""
+
+    def __init__(self, host: ChannelHost, *, skip_levels: frozenset[int], stepping: bool) -> None:
+        super().__init__(host, skip_levels=skip_levels, stepping=stepping)
+        self._host_of = host
+        self.used = False
+        """Whether a program with CPL has begun."""
+
+    def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
+        if self._host_of.system.errors_of_files:
+            raise self._host_of.system.errors_of_files[0]
+        source = super().source(text, offset, line, arguments)
+        self.used = self.used or source is not None
+        return source
+
+
+def _missing(name: str) -> Callable[..., Any]:
+    def refuse(*_arguments: object, **_named: object) -> object:
+        raise Fault(f"the control has no {name}", "this function is not simulated")
+
+    return refuse
+
+
+def _file_names(address: str, name: str) -> tuple[str, ...]:
+    """Return the files that a call may mean: G22 lies in G22, P999 in P999 or 999."""
+    if address in ("G", "M"):
+        return (f"{address}{name}",)
+    return (f"P{name}", name) if name[:1].isdigit() else (name,)
+
+
+def _words(text: str) -> tuple[tuple[str, int | None, float], ...]:
+    found: list[tuple[str, int | None, float]] = []
+    end = 0
+    text = text.strip()
+    for word in _WORD.finditer(text):
+        if text[end : word.start()].strip():
+            break
+        extension = None if word["extension"] is None else int(word["extension"])
+        found.append((word["letter"].upper(), extension, float(word["value"])))
+        end = word.end()
+    if text[end:].strip():
+        raise Fault("INVALID PARAMETER", f"'{text[end:].strip()}' is no NC word")
+    return tuple(found)
+
+
+def _shown(value: object) -> object:
+    try:
+        return plain_variable(value if isinstance(value, int | float | None) else _text_or_field(value))
+    except Fault:
+        return None
+
+
+def _text_or_field(value: object) -> object:
+    return value if hasattr(value, "sizes") or isinstance(value, str) else text_of(value)
+
+
+def _decoded(content: bytes) -> str:
+    try:
+        return content.decode("utf-8")
+    except UnicodeDecodeError:
+        return content.decode("latin-1")

@@ -1,0 +1,239 @@
+"""What a control shows across the NCS coupling, read from its runs (Manual 003, 4.14.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from polycnc.cnc import ProgramRun, RunState
+from polycnc.controllers.bosch._axes import SystemAxes
+from polycnc.controllers.bosch._channel_data import ChannelData
+from polycnc.controllers.bosch._positions import workpiece
+from polycnc.controllers.bosch.ncs import (
+    Axis,
+    Channel,
+    Coordinate,
+    Drive,
+    Image,
+    Ipo,
+    Mode,
+    Sav,
+    Spindle,
+    SpindleMotion,
+    Unit,
+    Wait,
+)
+from polycnc.controllers.bosch.system import ToolCompensations, ZeroShifts
+from polycnc.kernel import PIDF, RUNNING, WAIT
+from polycnc.machine import Machine
+
+_INTERFACE_CHANNELS = 5
+_GROUPS = (range(54, 60), range(154, 160), range(254, 260))
+_FULL = 10000.0
+_SAV = {
+    RunState.RESET: Sav.INACTIVE, RunState.READY: Sav.AT_START, RunState.ACTIVE: Sav.ACTIVE, RunState.HOLD: Sav.ACTIVE,
+    RunState.STOPPED_AT_BLOCK: Sav.READY, RunState.PROGRAM_STOP: Sav.READY, RunState.OPTIONAL_STOP: Sav.READY,
+    RunState.COMPLETED: Sav.INACTIVE, RunState.ALARM: Sav.ERROR,
+}  # fmt: skip
+_MOTIONS = {1: SpindleMotion.CLOCKWISE, -1: SpindleMotion.COUNTER_CLOCKWISE, 0: SpindleMotion.STOP}
+
+
+class Shown:
+    """Keep an image up to date: `renew` reads axes, channels and the spindle at the present cycle.
+
+    `modes` tells the mode of a channel, `referenced` which axes are.
+    """
+
+    def __init__(
+        self,
+        axes: SystemAxes,
+        machine: Callable[[], Machine],
+        runs: Callable[[int], ProgramRun | None],
+        data: Callable[[int], ChannelData],
+        tables: Callable[[], tuple[ZeroShifts, ToolCompensations]],
+        modes: Callable[[int], Mode],
+        referenced: Callable[[], frozenset[str]],
+    ) -> None:
+        self._axes = axes
+        self._machine = machine
+        self._runs = runs
+        self._data = data
+        self._tables = tables
+        self._modes = modes
+        self._referenced = referenced
+        self._tags: dict[int, int] = {}
+        self.image = Image(channels={number: Channel(number) for number in axes.channels})
+
+    def renew(self) -> Image:
+        """Read everything at the present cycle."""
+        image, machine = self.image, self._machine()
+        image.cycle = machine.clock.cycles
+        image.drives, image.all_channels = len(self._axes.numbers), len(image.channels)
+        image.interface_channels = _INTERFACE_CHANNELS
+        referenced = self._referenced()
+        for index, number in enumerate(self._axes.numbers):
+            image.axes[number] = self._axis(machine, index, number, referenced)
+        for number, shown in image.channels.items():
+            self._channel(shown, number)
+        image.spindles[1] = self._spindle(machine)
+        image.test_mode = any(run is not None and run.machine_lock for run in map(self._runs, image.channels))
+        return image
+
+    def _axis(self, machine: Machine, index: int, number: int, referenced: frozenset[str]) -> Axis:
+        axes, state, config = self._axes, machine.state, machine.config.axes[index]
+        channel = axes.channel_of(number)
+        default = next((each for each, own in axes.defaults.items() if number in own), None)
+        name = axes.names[index]
+        setpoint = float(state.setpoint[index])
+        simulated = bool(state.servo.row[index]["mode"] == PIDF)
+        actual = float(state.servo.actual[index]) if simulated else setpoint
+        shown = Axis(
+            number, name, "linear" if config.unit == "mm" else "rotary", channel, default,
+            setpoint=setpoint, actual=actual, machine_coordinate=setpoint,
+            lag=setpoint - actual, travel=bool(state.velocity[index]), referenced=name in referenced,
+            drive=Drive("polycnc", "simulated", "", _telegram(actual, float(state.velocity[index]))),
+        )  # fmt: skip
+        shown.jog_speed = config.vmax * 60.0 if config.unit == "mm" else config.vmax / 6.0
+        window = config.servo.in_position
+        shown.in_window = abs(setpoint - actual) <= window
+        run = None if channel is None else self._runs(channel)
+        if channel is not None and channel in axes.channels:
+            shown.logical_name = axes.logical.get((channel, number), "")
+            shown.mode = self._modes(channel)
+        if run is None:
+            shown.axis_coordinate = setpoint
+            return shown
+        coordinates = run.channel.state.coordinates
+        shifts, _ = self._tables()
+        works = [
+            sum(shifts.shift_mm(code).get(name, 0.0) for code in group if f"G{code}" in coordinates.work)
+            for group in _GROUPS
+        ]
+        shown.shifts = (works[0], works[1], works[2])
+        shown.external_shift = sum(
+            shifts.shift_mm(int(code[1:])).get(name, 0.0) for code in coordinates.external
+        )
+        shown.preset = -float(coordinates.shift[index])
+        shown.axis_coordinate = setpoint - shown.shift
+        shown.end = self._ends(run)[index] - shown.shift
+        return shown
+
+    def _ends(self, run: ProgramRun) -> list[float]:
+        """Return where the executed block ends (machine coordinates)."""
+        to_go = list(run.distance_to_go.values())
+        return [each + left for each, left in zip(run.position.values(), to_go, strict=True)]
+
+    def _channel(self, shown: Channel, number: int) -> None:
+        run = self._runs(number)
+        shown.mode = self._modes(number)
+        if run is None:
+            shown.coordinates = [
+                Coordinate(self._axes.logical_name(number, each), (each,))
+                for each in self._axes.channels[number]
+            ]
+            return
+        data, row = self._data(number), run.machine.state.paths.row[run.path]
+        words = data.programmed() if run.modal is None else run.modal
+        if self._tags.get(number) != run.executed_tag:
+            self._tags[number] = run.executed_tag
+            shown.blocks += 1
+        shown.sav = _SAV[run.state]
+        running = row["state"] == RUNNING
+        shown.ipo = (
+            Ipo.RUNNING if run.state is RunState.ACTIVE else Ipo.RUNNING_DOWN if running else Ipo.STOPPED
+        )
+        shown.inch = words.inch
+        shown.program = run.program.name if run.state not in (RunState.RESET, RunState.COMPLETED) else ""
+        shown.message = run.channel.messages.latest
+        segment = run.machine.state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
+        shown.dwell = bool(running and segment["kind"] == WAIT)
+        moving = bool(running and not shown.dwell)
+        commanded = min(float(segment["feed_mm_s"]), float(segment["cap"])) * 60.0 if moving else 0.0
+        actual = float(row["speed"]) * 60.0 if moving else 0.0
+        shown.feeds = (commanded, commanded * run.feed_override, actual)
+        shown.programmed_feed = words.feed * (25.4 if words.inch else 1.0)
+        shown.potentiometer = run.feed_override * _FULL
+        self._tool(shown, run)
+        shown.other_waits = (
+            (shown.other_waits & Wait.DATA_SERVICE)
+            | (Wait.PROGRAM_STOP if run.state in (RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP) else Wait(0))
+            | (Wait.FEED_HOLD if run.state is RunState.HOLD else Wait(0))
+        )
+        shown.optional_stop = (run.optional_stop, run.optional_stop)
+        shown.skip = (bool(run.block_delete), bool(run.block_delete))
+        shown.coordinates = self._coordinates(run, number)
+
+    def _tool(self, shown: Channel, run: ProgramRun) -> None:
+        state = run.channel.state
+        shifts, tools = self._tables()
+        shown.tool_table, shown.shift_table = tools.selected, shifts.active
+        sign = state.coordinates.length_sign
+        shown.length_number = state.length_tool if sign else -1
+        shown.length = float(state.coordinates.length.sum())
+        shown.radius_number = -1 if state.compensation_tool is None else state.compensation_tool
+        shown.radius = _radius(tools, shown.radius_number)
+        codes = state.placement.compensations
+        external = [code for code in codes if code % 100 == 45]
+        values = tools.values
+        shown.external_tool = (
+            sum(values.get((code, 2), 0.0) for code in external),
+            sum(values.get((code, 1), 0.0) for code in external),
+        )
+        general = next((code for code in codes if code % 100 != 45), 0)
+        for name, place in (
+            ("length_3", 1),
+            ("radius", 2),
+            ("length_1", 3),
+            ("length_2", 4),
+            ("orientation", 5),
+        ):
+            setattr(shown.tool, name, values.get((general, place), 0.0))
+
+    def _coordinates(self, run: ProgramRun, number: int) -> list[Coordinate]:
+        axes, state = self._axes, run.machine.state
+        now = workpiece(run, state.setpoint)
+        ends = self._ends(run)
+        end_at = workpiece(run, np.array(ends))
+        to_go = list(run.distance_to_go.values())
+        config = run.machine.config.axes
+        found = []
+        for each in axes.channels[number]:
+            index = axes.index(each)
+            unit = Unit.DEGREE if config[index].unit == "deg" else Unit.METRIC
+            if unit is Unit.METRIC and self.image.channels[number].inch:
+                unit = Unit.INCH
+            setpoint = float(state.setpoint[index])
+            found.append(
+                Coordinate(
+                    axes.logical_name(number, each), (each,), False, unit, now[index],
+                    setpoint - self.image.axes[each].shift, self.image.axes[each].actual - self.image.axes[each].shift,
+                    end_at[index], ends[index], to_go[index],
+                )
+            )  # fmt: skip
+        return found
+
+    def _spindle(self, machine: Machine) -> Spindle:
+        run = next((run for run in map(self._runs, self.image.channels) if run is not None), None)
+        top = machine.config.spindle.max_rpm
+        if run is None:
+            return Spindle(limits=(0.0, top), gear_limits=(0.0, top))
+        words = run.modal
+        speed = 0.0 if words is None else words.speed
+        direction = 0 if words is None else words.spindle_direction
+        return Spindle(
+            programmed=speed, actual=speed if direction else 0.0, limits=(0.0, top), gear_limits=(0.0, top),
+            motion=_MOTIONS[direction],
+        )  # fmt: skip
+
+
+def _telegram(actual: float, velocity: float) -> dict[int, int]:
+    """Return what is in the cyclic telegram: S-0-0040 and S-0-0051, in 0.0001 mm or degree, and per minute."""
+    return {51: round(actual * 10_000), 40: round(velocity * 60)}
+
+
+def _radius(tools: ToolCompensations, group: int) -> float:
+    try:
+        return tools.group_mm(group)[1]
+    except KeyError:
+        return 0.0

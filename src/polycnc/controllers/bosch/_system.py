@@ -1,0 +1,256 @@
+"""What the channels of a control share: its root, tables, interface, errors, drives, and what it shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from polycnc.cnc import ProgramRun
+from polycnc.controllers.bosch._axes import SystemAxes
+from polycnc.controllers.bosch._channel_data import ChannelData
+from polycnc.controllers.bosch._kept_tables import KeptTables
+from polycnc.controllers.bosch._live_tables import LiveOffsets, LiveTools, fill_from_machine
+from polycnc.controllers.bosch._memory import STORE, KeptVariables
+from polycnc.controllers.bosch._parameters import FILE, FIRST_MODULE, LANGUAGE, MODULES, TABLE_UNIT, macoda
+from polycnc.controllers.bosch._positions import Positions
+from polycnc.controllers.bosch._shown import Shown
+from polycnc.controllers.bosch._table_files import TableFiles
+from polycnc.controllers.bosch.files import Directory
+from polycnc.controllers.bosch.ncs import Clients, Mode
+from polycnc.controllers.bosch.system import (
+    Category,
+    Column,
+    Drives,
+    ErrorList,
+    Ident,
+    Interface,
+    Parameter,
+    PlcData,
+    PlcRange,
+    ToolCompensations,
+    ToolDatabase,
+    ZeroShifts,
+    clock_ms,
+    date_text,
+    time_text,
+)
+from polycnc.errors import ProgramError
+from polycnc.machine import Clock, Machine, MachineConfig, Store
+
+_SPINDLES = 8
+_SECTORS, _PLACES = 9, 999
+_PLC_BYTES, _PLC_MODULES, _MODULE_BYTES, _COUNTERS = 256, 256, 512, 256
+_COUNTED = (PlcRange.TIMER, PlcRange.COUNTER, PlcRange.DATA_WORD)
+_INCREMENTS = 10_000
+_DRIVE_LISTS = (17, 187)
+
+
+class BoschSystem:
+    """The part of a control that is there once, with `axes` of a machine; permanent things lie under `root`.
+
+    `store` is the durable memory if it is open already, else it is opened to read and to write only.
+    """
+
+    def __init__(
+        self,
+        root: str | Path,
+        clock: Clock,
+        config: MachineConfig,
+        *,
+        axes: SystemAxes | None = None,
+        store: Store | None = None,
+    ) -> None:
+        self.config = config
+        self.clock = clock
+        self.axes = axes or SystemAxes(config.axis_names)
+        self.directory = Directory(root)
+        self.runs: dict[int, ProgramRun] = {}
+        self.machine: Machine | None = None
+        self.mode_of: Callable[[int], Mode] = lambda number: Mode.AUTOMATIC
+        self.referenced: Callable[[], frozenset[str]] = lambda: frozenset(config.axis_names)
+        self.clients = Clients()
+        self._store = store
+        self.kept = KeptVariables(self.directory, store)
+        text = self.directory.text(FILE)
+        self._macoda = {number: macoda(config, self.axes, number, text) for number in self.axes.channels}
+        self.errors_of_files: list[ProgramError] = [*self.kept.errors, *next(iter(self._macoda.values()))[1]]
+        self.interface = Interface(len(self.axes.channels), 64, _SPINDLES, pnc=False)
+        self.errors = ErrorList(len(self.axes.channels))
+        self.plc = self._new_plc()
+        self.tool_data = ToolDatabase(dict.fromkeys(range(1, _SECTORS + 1), _PLACES))
+        files = TableFiles(self.directory)
+        inch = bool(self.parameter(TABLE_UNIT))
+        columns = [Column(axis.name, rotary=axis.unit == "deg") for axis in config.axes]
+        self.shifts = ZeroShifts(1, columns, self._channel_names(), files=files, new_inch=inch)
+        self.tools = ToolCompensations(read_file=files.read_tools, write_file=files.write_tools)
+        fill_from_machine(self.shifts, self.tools, config)
+        self._tables = KeptTables(self.shifts, self.tools, self.tool_data)
+        self._take_tables()
+        self.offsets = LiveOffsets(self.shifts, at_start="G54" in config.offsets)
+        self.live_tools = LiveTools(self.tools)
+        self.drives = Drives(self.axes.physical, self._drive, self._write_lines)
+        self.data = {
+            number: ChannelData(self.axes, number, self.runs.get, int(str(self.parameter(LANGUAGE))))
+            for number in self.axes.channels
+        }
+        self.shown = Shown(
+            self.axes, self.the_machine, self.runs.get, self.data.__getitem__, lambda: (self.shifts, self.tools),
+            lambda number: self.mode_of(number), lambda: self.referenced(),
+        )  # fmt: skip
+
+    # ------------------------------------------------------------------ functions of a channel
+
+    def functions(self, number: int) -> dict[str, Callable[..., object]]:
+        """Return what programs of a channel can call."""
+        return {
+            **Positions(self.axes, number, self.runs.get).functions,
+            **self.data[number].functions,
+            "MCA": self._macoda[number][0].mca,
+            "SCS": self.drives.scs,
+            "SCSL": self.drives.scsl,
+            "PLC": self.plc.read,
+            "CLOCK": partial(clock_ms, self.clock),
+            "DATE": partial(date_text, self.clock),
+            "TIME": partial(time_text, self.clock),
+            "IC": partial(self.interface.read, number),
+            "GETERR": self.errors.read,
+            "TDA": self.tool_data.read,
+            "TC": lambda *place: self._tools_for(number).read(*place),
+            "FXC": lambda *place: self._shifts_for(number).fxc(*place),
+            "FXCR": lambda *table: self._shifts_for(number).fxcr(*table),
+            "FXDEL": lambda *column: self._shifts_for(number).fxdel(*column),
+            "FXINS": lambda *column: self._shifts_for(number).fxins(*column),
+        }
+
+    def setters(self, number: int) -> dict[str, Callable[..., None]]:
+        """Return what an assignment to a system value does in a channel."""
+        return {
+            "IC": lambda value, *place: self.interface.write(value, number, *place),
+            "PLC": self.plc.write,
+            "TDA": self.tool_data.write,
+            "TC": lambda value, *place: self._tools_for(number).write(value, *place),
+            "FXC": lambda value, *place: self._shifts_for(number).set_fxc(value, *place),
+        }
+
+    def live_config(self) -> MachineConfig:
+        """Return the machine file with the tables that change while programs run."""
+        return self.config.model_copy(update={"offsets": self.offsets, "tools": self.live_tools})
+
+    def parameter(self, number: int) -> object:
+        """Return the first value of a MACODA parameter."""
+        return next(iter(self._macoda.values()))[0].mca(number, 0)
+
+    def the_machine(self) -> Machine:
+        """Return the machine."""
+        assert self.machine is not None, "attach a run first"
+        return self.machine
+
+    # ------------------------------------------------------------------ errors and memory
+
+    def note_error(self, channel: int, code: str, category: Category) -> None:
+        """Put an error into what GETERR reads; one without a number of its own is 0."""
+        self.errors.add(int(code) if code.isdigit() else 0, channel, category)
+
+    def keep(self) -> None:
+        """Write what is permanent and has changed, all of it or nothing.
+
+        Raises:
+            UsageError: The disk refuses it, or another run has it open.
+        """
+        variables, tables = self.kept.changed(), self._tables.changed()
+        if not variables and not tables:
+            return
+        store = self._store or Store(self.directory.root / STORE)
+        try:
+            with store.transaction():
+                self.kept.keep(store, variables)
+                self._tables.keep(store, tables)
+        finally:
+            if self._store is None:
+                store.close()
+        self.kept.kept()
+        self._tables.kept()
+
+    def _take_tables(self) -> None:
+        path = self.directory.root / STORE
+        if self._store is not None:
+            self._tables.take(self._store)
+        elif path.exists():
+            store = Store(path)
+            try:
+                self._tables.take(store)
+            finally:
+                store.close()
+
+    # ------------------------------------------------------------------ within
+
+    def _shifts_for(self, number: int) -> ZeroShifts:
+        """Return the tables as channel `number` sees them: its unit, and what is in force there."""
+        shifts = self.shifts
+        shifts.channel = number
+        shifts.channels = self._channel_names()
+        run = self.runs.get(number)
+        if run is not None:
+            state = run.channel.state
+            shifts.inch = bool(self.data[number].programmed().inch)
+            codes = (*state.coordinates.work, *state.coordinates.external)
+            shifts.functions = frozenset(int(name[1:]) for name in codes if name[1:].isdigit())
+        return shifts
+
+    def _tools_for(self, number: int) -> ToolCompensations:
+        tools = self.tools
+        run = self.runs.get(number)
+        if run is not None:
+            state = run.channel.state
+            codes = state.placement.compensations
+            tools.inch = bool(self.data[number].programmed().inch)
+            tools.groups = {
+                "length": state.length_tool,
+                "radius": state.compensation_tool or 0 if state.side else 0,
+                "external": next((code for code in codes if code % 100 == 45), 0),
+                "general": next((code for code in codes if code % 100 != 45), 0),
+            }
+        return tools
+
+    def _channel_names(self) -> Mapping[int, tuple[str, ...]]:
+        axes = self.axes
+        return {number: tuple(map(axes.physical_name, own)) for number, own in axes.channels.items()}
+
+    def _new_plc(self) -> PlcData:
+        ranges = {each: bytearray(_PLC_BYTES) for each in PlcRange if each not in _COUNTED}
+        return PlcData(
+            ranges,
+            {number: bytearray(_MODULE_BYTES) for number in range(_PLC_MODULES)},
+            dict.fromkeys(range(_COUNTERS), 0),
+            dict.fromkeys(range(_COUNTERS), 0),
+            first_writable=int(str(self.parameter(FIRST_MODULE))),
+            writable=int(str(self.parameter(MODULES))),
+        )
+
+    def _drive(self, physical: int, ident: Ident) -> Parameter | None:
+        """Return a parameter of a simulated drive: position, speed, following distance, names, lists of numbers."""
+        if ident[0] != "S":
+            return None
+        index, machine = self.axes.index(physical), self.the_machine()
+        axis = self.shown.renew().axes[physical]
+        match ident[1]:
+            case 30 | 140 | 141:
+                return {30: axis.drive.version, 140: axis.drive.controller, 141: axis.drive.motor}[ident[1]]
+            case 40:
+                return int(np.rint(float(machine.state.velocity[index]) * 60.0))
+            case 47:
+                return round(axis.setpoint * _INCREMENTS)
+            case 51:
+                return round(axis.actual * _INCREMENTS)
+            case 189:
+                return round((axis.lag or 0.0) * _INCREMENTS)
+            case number if number in _DRIVE_LISTS:
+                return [17, 30, 40, 47, 51, 140, 141, 187, 189] if number == 17 else [40, 51]
+            case _:
+                return None
+
+    def _write_lines(self, name: str, lines: Sequence[str]) -> None:
+        TableFiles.write_lines(self.directory, name, lines)

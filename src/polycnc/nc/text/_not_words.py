@@ -1,0 +1,121 @@
+"""What is wrong with a line that is no block of plain words: a slip of the pen, or a statement of a language."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import BLANK_BYTES
+
+_BLANKS = f"[{re.escape(BLANK_BYTES.decode('ascii'))}]*+"
+_MARKS = re.compile(r'[\[\]#=$"*<>?@_]')
+# Words with which statements begin, or that make one; CPL's and those of custom macros.
+_KEYWORDS = re.compile(
+    r"(?<![A-Za-z])(?:IF|THEN|ELSE|ENDIF|GOTO[FBC]?|WHILE|DO|END|FOR|NEXT|REPEAT|UNTIL|CASE|OTHERWISE|ENDCASE|CALL|DIM|REM"
+    r"|WAIT|DPRNT|BPRNT|POPEN|PCLOS|SETVN|DEF|PROC|RET|LABEL|OPENR|OPENW|CLOSE|PRN|INP|DSP|DLG|ENDDLG)(?![A-Za-z])",
+    re.IGNORECASE,
+)
+_DECIMAL_COMMA = re.compile(
+    rf"(?P<word>[A-Za-z]){_BLANKS}(?P<number>[+-]?{_BLANKS}[0-9]+),(?P<rest>[0-9]+)(?![0-9,])"
+)
+_BARE_COMMA = re.compile(rf"(?P<word>[A-Za-z]){_BLANKS}(?P<sign>[+-]?){_BLANKS},(?P<rest>[0-9]+)")
+_THOUSANDS = re.compile(rf"[A-Za-z]{_BLANKS}[+-]?[0-9]+(?:,[0-9]+)+(?:[.,][0-9]*)?")
+_BETWEEN_BLOCKS = re.compile(rf",{_BLANKS}(?P<word>[A-Za-z])")
+_COMMA = re.compile(",")
+_LETTERS = re.compile(r"[A-Za-z]{2,}")
+
+
+@dataclass(frozen=True, slots=True)
+class Slip:
+    """Say what is wrong with a line: place of the character from its beginning, what, and what to do."""
+
+    place: int
+    what: str
+    hint: str
+
+
+def slip(line: str, rules: TextRules) -> Slip | None:
+    """Return what is wrong with a line that would be words but for a slip; None for a statement of a language.
+
+    `line` is one character a byte. A comma in a number and letters without a number are slips.
+    """
+    code = _without_comments(line, rules)
+    if _MARKS.search(code) or _KEYWORDS.search(code):
+        return None
+    finders = (_decimal_comma, _letters_and_commas)
+    return next((found for finder in finders if (found := finder(code)) is not None), None)
+
+
+def statements(text: ProgramText, rules: TextRules) -> tuple[int, int]:
+    """Return the number of the first line that holds a statement of a language, and how many lines do."""
+    first = count = 0
+    offset, number = 0, 1
+    while offset < len(text):
+        end = text.line_end(offset)
+        line = text.content[offset:end].decode("latin-1")
+        if is_statement(line, rules):
+            first, count = first or number, count + 1
+        offset, number = text.next_line(offset), number + 1
+    return first, count
+
+
+def is_statement(line: str, rules: TextRules) -> bool:
+    """Tell whether a line (one character a byte) holds a statement of a language."""
+    code = _without_comments(line, rules)
+    if code.lstrip().startswith("%"):
+        return False
+    return bool(_MARKS.search(code) or _KEYWORDS.search(code))
+
+
+def _without_comments(line: str, rules: TextRules) -> str:
+    """Return the line with blanks for its comments, every other character in its place."""
+    if rules.parenthesis_comments:
+        line = re.sub(r"\([^)]*\)?", lambda found: " " * len(found[0]), line)
+    if rules.semicolon_comments and ";" in line:
+        begin = line.index(";")
+        line = line[:begin] + " " * (len(line) - begin)
+    return line
+
+
+def _decimal_comma(code: str) -> Slip | None:
+    found = _DECIMAL_COMMA.search(code) or _BARE_COMMA.search(code)
+    several = _THOUSANDS.search(code)
+    if several is not None and (found is None or several.start() <= found.start()):
+        text = several[0]
+        if text.count(",") + text.count(".") > 1:
+            return Slip(several.start(), f"'{text}' is no number", "Write it without commas, like X1250.5.")
+    if found is None:
+        return None
+    groups = found.groupdict()
+    whole = re.sub(r"\s", "", groups.get("number") or groups.get("sign") or "")
+    return Slip(
+        found.start(),
+        f"'{found[0]}' has a comma in its number",
+        f"Write {found['word']}{whole}.{found['rest']}: a decimal point, no comma.",
+    )
+
+
+def _letters_and_commas(code: str) -> Slip | None:
+    letters, comma = _LETTERS.search(code), _COMMA.search(code)
+    if letters is not None and (comma is None or letters.start() < comma.start()):
+        word = letters[0][0]
+        return Slip(
+            letters.start(),
+            f"'{word}' has no number",
+            f"'{_shown(letters[0])}' is no word: write the number right behind the letter, like {word}10.",
+        )
+    if comma is None:
+        return None
+    if between := _BETWEEN_BLOCKS.match(code, comma.start()):
+        word = between["word"].upper()
+        return Slip(
+            comma.start(),
+            f"',{word}' (a chamfer or a rounding between blocks) is not known here",
+            "Write the chamfer or the rounding as a block of its own.",
+        )
+    return Slip(comma.start(), "',' may not stand in a block", "A block holds words like X12.5; take it out.")
+
+
+def _shown(letters: str) -> str:
+    return letters if len(letters) <= 20 else letters[:20] + "..."
