@@ -109,11 +109,15 @@ def test_uf_sends_six_coefficients_that_act_at_once_on_their_own_axis() -> None:
 # ------------------------------------------------------------------ conversions
 
 
-@pytest.mark.covers("apci.wrgf", "apci.TSRP.gf")
-def test_the_gear_factor_converts_counts_to_the_unit_of_the_axis() -> None:
+@pytest.mark.covers("apci.wrgf", "apci.TSRP.gf", "apci.wrslsp", "apci.var.slsp")
+@pytest.mark.parametrize("how", ["gf", "slsp"])
+def test_gear_factor_and_resolution_convert_counts_to_the_unit_of_the_axis(how: str) -> None:
     pc = Pc("[[axis]]\nslsp = 4000.0\ngf = 0.25\n" * 2)
     axes = pc.close(0, 1)
-    pcap.wrgf(pcap.TSRP(an=0, gf=0.375))
+    if how == "gf":
+        pcap.wrgf(pcap.TSRP(an=0, gf=0.375))
+    else:
+        pcap.wrslsp(0, 6000.0)
     pcap.ctru(pcap.TRU(pu=6))  # counts
     speed = 1500.0 * 40.0
     pcap.mlr(axes, pcap.LMP(ac=1e9, vl=speed, dtm=[3000.0, 3000.0, *[0.0] * 16]))

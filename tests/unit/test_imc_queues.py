@@ -250,7 +250,7 @@ def test_general_inputs_read_0_when_closed_and_latch() -> None:
     assert (card.read("gin1"), card.read("gin1lat"), card.read("gin2lat")) == (-1, 0, 1)
 
 
-@pytest.mark.covers("imc.param.gio")
+@pytest.mark.covers("imc.param.gio", "imc.param.giod")
 def test_general_outputs_follow_their_registers() -> None:
     card = ready_card()
     send(card, IFIFO, ("gio", 0b101), ("giod", 0b10), ("gout3", -0x8000))

@@ -351,13 +351,14 @@ def test_holes_of_a_tilted_tool_lie_along_its_axis_and_it_rises_before_it_goes_t
 ) -> None:
     # (3, 4, 12) / 13 is the tool axis: 13 above a hole is 3, 4, 12 away from it, 26 below -6, -8, -24.
     moves = points_of(moves_of(TILTED_HOLES.format("DRILL"), cycles=cycles, rotary="vector"))
-    first = [("RAPID", 20, -1, 53)]  # where the tool is, to turn it
+    first: list[tuple[str, float, float, float]] = [("RAPID", 20, -1, 53)]  # where the tool is, to turn it
     first += [("RAPID", 14, -9, 29), ("LINEAR", 5, -21, -7), ("RAPID", 20, -1, 53)]
     # The tool stands 129 / 13 above the second point and goes up to 39 first: by 378 / 13 along its axis.
     rise = [("RAPID", 20 + 1134 / 169, -1 + 1512 / 169, 53 + 4536 / 169)]
     second = [("RAPID", 46, 41, 64), ("RAPID", 40, 33, 40), ("LINEAR", 31, 21, 4), ("RAPID", 46, 41, 64)]
-    assert [macro for macro, *_ in moves] == [macro for macro, *_ in first + rise + second]
-    for (_, *found), (_, *expected) in zip(moves, first + rise + second, strict=True):
+    whole = [*first, *rise, *second]
+    assert [macro for macro, *_ in moves] == [macro for macro, *_ in whole]
+    for (_, *found), (_, *expected) in zip(moves, whole, strict=True):
         assert found == pytest.approx(expected)
 
 
