@@ -56,6 +56,13 @@ def test_a_helix_of_a_program_may_end_at_a_point() -> None:
     assert places(axis) == pytest.approx([19.0, 5.0, 17.5])  # on the ray from the centre to (23, 8)
 
 
+@pytest.mark.parametrize(("names", "third"), [("X Y Q", "A3"), ("X Y Q", "q"), ("A3 A1 A2", "A2")])
+def test_an_axis_is_known_by_its_name_and_by_its_number(names: str, third: str) -> None:
+    axis = Sap(names=names)
+    axis.run(f"cl ({third}); {FAST} mla ({third} := 3.75); wt ({third}); CD0 := {third}.dp;")
+    assert (axis.cd(0), places(axis)) == (3.75, [0.0, 0.0, 3.75])
+
+
 # ------------------------------------------------------------------ what moves take from the variables of the system
 
 
