@@ -14,10 +14,12 @@ from polycnc.controllers.apci.sap._board_host import BoardTasks
 class Sap:
     """A board with three axes whose task 0 runs programs; the first has a right software limit at 5."""
 
-    def __init__(self, units: tuple[Any, Any, Any] = ("mm", "mm", "mm"), names: str = "A1 A2 A3") -> None:
+    def __init__(
+        self, units: tuple[Any, Any, Any] = ("mm", "mm", "mm"), names: str = "A1 A2 A3", **each: Any
+    ) -> None:
         first, *rest = names.split()
-        limited = AxisSetup(name=first, sll=-5.0, slr=5.0, soft_right="SMD", unit=units[0])
-        others = (AxisSetup(name=name, unit=unit) for name, unit in zip(rest, units[1:], strict=True))
+        limited = AxisSetup(name=first, sll=-5.0, slr=5.0, soft_right="SMD", unit=units[0], **each)
+        others = (AxisSetup(name=name, unit=unit, **each) for name, unit in zip(rest, units[1:], strict=True))
         self.board = Board(SystemFile(axis=(limited, *others)))
         self.board_tasks = BoardTasks(self.board)
         self.tasks = self.board_tasks.tasks

@@ -298,3 +298,78 @@ def test_the_common_buffer_of_a_task_is_that_of_the_pc() -> None:
     assert bytes(back.buffer[16:24]) == b"\x00\x00\x00\x00\x00\x00\x06\x40"
     assert bytes(back.buffer[992:998]) == b"\xfd\xff\xff\xff\x00\x02"
     pcap.detach()
+
+
+# ------------------------------------------------------------------ what else a program writes, reads and commands
+
+
+def test_positions_motor_command_and_outputs_of_a_program_go_to_their_axis() -> None:
+    axis = Sap()
+    axis.run(
+        "A2.rp := 12.5; A3.mcp := -1234; CI0 := A3.mcp; CI1 := A2.mcp; A1.digo := 37; CI2 := A3.digo;",
+        scans=3,
+    )
+    assert [one.rp for one in axis.board.axes[:2]] == [0.0, 12.5]
+    assert (axis.ci(0), axis.ci(1), axis.ci(2), axis.board.outputs) == (-1234, 0, 37, 37)
+    axis.run("ol (A3); cl (A2); A2.dp := 13.25; A2.rp := 99; wt (3); CD0 := A2.rp; CD1 := A1.dp;")
+    assert (axis.cd(0), axis.cd(1)) == (13.25, 0.0)  # rp cannot be written in position control
+
+
+def test_zero_offsets_of_a_program_count_from_each_other_and_go_away() -> None:
+    axis = Sap()
+    axis.run(
+        f"cl (A1, A2, A3); {FAST} szpa (A2, 2.5); mla (A2 := 10); wt (A2); CD0 := A2.ZeroOffset; CD1 := A2.dp;"
+        "szpr (A2, 1.25); CD2 := A2.ZeroOffset; CD3 := A2.dp; CD4 := A3.ZeroOffset; azo (9); CD5 := A2.dp;"
+    )
+    assert [axis.cd(k) for k in range(6)] == [2.5, 10.0, 3.75, 8.75, 0.0, 12.5]
+
+
+def test_a_program_reads_error_queue_and_index_of_its_axis() -> None:
+    axis = Sap()
+    axis.run(
+        f"VAR p : ARRAY [1..2] OF DOUBLE; BEGIN cl (A2, A3); {FAST} CI0 := A2.lsm; smlr (A2 := 5); smlr (A2 := 6);"
+        "CI1 := A2.MCiS; CI2 := A3.MCiS; CI3 := CI0 - A2.lsm; CI4 := CI0 - A3.lsm; CI5 := A2.PcapIndex;"
+        "p[1] := 11.5; p[2] := 12; spda (A2, 2, p, 41); ssms (A2); wt (A2);"
+        "CI6 := A2.PcapIndex; CI7 := A3.PcapIndex END."
+    )
+    assert [axis.ci(k) for k in (1, 2, 4, 5, 6, 7)] == [2, 0, 0, -1, 42, -1]
+    assert axis.ci(3) == 2 * 145
+    late = Sap(plant={"kind": "lag"}, kp=20.0)
+    late.run(
+        "cl (A2, A3); A2.jac := 1000; A2.jvl := 50; jr (A2 := 90); wt (1000); CD0 := A2.PosErr; CD1 := A3.PosErr;"
+    )
+    assert late.cd(0) == pytest.approx(2.5, rel=1e-3)  # v / kp
+    assert late.cd(1) == 0.0
+
+
+def test_queues_of_a_program_pause_are_dropped_and_change_their_last_velocity() -> None:
+    axis = Sap()
+    queue = "cl (A2); TRAC := 1000; TRVL := 50; TRTVL := 0; smlr (A2 := 10); smlr (A2 := 7); smlr (A2 := 6); ssms (A2);"
+    axis.run(
+        f"{queue} wt (50); sstps (A2); wt (A2); CD0 := A2.dp; CI0 := A2.MCiS; sdels (A2); CI1 := A2.MCiS;"
+    )
+    assert (axis.cd(0), axis.ci(0), axis.ci(1)) == (10.0, 2, 0)
+    axis.run(f"{queue} sstvl (A2, 12.5); wt (A2); CD1 := A2.dv; ms (A2); wt (A2); CD2 := A2.dv;")
+    assert axis.cd(1) == pytest.approx(12.5)
+    assert axis.cd(2) == 0.0
+
+
+def test_loops_of_a_program_open_and_close_without_a_jump() -> None:
+    axis = Sap()
+    axis.run(
+        "A2.mcp := 8192; wt (100); clv (A2); wt (50); CD0 := A2.dv; CD1 := A1.dv; js (A2); wt (A2); CD2 := A2.dv;"
+    )
+    assert axis.cd(0) == pytest.approx(200.0 * 8192 / 32767, rel=1e-3)  # goes on as it was driven
+    assert (axis.cd(1), axis.cd(2)) == (0.0, 0.0)
+    late = Sap(plant={"kind": "lag"})
+    late.run("cl (A2); A2.dp := 3; wt (2); CD3 := A2.dp; RPtoDP (A2); wt (2); CD4 := A2.dp;", scans=20)
+    assert late.cd(3) == 3.0
+    assert 0.0 < late.cd(4) < 0.3  # to where the axis had come until then
+
+
+@pytest.mark.parametrize(("name", "way"), [("jhl", -1), ("jhr", 1)])
+def test_the_search_of_a_program_runs_its_way(name: str, way: int) -> None:
+    axis = Sap()
+    axis.run(f"cl (A2); A2.hac := 400; A2.hvl := 23; {name} (A2); wt (200); CD0 := A2.dv; CD1 := A3.dv;")
+    assert axis.cd(0) == pytest.approx(23.0 * way)
+    assert axis.cd(1) == 0.0
