@@ -30,6 +30,7 @@ SCRIPTS = {
     "bench_imc.py": "iMC card",
     "bench_cycle_calls.py": "One cycle per call",
     "bench_post.py": "Post-processor macros",
+    "bench_focas.py": "FOCAS server",
 }
 
 

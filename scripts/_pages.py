@@ -40,6 +40,12 @@ def fanuc_page(name: str) -> str:
     return page()
 
 
+def focas_page() -> str:
+    """Return the page of the FOCAS server."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_focas_pages.py"))["page"]
+    return page()
+
+
 def imc_page(name: str) -> str:
     """Return one of the pages of the iMC card."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_imc_pages.py"))[name]
@@ -66,6 +72,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/conformance.md": conformance_page,
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),
+    "docs/reference/focas-protocol.md": focas_page,
     "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),
     "docs/reference/machine-file.md": machine_file_reference,

@@ -238,6 +238,7 @@ def test_the_mode_cannot_change_under_a_running_program() -> None:
     made.advance(100)
     refused(Refusal.RUNNING, lambda: made.select_mode(Mode.JOG), made)
     made.select_mode(Mode.AUTO)
+    refused(Refusal.DATA, lambda: made.select_mode("automatic"), made)  # type: ignore[arg-type]
     made.feed_hold()
     made.select_mode(Mode.JOG)
     assert made.status().mode is Mode.JOG

@@ -18,6 +18,7 @@ from polycnc.servers.focas import (
     Frame,
     FrameReader,
     FrameType,
+    Plan,
     Reply,
     Request,
     Session,
@@ -59,10 +60,13 @@ class Control:
     def opening(self) -> bytes:
         return b"\x11" * 360
 
-    def answer(self, requests: Sequence[Request]) -> list[Reply] | Status:
+    def answer(self, requests: Sequence[Request], plan: Plan) -> list[Reply] | Status:
         if any(request.command == 0x15 for request in requests):
             return Status(-17, 1)
         return [Reply(bytes([request.command] * 3), -(request.command == 0x25)) for request in requests]
+
+    def plan(self) -> Plan:
+        return Plan()
 
     def download_start(self, name: str) -> Status:
         return Status(5, 1) if name == "N:bad" else Status()

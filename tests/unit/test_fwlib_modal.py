@@ -90,6 +90,32 @@ def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: 
     assert every.modal.g_rdata[group] == value | 0x80
 
 
+@pytest.mark.covers("fanuc.modal.G.11.1", "fanuc.modal.addr.102")
+def test_a_modal_call_of_a_macro_and_the_argument_e() -> None:
+    control = PowerMate()
+    control.programs.register(1, "O0001\nG66P9000E7.25\nG1X3.F600\n#1=5\nG1X#1\nG67\nG4X1.\nM30\n")
+    control.programs.register(9000, "O9000\n#500=#500+#8\nG4X0.1\nM99\n")
+    library = fwlib.Session()
+    library.attach(0, control)
+    _, handle = library.cnc_allclibhndl()
+    control.select_program(1)
+    control.cycle_start()
+    control.advance(100)
+    assert g(library, handle, 11) == 1
+    code, modal = library.cnc_modal(handle, 102, 0)
+    assert (code, modal.modal.aux.aux_data) == (0, 7250)
+    control.advance(2000, until=lambda: _executes(control, "G4X1."))
+    assert g(library, handle, 11) == 0
+    assert control.macros.get(500) == 14.5
+
+
+@pytest.mark.covers("fanuc.modal.G.20.1")
+def test_polar_interpolation_that_comes_next_has_its_number() -> None:
+    library, handle, _ = executing("G1 X3. F600\nG12.1", "G1")
+    assert g(library, handle, 20) == 0
+    assert g(library, handle, 20, 1) == 1 | 0x80
+
+
 @pytest.mark.covers(
     "fanuc.cnc_modal.type.-1", "fanuc.modal.G.undefined", "fanuc.modal.G.11.0", "fanuc.modal.G.20.0"
 )

@@ -240,6 +240,27 @@ def test_a_power_mate_d_has_none_of_this() -> None:
     ] == [EW.EW_FUNC] * 9
 
 
+UNMARKED: dict[str, tuple[int, ...]] = {
+    "cnc_actf": (), "cnc_absolute": (-1, 12), "cnc_machine": (-1, 12), "cnc_relative": (-1, 12),
+    "cnc_distance": (-1, 12), "cnc_skip": (-1, 12), "cnc_srvdelay": (-1, 12), "cnc_accdecdly": (-1, 12),
+    "cnc_rddynamic": (1, 38), "cnc_rdprgnum": (), "cnc_rdseqnum": (), "cnc_rdproginfo": (0, 12),
+    "cnc_rdmdipntr": (), "cnc_rdtofs": (1, 0, 8), "cnc_rdtofsinfo": (), "cnc_rdparam": (6711, 0, 8),
+    "cnc_rdmacro": (100, 10), "cnc_rdmacroinfo": (), "cnc_getmactype": (), "cnc_rdparainfo": (6711, 1),
+}  # fmt: skip
+
+
+@pytest.mark.covers("fanuc.concept.power_mate_d_limit")
+def test_a_power_mate_d_has_the_functions_of_the_other_sections() -> None:
+    control = PowerMate(model="D")
+    library, handle = at(control)
+    control.select_mode("MDI")
+    refused = {
+        name for name, given in UNMARKED.items() if getattr(library, name)(handle, *given)[0] != EW.EW_OK
+    }
+    assert refused == set()
+    assert library.cnc_exebufstat(handle)[0] is EW.EW_FUNC
+
+
 @pytest.mark.covers("fanuc.param.8003_7", "fanuc.param.8010")
 def test_parameters_allow_direct_commands() -> None:
     control = PowerMate()

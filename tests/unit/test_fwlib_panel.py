@@ -27,6 +27,23 @@ UNUSED = (1, 2, 6, 13, 14, 15)
 ALL = 0x1FB9
 
 
+@pytest.mark.covers("fanuc.IODBSGNL.machn_lock.0", "fanuc.IODBSGNL.machn_lock.1")
+def test_the_machine_lock_lets_programs_run_without_the_axes() -> None:
+    control, library, handle = written(machn_lock=1)
+    control.programs.register(7, "O0007\nG1X3.F6000\nG4X0.05\nM30\n")
+    control.select_program(7)
+    seen = []
+    for lock in (1, 0):
+        control.cycle_start()
+        control.advance(5)
+        sgnl = fwlib.IODBSGNL(type=1 << 9, machn_lock=1 - lock)
+        assert library.cnc_wropnlsgnl(handle, sgnl) == 0  # within the program: from the next start on
+        control.advance(1000)
+        assert control.status().channel.run_state is RunState.COMPLETED
+        seen.append(control.machine.actual["X"])
+    assert seen == [0.0, 3.0]
+
+
 def short(bits: int) -> int:
     return bits - 0x10000 if bits & 0x8000 else bits
 

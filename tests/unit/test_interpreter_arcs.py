@@ -130,7 +130,7 @@ STRAIGHT = load_dialect("din").model_copy(update={"arcs": Arcs(no_center="line")
 )
 def test_an_arc_without_a_centre_is_refused_in_every_dialect(dialect: str, block: str, place: int) -> None:
     """Lost centre words must not cut the chord."""
-    assert refusal(f"F100\n{block}\n", dialect=dialect) == f"2:{place}: an arc needs a centre or a radius"
+    assert refusal(f"G17 F100\n{block}\n", dialect=dialect) == f"2:{place}: an arc needs a centre or a radius"
 
 
 def test_a_move_after_a_circle_without_its_own_motion_word_is_refused() -> None:

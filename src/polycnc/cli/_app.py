@@ -12,6 +12,7 @@ from polycnc.cli import (
     _compare,
     _conformance,
     _debug,
+    _focas,
     _machine,
     _post,
     _run,
@@ -28,7 +29,7 @@ app = typer.Typer(
     help="A virtual CNC and motion controller: run, time and inspect NC programs without a machine.",
     epilog="Exit status: 0 clean, 1 program error or alarm, 2 wrong usage, 70 internal error, 130 interrupted.",
     no_args_is_help=True,
-    add_completion=False,
+    add_completion=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -72,6 +73,10 @@ app.command("conformance", short_help="Show which parts of the manuals are teste
 app.command("warmup", short_help="Compile beforehand what the first use would wait for.")(
     guarded(_warmup.warmup_command)
 )
+_focas.focas_app.command("dissect", short_help="Explain captured bytes of the protocol.")(
+    guarded(_focas.dissect_command)
+)
+app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 

@@ -1,63 +1,114 @@
-"""``polycnc check``: every error of a program, not only the first."""
+"""``polycnc check``: every error of a program, not only the first, and what a machinist would remark."""
 
 from __future__ import annotations
 
 import sys
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from polycnc.cli._output import bold, print_json, say
+from polycnc.cli._errors import PROGRAM, USAGE
+from polycnc.cli._output import bold, bold_red, print_json, say, say_problem
+from polycnc.cli._programs import read_program
 from polycnc.cli._run import DIALECT, IGNORE, MACHINE, ROOT, codes_of
+from polycnc.errors import SourcePosition, UsageError
 
 if TYPE_CHECKING:
     from polycnc.errors import ProgramError
+    from polycnc.runner import CheckReport
+
+
+@dataclass
+class _Findings:
+    """What has been found in all programs; `unreadable` says why a file could not be read."""
+
+    reports: dict[str, CheckReport] = field(default_factory=dict)
+    unreadable: dict[str, UsageError] = field(default_factory=dict)
+
+    @property
+    def errors(self) -> int:
+        return sum(len(report.errors) for report in self.reports.values()) + len(self.unreadable)
+
+    @property
+    def remarks(self) -> int:
+        return sum(len(report.remarks) for report in self.reports.values())
 
 
 def check_command(
-    programs: Annotated[list[Path], typer.Argument(help="The part programs.", metavar="PROGRAM")],
+    programs: Annotated[
+        list[Path], typer.Argument(help="The part programs; - is standard input.", metavar="PROGRAM")
+    ],
     machine: Annotated[str | None, MACHINE] = None,
     dialect: Annotated[str | None, DIALECT] = None,
+    strict: Annotated[bool, typer.Option("--strict", help="Let remarks on the machining be errors.")] = False,
     ignore: Annotated[list[str] | None, IGNORE] = None,
     root: Annotated[Path | None, ROOT] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
 ) -> None:
-    """Report every error of part programs, each with its place and what to do."""
+    """Report every error of part programs, each with its place and what to do, and remarks on the machining."""
     from polycnc import runner
     from polycnc.machine import load_machine
+    from polycnc.nc import load_dialect
 
-    texts = [runner.program_text(program) for program in programs]
     config = load_machine(machine)
-    found = {
-        text.name: runner.check(text, config, dialect, root=root, ignore=codes_of(ignore)) for text in texts
-    }
-    total = sum(map(len, found.values()))
+    if dialect is not None:
+        load_dialect(dialect)
+    found = _Findings()
+    for program in programs:
+        try:
+            text = read_program(program)
+        except UsageError as error:
+            found.unreadable[str(program)] = error
+            continue
+        found.reports[text.name] = runner.inspect(text, config, dialect, root=root, ignore=codes_of(ignore))
     if as_json:
-        print_json(
-            {
-                "errors": total,
-                "programs": {name: [_plain(error) for error in errors] for name, errors in found.items()},
-            }
-        )
+        print_json(_as_dict(found, strict))
     else:
-        for name, errors in found.items():
-            for error in errors:
-                say(str(error))
-            if not errors:
-                say(f"{name}: no errors")
-        if total:
-            say(lead=bold(runner.counted(total, "error")))
-    sys.exit(1 if total else 0)
+        _print(found, strict)
+    if found.unreadable:
+        sys.exit(USAGE)
+    sys.exit(PROGRAM if found.errors or (strict and found.remarks) else 0)
+
+
+def _print(found: _Findings, strict: bool) -> None:
+    from polycnc.runner import counted
+
+    for name, report in found.reports.items():
+        for error in report.errors:
+            say_problem(str(error))
+        for remark in report.remarks:
+            say_problem(str(remark), lead=bold_red("error: ") if strict else "remark: ")
+        if not report.errors and not (strict and report.remarks):
+            say(f"{name}: no errors")
+    for unreadable in found.unreadable.values():
+        say_problem(str(unreadable), lead=bold_red("error: "), error=True)
+    total = found.errors + (found.remarks if strict else 0)
+    if total:
+        say(lead=bold(counted(total, "error")))
+
+
+def _as_dict(found: _Findings, strict: bool) -> dict[str, Any]:
+    return {
+        "errors": found.errors + (found.remarks if strict else 0),
+        "programs": {
+            name: [_plain(error) for error in report.errors] for name, report in found.reports.items()
+        },
+        "remarks": {
+            name: [
+                {"text": each.text, "code": each.key, "count": each.count, **_place(each.position)}
+                for each in report.remarks
+            ]
+            for name, report in found.reports.items()
+        },
+        "unreadable": {name: {"text": e.what, "hint": e.hint} for name, e in found.unreadable.items()},
+    }
 
 
 def _plain(error: ProgramError) -> dict[str, Any]:
-    at = error.position
-    return {
-        "text": error.what,
-        "hint": error.hint,
-        "code": error.code,
-        "file": at.file if at else "",
-        "line": at.line if at else 0,
-        "column": at.column if at else 0,
-    }
+    return {"text": error.what, "hint": error.hint, "code": error.code, **_place(error.position)}
+
+
+def _place(at: SourcePosition | None) -> dict[str, Any]:
+    return {"file": at.file if at else "", "line": at.line if at else 0, "column": at.column if at else 0}

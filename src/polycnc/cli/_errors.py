@@ -18,7 +18,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import NoReturn, ParamSpec
 
 from polycnc import __version__
-from polycnc.cli._output import bold_red, say_error
+from polycnc.cli._output import bold_red, say_problem
 from polycnc.errors import PolycncError, UsageError
 
 P = ParamSpec("P")
@@ -88,7 +88,7 @@ def _circumstances() -> Iterator[str]:
 
 
 def _end(text: str, status: int) -> NoReturn:
-    say_error(text, lead=bold_red("error: "))
+    say_problem(text, lead=bold_red("error: "), error=True)
     sys.exit(status)
 
 

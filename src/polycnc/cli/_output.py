@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import logging
+import os
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -31,12 +32,25 @@ def say_error(text: str, *, lead: str = "") -> None:
 
 def bold(text: str) -> str:
     """Return `text` as a lead in bold letters, where the output is a terminal."""
-    return typer.style(text, bold=True)
+    return _styled(text, bold=True)
 
 
 def bold_red(text: str) -> str:
     """Return `text` as a lead in bold red letters, where the output is a terminal."""
-    return typer.style(text, bold=True, fg="red")
+    return _styled(text, bold=True, fg="red")
+
+
+def _styled(text: str, **style: Any) -> str:
+    """Return `text` in a style, which is left out where the output is no terminal or NO_COLOR is set."""
+    return text if os.environ.get("NO_COLOR") else typer.style(text, **style)
+
+
+def say_problem(text: str, *, lead: str = "", error: bool = False) -> None:
+    """Print an error or a remark on a program: its first line bold, the caret below the place in red."""
+    first, *rest = _printable(text).split("\n")
+    lines = [lead + bold(first)]
+    lines += [_styled(line, bold=True, fg="red") if line.strip() == "^" else line for line in rest]
+    typer.echo("\n".join(lines), err=error)
 
 
 def _printable(text: str) -> str:

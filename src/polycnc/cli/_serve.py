@@ -1,22 +1,23 @@
-"""``polycnc serve``: a control that lives, and answers clients over the network."""
+"""``polycnc serve``: controls that live, and answer clients over the network."""
 
 from __future__ import annotations
 
 import asyncio
+import ipaddress
 import re
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from polycnc.cli._output import say
 
 if TYPE_CHECKING:
-    from polycnc.cnc import Status
-    from polycnc.machine import Host
+    from polycnc.servers.focas import Fault, FocasServer, Keeper, Profile
 
 _NUMBER = re.compile(rb"\s*O(\d{1,4})\b")
-_LOOK_S = 0.5
+_MOST = 4000
 
 
 def serve_command(
@@ -24,10 +25,20 @@ def serve_command(
     profile: Annotated[
         str, typer.Option(help="The series that clients see: power-mate, 16i, 0i-d or 31i.", metavar="NAME")
     ] = "31i",
-    port: Annotated[int, typer.Option(help="TCP port, 0 for a free one.", min=0, max=65535)] = 8193,
+    port: Annotated[
+        int, typer.Option(help="TCP port, 0 for a free one, which is said.", min=0, max=65535)
+    ] = 8193,
     address: Annotated[
         str, typer.Option(help="Address to listen on; only those of this computer.")
     ] = "127.0.0.1",
+    count: Annotated[
+        int,
+        typer.Option(
+            help="So many controls, each at an address of its own: 127.0.0.1, 127.0.0.2, ...",
+            min=1,
+            max=_MOST,
+        ),
+    ] = 1,
     program: Annotated[
         Path | None, typer.Option(help="A program that runs again and again.", metavar="FILE")
     ] = None,
@@ -35,6 +46,14 @@ def serve_command(
     rate: Annotated[
         float, typer.Option(help="Machine seconds that pass in a second.", min=0.0, max=1000.0, metavar="X")
     ] = 1.0,
+    memory: Annotated[
+        Path | None,
+        typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
+    ] = None,
+    faults: Annotated[
+        Path | None,
+        typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
+    ] = None,
 ) -> None:
     """Serve a simulated control that runs, until Ctrl-C ends it."""
     from polycnc.errors import UsageError
@@ -46,35 +65,107 @@ def serve_command(
             f"{address} is no address of this computer alone",
             hint="The protocol knows no passwords: listen on 127.0.0.1 and forward the port where it is needed.",
         )
-    asyncio.run(_serve(profile, address, port, program, axes, rate))
+    if count > 1 and memory is not None:
+        raise UsageError(f"{count} controls cannot share {memory}", hint="Serve one control with a memory.")
+    if count > 1 and port == 0:
+        raise UsageError("several controls on port 0", hint="Say the port; they differ in their addresses.")
+    from polycnc.servers.focas import load_faults, load_profile
+
+    wanted = _Wanted(
+        profile,
+        load_profile(profile),
+        port,
+        program,
+        axes,
+        rate,
+        memory,
+        () if faults is None else load_faults(faults),
+    )
+    asyncio.run(_serve(wanted, _addresses(address, count)))
 
 
-async def _serve(profile: str, address: str, port: int, program: Path | None, axes: int, rate: float) -> None:
+@dataclass(frozen=True)
+class _Wanted:
+    """What is to be served."""
+
+    name: str
+    profile: Profile
+    port: int
+    program: Path | None
+    axes: int
+    rate: float
+    memory: Path | None
+    faults: tuple[Fault, ...]
+
+
+def _addresses(first: str, count: int) -> list[str]:
+    """Return so many addresses of this computer, from one on.
+
+    Raises:
+        UsageError: There are not so many.
+    """
+    from polycnc.errors import UsageError
+
+    if count == 1:
+        return [first]
+    try:
+        start = ipaddress.IPv4Address("127.0.0.1" if first == "localhost" else first)
+        last = start + (count - 1)
+    except ValueError:
+        start = last = ipaddress.IPv4Address(0)
+    if not last.is_loopback:
+        raise UsageError(f"there are no {count} addresses from {first} on", hint="Begin at 127.0.0.1.")
+    return [str(start + k) for k in range(count)]
+
+
+async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
     from polycnc import runner
     from polycnc.controllers.fanuc import PowerMate
-    from polycnc.machine import Host
-    from polycnc.servers.focas import FocasServer, load_profile
+    from polycnc.servers.focas import Faults, FocasServer, Keeper, ServedControl
 
-    series = load_profile(profile)
-    content = None if program is None else runner.program_text(program).content
-    control: Any = PowerMate(axes)
-    if content is not None:
-        number, text = _numbered(content)
-        control.programs.register(number, text)
-        control.select_program(number)
-        control.cycle_start()
-    control.advance(1)  # what has to be compiled is compiled before anybody waits for an answer
-    with Host(control, runner.WallClock(), rate=rate) as host:
-        server = FocasServer(host, control, series, address=address, port=port)
-        await server.start()
-        say(f"serving a FANUC {profile} on {server.address}:{server.port}; Ctrl-C ends it")
-        try:
-            async with asyncio.TaskGroup() as tasks:
-                tasks.create_task(server.serve_forever())
-                if content is not None:
-                    tasks.create_task(_again(host))
-        finally:
+    content = None if wanted.program is None else runner.program_text(wanted.program).content
+    servers: list[FocasServer] = []
+    keepers: list[Keeper] = []
+    controls: list[PowerMate] = []
+    wall = runner.WallClock()
+    try:
+        for address in addresses:
+            control = PowerMate(wanted.axes, memory=wanted.memory)
+            controls.append(control)
+            if content is not None:
+                number, text = _numbered(content)
+                control.programs.register(number, text)
+                control.select_program(number)
+                control.cycle_start()
+            if not servers:
+                control.advance(1)  # what has to be compiled is compiled before anybody waits for an answer
+            faults = Faults(wanted.faults, control.clock.now_s)
+            keeper = Keeper(ServedControl(control, faults, again=content is not None), wall, rate=wanted.rate)
+            keepers.append(keeper)
+            server = FocasServer(
+                keeper, control, wanted.profile, address=address, port=wanted.port, faults=faults
+            )
+            await server.start()
+            servers.append(server)
+        say(_said(wanted.name, servers))
+        await asyncio.wait([keeper.failed for keeper in keepers], return_when=asyncio.FIRST_COMPLETED)
+        for keeper in keepers:
+            if keeper.failed.done():
+                keeper.failed.result()
+    finally:
+        for server in servers:
             await server.close()
+        for keeper in keepers:
+            keeper.close()
+        for control in controls:
+            control.close()
+
+
+def _said(profile: str, servers: list[FocasServer]) -> str:
+    first, last = (f"{server.address}:{server.port}" for server in (servers[0], servers[-1]))
+    if len(servers) == 1:
+        return f"serving a FANUC {profile} on {first}; Ctrl-C ends it"
+    return f"serving {len(servers)} FANUC {profile} on {first} to {last}; Ctrl-C ends them"
 
 
 def _numbered(content: bytes) -> tuple[int, bytes]:
@@ -82,21 +173,3 @@ def _numbered(content: bytes) -> tuple[int, bytes]:
     text = content.replace(b"\r\n", b"\n").strip().removeprefix(b"%").lstrip().partition(b"\n%")[0] + b"\n"
     found = _NUMBER.match(text)
     return (int(found[1]), text) if found else (1, b"O1\n" + text)
-
-
-async def _again(host: Host[Any]) -> None:
-    """Start the program whenever it has come to its end."""
-    from polycnc.cnc import RunState
-    from polycnc.machine import HostError
-
-    def is_over(status: Status) -> bool:
-        return status.channel.run_state is RunState.COMPLETED
-
-    while True:
-        try:
-            await asyncio.to_thread(host.wait, is_over, _LOOK_S)
-        except HostError:
-            if host.failure is not None:
-                raise
-        else:
-            await asyncio.wrap_future(host.post(lambda control: control.cycle_start()))

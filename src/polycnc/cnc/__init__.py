@@ -34,6 +34,7 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
+from polycnc.cnc._status_reading import AxisFigures
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
 from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
@@ -49,6 +50,7 @@ __all__ = [
     "AlarmRow",
     "AlarmTable",
     "Answer",
+    "AxisFigures",
     "AxisMotion",
     "AxisStatus",
     "Breakpoint",

@@ -128,7 +128,7 @@ class AlarmList:
         self._table = table
         self._keep = keep
         self._history = store.history(_ALARMS)
-        self._owners = dict(owners or {})
+        self.owners = dict(owners or {})
         self._active: dict[tuple[str, str | None, int | None], Alarm] = {}
 
     @property
@@ -150,16 +150,16 @@ class AlarmList:
 
     def owner(self, axis: str) -> int | None:
         """Return the channel of an axis, None where there is only one."""
-        return self._owners.get(axis)
+        return self.owners.get(axis)
 
     def has(self, name: str, axis: str | None = None, channel: int | None = None) -> bool:
         """Tell whether an alarm is on."""
         return (name, axis, self._channel(axis, channel)) in self._active
 
     def _channel(self, axis: str | None, channel: int | None) -> int | None:
-        if not self._owners:
+        if not self.owners:
             return None
-        return channel if axis is None else self._owners.get(axis)
+        return channel if axis is None else self.owners.get(axis)
 
     def put(
         self, name: str, *, axis: str | None = None, detail: str = "", channel: int | None = None

@@ -43,7 +43,7 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import AxisStatus, Emergency, Status
-from polycnc.cnc._status_reading import read_axes, read_status
+from polycnc.cnc._status_reading import AxisFigures, read_axes, read_figures, read_status
 from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
@@ -170,6 +170,21 @@ class Control:
         for channel in self.channels:
             channel.change_config(self._live, self.dialect)
 
+    def share_axes(self, shares: Sequence[tuple[str, ...]]) -> None:
+        """Share the axes out anew, one tuple for each channel; an axis in none of them is moved by hand only.
+
+        Raises:
+            ControlError: A channel whose axes change executes a program.
+        """
+        pairs = zip(self.channels, shares, strict=True)
+        changing = [(channel, axes) for channel, axes in pairs if set(axes) != set(channel.axes)]
+        for channel, _ in changing:
+            check_over(channel)
+            channel.check_rest()
+        for channel, axes in changing:
+            channel.share(axes)
+        self.alarms.owners = {axis: n for n, axes in enumerate(shares) for axis in axes}
+
     def change_dialect(self, dialect: Dialect) -> None:
         """Let programs be read in another dialect, or with other settings of it, from now on.
 
@@ -208,8 +223,12 @@ class Control:
         What it does to a program that is executed is `ControlData.mode_change_while_running`.
 
         Raises:
-            ControlError: A program is being executed and the control refuses to leave its mode then.
+            ControlError: No such mode, or a program is being executed and the control refuses to leave its mode then.
         """
+        if mode not in list(Mode):
+            raise ControlError(
+                Refusal.DATA, f"there is no mode '{mode}'", hint=f"The modes are {', '.join(Mode)}."
+            )
         mode = Mode(mode)
         changing = [each for each in self._chosen(channel) if each.mode is not mode]
         running = [each for each in changing if each.active]
@@ -666,6 +685,10 @@ class Control:
     def axes(self) -> dict[str, AxisStatus]:
         """Return the axes in the present cycle, as the status has them, for those who read them often."""
         return read_axes(self)
+
+    def figures(self) -> AxisFigures:
+        """Return positions and speeds of the axes in the present cycle, by their places; quicker than `axes`."""
+        return read_figures(self)
 
     def snapshot(self) -> ControlSnapshot:
         """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 
 from polycnc.cnc._block_search import block_line
 from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
@@ -73,7 +74,12 @@ class ControlChannel:
         self._machine = machine
         self._dialect = dialect
         self._manual = manual
+        self._file = config
         self.config = self._own(config)
+        self.names: Sequence[str] | None = None
+        """Names of the machine's axes for programs, empty for those of others; None: as the machine has them."""
+        self.asks_often = False
+        """Whether a language that waits is asked in every cycle."""
         self._library = library
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
@@ -174,7 +180,10 @@ class ControlChannel:
         kept = [each.copy() for each in arrays]
         row, run = state.paths.row[self.path : self.path + 1], self.run
         kept_row = row.copy()
-        saved = None if run is None else run.snapshot()
+        try:
+            saved = None if run is None else run.snapshot()
+        except UsageError:  # a language has executed it: it stands at its beginning then
+            saved = None
         try:
             yield
         except ControlError:
@@ -222,10 +231,11 @@ class ControlChannel:
                 text,
                 self._dialect,
                 path=self.path,
-                options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
+                options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s, asks_often=self.asks_often),
                 config=self.config,
                 library=self._library,
                 language=self.language,
+                axes=self.names,
                 on_event=lambda event: self._on_event(self, event),
             )
         else:
@@ -320,8 +330,21 @@ class ControlChannel:
 
     def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
         """Let programs that begin from now on keep other limits, and be read in this dialect."""
-        self.config, self._dialect = self._own(config), dialect
+        self._file, self._dialect = config, dialect
+        self.config = self._own(config)
         self._changed = True
+
+    def share(self, axes: tuple[str, ...]) -> None:
+        """Have these axes from now on; no program is being executed."""
+        self.data = replace(self.data, axes=axes)
+        state, names = self._machine.state, self._machine.config.axis_names
+        for index, name in enumerate(names):
+            if name not in axes and state.owner[index] == self.path:
+                give_to_point_to_point(state, index)
+            state.paths.axis[self.path, index] = index if name in axes else -1
+        state.paths.position[self.path] = state.base
+        state.paths.queued[self.path] = state.base
+        self.change_config(self._file, self._dialect)
 
     def set_switches(self, switches: Switches) -> None:
         """Take over what the operator has switched on."""

@@ -164,7 +164,12 @@ class PathFeed:
         tail = int(self.row["tail"])
         if count >= tail:
             return tail
-        tag = self.tags(count, count + 1)[0]
+        segments, row = self.machine.state.seg.row["tag"], self.row
+        base, capacity = int(row["base"]), int(row["capacity"])
+        tag = segments[base + count % capacity]
+        count += 1
+        if count < tail and segments[base + count % capacity] != tag:
+            return count
         while count < tail:
             for other in self.tags(count, min(count + _PIECE, tail)):
                 if other != tag:

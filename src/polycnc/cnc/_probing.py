@@ -32,9 +32,10 @@ class Probing:
 
         A `signal` from outside is a contact where the axes are.
         """
-        now = positions(machine)
-        surfaces, names = machine.config.surfaces, machine.config.axis_names
-        found = first_contact(surfaces, names, self.before, now) or (now if signal else None)
+        now, config = positions(machine), channel.state.machine
+        found = first_contact(config.surfaces, config.axis_names, self.before, now) or (
+            now if signal else None
+        )
         self.before = now
         if found is None:
             return False
@@ -48,7 +49,7 @@ class Probing:
 
 
 def delete_rest(machine: Machine, channel: Channel, feed: PathFeed) -> None:
-    """Drop what a path, which stands, has still to go along, but for functions; its program goes on from there."""
+    """Drop the move along which a path stands; functions, stops and the program behind it go on from there."""
     drop_queue(machine.state.seg, machine.state.paths, channel.path)
     channel.writer.put_again()
     feed.drop_probing()

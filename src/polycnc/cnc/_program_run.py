@@ -36,6 +36,7 @@ from polycnc.nc import (
     ModalWords,
     ProgramText,
     Stop,
+    Suppressed,
     load_dialect,
 )
 
@@ -60,14 +61,13 @@ _STANDING = {
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 HIGHEST_OVERRIDE = 2.0
-_SKIP_CYCLES = 1 << 12
 
 
 # Plain values that a run holds besides its channel.
 _SAVED = (
     "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
     "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
-    "skip_signal",
+    "skip_signal", "_suppressed", "_held_back", "_override_kept",
 )  # fmt: skip
 
 
@@ -91,7 +91,7 @@ class ProgramRun:
     names of the machine's axes in this channel, empty for those that it does not have.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The surfaces of the machine file give it as well. `on_skip` is told when it is met.
+    The surfaces of the machine file do the same. `on_skip` is told when either is met.
 
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
@@ -136,6 +136,9 @@ class ProgramRun:
         self._stop: Event | None = None  # the stop at which the program stands
         self._met: tuple[int, int] | None = None  # segment count and tag of the event at which the path rests
         self._dropping = False
+        self._suppressed = Suppressed()  # what the program keeps from acting now
+        self._held_back = False  # a feed hold that comes when the program lets it
+        self._override_kept = 1.0  # the feed override while the program keeps it from acting
         self._locked = False
         self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
@@ -184,13 +187,18 @@ class ProgramRun:
         """
         self._check_start()
         if self._state in _OVER:
-            self._begin(Step.INTO if self._single_block else Step.RUN)
+            self._begin(self._step_of_switch)
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
     def hold(self) -> None:
-        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed."""
-        if self._state is RunState.ACTIVE:
+        """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed.
+
+        While the program suppresses feed holds it comes as soon as it does no more.
+        """
+        if self._state is RunState.ACTIVE and self._suppressed.hold:
+            self._held_back = True
+        elif self._state is RunState.ACTIVE:
             self._hold = True
             self._state = RunState.HOLD
             self._set_hold()
@@ -205,7 +213,7 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._state.value}", hint="Start it."
             )
-        self._go(Step.INTO if self._single_block else Step.RUN)
+        self._go(self._step_of_switch)
 
     def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
         """Select another program; with `keeps_modal` it begins with the modal state that is in force.
@@ -307,6 +315,9 @@ class ProgramRun:
         """
         self.alarm = None
         self.channel.close()
+        self.channel.suppressed = Suppressed()
+        self._held_back = False
+        self._take_suppressed()
         if self._row["state"] == kernel.IDLE:
             self._state = RunState.RESET
             return
@@ -326,7 +337,7 @@ class ProgramRun:
         if on == self._single_block:
             return
         self._single_block = on
-        self.stopper.step = Step.INTO if on else Step.RUN
+        self.stopper.step = self._step_of_switch
         if self._state in (RunState.ACTIVE, RunState.HOLD):
             self.feed.look_again()
 
@@ -402,11 +413,14 @@ class ProgramRun:
     @property
     def feed_override(self) -> float:
         """Factor of the programmed feeds, 0 to 2; at 0 moves at feed stand."""
-        return float(self._row["override"])
+        return self._override_kept if self._suppressed.override else float(self._row["override"])
 
     @feed_override.setter
     def feed_override(self, factor: float) -> None:
         _check_factor(factor, HIGHEST_OVERRIDE, "the feed override")
+        if self._suppressed.override:
+            self._override_kept = factor
+            return
         self._row["override"] = factor
         self.feed.replan()
 
@@ -472,15 +486,26 @@ class ProgramRun:
         return self._tool_times.until(self._seconds())
 
     @property
+    def path_times(self) -> ToolTime:
+        """How long the path has cut and positioned so far, with whatever tool."""
+        return self._seconds()
+
+    @property
     def distance_to_go(self) -> dict[str, float]:
         """What is left to the end of the executed block (mm or degree); 0 where none is being executed."""
+        return self._by_axis(self.to_go)
+
+    @property
+    def to_go(self) -> Floats:
+        """What `distance_to_go` tells, by the place of the axis."""
         row = self._row
         here = self.machine.state.paths.position[self.path]
         if row["state"] not in (kernel.RUNNING, kernel.HELD):
-            return self._by_axis(np.zeros_like(here))
+            return np.zeros_like(here)
         last = self.feed.block_end(int(row["head"])) - 1
         k = int(row["base"]) + last % int(row["capacity"])
-        return self._by_axis(self.machine.state.seg.end[k] - here)
+        left: Floats = self.machine.state.seg.end[k] - here
+        return left
 
     # ------------------------------------------------------------------ time
 
@@ -516,6 +541,7 @@ class ProgramRun:
         """
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         target = self.feed.target()
         done = 0
         while self._state is RunState.ACTIVE and self._row["head"] < target:
@@ -543,9 +569,13 @@ class ProgramRun:
             return 0
         self._tidy()
         self.feed.feed()
+        self._take_suppressed()
         self._look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        return cycles if self._probing is None else min(cycles, 1)
+        often = self._probing is not None or (
+            self._options.asks_often and self.at_rest and not self.channel.done
+        )
+        return min(cycles, 1) if often else cycles
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
@@ -570,8 +600,6 @@ class ProgramRun:
             rows[:, kernel.BLOCK] = tags & LINE_MASK
             self.rows(rows, tags)
         recorder.filled[0] = 0
-
-    # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> RunSnapshot:
         """Return everything that this run holds, to go back to with `restore`.
@@ -719,7 +747,7 @@ class ProgramRun:
         self._met = int(self._row["head"]), event.tag
         self._tool_times = self._tool_times.changed(self.channel.records.tool(event.tag), self._seconds())
         if event.word and self.on_event is not None:
-            self._unanswered = bool(self.on_event(event))
+            self._unanswered = bool(self.on_event(event)) and not self._suppressed.answers
             self._set_hold()
         if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
             self._probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
@@ -752,6 +780,29 @@ class ProgramRun:
         if self._stop is not None:
             self._stop = None
             self.channel.go_on()
+
+    @property
+    def _step_of_switch(self) -> Step:
+        """How far a start goes as the switch of single blocks says, and the program lets it."""
+        return Step.INTO if self._single_block and not self._suppressed.single_block else Step.RUN
+
+    def _take_suppressed(self) -> None:
+        """Let what the program suppresses act no more, and what it did until now act again."""
+        was, now = self._suppressed, self.channel.suppressed
+        if now == was:
+            return
+        self._suppressed = now
+        if now.override is not was.override:
+            if now.override:
+                self._override_kept = float(self._row["override"])
+            self._row["override"] = 1.0 if now.override else self._override_kept
+            self.feed.replan()
+        if now.single_block is not was.single_block and self._single_block:
+            self.stopper.step = self._step_of_switch
+            self.feed.look_again()
+        if self._held_back and not now.hold:
+            self._held_back = False
+            self.hold()
 
     def _look(self) -> None:
         """See whether the path has come to an end, or to the end of a block."""

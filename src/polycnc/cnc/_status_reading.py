@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from polycnc.cnc._manual import ManualKind
 from polycnc.cnc._status import AxisStatus, ChannelStatus, Feed, Motion, Status
@@ -71,42 +71,67 @@ def _channel(control: Control, channel: ControlChannel) -> ChannelStatus:
     )
 
 
-def read_axes(control: Control) -> dict[str, AxisStatus]:
-    """Return the axes of a control at the present cycle."""
+class AxisFigures(NamedTuple):
+    """What an axis has at one cycle, as `AxisStatus` tells it, by the place of the axis (mm, degree, per second)."""
+
+    actual: list[float]
+    zero: list[float]
+    to_go: list[float]
+    following_error: list[float]
+    velocity: list[float]
+
+
+def read_figures(control: Control) -> AxisFigures:
+    """Return the figures of all axes at the present cycle, for those who read them often."""
     machine = control.machine
-    state, config = machine.state, machine.config
-    to_go: dict[str, float] = {}
-    zero = {}
+    state, count = machine.state, len(machine.config.axes)
+    zero, to_go = [0.0] * count, [0.0] * count
     for channel in control.channels:
         block = channel.executed
-        program_zero = (0.0,) * len(config.axes) if block is None else block.modal.zero
-        here = {} if channel.run is None else channel.run.distance_to_go
-        for axis_name, at in zip(config.axis_names, program_zero, strict=True):
-            if axis_name in channel.axes:
-                zero[axis_name] = at
-                to_go[axis_name] = here.get(axis_name, 0.0)
+        program_zero = zero if block is None else block.modal.zero
+        left = to_go if channel.run is None else channel.run.to_go.tolist()
+        if len(control.channels) == 1:
+            zero, to_go = list(program_zero), left
+            break
+        own = channel.axes
+        for index, name in enumerate(machine.config.axis_names):
+            if name in own:
+                zero[index], to_go[index] = program_zero[index], left[index]
+    if control.manual.active:
+        for index, axis in enumerate(machine.config.axes):
+            manual = control.manual.motion(axis.name)
+            if manual.kind is not ManualKind.NONE:
+                to_go[index] = 0.0 if manual.target is None else manual.target - float(state.base[index])
+    return AxisFigures(
+        state.servo.actual[:count].tolist(),
+        zero,
+        to_go,
+        state.servo.row["following_error"][:count].tolist(),
+        state.velocity[:count].tolist(),
+    )
+
+
+def read_axes(control: Control) -> dict[str, AxisStatus]:
+    """Return the axes of a control at the present cycle."""
+    state, config = control.machine.state, control.machine.config
+    figures = read_figures(control)
     referenced = control.manual.referenced
     found = {}
     for index, axis in enumerate(config.axes):
-        actual = float(state.servo.actual[index])
-        manual = control.manual.motion(axis.name)
-        left = to_go[axis.name]
-        if manual.kind is not ManualKind.NONE:
-            left = 0.0 if manual.target is None else manual.target - float(state.base[index])
-        velocity = float(state.velocity[index])
+        actual, velocity = figures.actual[index], figures.velocity[index]
         found[axis.name] = AxisStatus(
             name=axis.name,
             unit=axis.unit,
             machine=actual,
-            work=actual - zero[axis.name],
+            work=actual - figures.zero[index],
             relative=actual - control.relative_zero[index],
-            to_go=left,
+            to_go=figures.to_go[index],
             setpoint=float(state.setpoint[index]),
             actual=actual,
-            following_error=float(state.servo.row[index]["following_error"]),
+            following_error=figures.following_error[index],
             velocity=velocity,
             referenced=referenced[axis.name],
             moving=velocity != 0.0,
-            manual=manual.kind.value,
+            manual=control.manual.motion(axis.name).kind.value,
         )
     return found

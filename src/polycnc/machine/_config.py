@@ -152,6 +152,14 @@ class ToolConfig(StrictModel):
     radius_mm: NotNegative = Field(default=0.0, description="Radius of the tool.")
     wear_length_mm: float = Field(default=0.0, description="Added to the length.")
     wear_radius_mm: float = Field(default=0.0, description="Added to the radius.")
+    tip: Annotated[int, Field(ge=0, le=9)] = Field(
+        default=0,
+        description="Where the tip of a turning tool lies, as FANUC controls number it; 0 and 9: its middle.",
+    )
+    x_mm: float = Field(default=0.0, description="Offset of a turning tool along X, a radius.")
+    z_mm: float = Field(default=0.0, description="Offset of a turning tool along Z.")
+    wear_x_mm: float = Field(default=0.0, description="Added to the offset along X.")
+    wear_z_mm: float = Field(default=0.0, description="Added to the offset along Z.")
     description: str = Field(default="", description="Any text.")
 
 

@@ -193,6 +193,11 @@ class AxisConfig(_InUnit):
         return float(self._value("home"))
 
     @property
+    def is_diameter(self) -> bool:
+        """Return whether positions in programs are diameters."""
+        return bool(getattr(self, "diameter", False))
+
+    @property
     def reference_positions(self) -> tuple[float, ...]:
         """Return the second and further reference positions, as far as there are any."""
         return tuple(self._value("reference_positions"))
@@ -259,6 +264,10 @@ class LinearAxis(AxisConfig):
     servo: LinearServo = Field(default=LinearServo(), description="Position loop, see `[axis.servo]`.")
 
     modulo: ClassVar[bool] = False
+    diameter: bool = Field(
+        default=False,
+        description="true: positions in programs are diameters; here and in results they are radii.",
+    )
 
 
 class RotaryAxis(AxisConfig):

@@ -95,8 +95,12 @@ class SurfaceConfig(StrictModel):
 def first_contact(
     surfaces: Sequence[SurfaceConfig], names: Sequence[str], start: Sequence[float], end: Sequence[float]
 ) -> tuple[float, ...] | None:
-    """Return where a straight move first meets a surface (machine coordinates), None if it meets none."""
-    shares = [each for surface in surfaces if (each := surface.contact(names, start, end)) is not None]
+    """Return where a straight move first meets a surface (machine coordinates), None if it meets none.
+
+    A surface with an axis that is not among `names` is out of reach.
+    """
+    near = (surface for surface in surfaces if set(surface.axes) <= set(names))
+    shares = [each for surface in near if (each := surface.contact(names, start, end)) is not None]
     if not shares:
         return None
     share = min(shares)

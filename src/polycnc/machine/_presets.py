@@ -11,7 +11,7 @@ from polycnc.machine._config import MachineConfig
 from polycnc.machine._toml import load_toml, parse_toml, validate
 
 DEFAULT_MACHINE = "mill3"
-PRESETS = ("card6", "lathe2", "mill3", "mill5")
+PRESETS = ("card6", "lathe2", "mill3", "mill5", "vmc3")
 
 
 def load_machine(source: str | Path | MachineConfig | None = None) -> MachineConfig:

@@ -14,7 +14,7 @@ from polycnc.nc._block_source import (
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel import Channel, ChannelSnapshot
+from polycnc.nc._channel import Channel, ChannelSnapshot, Suppressed
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._calls import Library
@@ -60,6 +60,7 @@ __all__ = [
     "Spindle",
     "Statement",
     "Stop",
+    "Suppressed",
     "TextRules",
     "TextSpan",
     "Word",

@@ -53,6 +53,7 @@ LINE_MASK = (1 << 31) - 1
 AGAIN = 1 << 31  # told apart from the execution just before
 CONTEXT_SHIFT = 32
 _CONTEXTS = 1 << 20  # numbers of contexts: a reference stays exact as a float64, as the recorder keeps it
+_MOST_READ = 32
 _FEW = 4096  # so many contexts are kept without asking who needs them
 
 _SEQUENCE = re.compile(r"\s*(?:/[1-9]?)?\s*[Nn]\s*([0-9]+)")
@@ -167,6 +168,7 @@ class BlockRecords:
         self._enough = _FEW
         self._last: tuple[_Key | None, int] = None, 0  # and what is added to a line
         self._codes = _codes(dialect)
+        self._read: dict[int, BlockRecord] = {}  # the last records that were read
 
     def reference(self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, line: int) -> int:
         """Return the reference of a block that leaves the modal state `modal` behind."""
@@ -180,6 +182,8 @@ class BlockRecords:
 
     def block(self, tag: int) -> BlockRecord | None:
         """Return the record of a block; None for a tag that is no reference, or of a context since dropped."""
+        if (known := self._read.get(tag)) is not None:
+            return known
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         if context is None:
             return None
@@ -187,7 +191,9 @@ class BlockRecords:
         offset = context.text.line_start(line)
         text = context.text.line(offset)
         number = _SEQUENCE.match(text)
-        return BlockRecord(
+        if len(self._read) >= _MOST_READ:
+            self._read.clear()
+        self._read[tag] = record = BlockRecord(
             program=context.text.name,
             line=line,
             offset=offset,
@@ -196,6 +202,7 @@ class BlockRecords:
             stack=context.stack,
             modal=self._words(context, line),
         )
+        return record
 
     def words(self, text: ProgramText, modal: ModalSnapshot) -> ModalWords:
         """Return the modal words of a state of preparation."""
@@ -242,6 +249,7 @@ class BlockRecords:
         """Go back to a snapshot."""
         contexts, self._next = saved
         self._contexts = {n: each for n, each in contexts.items() if isinstance(each, _Context)}
+        self._read.clear()
         self._known = {context.key(): n for n, context in self._contexts.items()}
         self._last = None, 0
 
@@ -255,6 +263,7 @@ class BlockRecords:
     def keep(self, tags: Iterable[int]) -> None:
         """Drop every context that none of these tags refers to."""
         needed = {tag >> CONTEXT_SHIFT for tag in tags}
+        self._read.clear()
         self._contexts = {n: context for n, context in self._contexts.items() if n in needed}
         self._known = {key: n for key, n in self._known.items() if n in needed}
         self._last = None, 0

@@ -29,9 +29,16 @@ from polycnc.nc._block_source import (
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._calls import Back, Calls, Library, Place, Running
 from polycnc.nc.blocks._channel_state import ChannelState, SavedState
-from polycnc.nc.blocks._interpreter import Control, Interpreter
+from polycnc.nc.blocks._interpreter import Control, Interpreter, Trouble
 from polycnc.nc.blocks._messages import Message, Messages
-from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ORDINARY, ROTARY_AXIS, make_modal
+from polycnc.nc.blocks._modal import (
+    LINEAR_AXIS,
+    MODULO_AXIS,
+    ORDINARY,
+    ROTARY_AXIS,
+    make_modal,
+    set_diameters,
+)
 from polycnc.nc.blocks._moves import Feed, Line
 from polycnc.nc.blocks._queue import QueueWriter, WriterSnapshot
 from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
@@ -55,6 +62,15 @@ _JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are sho
 _MOST_ERRORS = 1000
 _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
+
+
+class Suppressed(NamedTuple):
+    """What a program keeps from acting (#3003, #3004): single block, waits for functions, feed hold, feed override."""
+
+    single_block: bool = False
+    answers: bool = False
+    hold: bool = False
+    override: bool = False
 
 
 class ChannelSnapshot(NamedTuple):
@@ -117,9 +133,14 @@ class Channel:
         self._axes = axes
         self._ended = False
         self.errors: list[ProgramError] = []
+        self.on_filled: Callable[[], None] | None = (
+            None  # for whoever looks at the queue before it is executed
+        )
         self.messages = Messages()
+        self.suppressed = Suppressed()
         self._collect_errors = collect_errors
         self._known_errors: set[str] = set()
+        self._refused_calls: dict[tuple[str, int], Trouble] = {}
         self.skip_levels = skip_levels
         self._language = language
         self._ordinary_blocks = ordinary_blocks
@@ -152,7 +173,7 @@ class Channel:
             feed_needs_point=dialect.numbers.feed_least_input > 0.0,
         )
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
+            dialect, self.state, self.messages, self.writer, self._trouble_of_call, self._reference
         )
         self.writer.stands_at_stops = stands_at_stops
         self.writer.answers = answers
@@ -198,6 +219,11 @@ class Channel:
 
         Without `compiled` every block goes through the ordinary interpreter.
         """
+        self._fill(blocks, compiled=compiled)
+        if self.on_filled is not None:
+            self.on_filled()
+
+    def _fill(self, blocks: int | None, *, compiled: bool) -> None:
         if not self._begun:
             self._begun = True
             self._begin()
@@ -340,6 +366,11 @@ class Channel:
         )
         modal.position[:] = config.start_positions
         self.dialect.set_initial_state(modal)
+        named = self.dialect.diameter_axes
+        set_diameters(
+            modal,
+            [index for index, axis in enumerate(config.axes) if axis.is_diameter or axis.name in named],
+        )
         state = ChannelState(config, modal)
         state.path_tolerance_mm = self.dialect.path_tolerance_mm(config.path)
         state.axis_names = names
@@ -445,8 +476,20 @@ class Channel:
         block = Block(item.words, flags, item.skip_level, item.offset, end, item.line, message=item.message)
         self._execute(text, block)
 
+    def _trouble_of_call(self, program: int | ProgramText, text: ProgramText, offset: int) -> Trouble | None:
+        """Return what is against a call, None if nothing is.
+
+        Where errors are collected, a call that has been refused once is so ever after: a program that calls itself k
+        times would else be gone through k to the power of the depth times.
+        """
+        site = (text.name, offset)
+        trouble = self._refused_calls.get(site) or self._calls.trouble(program)
+        if trouble is not None and self._collect_errors:
+            self._refused_calls[site] = trouble
+        return trouble
+
     def _call(self, text: ProgramText, call: CallProgram) -> None:
-        trouble = self._calls.trouble(call.program)
+        trouble = self._trouble_of_call(call.program, text, call.offset)
         if trouble is not None:
             raise ProgramError(trouble[0], position=text.position(call.offset), hint=trouble[1])
         back = Back(self._here(), self._text_end, call.line, self._calls_within)
@@ -576,6 +619,8 @@ class Channel:
                 back = Back(self._here(), self._text_end, block.line, self._calls_within)
                 if self._calls.enter(outcome.program, outcome.repeats, back):
                     self._begin()
+            case Control.GO_ON:
+                self._go_behind(outcome.place, block)
             case Control.RETURN:
                 source = self._calls.running.source
                 if source is not None and source.leave():
@@ -586,6 +631,21 @@ class Channel:
                 self._leave()
             case _:
                 pass
+
+    def _go_behind(self, place: Place | None, block: Block) -> None:
+        """Go on behind the contour that a cycle has cut.
+
+        Raises:
+            ProgramError: statements stand before that place.
+        """
+        assert place is not None
+        if place.offset > self._text_end:
+            raise ProgramError(
+                "a contour that is cut apart by statements is not supported yet",
+                position=place.text.position(block.offset),
+                hint="Write the contour in plain words.",
+            )
+        self._jump(place, self._text_end)
 
     def _leave(self) -> None:
         """End the present program: go back to the one that called it, or end everything."""

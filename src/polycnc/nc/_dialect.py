@@ -221,6 +221,17 @@ class Dialect(StrictModel):
     notes_codes: bool = Field(
         default=False, description="The G codes that were programmed are kept, for those who ask for them."
     )
+    diameter_axes: tuple[str, ...] = Field(
+        default=(),
+        description="Axes whose positions are diameters, besides those that the machine file names.",
+    )
+    incremental: dict[str, str] = Field(
+        default={}, description='Addresses of ways = the axis that goes them, like `U = "X"`.'
+    )
+    tool_word: Literal["select", "turret"] = Field(
+        default="select",
+        description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
+    )
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     free_corners: bool = Field(
         default=False,
@@ -250,6 +261,11 @@ class Dialect(StrictModel):
     @cached_property
     def _by_m(self) -> dict[int, MAction]:
         return {int(code): M_ACTIONS[action] for code, action in self.m.items()}
+
+    @property
+    def has_tool_change(self) -> bool:
+        """Whether programs can change the tool."""
+        return MAction.TOOL_CHANGE in self._by_m.values() or self.tool_word == "turret"
 
     @property
     def sets_work_offsets(self) -> bool:
@@ -342,7 +358,7 @@ class DialectTables(NamedTuple):
     least_input: float
 
 
-_SHIPPED = ("din", "fanuc", "haas", "grbl", "linuxcnc", "bosch")
+_SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch")
 DEFAULT_DIALECT = "din"
 DIALECTS: tuple[str, ...] = _SHIPPED
 """Names of the shipped dialects."""

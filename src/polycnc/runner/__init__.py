@@ -5,10 +5,21 @@ What posting and debugging need is loaded when it is first used.
 
 from typing import TYPE_CHECKING, Any
 
+from polycnc.runner._operations import Operation
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
-from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, Trace, counted, time_text
-from polycnc.runner._run import check, program_text, run
+from polycnc.runner._remarks import Remark
+from polycnc.runner._result import (
+    Alarm,
+    RunEvent,
+    RunMessage,
+    RunResult,
+    Trace,
+    TracedResult,
+    counted,
+    time_text,
+)
+from polycnc.runner._run import CheckReport, check, inspect, program_text, run
 from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
 from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._verify import Violation, verify_trace
@@ -45,19 +56,23 @@ __all__ = [
     "SCREEN_FORMATS",
     "TRACE_FORMATS",
     "Alarm",
+    "CheckReport",
     "Comparison",
     "Debugger",
     "Deviation",
+    "Operation",
     "PathDeviation",
     "Place",
     "PlotCollector",
     "PostResult",
     "PostVerification",
+    "Remark",
     "RunEvent",
     "RunMessage",
     "RunResult",
     "Trace",
     "TraceWriter",
+    "TracedResult",
     "View",
     "Violation",
     "WallClock",
@@ -66,6 +81,7 @@ __all__ = [
     "check_view_file",
     "compare",
     "counted",
+    "inspect",
     "machine_from",
     "open_in_browser",
     "plot",

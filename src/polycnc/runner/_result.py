@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from html import escape
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +14,7 @@ from polycnc.cnc import ToolTime
 from polycnc.errors import AlarmError, PolycncError, ProgramError, UsageError
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import Execution
+from polycnc.runner._operations import Operation
 
 if TYPE_CHECKING:
     from polycnc.runner.view import View
@@ -61,7 +64,7 @@ class RunEvent:
     word: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Trace:
     """Hold one row per control cycle: time, block (line of the program), path speed and positions.
 
@@ -85,8 +88,22 @@ class Trace:
     def __len__(self) -> int:
         return len(self.t_s)
 
+    def __repr__(self) -> str:
+        end = f", {time_text(float(self.t_s[-1]))}" if len(self) else ""
+        servo = ", actual positions" if self.actual is not None else ""
+        return f"<Trace of {' '.join(self.axes)}: {counted(len(self), 'cycle')}{end}{servo}>"
 
-@dataclass(frozen=True)
+    def _repr_html_(self) -> str:
+        """Return the extents of each axis as a table, for notebooks."""
+        lows, highs = (self.setpoint.min(axis=0), self.setpoint.max(axis=0)) if len(self) else ((), ())
+        rows = [
+            (f"{axis} ({unit})", f"{low:,.3f}", f"{high:,.3f}")
+            for axis, unit, low, high in zip(self.axes, self.units, lows, highs, strict=False)
+        ]
+        return html_table(repr(self)[1:-1], ("axis", "lowest", "highest"), rows)
+
+
+@dataclass(frozen=True, repr=False)
 class RunResult:
     """Say how a program ran.
 
@@ -117,11 +134,29 @@ class RunResult:
     trace: Trace | None = field(default=None, repr=False)
     variables: dict[str, object] = field(default_factory=dict, repr=False)
     """Variables of a program's language by name, after the run: permanent and global ones."""
+    operations: list[Operation] = field(default_factory=list, repr=False)
 
     def __str__(self) -> str:
         state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"
         blocks = counted(self.blocks, "block")
         return f"{self.program} on {self.machine}: {time_text(self.time_s)}, {blocks}, {state}"
+
+    def __repr__(self) -> str:
+        return f"<RunResult {self}>"
+
+    def _repr_html_(self) -> str:
+        """Return times, axes and what went wrong as a table, for notebooks."""
+        rows = [
+            ("cutting", time_text(self.cutting_time_s), f"{self.cutting_path_mm:,.3f} mm"),
+            ("rapid", time_text(self.rapid_time_s), f"{self.rapid_path_mm:,.3f} mm"),
+            ("waiting", time_text(self.waiting_time_s), ""),
+            *(
+                (f"{axis} ({self.axis_units[axis]})", f"{low:,.3f}", f"{high:,.3f}")
+                for axis, (low, high) in self.extents_mm.items()
+            ),
+            *((f"T{each.tool} {each.name}", time_text(each.time_s), "") for each in self.operations),
+        ]
+        return html_table(str(self), ("", "", ""), rows)
 
     @property
     def ok(self) -> bool:
@@ -196,10 +231,37 @@ class RunResult:
                 str(tool): {"cutting_time_s": time.cutting_s, "rapid_time_s": time.rapid_s}
                 for tool, time in self.tool_times.items()
             },
+            "operations": [
+                {
+                    "name": each.name,
+                    "line": each.line,
+                    "tool": each.tool,
+                    "time_s": each.time_s,
+                    "cutting_time_s": each.cutting_s,
+                    "rapid_time_s": each.rapid_s,
+                }
+                for each in self.operations
+            ],
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
             **({"variables": self.variables} if self.variables else {}),
         }
+
+
+class TracedResult(RunResult):
+    """A result that has its trace for certain."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def trace(self) -> Trace: ...
+
+
+def html_table(caption: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a small table as HTML."""
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in header) if any(header) else ""
+    body = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in rows)
+    return f"<table><caption>{escape(caption)}</caption><tr>{head}</tr>{body}</table>"
 
 
 def counted(number: int, thing: str) -> str:

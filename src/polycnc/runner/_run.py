@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal, overload
 
 import numpy as np
 import numpy.typing as npt
@@ -12,15 +14,68 @@ from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import BLOCK
 from polycnc.machine import Machine, MachineConfig, load_machine
-from polycnc.nc import Dialect, Event, ProgramText, Stop, dialect_for, line_of
+from polycnc.nc import Dialect, Event, MAction, ProgramText, Stop, dialect_for, line_of
 from polycnc.nc.macro import language_for
 from polycnc.outputs import keep_inputs
 from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
+from polycnc.runner._operations import OperationCollector
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
-from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult
+from polycnc.runner._remarks import MachiningWatch, Remark, times_remark
+from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, TracedResult
 from polycnc.runner._trace import TraceCollector
 
+
+@dataclass(frozen=True, slots=True)
+class CheckReport:
+    """What is wrong with a part program, and what is no error but seldom meant."""
+
+    errors: list[ProgramError]
+    remarks: list[Remark]
+
+
 _RECORD_CYCLES = 1 << 14
+
+
+@overload
+def run(
+    program: str | Path | ProgramText,
+    machine: str | Path | MachineConfig | None = None,
+    dialect: str | Dialect | None = None,
+    *,
+    trace: Literal[True],
+    servo: bool = False,
+    check: bool = True,
+    skip_levels: Iterable[int] = (),
+    stop_at_m0: bool = False,
+    rows: Rows | None = None,
+    tagged_rows: TaggedRows | None = None,
+    progress: Progress | None = None,
+    root: str | Path | None = None,
+    keys: Iterable[str] = (),
+    screen: str | Path | None = None,
+    ignore: Iterable[str] = (),
+) -> TracedResult: ...
+
+
+@overload
+def run(
+    program: str | Path | ProgramText,
+    machine: str | Path | MachineConfig | None = None,
+    dialect: str | Dialect | None = None,
+    *,
+    trace: bool = False,
+    servo: bool = False,
+    check: bool = True,
+    skip_levels: Iterable[int] = (),
+    stop_at_m0: bool = False,
+    rows: Rows | None = None,
+    tagged_rows: TaggedRows | None = None,
+    progress: Progress | None = None,
+    root: str | Path | None = None,
+    keys: Iterable[str] = (),
+    screen: str | Path | None = None,
+    ignore: Iterable[str] = (),
+) -> RunResult: ...
 
 
 def run(
@@ -73,6 +128,7 @@ def run(
     recorded = bool(sinks or tagged)
     simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if recorded else 0)
     events: list[RunEvent] = []
+    operations = OperationCollector(text)
 
     def to_all(piece: Floats, tags: npt.NDArray[np.int64]) -> None:
         for sink in sinks:
@@ -97,7 +153,7 @@ def run(
         config=None if control is None else control.config,
         options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
         rows=to_all if recorded else None,
-        on_event=lambda event: _note(event, events, execution),
+        on_event=lambda event: _note(event, events, operations, execution),
     )
     stuck: ProgramError | None = None
     if control is None:
@@ -113,7 +169,9 @@ def run(
             control.finish()
         if screen is not None:
             control.screen.save(Path(screen))
-    result = _result(execution, events, collector, stuck)
+    if remark := times_remark(config, chosen, [event.word for event in events]):
+        execution.channel.messages.note(remark, 0)
+    result = _result(execution, events, operations, collector, stuck)
     if control is not None:
         result.variables.update(control.variables())
     if check:
@@ -128,12 +186,45 @@ def check(
     *,
     root: str | Path | None = None,
     ignore: Iterable[str] = (),
+    strict: bool = False,
 ) -> list[ProgramError]:
     """Return every error of a part program, not only the first; an empty list if there is none.
 
-    `ignore` names G and M codes that count as if they were not there.
+    `ignore` names G and M codes that count as if they were not there. With `strict` the remarks of `inspect` are errors
+    too.
 
     A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run.
+
+    Raises:
+        UsageError: no such file, machine or dialect.
+    """
+    report = inspect(program, machine, dialect, root=root, ignore=ignore)
+    if not strict:
+        return report.errors
+    return [*report.errors, *map(_as_error, report.remarks)]
+
+
+def _as_error(remark: Remark) -> ProgramError:
+    return ProgramError(
+        remark.text,
+        code=remark.key,
+        position=remark.position,
+        hint="Strict checking makes this remark an error.",
+    )
+
+
+def inspect(
+    program: str | Path | ProgramText,
+    machine: str | Path | MachineConfig | None = None,
+    dialect: str | Dialect | None = None,
+    *,
+    root: str | Path | None = None,
+    ignore: Iterable[str] = (),
+) -> CheckReport:
+    """Return the errors of a part program as `check` does, and what a machinist would remark on it.
+
+    Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut, and
+    program stops; not so of programs that a language like CPL executes.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -143,15 +234,17 @@ def check(
     chosen = _dialect_of(text, dialect, ignore)
     control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
     if control is not None and control.has_statements(text):
-        return control.check(text)
+        return CheckReport(control.check(text), [])
     options = RunOptions(stands_at_stops=False, collect_errors=True)
     language = language_for(chosen) if control is None else control.language
     config = None if control is None else control.config
     execution = ProgramRun(simulated, text, chosen, options=options, language=language, config=config)
     if control is not None:
         control.attach(execution)
+    watch = MachiningWatch(execution.channel)
+    execution.channel.on_filled = watch.look
     run_to_end(execution, every_cycle=False)
-    return execution.channel.errors
+    return CheckReport(execution.channel.errors, watch.remarks)
 
 
 def _dialect_of(text: ProgramText, dialect: str | Dialect | None, ignore: Iterable[str]) -> Dialect:
@@ -174,9 +267,19 @@ def program_text(program: str | Path | ProgramText) -> ProgramText:
         raise
 
 
-def _note(event: Event, events: list[RunEvent], execution: ProgramRun) -> None:
+def _note(
+    event: Event, events: list[RunEvent], operations: OperationCollector, execution: ProgramRun
+) -> None:
     """Keep an event of the run; say what becomes of program stops."""
     events.append(RunEvent(execution.machine.time_s, event.line, event.word))
+    records = execution.channel.records
+    record = records.block(event.tag)
+    if record is not None and not record.stack and record.program == execution.program.name:
+        code = event.word[1:].partition(" ")[0]
+        action = execution.dialect.m_action(int(code)) if event.word[:1] == "M" and code.isdigit() else None
+        tool = records.tool(event.tag)
+        changes = action is MAction.TOOL_CHANGE or event.word[:1] == "T"
+        operations.function(event.line, tool, changes, execution.machine.time_s, execution.path_times)
     if event.stop in (Stop.PROGRAM, Stop.OPTIONAL):
         what = "the run stops here" if execution.stands_at(event.stop) else "passed without stopping"
         execution.channel.messages.note(f"{event.word}: {event.stop.value}, {what}", event.line)
@@ -206,6 +309,7 @@ def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
 def _result(
     execution: ProgramRun,
     events: list[RunEvent],
+    operations: OperationCollector,
     collector: TraceCollector | None,
     stuck: ProgramError | None = None,
 ) -> RunResult:
@@ -218,7 +322,7 @@ def _result(
     if (alarm := execution.alarm) is not None:
         alarms.insert(0, Alarm("machine", alarm.text, alarm.code, line_of(alarm.tag), 0, machine.time_s))
     names = config.axis_names
-    return RunResult(
+    return (TracedResult if collector else RunResult)(
         program=execution.program.name,
         dialect=channel.dialect.name,
         machine=config.name,
@@ -240,6 +344,7 @@ def _result(
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
         tool_times=execution.tool_times,
+        operations=operations.operations(machine.time_s, execution.path_times),
         events=events,
         source=execution.program,
         trace=collector.trace() if collector else None,

@@ -2,6 +2,7 @@
 
 from polycnc.controllers.bosch._channel_host import ChannelHost
 from polycnc.controllers.bosch._macoda import NEW_NUMBERS, present_number
+from polycnc.controllers.bosch._pnc import Pnc
 from polycnc.controllers.bosch._system import BoschSystem
 
-__all__ = ["NEW_NUMBERS", "BoschSystem", "ChannelHost", "present_number"]
+__all__ = ["NEW_NUMBERS", "BoschSystem", "ChannelHost", "Pnc", "present_number"]

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from polycnc.nc.cpl import OMITTED, CharacterField, Fault, text_of
+from polycnc.nc.cpl import OMITTED, CharacterField, Fault, Text, text_of
 
 PHYSICAL, OWN = 0, 1
 INVALID_PARAMETER = "INVALID PARAMETER"
+AXIS_INDEX = Text(INVALID_PARAMETER, "1938")
+AXIS_OF_ANOTHER = Text(INVALID_PARAMETER, "1970")
+"""Axis index error, and axis belongs to another channel, by the manual's numbers."""
 
 
 @dataclass
@@ -29,6 +32,14 @@ class SystemAxes:
         self.numbers = tuple(self.numbers) or tuple(range(1, len(self.names) + 1))
         if not self.channels:
             self.channels = {1: tuple(self.numbers)}
+        self.defaults = dict(self.channels)
+
+    def set_channels(self, shares: Sequence[Sequence[str]]) -> None:
+        """Give channels 1 and up their axes by name."""
+        numbered = dict(zip(self.names, self.numbers, strict=True))
+        self.channels = {
+            place: tuple(sorted(numbered[name] for name in share)) for place, share in enumerate(shares, 1)
+        }
         self.defaults = dict(self.channels)
 
     def index(self, physical: int) -> int:
@@ -70,10 +81,10 @@ class SystemAxes:
             name = text_of(axis) or ""
             if name in self.names:
                 return self.numbers[list(self.names).index(name)]
-            raise Fault(INVALID_PARAMETER, f"there is no axis {name}; there are {', '.join(self.names)}")
+            raise Fault(AXIS_INDEX, f"there is no axis {name}; there are {', '.join(self.names)}")
         if type(axis) is int and axis in self.numbers:
             return axis
-        raise Fault(INVALID_PARAMETER, f"physical axes are {', '.join(map(str, self.numbers))}")
+        raise Fault(AXIS_INDEX, f"physical axes are {', '.join(map(str, self.numbers))}")
 
     def axis(self, own: int, axis: object, kind: object = OMITTED, channel: object = OMITTED) -> int:
         """Return the physical index of an axis or coordinate that a program of channel `own` selects.
@@ -102,7 +113,7 @@ class SystemAxes:
                 raise Fault(INVALID_PARAMETER, "a physical axis takes no channel")
             return self.physical(axis)
         if type(axis) is not int or not 1 <= axis <= len(axes):
-            raise Fault(INVALID_PARAMETER, f"axes of channel {number} are 1 to {len(axes)}")
+            raise Fault(AXIS_INDEX, f"axes of channel {number} are 1 to {len(axes)}")
         return axes[axis - 1]
 
     def own_axis(self, own: int, axis: object, kind: object = OMITTED) -> int:
@@ -113,9 +124,7 @@ class SystemAxes:
         """
         found = self.axis(own, axis, kind)
         if found not in self.channels[own]:
-            raise Fault(
-                INVALID_PARAMETER, f"axis {self.physical_name(found)} does not belong to channel {own}"
-            )
+            raise Fault(AXIS_OF_ANOTHER, f"axis {self.physical_name(found)} does not belong to channel {own}")
         return found
 
     def logical_names(self) -> Mapping[tuple[int, str], int]:

@@ -14,7 +14,6 @@ from polycnc.controllers.bosch._system import BoschSystem
 from polycnc.controllers.bosch.files import FileCommands
 from polycnc.controllers.bosch.ncs import Coupling, Mmc, NcsServer
 from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
-from polycnc.controllers.bosch.system import Category
 from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
@@ -40,7 +39,8 @@ class ChannelHost:
 
     Sub-programs, files and permanent variables lie in the root of the `system`. Give the run that the language is used
     in to `attach`, and call `finish` when it is over. `functions` and `setters` may be added to. `server` is the
-    control that MCODS and MCOPS ask, this one if None.
+    control that MCODS and MCOPS ask, this one if None. `in_device` tells that programs follow each other: what does not
+    outlive one ends with it.
     """
 
     def __init__(
@@ -53,6 +53,7 @@ class ChannelHost:
         skip_levels: Iterable[int] = (),
         server: NcsServer | None = None,
         stepping: bool = False,
+        in_device: bool = False,
     ) -> None:
         self.system = system
         self.number = number
@@ -65,6 +66,7 @@ class ChannelHost:
         )
         self.coupling = Coupling(server or NcsServer(Services(system)), system.shown.image, number)
         self._clock = system.clock
+        self._in_device = in_device
         self._main = None if program is None else Path(program).resolve()
         self._unplaced: list[str] = []
         self.functions: dict[str, Callable[..., object]] = {
@@ -170,18 +172,13 @@ class ChannelHost:
             self._say(f"{fault.what}: {fault.hint}")
         self.dialog.finish()
         self.coupling.release()
-        self._note_errors()
+        self.system.note_errors()
         self.system.keep()
 
-    def _note_errors(self) -> None:
-        """Let GETERR tell what the run has ended with."""
-        run = self.system.runs.get(self.number)
-        if run is None:
-            return
-        for error in run.channel.errors:
-            self.system.note_error(self.number, error.code, Category.PART_PROGRAM)
-        if run.alarm is not None:
-            self.system.note_error(self.number, run.alarm.code, Category.CONTROL_OR_DRIVE)
+    def end_program(self) -> None:
+        """Do the same in a device, where a program has ended by itself, by an error or a reset."""
+        if self._in_device:
+            self.finish()
 
     def variables(self) -> dict[str, object]:
         """Return permanent and global variables as plain values, by name."""
@@ -195,7 +192,7 @@ class ChannelHost:
     # ------------------------------------------------------------------ within
 
     def _attached(self) -> ProgramRun:
-        run = self.system.runs.get(self.number)
+        run = self.system.run_of(self.number)
         assert run is not None, "attach the run first"
         return run
 
@@ -252,6 +249,10 @@ class _Language(CplLanguage):
         source = super().source(text, offset, line, arguments)
         self.used = self.used or source is not None
         return source
+
+    def ended(self) -> None:
+        """End what does not outlive the program."""
+        self._host_of.end_program()
 
 
 def _missing(name: str) -> Callable[..., Any]:

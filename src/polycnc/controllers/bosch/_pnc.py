@@ -1,0 +1,311 @@
+"""A Typ3 osa or PNC control as a device: channels, operator commands, status, memory in its root."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TypeAlias
+
+from polycnc.cnc import (
+    AxisStatus,
+    ChannelData,
+    Control,
+    ControlData,
+    ControlError,
+    ControlSnapshot,
+    Mode,
+    ProgramRun,
+    Refusal,
+    RunState,
+    Script,
+    Status,
+)
+from polycnc.controllers.bosch._axes import SystemAxes
+from polycnc.controllers.bosch._channel_host import ChannelHost
+from polycnc.controllers.bosch._memory import STORE
+from polycnc.controllers.bosch._services import Services
+from polycnc.controllers.bosch._system import BoschSystem
+from polycnc.controllers.bosch.ncs import Mode as BoschMode
+from polycnc.controllers.bosch.ncs import NcsServer
+from polycnc.machine import Clock, MachineConfig, Snapshot, load_machine
+from polycnc.nc import ProgramText, load_dialect
+from polycnc.nc.cpl import Fault
+
+_MODES = {
+    BoschMode.JOG: Mode.JOG, BoschMode.REFERENCE: Mode.REF, BoschMode.MDI: Mode.MDI, BoschMode.AUTOMATIC: Mode.AUTO,
+    BoschMode.PROGRAM_BLOCK: Mode.AUTO, BoschMode.SINGLE_STEP: Mode.AUTO, BoschMode.SINGLE_BLOCK: Mode.AUTO,
+    BoschMode.DEBUG_BLOCK: Mode.AUTO, BoschMode.DEBUG_AUTOMATIC: Mode.AUTO,
+}  # fmt: skip
+_ONE_BY_ONE = (BoschMode.PROGRAM_BLOCK, BoschMode.SINGLE_STEP, BoschMode.SINGLE_BLOCK, BoschMode.DEBUG_BLOCK)
+_SHOWN = {
+    Mode.AUTO: BoschMode.AUTOMATIC,
+    Mode.MDI: BoschMode.MDI,
+    Mode.JOG: BoschMode.JOG,
+    Mode.REF: BoschMode.REFERENCE,
+}
+Axes: TypeAlias = Sequence[str]
+Condition: TypeAlias = Callable[[], bool]
+
+
+class Pnc:
+    """A control on a machine of its own; channels count from 1, as its programs count them.
+
+    `root` is the control's directory: part programs, files, tables and everything permanent lie in it. `channels` are
+    the names of each channel's axes, one channel with all of them if there are none; `numbers` are the physical indices
+    of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
+    the control that programs ask by MCODS and MCOPS, this one if None. `script` says how the PLC answers functions.
+    """
+
+    def __init__(
+        self,
+        root: str | Path,
+        config: MachineConfig | str | Path | None = None,
+        *,
+        channels: Sequence[Axes] = (),
+        numbers: Sequence[int] = (),
+        keys: Sequence[str] = (),
+        server: NcsServer | None = None,
+        script: Script | None = None,
+        servo: bool = False,
+    ) -> None:
+        machine = load_machine(config)
+        shares = [tuple(each) for each in channels] or [machine.axis_names]
+        axes = SystemAxes(machine.axis_names, numbers)
+        axes.set_channels(shares)
+        data = ControlData(reference_required=False, reset_stops_spindle=False)
+        dialect = load_dialect("bosch")
+        hosts: list[ChannelHost] = []
+        owners = [ChannelData(each, spindle=place == 0) for place, each in enumerate(shares)]
+        self._control = Control(
+            machine, channels=owners, memory=Path(root) / STORE, dialect=dialect, data=data, script=script, servo=servo,
+        )  # fmt: skip
+        self.system = BoschSystem(
+            root, self._control.clock, machine, axes=axes, store=self._control.machine.memory
+        )
+        self.system.machine = self._control.machine
+        self.system.run_of = self._run_of
+        self.system.mode_of = self._shown_mode
+        self.system.selected = self._selected
+        self.system.referenced = lambda: frozenset(
+            name for name, done in self._control.manual.referenced.items() if done
+        )
+        self.services = Services(self.system, self)
+        self.server = server or NcsServer(self.services)
+        self._modes: dict[int, BoschMode] = {}
+        for number, channel in enumerate(self._control.channels, 1):
+            host = ChannelHost(
+                self.system, number, keys=keys if number == 1 else (), server=self.server, in_device=True
+            )
+            hosts.append(host)
+            channel.language = host.language
+            channel.change_config(self.system.live_config(), dialect)
+            channel.names = axes.names_in(number)
+            channel.asks_often = True
+        self.hosts = tuple(hosts)
+
+    # ------------------------------------------------------------------ the device
+
+    @property
+    def clock(self) -> Clock:
+        """The clock, counted in control cycles."""
+        return self._control.clock
+
+    @property
+    def control(self) -> Control:
+        """The control within: manual motion, overrides, switches, alarms, PLC."""
+        return self._control
+
+    def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
+        """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
+        return self._control.advance(cycles, until=until)
+
+    def status(self) -> Status:
+        """Return what the control is and does in the present cycle."""
+        return self._control.status()
+
+    def snapshot(self) -> ControlSnapshot:
+        """Return the whole state; what is durable is not in it.
+
+        Raises:
+            SnapshotError: A CPL program is under way.
+        """
+        return self._control.snapshot()
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this control.
+
+        Raises:
+            SnapshotError: It is of something else; nothing has changed.
+        """
+        self._control.restore(snapshot)
+
+    def close(self) -> None:
+        """Keep what is permanent, and close the memory."""
+        for host in self.hosts:
+            host.finish()
+        self._control.machine.memory.close()
+
+    # ------------------------------------------------------------------ the operator
+
+    def select_mode(self, mode: BoschMode, *, channel: int | None = None) -> None:
+        """Change the mode of a channel, or of all.
+
+        Raises:
+            ControlError: There is no such mode, or a program is being executed.
+        """
+        if mode not in _MODES:
+            raise ControlError(Refusal.DATA, f"the mode {mode} cannot be selected", hint="See `Mode`.")
+        for number in self.system.axes.channels if channel is None else (channel,):
+            self._control.select_mode(_MODES[mode], channel=self._path(number))
+            self._control.set_switches(single_block=mode in _ONE_BY_ONE, channel=self._path(number))
+            self._modes[number] = mode
+
+    def select_program(self, name: str, *, channel: int = 1) -> None:
+        """Select a part program of the root.
+
+        Raises:
+            ControlError: There is none of this name, or the channel executes one.
+        """
+        text = self._text(name)
+        if text is None:
+            raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
+        self._control.select_program(ProgramText.from_text(text, name), channel=self._path(channel))
+
+    def cycle_start(self, *, channel: int = 1) -> None:
+        """Begin what is selected, or go on.
+
+        Raises:
+            ControlError: See `Control.cycle_start`.
+        """
+        self._control.cycle_start(channel=self._path(channel))
+
+    def feed_hold(self, *, channel: int | None = None) -> None:
+        """Hold the feed of a channel, or of all.
+
+        Raises:
+            ControlError: Nothing is being executed.
+        """
+        self._control.feed_hold(channel=None if channel is None else self._path(channel))
+
+    def reset(self, *, channel: int | None = None) -> None:
+        """Break off what a channel, or all of them, execute; their errors are gone."""
+        self._control.reset(channel=None if channel is None else self._path(channel))
+        for number in self.system.axes.channels if channel is None else (channel,):
+            self.system.forget_errors(number)
+            self.hosts[number - 1].coupling.release()
+
+    def transfer_axis(self, axis: str, channel: int | None) -> None:
+        """Give an axis to a channel, or to none: then it is asynchronous. Logical indices are counted anew.
+
+        Raises:
+            ControlError: There is no such axis or channel, or a channel concerned executes a program.
+        """
+        names = list(self.system.axes.names)
+        if axis not in names or (channel is not None and channel not in self.system.axes.channels):
+            raise ControlError(
+                Refusal.DATA,
+                f"axis {axis} cannot go to channel {channel}",
+                hint=f"The axes are {', '.join(names)}.",
+            )
+        physical = self.system.axes.numbers[names.index(axis)]
+        concerned = {self.system.axes.channel_of(physical), channel} - {None}
+        for number in concerned:
+            each = self._control.channels[self._path(number or 0)]
+            if each.active or each.interrupted or not each.at_rest:
+                raise ControlError(
+                    Refusal.RUNNING,
+                    f"channel {number} executes a program",
+                    hint="Wait for its end, or reset it.",
+                )
+        self.system.axes.move(physical, channel)
+        self._control.share_axes(
+            [tuple(map(self.system.axes.physical_name, own)) for own in self.system.axes.channels.values()]
+        )
+        for number, each in enumerate(self._control.channels, 1):
+            each.names = self.system.axes.names_in(number)
+
+    # ------------------------------------------------------------------ what it knows
+
+    @property
+    def axes(self) -> Mapping[str, AxisStatus]:
+        """The axes in the present cycle."""
+        return self._control.axes()
+
+    def run_state(self, channel: int = 1) -> RunState:
+        """Return what a channel is doing."""
+        return self._control.channels[self._path(channel)].run_state
+
+    def variables(self, channel: int = 1) -> dict[str, object]:
+        """Return permanent variables and a channel's global ones, by name."""
+        return self.hosts[channel - 1].variables()
+
+    # ------------------------------------------------------------------ for MCOPS (Operator)
+
+    def has_program(self, name: str) -> bool:
+        """Tell whether there is a part program."""
+        return self._text(name) is not None
+
+    def select(self, channel: int, name: str) -> None:
+        """Select a part program."""
+        self.select_program(name, channel=channel)
+
+    def select_text(self, channel: int, text: str) -> None:
+        """Select blocks put in by hand."""
+        self._control.set_mdi(text, channel=self._path(channel))
+
+    def start(self, channel: int) -> None:
+        """Start, or go on."""
+        self.cycle_start(channel=channel)
+
+    def reset_channel(self, channel: int) -> None:
+        """Break off what a channel executes."""
+        self.reset(channel=channel)
+
+    def leave(self, channel: int) -> None:
+        """Leave the selected program."""
+        self._control.reset(channel=self._path(channel))
+
+    def search(self, channel: int, start: str) -> bool:
+        """Let the selected program begin at a block; tell whether there is such a block."""
+        digits = start.removeprefix("N")
+        if not digits.isdigit():
+            return False
+        try:
+            self._control.search(sequence=int(digits), channel=self._path(channel))
+        except ControlError:
+            return False
+        return True
+
+    def set_channel_mode(self, channel: int, mode: BoschMode) -> None:
+        """Switch the mode of a channel."""
+        self.select_mode(mode, channel=channel)
+
+    # ------------------------------------------------------------------ within
+
+    def _path(self, channel: int) -> int:
+        return channel - 1
+
+    def _run_of(self, number: int) -> ProgramRun | None:
+        return self._control.channels[number - 1].run
+
+    def _shown_mode(self, number: int) -> BoschMode:
+        mode = self._control.channels[number - 1].mode
+        kept = self._modes.get(number)
+        return kept if kept is not None and _MODES[kept] is mode else _SHOWN.get(mode, BoschMode.NONE)
+
+    def _selected(self, number: int) -> str:
+        """Return the program that a start would begin; one that has ended has to be selected again."""
+        channel = self._control.channels[number - 1]
+        if channel.program is None or (
+            channel.run_state is RunState.COMPLETED
+            and channel.run is not None
+            and channel.run.program is channel.program
+        ):
+            return ""
+        return channel.program.name
+
+    def _text(self, name: str) -> str | None:
+        try:
+            return self.system.directory.text(name)
+        except Fault:
+            return None

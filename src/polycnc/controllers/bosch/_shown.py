@@ -32,9 +32,8 @@ _INTERFACE_CHANNELS = 5
 _GROUPS = (range(54, 60), range(154, 160), range(254, 260))
 _FULL = 10000.0
 _SAV = {
-    RunState.RESET: Sav.INACTIVE, RunState.READY: Sav.AT_START, RunState.ACTIVE: Sav.ACTIVE, RunState.HOLD: Sav.ACTIVE,
-    RunState.STOPPED_AT_BLOCK: Sav.READY, RunState.PROGRAM_STOP: Sav.READY, RunState.OPTIONAL_STOP: Sav.READY,
-    RunState.COMPLETED: Sav.INACTIVE, RunState.ALARM: Sav.ERROR,
+    RunState.ACTIVE: Sav.ACTIVE, RunState.HOLD: Sav.ACTIVE, RunState.STOPPED_AT_BLOCK: Sav.READY,
+    RunState.PROGRAM_STOP: Sav.READY, RunState.OPTIONAL_STOP: Sav.READY, RunState.ALARM: Sav.ERROR,
 }  # fmt: skip
 _MOTIONS = {1: SpindleMotion.CLOCKWISE, -1: SpindleMotion.COUNTER_CLOCKWISE, 0: SpindleMotion.STOP}
 
@@ -42,7 +41,7 @@ _MOTIONS = {1: SpindleMotion.CLOCKWISE, -1: SpindleMotion.COUNTER_CLOCKWISE, 0: 
 class Shown:
     """Keep an image up to date: `renew` reads axes, channels and the spindle at the present cycle.
 
-    `modes` tells the mode of a channel, `referenced` which axes are.
+    `modes` tells the mode of a channel, `referenced` which axes are, `selected` the program that a start would begin.
     """
 
     def __init__(
@@ -54,6 +53,7 @@ class Shown:
         tables: Callable[[], tuple[ZeroShifts, ToolCompensations]],
         modes: Callable[[int], Mode],
         referenced: Callable[[], frozenset[str]],
+        selected: Callable[[int], str],
     ) -> None:
         self._axes = axes
         self._machine = machine
@@ -62,6 +62,7 @@ class Shown:
         self._tables = tables
         self._modes = modes
         self._referenced = referenced
+        self._selected = selected
         self._tags: dict[int, int] = {}
         self.image = Image(channels={number: Channel(number) for number in axes.channels})
 
@@ -127,6 +128,8 @@ class Shown:
     def _channel(self, shown: Channel, number: int) -> None:
         run = self._runs(number)
         shown.mode = self._modes(number)
+        shown.program = self._selected(number)
+        shown.sav = Sav.AT_START if shown.program else Sav.INACTIVE
         if run is None:
             shown.coordinates = [
                 Coordinate(self._axes.logical_name(number, each), (each,))
@@ -138,13 +141,13 @@ class Shown:
         if self._tags.get(number) != run.executed_tag:
             self._tags[number] = run.executed_tag
             shown.blocks += 1
-        shown.sav = _SAV[run.state]
+        if run.state in _SAV:
+            shown.sav, shown.program = _SAV[run.state], run.program.name
         running = row["state"] == RUNNING
         shown.ipo = (
             Ipo.RUNNING if run.state is RunState.ACTIVE else Ipo.RUNNING_DOWN if running else Ipo.STOPPED
         )
         shown.inch = words.inch
-        shown.program = run.program.name if run.state not in (RunState.RESET, RunState.COMPLETED) else ""
         shown.message = run.channel.messages.latest
         segment = run.machine.state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
         shown.dwell = bool(running and segment["kind"] == WAIT)

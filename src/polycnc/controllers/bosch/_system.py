@@ -39,6 +39,7 @@ from polycnc.controllers.bosch.system import (
 )
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock, Machine, MachineConfig, Store
+from polycnc.nc import Channel
 
 _SPINDLES = 8
 _SECTORS, _PLACES = 9, 999
@@ -68,10 +69,13 @@ class BoschSystem:
         self.axes = axes or SystemAxes(config.axis_names)
         self.directory = Directory(root)
         self.runs: dict[int, ProgramRun] = {}
+        self.run_of: Callable[[int], ProgramRun | None] = self.runs.get
         self.machine: Machine | None = None
         self.mode_of: Callable[[int], Mode] = lambda number: Mode.AUTOMATIC
         self.referenced: Callable[[], frozenset[str]] = lambda: frozenset(config.axis_names)
+        self.selected: Callable[[int], str] = lambda number: ""
         self.clients = Clients()
+        self._noted: dict[int, tuple[Channel, int]] = {}
         self._store = store
         self.kept = KeptVariables(self.directory, store)
         text = self.directory.text(FILE)
@@ -93,12 +97,15 @@ class BoschSystem:
         self.live_tools = LiveTools(self.tools)
         self.drives = Drives(self.axes.physical, self._drive, self._write_lines)
         self.data = {
-            number: ChannelData(self.axes, number, self.runs.get, int(str(self.parameter(LANGUAGE))))
+            number: ChannelData(
+                self.axes, number, lambda each: self.run_of(each), int(str(self.parameter(LANGUAGE)))
+            )
             for number in self.axes.channels
         }
         self.shown = Shown(
-            self.axes, self.the_machine, self.runs.get, self.data.__getitem__, lambda: (self.shifts, self.tools),
-            lambda number: self.mode_of(number), lambda: self.referenced(),
+            self.axes, self.the_machine, lambda each: self.run_of(each), self.data.__getitem__,
+            lambda: (self.shifts, self.tools), lambda number: self.mode_of(number), lambda: self.referenced(),
+            lambda number: self.selected(number),
         )  # fmt: skip
 
     # ------------------------------------------------------------------ functions of a channel
@@ -106,7 +113,7 @@ class BoschSystem:
     def functions(self, number: int) -> dict[str, Callable[..., object]]:
         """Return what programs of a channel can call."""
         return {
-            **Positions(self.axes, number, self.runs.get).functions,
+            **Positions(self.axes, number, lambda each: self.run_of(each)).functions,
             **self.data[number].functions,
             "MCA": self._macoda[number][0].mca,
             "SCS": self.drives.scs,
@@ -116,7 +123,7 @@ class BoschSystem:
             "DATE": partial(date_text, self.clock),
             "TIME": partial(time_text, self.clock),
             "IC": partial(self.interface.read, number),
-            "GETERR": self.errors.read,
+            "GETERR": self._get_errors,
             "TDA": self.tool_data.read,
             "TC": lambda *place: self._tools_for(number).read(*place),
             "FXC": lambda *place: self._shifts_for(number).fxc(*place),
@@ -153,6 +160,30 @@ class BoschSystem:
     def note_error(self, channel: int, code: str, category: Category) -> None:
         """Put an error into what GETERR reads; one without a number of its own is 0."""
         self.errors.add(int(code) if code.isdigit() else 0, channel, category)
+
+    def note_errors(self) -> None:
+        """Note what has gone wrong in the channels since."""
+        for number in self.axes.channels:
+            run = self.run_of(number)
+            if run is None:
+                continue
+            found = [(each.code, Category.PART_PROGRAM) for each in run.channel.errors]
+            if run.alarm is not None:
+                found.append((run.alarm.code, Category.CONTROL_OR_DRIVE))
+            known = self._noted.get(number)
+            count = known[1] if known is not None and known[0] is run.channel else 0
+            for code, category in found[count:]:
+                self.note_error(number, code, category)
+            self._noted[number] = run.channel, len(found)
+
+    def forget_errors(self, channel: int) -> None:
+        """Forget the errors of a channel: it was reset."""
+        self.note_errors()
+        self.errors.clear(channel)
+
+    def _get_errors(self, *arguments: object) -> int:
+        self.note_errors()
+        return self.errors.read(*arguments)
 
     def keep(self) -> None:
         """Write what is permanent and has changed, all of it or nothing.
@@ -192,7 +223,7 @@ class BoschSystem:
         shifts = self.shifts
         shifts.channel = number
         shifts.channels = self._channel_names()
-        run = self.runs.get(number)
+        run = self.run_of(number)
         if run is not None:
             state = run.channel.state
             shifts.inch = bool(self.data[number].programmed().inch)
@@ -202,7 +233,7 @@ class BoschSystem:
 
     def _tools_for(self, number: int) -> ToolCompensations:
         tools = self.tools
-        run = self.runs.get(number)
+        run = self.run_of(number)
         if run is not None:
             state = run.channel.state
             codes = state.placement.compensations

@@ -40,6 +40,10 @@ class Action(IntEnum):
     ARC_CW = auto()
     ARC_CCW = auto()
     MOTION_OFF = auto()
+    THREAD = auto()
+    TURN_CYCLE = auto()
+    THREAD_CYCLE = auto()
+    FACE_CYCLE = auto()
     DWELL = auto()
     EXACT_STOP_BLOCK = auto()
     PLANE_XY = auto()
@@ -102,6 +106,13 @@ class Action(IntEnum):
     ADDITIONAL_OFFSET = auto()
     ADDITIONAL_OFFSET_110 = auto()
     SKIP_MOVE = auto()
+    TURN_FINISH = auto()
+    TURN_ROUGH = auto()
+    FACE_ROUGH = auto()
+    TURN_REPEAT = auto()
+    FACE_PECK = auto()
+    TURN_PECK = auto()
+    THREAD_PASSES = auto()
     UNSUPPORTED = auto()
     NOTHING = auto()
     IGNORED = auto()
@@ -137,6 +148,10 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.ARC_CW,
         Action.ARC_CCW,
         Action.MOTION_OFF,
+        Action.THREAD,
+        Action.TURN_CYCLE,
+        Action.THREAD_CYCLE,
+        Action.FACE_CYCLE,
         Action.CYCLE_CHIP_BREAK,
         Action.CYCLE_FINE_BORE,
         Action.CYCLE_DRILL,
@@ -166,6 +181,13 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.MIRROR,
         Action.MIRROR_OFF,
         Action.SKIP_MOVE,
+        Action.TURN_FINISH,
+        Action.TURN_ROUGH,
+        Action.FACE_ROUGH,
+        Action.TURN_REPEAT,
+        Action.FACE_PECK,
+        Action.TURN_PECK,
+        Action.THREAD_PASSES,
         Action.CONTOUR_SHIFT,
         Action.CONTOUR_SHIFT_OFF,
         Action.PROGRAM_SHIFT,

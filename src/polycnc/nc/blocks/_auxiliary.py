@@ -58,11 +58,14 @@ class Auxiliary:
     messages: Messages
     motion: MotionBuilder
     fail: Fail
+    turret: bool = False
 
     def before_motion(self, words: BlockWords, line: int) -> list[Wait]:
         """Return the waits of all functions that come before the block's motion."""
         waits = []
         speed = words.take("S")
+        if speed is not None and self._clamps(words, speed):
+            speed = None
         if g := words.g.get(Group.SPINDLE_MODE):
             self._set_mode(g, speed)
         if speed is not None:
@@ -71,7 +74,10 @@ class Auxiliary:
                 waits.append(Wait(0.0, line, (f"S{code_text(speed.value)}",)))
         tool = words.take("T")
         if tool is not None:
-            self.state.selected_tool = whole_number(tool, "a tool number", self.fail)
+            if self.turret:
+                waits += self._turn_turret(tool, line)
+            else:
+                self.state.selected_tool = whole_number(tool, "a tool number", self.fail)
         if words.m:
             for action in _BEFORE_MOTION:
                 waits += [self._function(m, speed, line) for m in words.m if m.action is action]
@@ -97,6 +103,39 @@ class Auxiliary:
                 f"tool {tool} is not in the machine's tool table: its length and radius are 0 mm"
             )
         return ToolConfig()
+
+    def _clamps(self, words: BlockWords, speed: Word) -> bool:
+        """Take over the highest speed of constant surface speed, which S is beside the setting of a position."""
+        g = words.g.get(Group.NON_MODAL)
+        if g is None or g.action is not Action.SET_POSITION:
+            return False
+        if speed.value <= 0.0:
+            raise self.fail("the spindle's clamp is not above zero", "Write S above 0.", speed)
+        self.state.spindle = replace(self.state.spindle, clamp=speed.value)
+        return True
+
+    def _turn_turret(self, word: Word, line: int) -> list[Wait]:
+        """Turn to the tool of the first digits and take the offset of the last two."""
+        number = whole_number(word, "a tool and its offset", self.fail, 9999)
+        tool, offset = divmod(number, 100)
+        if tool == 0 and offset:
+            raise self.fail(
+                f"T{code_text(word.value)} names no tool", "Write tool and offset, like T0101.", word
+            )
+        state = self.state
+        changes = tool not in (0, state.tool)
+        if tool:
+            state.tool = state.selected_tool = tool
+        state.compensation_tool = offset
+        state.length_tool = offset
+        data = self.tool_data(offset)
+        axes = {"X": data.x_mm + data.wear_x_mm, "Z": data.z_mm + data.wear_z_mm}
+        letters = state.modal.letter_axis
+        state.coordinates.set_tool(
+            {int(letters[ord(name) - ord("A")]): value for name, value in axes.items()}, active=offset != 0
+        )
+        times = state.machine.times
+        return [Wait(times.tool_change_s if changes else 0.0, line, (f"T{number:04d}",))]
 
     def _set_mode(self, g: GWord, speed: Word | None) -> None:
         spindle = self.state.spindle

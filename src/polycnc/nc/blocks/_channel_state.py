@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -17,18 +18,22 @@ from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_mod
 from polycnc.nc.blocks._placement import Placement
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tables import ProgramTables
+from polycnc.nc.blocks._tip import TipShift
+from polycnc.nc.blocks._turning import Turning
 
 
 @dataclass(frozen=True, slots=True)
 class Spindle:
     """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped.
 
-    `speed` is in revolutions per minute, or in m/min with constant surface speed.
+    `speed` is in revolutions per minute, or in m/min with constant surface speed; then the spindle turns with `clamp`
+    revolutions per minute at the most.
     """
 
     speed: float = 0.0
     direction: int = 0
     surface_speed: bool = False
+    clamp: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +67,8 @@ class Plain(NamedTuple):
     placement: Placement
     probe: Probe | None
     rigid_tap: bool
+    turning: Turning
+    tip: TipShift
 
 
 class ModalSnapshot(NamedTuple):
@@ -108,7 +115,8 @@ class ChannelState:
     those of the last block that had any. `tables` are the tools and work offsets, `frame` how programmed
     positions are turned, scaled and mirrored, `placement` where they lie besides, `skip_position` where the
     last skip move ended (machine coordinates), `probe` the last probing.
-    With `rigid_tap` a tapping cycle turns the spindle itself.
+    With `rigid_tap` a tapping cycle turns the spindle itself. `turning` is what turning cycles keep, `tip` where
+    the tip of a turning tool lies.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
@@ -128,6 +136,8 @@ class ChannelState:
         self.feed_word = 0.0
         self.path_tolerance_mm = machine.path.tolerance_mm
         self.rigid_tap = False
+        self.turning = Turning()
+        self.tip = TipShift()
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -172,6 +182,8 @@ class ChannelState:
             self.placement,
             self.probe,
             self.rigid_tap,
+            self.turning,
+            self.tip,
         )
 
     def snapshot(self) -> ModalSnapshot:

@@ -104,6 +104,15 @@ class Coordinates:
         self.length[axis] = sign * length_mm
         self._renew()
 
+    def set_tool(self, values: dict[int, float], *, active: bool) -> None:
+        """Compensate where the tip of a tool lies, along several axes (mm)."""
+        self.length_sign = int(active)
+        self.length = np.zeros_like(self.length)
+        for axis, value in values.items():
+            if axis >= 0:
+                self.length[axis] = value
+        self._renew()
+
     def place(self, inner: list[float], outer: list[float], turn: Rotation | None) -> None:
         """Shift programmed positions by `inner`, and put the workpiece where `outer` and `turn` say."""
         self.inner, self.outer, self.turn = np.array(inner), np.array(outer), turn

@@ -8,16 +8,19 @@ or end.
 
 from __future__ import annotations
 
+import dataclasses
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
 
 from polycnc.errors import ProgramError
 from polycnc.nc._block_records import AGAIN
 from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks import _turning_blocks as turning_blocks
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
+from polycnc.nc.blocks._calls import Place
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
@@ -40,11 +43,12 @@ from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
 from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
-from polycnc.nc.blocks._words import BlockWords, code_text, sort_words
+from polycnc.nc.blocks._turning_blocks import TurningBlocks
+from polycnc.nc.blocks._words import BlockWords, GWord, code_text, sort_words
 from polycnc.nc.text._not_words import slip, statements
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
-from polycnc.nc.text._scan_plain import Block, Word
+from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 _MOTIONS = {
     Action.RAPID: MOTION_RAPID,
@@ -67,6 +71,8 @@ _LANGUAGES = (
     "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
     "or post the program without them."
 )
+_COMPENSATION = (Action.COMP_LEFT, Action.COMP_RIGHT, Action.COMP_OFF)
+MOST_CONTOUR_BLOCKS = 10_000
 _NUMBERS = "NO:"  # block and program numbers
 _AXIS_LETTERS = "XYZABCUVW"
 # What the words belong to that need a function beside them.
@@ -98,15 +104,17 @@ class Control(Enum):
     RETURN = "return"
     STOP = "stop"
     END = "end"
+    GO_ON = "go on"
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Say how the program goes on; a call names the sub-program and how often it runs."""
+    """Say how the program goes on; a call names the sub-program and how often it runs, GO_ON a place."""
 
     control: Control = Control.NEXT
     program: int = 0
     repeats: int = 1
+    place: Place | None = None
 
 
 _NEXT = Outcome()
@@ -119,11 +127,19 @@ _OUTCOMES = {
 }
 
 
+def _moves_only(g: GWord) -> tuple[str, str]:
+    return f"a contour of G{g.code} with a call, a cycle, a stop or an end", "Let it hold moves only."
+
+
+def _is_numbered(block: Block, number: int) -> bool:
+    return any(word.letter == "N" and word.value == number for word in block.words)
+
+
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
-    `call_trouble` says what is against calling a sub-program, None if nothing is. `reference` gives the reference of
-    the record of the block on a line, when all that the block changes has been changed.
+    `call_trouble` says what is against calling a sub-program from an offset of a text, None if nothing is. `reference`
+    gives the reference of the record of the block on a line, when all that the block changes has been changed.
     """
 
     def __init__(
@@ -132,7 +148,7 @@ class Interpreter:
         state: ChannelState,
         messages: Messages,
         queue: QueueWriter,
-        call_trouble: Callable[[int], Trouble | None],
+        call_trouble: Callable[[int, ProgramText, int], Trouble | None],
         reference: Callable[[int], int],
     ) -> None:
         self.dialect = dialect
@@ -151,12 +167,17 @@ class Interpreter:
             None  # a program, its first statement, how many
         )
         self._motion = MotionBuilder(state, dialect, messages, self.fail)
-        self._auxiliary = Auxiliary(state, messages, self._motion, self.fail)
+        self._auxiliary = Auxiliary(
+            state, messages, self._motion, self.fail, turret=dialect.tool_word == "turret"
+        )
         self._modes = Modes(state, dialect, messages, self._auxiliary, self.fail)
         self._non_modal = NonModal(state, messages, self._motion, self.fail)
         self._frames = Frames(state, dialect, self._motion, self.fail)
         self._placing = Placing(state, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
+        self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
+        self._behind: Place | None = None  # where the program goes on, behind a contour that a cycle has cut
+        self._capturing = False
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
         """Execute one block of `text`.
@@ -164,7 +185,7 @@ class Interpreter:
         Raises:
             ProgramError: the block cannot be executed; nothing has been changed or queued for it.
         """
-        self._text, self._block = text, block
+        self._text, self._block, self._behind = text, block, None
         self.messages.begin(block.line)
         self.state.coordinates.take_changes()
         saved = self.state.save()
@@ -179,7 +200,13 @@ class Interpreter:
         if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
             self._queue.set_tolerance(self.state.path_tolerance_mm)
         self._queue.put_block(items)
-        return outcome
+        return self._going_on(outcome)
+
+    def _going_on(self, outcome: Outcome) -> Outcome:
+        """Return how the program goes on: behind a contour that has been cut."""
+        if self._behind is None or outcome is not _NEXT:
+            return outcome
+        return Outcome(Control.GO_ON, place=self._behind)
 
     def finish(self) -> None:
         """Give out what radius compensation still holds back, at the end of the program.
@@ -207,7 +234,7 @@ class Interpreter:
 
     def _flushed(self) -> list[QueueItem]:
         try:
-            items = self.state.compensation.flush()
+            items = list(self._tips(self.state.compensation.flush()))
             self._check_path(items)
         except CompensationError as error:
             raise self._placed(error) from None
@@ -331,7 +358,7 @@ class Interpreter:
 
     def mark(self, line: int) -> None:
         """Note a block that does nothing on the path, to be stepped to."""
-        if self._queue.marks is not None:
+        if self._queue.marks is not None and not self._capturing:
             self._queue.mark(self._next_tag(line))
 
     def _compensated(self, items: list[QueueItem], change: Callable[[], None] | None) -> list[QueueItem]:
@@ -342,7 +369,7 @@ class Interpreter:
         if stage.active:
             push = stage.push
             moves = any(isinstance(item, (Line, Arc)) for item in items)
-            items = [out for item in items for out in push(item)]
+            items = [out for item in items for out in self._with_tip(item, push(item))]
             self._check_path(items)
             if moves:
                 self._held_text = self._text
@@ -350,10 +377,24 @@ class Interpreter:
         whole[ORDINARY] = (
             stage.active
             or self._cycles.active
+            or self._turning.active
             or whole[FEED_MODE] != FEED_PER_MINUTE
             or self.state.frame.active
         )
         return items
+
+    def _with_tip(self, item: QueueItem, pushed: Iterable[QueueItem]) -> Iterator[QueueItem]:
+        """Yield what compensation gives for an item as moves of the tool's tip."""
+        state = self.state
+        if isinstance(item, (Line, Arc)):
+            state.tip = state.tip.with_programmed(item.end)
+        yield from self._tips(pushed)
+
+    def _tips(self, pushed: Iterable[QueueItem]) -> Iterator[QueueItem]:
+        for out in pushed:
+            if isinstance(out, (Line, Arc)):
+                self.state.tip, out = self.state.tip.applied(out)
+            yield out
 
     def _check_path(self, items: list[QueueItem]) -> None:
         for item in items:
@@ -409,8 +450,14 @@ class Interpreter:
         if g is not None:
             if g.action in _MOTIONS:
                 self._cycles.cancel()
+                self._turning.cancel()
                 whole[MOTION] = _MOTIONS[g.action]
+            elif g.action in turning_blocks.MODAL:
+                self._cycles.cancel()
+                self._turning.begin(g)
+                whole[MOTION] = MOTION_LINEAR
             else:
+                self._turning.cancel()
                 self._cycles.begin(g)
         return int(whole[MOTION])
 
@@ -429,12 +476,18 @@ class Interpreter:
             if g.action in _FRAME_ACTIONS:
                 self._frames.carry_out(g, words)
                 return []
+            if g.action in turning_blocks.CYCLES:
+                return self._turning.cycle(g, words, line)
+            if g.action in turning_blocks.CONTOUR:
+                return self._contour_cycle(g, words, line)
             if g.action in PLACING:
                 self._placing.carry_out(g, words)
                 return []
             return list(self._non_modal.carry_out(g, motion, line))
         if self._cycles.active:
             return self._cycles.expand(words, line)
+        if self._turning.active:
+            return self._turning.expand(words, line)
         values = self._motion.axis_words()
         if not values and not (motion >= MOTION_ARC_CW and words.first(*"IJKR")):
             return []
@@ -444,7 +497,97 @@ class Interpreter:
                 "Write G0, G1, G2, G3 or a cycle in this or an earlier block.",
                 self._motion.place(),
             )
-        return [self._motion.move(self._motion.target(values), motion, line)]
+        return list(self._motion.moves(self._motion.target(values), motion, line))
+
+    def _contour_cycle(self, g: GWord, words: BlockWords, line: int) -> list[QueueItem]:
+        """Return the moves of a cycle about a contour, which stands in other blocks: from P to Q."""
+        numbers = self._turning.contour_words(g, words)
+        if numbers is None:
+            self._turning.set_parameters(g, words)
+            return []
+        blocks = self._contour(*numbers, g)
+        start = self._motion.start
+        if g.action is Action.TURN_FINISH:
+            self._refuse_unused(words)
+            found = [item for block in blocks for item in self._of_contour(block, g)]
+            return [*found, *self._turning.back_to(start, line)]
+        state = self.state
+        saved = state.save()
+        self._capturing = True
+        try:
+            moves = [
+                item
+                for block in blocks
+                for item in self._of_contour(self._without_compensation(block), g)
+                if isinstance(item, (Line, Arc))
+            ]
+        finally:
+            self._capturing = False
+            state.restore(saved)
+        return self._turning.contour_cycle(g, words, moves, line)
+
+    def _of_contour(self, block: Block, g: GWord) -> list[QueueItem]:
+        """Execute a block of a contour within the present block; return its moves."""
+        outer, words, stops = self._block, self._motion.words, self._motion.exact_stop_block
+        self._block = block
+        try:
+            outcome, items = self._execute(block)
+            if outcome is not _NEXT:
+                raise self.fail(*_moves_only(g), None)
+        finally:
+            self._block, self._motion.words, self._motion.exact_stop_block = outer, words, stops
+        self._note_position(items)
+        return items
+
+    def _holds_cycle(self, block: Block) -> bool:
+        """Tell whether a block of a contour holds a cycle itself."""
+        actions = {self.dialect.g_action(word.value) for word in block.words if word.letter == "G"}
+        return not actions.isdisjoint(turning_blocks.CONTOUR | turning_blocks.CYCLES)
+
+    def _without_compensation(self, block: Block) -> Block:
+        words = tuple(
+            word
+            for word in block.words
+            if word.letter != "G" or self.dialect.g_action(word.value) not in _COMPENSATION
+        )
+        return dataclasses.replace(block, words=words)
+
+    def _contour(self, first: int, last: int, g: GWord) -> list[Block]:
+        """Return the blocks from number `first` to `last`; where they follow here, the program goes on behind."""
+        assert self._block is not None
+        text, here = self._text, self._block.end
+        following = self._numbered(first, here, len(text))
+        found = following or self._numbered(first, 0, here)
+        if found is None:
+            raise self.fail(f"there is no block N{first}", "P names the first block of the contour.", g.word)
+        blocks = [found]
+        while not _is_numbered(blocks[-1], last):
+            block = blocks[-1]
+            if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
+                raise self.fail(
+                    f"there is no block N{last} behind N{first}",
+                    "Q names the last block of the contour.",
+                    g.word,
+                )
+            blocks.append(scan_block(text, block.end, block.line + 1, self._rules))
+        if any(block.flags & STATEMENT for block in blocks):
+            raise self.fail(
+                f"a contour of G{g.code} with statements is not supported yet", "Write plain words.", g.word
+            )
+        if any(self._holds_cycle(block) for block in blocks):
+            raise self.fail(*_moves_only(g), g.word)
+        self._behind = Place(text, blocks[-1].end, blocks[-1].line + 1) if following else None
+        return [block for block in blocks if block.words]
+
+    def _numbered(self, number: int, begin: int, end: int) -> Block | None:
+        """Return the first block with a sequence number that begins between two offsets."""
+        pattern = re.compile(rb"^[ \t]*/?[ \t]*[Nn][ \t]*0*%d(?![0-9])" % number, re.MULTILINE)
+        match = pattern.search(self._text.content, begin, end)
+        if match is None:
+            return None
+        offset = match.start()
+        line = self._text.content.count(b"\n", 0, offset) + 1
+        return scan_block(self._text, offset, line, self._rules)
 
     def _left_axis(self, words: BlockWords) -> Word | None:
         return next((word for letter, word in words.unused() if letter in self.state.axis_names), None)
@@ -494,7 +637,7 @@ class Interpreter:
         repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", self.fail)
         if l_word is None and program > 9999 and self.dialect.sub_program.repeats_in_p:
             repeats, program = divmod(program, 10_000)
-        if trouble := self._call_trouble(program):
+        if trouble := self._call_trouble(program, self._text, p_word.place):
             raise self.fail(*trouble, p_word)
         return Outcome(Control.CALL, program, repeats)
 

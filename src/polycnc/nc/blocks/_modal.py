@@ -126,8 +126,27 @@ def set_plane(modal: Modal, plane: int) -> None:
 
 def set_inch(modal: Modal, inch: bool) -> None:
     """Select inch or metric words; rotary axes stay in degrees."""
+    before = MM_PER_INCH if modal.whole[INCH] else 1.0
     modal.whole[INCH] = inch
-    modal.scale[:] = np.where(modal.rotary != 0, 1.0, MM_PER_INCH if inch else 1.0)
+    # What is left beside the unit is 1, or 0.5 where words are diameters.
+    linear = modal.scale / before * (MM_PER_INCH if inch else 1.0)
+    modal.scale[:] = np.where(modal.rotary != 0, 1.0, linear)
+
+
+def set_diameters(modal: Modal, axes: Sequence[int]) -> None:
+    """Let words of these axes be diameters: positions are radii."""
+    for axis in axes:
+        modal.scale[axis] *= 0.5
+
+
+def length_scale(modal: Modal) -> float:
+    """Return mm per program unit of what is no position: radii, centres, ways."""
+    return MM_PER_INCH if modal.whole[INCH] else 1.0
+
+
+def has_diameters(modal: Modal) -> bool:
+    """Tell whether words of an axis are diameters."""
+    return bool(np.any((modal.rotary == 0) & (modal.scale != length_scale(modal))))
 
 
 def short_way(wanted_deg: float, position_deg: float) -> float:

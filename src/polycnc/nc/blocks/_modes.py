@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from polycnc.kernel import EXACT_PATH as EXACT_PATH_TOLERANCE
-from polycnc.machine import LONGEST_BLOCK_S
+from polycnc.machine import LONGEST_BLOCK_S, ToolConfig
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
@@ -40,6 +40,7 @@ from polycnc.nc.blocks._modal import (
 )
 from polycnc.nc.blocks._moves import Wait
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, additional_offset
+from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
@@ -291,4 +292,18 @@ class Modes:
         data = self.auxiliary.tool_data(tool)
         radius = data.radius_mm + data.wear_radius_mm
         radius += state.tables.tool_radius(state.placement.compensations)
-        return lambda: state.compensation.start(Side(state.side), radius, plane, line)
+        tip = self._tip(data, radius)
+
+        def start() -> None:
+            state.compensation.start(Side(state.side), radius, plane, line)
+            if tip != state.tip.vector:
+                state.tip = TipShift(tip)
+
+        return start
+
+    def _tip(self, data: ToolConfig, radius: float) -> tuple[tuple[int, float], ...]:
+        """Return the way from the middle of a tool's nose to its tip, by axis; none for a tool without a tip."""
+        letters = self.state.modal.letter_axis
+        ways = zip("XZ", TIPS[data.tip], strict=True)
+        named = [(int(letters[ord(name) - ord("A")]), way * radius) for name, way in ways]
+        return tuple(named) if any(way for _, way in named) else ()

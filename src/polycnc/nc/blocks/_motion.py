@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import Dialect
@@ -48,6 +49,7 @@ from polycnc.nc.blocks._modal import (
     PLANE,
     PLANE_LETTERS,
     RAPID_STOP,
+    length_scale,
     short_way,
 )
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Wait
@@ -99,6 +101,13 @@ class MotionBuilder:
     def __post_init__(self) -> None:
         self._low = self.state.modal.low.tolist()
         self._high = self.state.modal.high.tolist()
+        names = self.state.axis_names
+        # Addresses of ways: without meaning where the machine has such an axis, or lacks the one they stand for.
+        self._ways = [
+            (letter, name)
+            for letter, name in self.dialect.incremental.items()
+            if letter not in names and name in names
+        ]
         self._modulo = [int(kind) == MODULO_AXIS for kind in self.state.modal.rotary]
 
     def begin(self, words: BlockWords) -> None:
@@ -110,16 +119,33 @@ class MotionBuilder:
         """Take the axis words of the block: axis index -> value in mm or degree, not placed yet."""
         found = {}
         by_letter = self.words.by_letter
+        modal = self.state.modal
         for index, name in enumerate(self.state.axis_names):
             if name in by_letter:
                 value = self.words.length(name)
                 if value is not None:
-                    found[index] = value * float(self.state.modal.scale[index])
+                    found[index] = value * float(modal.scale[index])
+        for letter, name in self._ways:
+            if letter in by_letter and (value := self.words.length(letter)) is not None:
+                index = self.state.axis_names.index(name)
+                if index in found:
+                    raise self.fail(
+                        f"{letter} and {name} both say where {name} goes",
+                        "Write one of them.",
+                        by_letter[letter],
+                    )
+                here = float(modal.position[index] - modal.offset[index])
+                found[index] = here + value * float(modal.scale[index])
         return found
+
+    def is_diameter(self, axis: int) -> bool:
+        """Tell whether words of a linear axis are diameters."""
+        return float(self.state.modal.scale[axis]) < 0.75 * length_scale(self.state.modal)
 
     def axis_word_left(self) -> bool:
         """Tell whether there is an axis word that nothing has taken."""
-        return any(letter in self.state.axis_names for letter, _ in self.words.unused())
+        names = (*self.state.axis_names, *(letter for letter, _ in self._ways))
+        return any(letter in names for letter, _ in self.words.unused())
 
     def target(self, axis_values: dict[int, float], machine_coordinates: bool = False) -> Point:
         """Return the machine position that axis words ask for; axes without a word stay."""
@@ -340,14 +366,46 @@ class MotionBuilder:
         x = int(modal.letter_axis[ord("X") - ord("A")])
         # Twice the mean radius, from the axis of the workpiece: program zero.
         diameter = 0.0 if x == NO_AXIS else abs(start[x] + end[x] - 2.0 * float(modal.offset[x]))
-        top = self.state.machine.spindle.max_rpm
+        top = min(self.state.machine.spindle.max_rpm, spindle.clamp)
         return top if diameter <= 0.0 else min(top, spindle.speed * 1000.0 / (math.pi * diameter))
 
-    def move(self, end: Point, motion: int, line: int) -> Move:
-        """Return the move of a G0, G1, G2 or G3 block."""
+    def moves(self, end: Point, motion: int, line: int) -> list[Move]:
+        """Return the moves of a G0, G1, G2 or G3 block: one, or more where the spindle's speed says so."""
         if motion >= MOTION_ARC_CW:
-            return self._arc(end, motion == MOTION_ARC_CW, line)
-        return self.line(end, motion == MOTION_RAPID, line)
+            return [self._arc(end, motion == MOTION_ARC_CW, line)]
+        if motion == MOTION_RAPID or not self.state.spindle.surface_speed:
+            return [self.line(end, motion == MOTION_RAPID, line)]
+        self.check_limits(end)
+        return list(self.cut(self.start, end, line))
+
+    def cut(self, start: Point, end: Point, line: int) -> Iterator[Line]:
+        """Yield a straight cut, in parts where the spindle's speed reaches its clamp on the way.
+
+        Within a part the speed of constant surface speed is that at its middle, which takes the same time as one that
+        changes all along: that grows with X.
+        """
+        points = [start, *self._clamp_points(start, end), end]
+        last = len(points) - 2
+        for number, (a, b) in enumerate(pairwise(points)):
+            yield Line(a, b, self.feed(a, b), False, self.exact_stop and number == last, line)
+
+    def _clamp_points(self, start: Point, end: Point) -> list[Point]:
+        spindle, modal = self.state.spindle, self.state.modal
+        x = int(modal.letter_axis[ord("X") - ord("A")])
+        if not spindle.surface_speed or x == NO_AXIS or modal.whole[FEED_MODE] != FEED_PER_REVOLUTION:
+            return []
+        way = end[x] - start[x]
+        if way == 0.0:
+            return []
+        top = min(self.state.machine.spindle.max_rpm, spindle.clamp)
+        radius = spindle.speed * 1000.0 / (2.0 * math.pi * top)
+        center = float(modal.offset[x])
+        shares = sorted((center + side * radius - start[x]) / way for side in (-1.0, 1.0))
+        return [
+            tuple(a + share * (b - a) for a, b in zip(start, end, strict=True))
+            for share in shares
+            if 1e-9 < share < 1.0 - 1e-9
+        ]
 
     def _arc(self, end: Point, clockwise: bool, line: int) -> Move:
         """Return a circular move to `end` by centre (I J K) or radius (R), or the line that stands for it.
@@ -442,7 +500,7 @@ class MotionBuilder:
         tolerance = float(modal.real[ARC_TOLERANCE])
         ends = start[p], start[q], end[p], end[q]
         if radius is not None:
-            found = arc_by_radius(*ends, radius * float(modal.scale[p]), clockwise, tolerance)
+            found = arc_by_radius(*ends, radius * length_scale(modal), clockwise, tolerance)
         else:
             letters = CENTER_LETTERS[int(modal.whole[PLANE])]
             if self.state.frame.active:
@@ -463,7 +521,7 @@ class MotionBuilder:
 
     def _framed_center(self, center: list[float], start: Point, p: int, q: int) -> list[float]:
         modal = self.state.modal
-        u, v = (value * float(modal.scale[axis]) for value, axis in zip(center, (p, q), strict=True))
+        u, v = (value * length_scale(modal) for value in center)
         if not modal.whole[ARC_ABSOLUTE]:
             u, v = self.state.frame.vector(p, q, u, v)
             return [start[p] + u, start[q] + v]
@@ -476,7 +534,7 @@ class MotionBuilder:
         modal = self.state.modal
         if value is None:
             return start[axis]
-        length = value * float(modal.scale[axis])
+        length = value * length_scale(modal)
         return length + float(modal.offset[axis]) if modal.whole[ARC_ABSOLUTE] else start[axis] + length
 
 

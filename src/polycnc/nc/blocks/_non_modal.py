@@ -84,8 +84,8 @@ class NonModal:
         move = self._measuring_move(g, line)
         probe = self.state.probe
         assert probe is not None
-        names = self.state.axis_names
-        if (met := first_contact(self.state.machine.surfaces, names, move.start, move.end)) is not None:
+        machine = self.state.machine
+        if (met := first_contact(machine.surfaces, machine.axis_names, move.start, move.end)) is not None:
             self.state.probe = replace(probe, position=met)
             move = replace(move, end=met)
         return [move, Wait(0.0, line, stop=Stop.DRAIN)]
@@ -107,7 +107,7 @@ class NonModal:
                 f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
             )
         values = self.motion.axis_words()
-        if not values:
+        if not values and "S" not in self.motion.words.by_letter:  # S is the spindle's clamp
             raise self.fail(
                 f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
             )
@@ -142,7 +142,17 @@ class NonModal:
             for index, axis in enumerate(self.state.machine.axes)
         )
         self.motion.check_limits(home, "would go home to")
+        self._remark_home(g, [index for index in range(len(home)) if index in values or not values])
         return [Line(start, middle, Feed(), True, True, line), Line(middle, home, Feed(), True, True, line)]
+
+    def _remark_home(self, g: GWord, axes: list[int]) -> None:
+        """Say that home is the part's zero, where it is: on hardly any machine it is."""
+        machine, offset = self.state.machine, self.state.modal.offset
+        linear = [index for index in axes if machine.axes[index].kind == "linear"]
+        if linear and all(machine.axes[index].home == offset[index] for index in linear):
+            self.messages.add(
+                f"G{g.code}: home lies at the part's zero on machine '{machine.name}'; a machine file says where it is"
+            )
 
     def _machine_move(self, g: GWord, motion: int, line: int) -> list[Line]:
         self._refuse_compensation(g, self.state.side != 0)

@@ -1,7 +1,7 @@
 """CPL: the language inside part programs, and what it needs of the control that runs it (Manual 003)."""
 
 from polycnc.nc.cpl._blocks import CplLanguage, CplSource
-from polycnc.nc.cpl._faults import Fault
+from polycnc.nc.cpl._faults import Fault, Text
 from polycnc.nc.cpl._fields import Field
 from polycnc.nc.cpl._formats import default_format, groups, number_in
 from polycnc.nc.cpl._host import (
@@ -48,6 +48,7 @@ __all__ = [
     "Section",
     "Step",
     "SubProgram",
+    "Text",
     "Waiting",
     "compile_program",
     "default_format",

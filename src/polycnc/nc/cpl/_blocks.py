@@ -60,6 +60,9 @@ class CplLanguage:
         self.running.append(source)
         return source
 
+    def ended(self) -> None:
+        """Take note that the last program under way has been left."""
+
     def skips(self, level: int) -> bool:
         """Tell whether blocks of a level are left out."""
         return level in self._skip_levels
@@ -131,6 +134,8 @@ class CplSource:
         self.execution.close()
         if self in self._language.running:
             self._language.running.remove(self)
+            if not self._language.running:
+                self._language.ended()
 
     def _words(self, block: NcValues) -> WordsBlock:
         begin, end = self._starts[block.line - 1 : block.line + 1]

@@ -31,6 +31,7 @@ class Program:
     variables: dict[Variable, int]
     marked_din: bool
     is_plain: bool
+    text: str
 
     @property
     def file(self) -> str:
@@ -57,11 +58,11 @@ def compile_program(
         return None, [source.error(flaw) for flaw in sorted(flaws, key=lambda flaw: flaw.at)]
     calls = tuple(each for each in every(statements) if isinstance(each, SubCall))
     plain = all(isinstance(each, NcLine) for each in statements)
-    return Program(source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain), []
+    return Program(source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text), []
 
 
 class Linker:
-    """Compile programs and those that they call, each once; `find` returns the file and text of a sub-program."""
+    """Compile programs and those that they call, each once as long as its text stays; `find` returns file and text."""
 
     def __init__(self, find: Find, *, stepping: bool = False) -> None:
         self._find = find
@@ -73,6 +74,8 @@ class Linker:
     def link(self, text: str, file: str) -> tuple[Program | None, list[ProgramError]]:
         """Return a main program with its sub-programs checked, and all that is wrong with any of them."""
         errors: list[ProgramError] = []
+        self._files.clear()
+        self._faulty.clear()
         main = self._compiled(text, file, errors)
         if main is not None and not main.marked_din:
             self._check_calls(main, (main,), errors)
@@ -115,7 +118,8 @@ class Linker:
     def _compiled(self, text: str, file: str, errors: list[ProgramError]) -> Program | None:
         if file in self._faulty:
             return None
-        if file not in self._programs:
+        known = self._programs.get(file)
+        if known is None or known.text != text:
             program, found = compile_program(text, file, stepping=self._stepping)
             errors += found
             if program is None:

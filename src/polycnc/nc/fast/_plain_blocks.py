@@ -61,6 +61,7 @@ from polycnc.nc.blocks._modal import (
     Floats,
     Ints,
     Modal,
+    has_diameters,
     short_way,
 )
 from polycnc.nc.text._scan import COMMENT, WordColumns
@@ -117,7 +118,8 @@ def make_fast_work(modal: Modal, marks: int = 0, *, feed_needs_point: bool = Fal
     role[[_N, _F]] = _NUMBER
     if feed_needs_point:
         role[_F] = _LENGTH
-    role[[_I, _J, _K, _R]] = _LENGTH
+    if not has_diameters(modal):  # else centres and radii are scaled otherwise than positions
+        role[[_I, _J, _K, _R]] = _LENGTH
     axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
     said = np.zeros(_SAID_COLUMNS, np.int64)
     said[_CENTERS] = 1 << _I | 1 << _J | 1 << _K

@@ -13,6 +13,9 @@ ARGUMENTS_I: Mapping[str, int] = {
 }  # fmt: skip
 """Local variables of the addresses in the first form of arguments."""
 
+ARGUMENTS_EACH: Mapping[str, int] = {**ARGUMENTS_I, "G": 10, "L": 12, "N": 14, "P": 16}
+"""Local variables of all words of a block that becomes a call, by G66.1."""
+
 FIRST_REPEATED = 4
 """In the second form I, J and K repeat up to ten times: I1 J1 K1 are #4 #5 #6, I2 J2 K2 are #7 #8 #9, ..."""
 MOST_REPEATS = 10
@@ -43,9 +46,11 @@ class MacroCalls:
 class Arguments:
     """What a program is called with: local variables, None to share those of the caller.
 
-    `modal` is a call behind a move, by G66; `by_code` one by a G, M or T code.
+    `modal` is a call behind a move, by G66, or in place of a block, by G66.1; `by_code` one by a G, M or T code;
+    `interrupt` one by the interrupt signal.
     """
 
     values: Mapping[int, Value] | None
     modal: bool = False
     by_code: bool = False
+    interrupt: bool = False

@@ -19,14 +19,19 @@ from polycnc.nc.macro._syntax import (
     Address,
     Assignment,
     Cancel,
+    Device,
     Expression,
     Function,
     Goto,
     If,
+    Interrupt,
     Line,
     MacroCall,
+    Names,
     Number,
+    Output,
     Part,
+    Printed,
     Restart,
     Span,
     Statement,
@@ -98,6 +103,7 @@ class Code:
     blocks: list[BlockSpec]
     calls: list[CallSpec]
     texts: list[str]
+    outputs: list[Output]
     shape: Shape
 
 
@@ -121,6 +127,7 @@ class _Compiler:
     blocks: list[BlockSpec] = field(default_factory=list)
     calls: list[CallSpec] = field(default_factory=list)
     texts: list[str] = field(default_factory=list)
+    outputs: list[Output] = field(default_factory=list)
     flaws: list[Flaw] = field(default_factory=list)
     before: list[str] = field(default_factory=list)  # lines that an expression needs before its own
     loops: list[Region | None] = field(
@@ -138,7 +145,9 @@ class _Compiler:
             out.put("n = 0", "go = -1")
             self.region(self.shape.main)
             out.put("return", "yield")
-        return Code(out.compile(name), self.spans, self.blocks, self.calls, self.texts, self.shape)
+        return Code(
+            out.compile(name), self.spans, self.blocks, self.calls, self.texts, self.outputs, self.shape
+        )
 
     # ------------------------------------------------------------------ flow
 
@@ -237,10 +246,11 @@ class _Compiler:
             self.out.place = part.offset
             self.spans.append(TextSpan(part.offset, part.line, part.end))
             index = len(self.spans) - 1
-            with self.out.block("if H.modal is None:"):
+            with self.out.block("if H.plain:"):
                 self.out.put(f"yield S[{index}]")
             with self.out.block("else:"):
                 self.out.put(f"yield from H.span({index})")
+                self.after_call(region)
         else:
             self.line = part
             self.begin(part.line)
@@ -277,7 +287,6 @@ class _Compiler:
                 self.goto(statement, region)
             case Words():
                 self.words(statement.at, statement.words)
-                self.modal_call()
                 if any(word.letter == "M" and _is(word.value, _SUB_CALL) for word in statement.words):
                     self.after_call(region)
             case MacroCall():
@@ -285,9 +294,21 @@ class _Compiler:
             case SubCall():
                 self.sub_call(statement, region)
             case Cancel():
-                out.put("H.modal = None")
+                out.put("H.cancel()")
                 if statement.words:
                     self.words(statement.at, statement.words)
+            case Interrupt():
+                program = "None" if statement.program is None else self.value(statement.program).text
+                self.flush()
+                out.put(f"H.interrupted_by({program})")
+            case Output():
+                self.output(statement)
+            case Device():
+                out.put(f"H.device({statement.opens})")
+            case Names():
+                self.texts += statement.names
+                count = len(self.texts)
+                out.put(f"H.set_names({statement.first}, T[{count - len(statement.names)}:{count}])")
             case Restart():
                 with out.block("if H.main:"):
                     self.jump(self.shape.main, "0")
@@ -427,11 +448,18 @@ class _Compiler:
                 specs.append(WordSpec(word.letter, word.at))
         self.blocks.append(BlockSpec(self.line.line, self.line.offset, self.line.skip, tuple(specs)))
         self.flush()
-        self.out.put(f"yield block({len(self.blocks) - 1}, {_tuple(values)})")
+        index = len(self.blocks) - 1
+        with self.out.block("if H.plain:"):
+            self.out.put(f"yield block({index}, {_tuple(values)})")
+        with self.out.block("else:"):
+            self.out.put(f"yield from H.words({index}, {_tuple(values)})")
 
-    def modal_call(self) -> None:
-        with self.out.block("if H.modal is not None:"):
-            self.out.put(f"yield from H.behind({len(self.blocks) - 1})")
+    def output(self, statement: Output) -> None:
+        assert self.line is not None
+        values = [self.value(each.value).text for each in statement.pieces if isinstance(each, Printed)]
+        self.outputs.append(statement)
+        self.flush()
+        self.out.put(f"H.put_out({len(self.outputs) - 1}, {_tuple(values)}, {self.line.line})")
 
     def arguments(self, call: MacroCall) -> tuple[tuple[int, ...], list[str]]:
         values = []
@@ -461,7 +489,7 @@ class _Compiler:
         self.flush()
         index = len(self.calls) - 1
         if call.modal:
-            self.out.put(f"H.modal = modal({index}, {program}, {repeats}, {_tuple(values)})")
+            self.out.put(f"H.push(modal({index}, {program}, {repeats}, {_tuple(values)}, {call.each}))")
             return
         self.out.put(f"yield call({index}, {program}, {repeats}, {_tuple(values)})")
         self.after_call(region)

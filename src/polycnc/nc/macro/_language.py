@@ -11,6 +11,7 @@ from polycnc.language import Flaw, Frame, frame_of
 from polycnc.nc._block_records import Call
 from polycnc.nc._block_source import (
     CallProgram,
+    Drain,
     EndSource,
     Pause,
     SourceItem,
@@ -20,9 +21,10 @@ from polycnc.nc._block_source import (
 from polycnc.nc._channel import Channel
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._modal import INCH
-from polycnc.nc.macro._calls import Arguments, MacroCalls
+from polycnc.nc.macro._calls import ARGUMENTS_EACH, Arguments, MacroCalls
 from polycnc.nc.macro._compile import Code, compile_program, names
 from polycnc.nc.macro._functions import asin, atan2, rounded
+from polycnc.nc.macro._output import OutputDevice
 from polycnc.nc.macro._reader import LARGEST_LABEL, LineReader
 from polycnc.nc.macro._shape import RETURNS_TO, extent, parse, shape, special
 from polycnc.nc.macro._system import SystemVariables
@@ -48,11 +50,12 @@ _PLAIN_CALLS = MacroCalls()
 
 @dataclass(frozen=True, slots=True)
 class _Modal:
-    """A call behind every move: program, repetitions and arguments, and where G66 stands."""
+    """A call behind every move: program, repetitions and arguments; `each` in place of every block (G66.1)."""
 
     program: int
     repeats: int
     values: dict[int, Value]
+    each: bool = False
 
 
 @dataclass
@@ -94,8 +97,11 @@ class MacroLanguage:
         self.nat = nat
         self.main_repeats = main_repeats
         self.longest_loop_pauses = None if endless_loops else LONGEST_LOOP_PAUSES
-        self.modal: _Modal | None = None
+        self.modals: tuple[_Modal, ...] = ()
+        self.interrupt_program: int | None = None
+        self.output = OutputDevice()
         self.pending: int | None = None
+        self._interrupt = False
         self.codes_off = 0
         self._channel: Channel | None = None
         self._compiled: dict[tuple[int, int, bool], _Compiled | None] = {}
@@ -111,11 +117,22 @@ class MacroLanguage:
         self._levels.clear()
         self.system.attach(channel)
         self.variables.leave_all()
-        self.modal = self.pending = None
+        self.modals, self.pending = (), None
+        self.interrupt_program, self._interrupt = None, False
+        self.output.attach(channel)
         self.codes_off = 0
         self._compiled.clear()
         self._latin.clear()
         self._returns.clear()
+
+    def interrupt(self) -> None:
+        """Give the interrupt signal: the program that M96 names is called behind the block that is executed."""
+        self._interrupt = self.interrupt_program is not None
+
+    def take_interrupt(self) -> bool:
+        """Tell whether the interrupt signal has come since this was asked last."""
+        taken, self._interrupt = self._interrupt, False
+        return taken
 
     @property
     def channel(self) -> Channel:
@@ -140,7 +157,7 @@ class MacroLanguage:
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> MacroSource | None:
         """Return a source for the program that begins at byte `offset`, None where plain text needs none."""
         given = arguments if isinstance(arguments, Arguments) else None
-        needed = given is not None or self.modal is not None
+        needed = given is not None or bool(self.modals) or self.interrupt_program is not None
         key = (id(text), offset, self.codes_off > 0 or (given is not None and given.by_code))
         if key not in self._compiled:
             self._compiled[key] = self._compile(text, offset, line, key[2], force=False)
@@ -218,13 +235,16 @@ class MacroSource:
         self._pauses = 0
         self._by_code = arguments is not None and arguments.by_code
         self._has_level = arguments is not None and arguments.values is not None
-        self._outer_modal = language.modal
+        self._outer_modals = language.modals
+        self._outer_interrupt = language.interrupt_program
         self._is_modal_call = arguments is not None and arguments.modal
+        self._is_interrupt = arguments is not None and arguments.interrupt
         self._closed = False
         self.main = language.channel.depth == 0
-        self.modal: _Modal | None
         if self._is_modal_call:
-            language.modal = None
+            language.modals = language.modals[:-1]
+        if self._is_interrupt:
+            language.modals, language.interrupt_program = (), None
         if self._by_code:
             language.codes_off += 1
         if arguments is not None and arguments.values is not None:
@@ -273,8 +293,10 @@ class MacroSource:
             language.variables.leave()
         if self._by_code:
             language.codes_off -= 1
-        if self._is_modal_call:
-            language.modal = self._outer_modal
+        if self._is_modal_call or self._is_interrupt:
+            language.modals = self._outer_modals
+        if self._is_interrupt:
+            language.interrupt_program = self._outer_interrupt
 
     # ------------------------------------------------------------------ the program's own calls
 
@@ -291,7 +313,7 @@ class MacroSource:
             for first, last in ranges:
                 if first <= number <= last:
                     return common[number]
-            system.modal_call = language.modal is not None
+            system.modal_call = bool(language.modals)
             return system.read(number)
 
         def put(number: int, value: Value) -> None:
@@ -363,15 +385,16 @@ class MacroSource:
                 words.append(Word(word.letter, _nearest(value, self.increment(word.letter)), word.at, True))
         return WordsBlock(tuple(words), spec.line, spec.offset, skip_level=spec.skip)
 
-    def behind(self, index: int) -> Iterator[SourceItem]:
-        """Give the call behind a block of words, if it moves."""
-        code = self._compiled.code
-        assert code is not None
-        spec = code.blocks[index]
-        if spec.skip and self.skips(spec.skip):
+    def words(self, index: int, values: tuple[Value, ...]) -> Iterator[SourceItem]:
+        """Give a block of words and the calls behind it, or the call that it becomes (G66.1)."""
+        block = self._block(index, values)
+        modals = self._language.modals
+        letters: list[tuple[str, float]] = [(word.letter, word.value) for word in block.words]
+        if modals and modals[-1].each:
+            yield from self._each_item(modals[-1], letters, block.line, block.offset)
             return
-        letters = [(word.letter, word.value or 0.0) for word in spec.words]
-        yield from self._modal_item(letters, spec.line, spec.offset)
+        yield block
+        yield from self._calls_behind(letters, block.line, block.offset)
 
     def span(self, index: int) -> Iterator[SourceItem]:
         """Give plain text line by line, with the call behind every move."""
@@ -384,15 +407,44 @@ class MacroSource:
         offset, line = whole.offset, whole.line
         while offset < whole.end:
             end = min(text.next_line(offset), whole.end)
-            yield TextSpan(offset, line, end)
             block = scan_block(text, offset, line, rules)
-            if not (block.skip_level and self.skips(block.skip_level)):
-                letters = [(word.letter, word.value) for word in block.words]
-                yield from self._modal_item(letters, line, offset)
+            skipped = bool(block.skip_level) and self.skips(block.skip_level)
+            letters = [(word.letter, word.value) for word in block.words]
+            modals = self._language.modals
+            if modals and modals[-1].each and not skipped:
+                yield from self._each_item(modals[-1], letters, line, offset)
+            else:
+                yield TextSpan(offset, line, end)
+                if not skipped:
+                    yield from self._calls_behind(letters, line, offset)
+            if self._language.pending is not None:
+                return
             offset, line = end, line + 1
 
+    def _each_item(
+        self, modal: _Modal, letters: list[tuple[str, float]], line: int, offset: int
+    ) -> Iterator[SourceItem]:
+        """Give the call that a block becomes, with its words as arguments; a block number alone is none."""
+        values: dict[int, Value] = {
+            ARGUMENTS_EACH[letter]: value for letter, value in letters if letter in ARGUMENTS_EACH
+        }
+        if all(letter in "NO" for letter, _ in letters):
+            return
+        self._check_level()
+        yield CallProgram(modal.program, line, offset, modal.repeats, Arguments(values, modal=True))
+
+    def _calls_behind(self, letters: list[tuple[str, float]], line: int, offset: int) -> Iterator[SourceItem]:
+        yield from self._modal_item(letters, line, offset)
+        language = self._language
+        if language.interrupt_program is not None and language.pending is None:
+            yield Drain(line)
+            if language.take_interrupt():
+                self._check_level()
+                arguments = Arguments({}, interrupt=True)
+                yield CallProgram(language.interrupt_program, line, offset, 1, arguments)
+
     def _modal_item(self, letters: list[tuple[str, float]], line: int, offset: int) -> Iterator[SourceItem]:
-        modal = self._language.modal
+        modal = self._language.modals[-1] if self._language.modals else None
         axes = self._language.channel.state.axis_names
         moves = any(letter in axes for letter, _ in letters)
         if (
@@ -428,11 +480,21 @@ class MacroSource:
             _program(program), spec.line, spec.offset, _repeats(repeats), Arguments(None, by_code=True)
         )
 
-    def _modal_call(self, index: int, program: float, repeats: float, values: tuple[Value, ...]) -> _Modal:
+    def _modal_call(
+        self, index: int, program: float, repeats: float, values: tuple[Value, ...], each: bool
+    ) -> _Modal:
         code = self._compiled.code
         assert code is not None
         numbers = code.calls[index].numbers
-        return _Modal(_program(program), _repeats(repeats), dict(zip(numbers, values, strict=True)))
+        if len(self._language.modals) >= LEVELS:
+            raise MacroError(f"more than {LEVELS} modal calls", "Cancel one with G67 first.", "PS0122")
+        return _Modal(_program(program), _repeats(repeats), dict(zip(numbers, values, strict=True)), each)
+
+    def put_out(self, index: int, values: tuple[float, ...], line: int) -> None:
+        """Write an output to the device."""
+        code = self._compiled.code
+        assert code is not None
+        self._language.output.write(code.outputs[index], values, line)
 
     def _find(self, number: int, offset: int) -> tuple[int, int]:
         code = self._compiled.code
@@ -475,17 +537,28 @@ class _Host:
         self.main = source.main
         self.skips = source.skips
         self.span = source.span
-        self.behind = source.behind
+        self.words = source.words
+        self.put_out = source.put_out
+        self.device = source._language.output.switch
+        self.set_names = source._language.variables.set_names
         self._increment = source.increment
 
     @property
-    def modal(self) -> _Modal | None:
-        """The call behind every move."""
-        return self._language.modal
+    def plain(self) -> bool:
+        """Whether blocks go out as they are: nothing is called behind them."""
+        return not self._language.modals and self._language.interrupt_program is None
 
-    @modal.setter
-    def modal(self, modal: _Modal | None) -> None:
-        self._language.modal = modal
+    def push(self, modal: _Modal) -> None:
+        """Call a macro behind every move, or for every block (G66, G66.1)."""
+        self._language.modals += (modal,)
+
+    def cancel(self) -> None:
+        """Cancel the last modal call (G67)."""
+        self._language.modals = self._language.modals[:-1]
+
+    def interrupted_by(self, program: float | None) -> None:
+        """Let the interrupt signal call a program, or none (M96, M97)."""
+        self._language.interrupt_program = None if program is None else _program(program)
 
     @property
     def pending(self) -> int | None:

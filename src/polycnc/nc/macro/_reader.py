@@ -12,14 +12,19 @@ from polycnc.nc.macro._syntax import (
     Address,
     Assignment,
     Cancel,
+    Device,
     End,
     Expression,
     Function,
     Goto,
     If,
+    Interrupt,
     Line,
     MacroCall,
+    Names,
     Number,
+    Output,
+    Printed,
     Restart,
     Statement,
     SubCall,
@@ -62,10 +67,13 @@ _OPERATORS = Operators(
     prefix={"-": Prefix(4), "+": Prefix(4)},
 )  # fmt: skip
 _COMMENT = re.compile(r"\(([^)\r\n]*)\)")
-_UNSUPPORTED = {
-    "DPRNT": "output to a device", "BPRNT": "output to a device", "POPEN": "output to a device",
-    "PCLOS": "output to a device", "SETVN": "naming variables", "PRM": "reading parameters",
-}  # fmt: skip
+_UNSUPPORTED = {"PRM": "reading parameters"}
+_PRINTED_TEXT = re.compile(r"[A-Z0-9*/+\-?@&=. ]", re.IGNORECASE)
+_FORMAT_DIGITS = re.compile(r"[ \t]*\[[ \t]*([0-9])[ \t]*([0-9])?[ \t]*\]")
+_NAME_LIST = re.compile(r"[ \t]*([0-9]+)[ \t]*\[([^\]\r\n]*)\]")
+_LONGEST_NAME = 8
+_MOST_DIGITS = 8
+_INTERRUPT_ON, _INTERRUPT_OFF = 96.0, 97.0
 _MACRO_CALL, _MODAL_CALL, _MODAL_CALL_EACH, _CANCEL_MODAL = 65.0, 66.0, 66.1, 67.0
 _RETURN = 99.0
 
@@ -118,8 +126,8 @@ class _Statements:
             label = self._digits("the block number")
             skip = self._skip(skip)
         statements: list[Statement] = []
-        while tokens.token.kind != TEXT_END:
-            if statements and not (isinstance(statements[-1], Assignment) and tokens.token.word == "#"):
+        while self._tokens.token.kind != TEXT_END:
+            if statements and not (isinstance(statements[-1], Assignment) and self._tokens.token.word == "#"):
                 raise self._mixed(statements[-1])
             statements.append(self._statement())
         if statements and isinstance(statements[0], (While, End)) and skip:
@@ -199,9 +207,77 @@ class _Statements:
                 case "END":
                     tokens.step()
                     return End(token.at, self._loop())
+                case "POPEN" | "PCLOS":
+                    tokens.step()
+                    return Device(token.at, token.word == "POPEN")
+                case "DPRNT" | "BPRNT":
+                    return self._output(token.at, token.word == "BPRNT")
+                case "SETVN":
+                    return self._set_names(token.at)
         if token.kind == "letter":
             return self._words()
         raise Flaw(token.at, f"{token} begins no statement", "Check the block.", code=_STATEMENT)
+
+    def _go_on_at(self, place: int) -> None:
+        self._tokens = Tokens(_LEXICON, self._text, place, self._end)
+
+    def _output(self, at: int, binary: bool) -> Output:
+        """Read an output: characters as they stand ('*' is a blank), `#n[fd]` values with their digits."""
+        text, place = self._text, self._tokens.next_at
+        if not text.startswith("[", place):
+            raise Flaw(at, "'[' is missing behind the output", "Write DPRNT[X#1[53]].", code=_STATEMENT)
+        place += 1
+        pieces: list[str | Printed] = []
+        while not text.startswith("]", place):
+            if place >= self._end:
+                raise Flaw(at, "the output is not closed", "Write ']' at its end.", code=_STATEMENT)
+            if text[place] == "#":
+                self._go_on_at(place)
+                value = self._variable()
+                place = self._tokens.token.at
+                found = _FORMAT_DIGITS.match(text, place, self._end)
+                if found is None or (not binary and found[2] is None):
+                    raise Flaw(
+                        place,
+                        "the digits of the value are missing",
+                        "Write #1[53]: five before the point, three behind it (BPRNT: #1[3]).",
+                        code=_STATEMENT,
+                    )
+                first, second = int(found[1]), int(found[2] or 0)
+                whole, decimals = (0, first) if binary else (first, second)
+                if not binary and not 0 < whole + decimals <= _MOST_DIGITS:
+                    raise Flaw(place, "a value has 1 to 8 digits", "Write fewer, like [53].", code=_STATEMENT)
+                pieces.append(Printed(value, whole, decimals))
+                place = found.end()
+            elif _PRINTED_TEXT.match(text, place):
+                pieces.append(text[place])
+                place += 1
+            else:
+                raise Flaw(
+                    place,
+                    f"'{text[place]}' cannot be put out",
+                    "Use letters, digits, * / + -.",
+                    code=_STATEMENT,
+                )
+        self._go_on_at(place + 1)
+        return Output(at, binary, tuple(pieces))
+
+    def _set_names(self, at: int) -> Names:
+        found = _NAME_LIST.match(self._text, self._tokens.next_at, self._end)
+        if found is None:
+            raise Flaw(
+                at, "SETVN without a number and names", "Write SETVN 510[DEPTH,WIDTH].", code=_STATEMENT
+            )
+        names = tuple(name.strip() for name in found[2].split(","))
+        if any(len(name) > _LONGEST_NAME for name in names):
+            raise Flaw(
+                found.start(2),
+                f"a name is longer than {_LONGEST_NAME} characters",
+                "Shorten it.",
+                code=_STATEMENT,
+            )
+        self._go_on_at(found.end())
+        return Names(at, int(self._label(float(found[1]), found.start(1))), names)
 
     def _assignment(self) -> Assignment:
         at = self._tokens.token.at
@@ -326,6 +402,8 @@ class _Statements:
             if word.letter == "M" and code is not None:
                 if code == _RETURN:
                     return self._return(word, words)
+                if code in (_INTERRUPT_ON, _INTERRUPT_OFF):
+                    return self._interrupt(word, code, words)
                 if code in self.calls.m:
                     return self._by_code(word, self.calls.m[int(code)], index, words)
                 if code in self.calls.m_sub:
@@ -350,13 +428,6 @@ class _Statements:
 
     def _macro_call(self, code: float, index: int, words: list[Address]) -> MacroCall:
         word = words[index]
-        if code == _MODAL_CALL_EACH:
-            raise Flaw(
-                word.at,
-                "G66.1 is not supported yet",
-                "Call the macro with G65 in each block.",
-                code=_STATEMENT,
-            )
         program = repeats = None
         arguments = []
         for each in words[index + 1 :]:
@@ -380,8 +451,33 @@ class _Statements:
                 f"G{code:g} comes first: all other words are arguments.",
                 code=_STATEMENT,
             )
+        every = code == _MODAL_CALL_EACH
+        if every and arguments:
+            raise Flaw(
+                arguments[0].at,
+                "arguments beside G66.1",
+                "The words of the blocks that follow are the arguments.",
+                code=_STATEMENT,
+            )
         check_arguments(arguments)
-        return MacroCall(word.at, program, repeats, tuple(arguments), modal=code == _MODAL_CALL)
+        return MacroCall(
+            word.at, program, repeats, tuple(arguments), modal=every or code == _MODAL_CALL, each=every
+        )
+
+    def _interrupt(self, word: Address, code: float, words: list[Address]) -> Interrupt:
+        program = next((each.value for each in words if each.letter == "P"), None)
+        others = [each for each in words if each is not word and each.value is not program]
+        if code == _INTERRUPT_ON and program is None:
+            raise Flaw(word.at, "M96 without P", "Write M96 P and the number of the program.", code="PS0076")
+        if others or (code == _INTERRUPT_OFF and program is not None):
+            at = others[0].at if others else word.at
+            raise Flaw(
+                at,
+                f"M{code:g} and other words in one block",
+                "Write them in a block before.",
+                code=_STATEMENT,
+            )
+        return Interrupt(word.at, program)
 
     def _by_code(self, word: Address, program: int, index: int, words: list[Address]) -> MacroCall:
         before = words[:index]

@@ -13,8 +13,9 @@ from polycnc.nc.macro._syntax import End, Goto, If, Line, Number, Part, Span, Wh
 
 _B = r"[ \t]*"
 _ANYWHERE = r"[#\[\]=]|\b(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN)|\b(?:DO|END)[ \t]*[0-9]"
-_MACRO_CODES = rf"G{_B}0*6[567](?![0-9])"
+_MACRO_CODES = rf"G{_B}0*6[567](?![0-9])|M{_B}0*9[67](?![0-9.])"
 _RETURN_TO = rf"M{_B}0*99(?![0-9.])[^\r\n]*P|P[^\r\n]*M{_B}0*99(?![0-9.])"
+_RETURNS = ("M99", "M099", "M0099", "M 99", "M 099", "M\t99")
 _SUB_CALL = rf"M{_B}0*98(?![0-9.])"
 _NEWLINE = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r"\([^)\r\n]*\)")
@@ -59,7 +60,8 @@ class Special:
 def special(calls: MacroCalls, *, restarts: bool = False, returns: bool = False) -> Special:
     """Return what makes a line special; with `returns` callers are to be returned into."""
     codes = [_ANYWHERE, _MACRO_CODES, _RETURN_TO]
-    needles = ["#", "[", "=", "O", "D", "G6", "G 6", "M99"]
+    needles = ["#", "[", "=", "O", "D", "G6", "G06", "G006", "G 6", "G\t6", *_RETURNS, "M96", "M096", "M 96"]
+    needles += ["M97", "M097", "M 97"]
     for code in calls.g:
         codes.append(rf"G{_B}0*{re.escape(f'{code:g}')}(?![0-9.])")
         needles += _written("G", code)
@@ -82,7 +84,7 @@ def _written(letter: str, code: float) -> list[str]:
     return [f"{letter}{code:g}", f"{letter}0{code:g}", f"{letter} {code:g}"]
 
 
-RETURNS_TO = Special(re.compile(_RETURN_TO, re.IGNORECASE), (b"M99",))
+RETURNS_TO = Special(re.compile(_RETURN_TO, re.IGNORECASE), tuple(each.encode() for each in _RETURNS))
 """Lines that return to a block of the calling program."""
 
 

@@ -111,6 +111,50 @@ class MacroCall:
     before: tuple[Address, ...] = ()
     modal: bool = False
     by_code: bool = False
+    each: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Interrupt:
+    """`M96 P...`: the program that the interrupt signal calls from now on; `M97` has none."""
+
+    at: int
+    program: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class Printed:
+    """A value in an output: its expression, and how many digits before and behind the point are put out."""
+
+    value: Expression
+    whole: int
+    decimals: int
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """`DPRNT[...]` or `BPRNT[...]`: texts and values in their order."""
+
+    at: int
+    binary: bool
+    pieces: tuple[str | Printed, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Device:
+    """`POPEN` or `PCLOS`."""
+
+    at: int
+    opens: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """`SETVN n[...]`: names of variables from a number on."""
+
+    at: int
+    first: int
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,7 +183,22 @@ class Restart:
     at: int
 
 
-Statement: TypeAlias = Assignment | Goto | If | While | End | Words | MacroCall | SubCall | Cancel | Restart
+Statement: TypeAlias = (
+    Assignment
+    | Goto
+    | If
+    | While
+    | End
+    | Words
+    | MacroCall
+    | SubCall
+    | Cancel
+    | Restart
+    | Interrupt
+    | Output
+    | Device
+    | Names
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,6 +23,7 @@ _SINGLE_BLOCK, _FEED_CONTROL, _SETTINGS, _MIRRORS = 3003, 3004, 3005, 3007
 _TIMER_MS, _TIMER_H, _DATE, _TIME = 3001, 3002, 3011, 3012
 _PARTS, _PARTS_REQUIRED = 3901, 3902
 _STORED = frozenset({_SINGLE_BLOCK, _FEED_CONTROL, _SETTINGS, _PARTS, _PARTS_REQUIRED})
+_SUPPRESSING = (_SINGLE_BLOCK, _FEED_CONTROL)
 _TIMERS = frozenset({_TIMER_MS, _TIMER_H, _DATE, _TIME})
 _BLOCK_END, _MACHINE, _WORK, _SKIP, _LENGTH, _DEVIATION = 5001, 5021, 5041, 5061, 5081, 5101
 _POSITIONS = (_BLOCK_END, _MACHINE, _WORK, _SKIP, _LENGTH, _DEVIATION)
@@ -57,8 +58,10 @@ class SystemVariables:
         self.program_number = 0
 
     def attach(self, channel: Channel) -> None:
-        """Work for a channel."""
+        """Work for a channel; nothing is suppressed."""
         self._channel = channel
+        for number in _SUPPRESSING:
+            self._stored.pop(number, None)
 
     @property
     def channel(self) -> Channel:
@@ -84,7 +87,9 @@ class SystemVariables:
         if place is not None:
             return place[0] not in (_BLOCK_END, _LENGTH)
         return (
-            number in _TIMERS or number in (_PARTS, _PARTS_REQUIRED) or number - _EXECUTED in _MODAL_NUMBERS
+            number in _TIMERS
+            or number in (_PARTS, _PARTS_REQUIRED, *_SUPPRESSING)
+            or number - _EXECUTED in _MODAL_NUMBERS
         )
 
     def read(self, number: int) -> Value:
@@ -118,7 +123,9 @@ class SystemVariables:
             MacroError: There is none of this number, or it can only be read.
         """
         new = 0.0 if value is None else value
-        if number in _STORED:
+        if number in _SUPPRESSING:
+            self._suppress(number, new)
+        elif number in _STORED:
             self._stored[number] = new
         elif number in (_TIMER_MS, _TIMER_H):
             self._timers[number] = (self.channel.machine.time_s, new)
@@ -133,6 +140,19 @@ class SystemVariables:
             raise MacroError(f"#{number} can only be read", "Write another variable.", "PS0116")
         else:
             raise no_variable(number)
+
+    def _suppress(self, number: int, value: float) -> None:
+        """Let single block, answers (#3003), feed hold and override (#3004) act or not; exact stops stay."""
+        if value not in range(8 if number == _FEED_CONTROL else 4):
+            raise MacroError(f"#{number} cannot be {value:g}", "It takes the sum of 1, 2 and 4.", "PS0119")
+        self._stored[number] = value
+        first, second = bool(int(value) & 1), bool(int(value) & 2)
+        was = self.channel.suppressed
+        self.channel.suppressed = (
+            was._replace(single_block=first, answers=second)
+            if number == _SINGLE_BLOCK
+            else was._replace(hold=first, override=second)
+        )
 
     # ------------------------------------------------------------------ where a number leads
 

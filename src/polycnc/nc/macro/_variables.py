@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Final, Literal, TypeAlias
 
 from polycnc.machine import Store
@@ -58,6 +58,8 @@ class MacroVariables:
                 if isinstance(number, int) and self.kind(number) == "permanent":
                     self.common[number] = value
         self._kept = self.common[_FIRST_PERMANENT:]
+        self.names: dict[int, str] = {}
+        """Names of variables, by number (SETVN)."""
 
     @property
     def level(self) -> int:
@@ -155,6 +157,17 @@ class MacroVariables:
                     self._area.pop(number, None)
         for number, value in values.items():
             self._kept[number - _FIRST_PERMANENT] = value
+
+    def set_names(self, first: int, names: Sequence[str]) -> None:
+        """Name variables from a number on.
+
+        Raises:
+            MacroError: A number is not of a variable from #500 on; none is named.
+        """
+        for number in (first, first + len(names) - 1):
+            if self.kind(number) != "permanent":
+                raise no_variable(number)
+        self.names.update(enumerate(names, first))
 
     def clear_common(self) -> None:
         """Make #100 to #199 vacant, as switching the control on does."""

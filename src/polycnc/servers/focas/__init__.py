@@ -18,35 +18,59 @@ from polycnc.controllers.fanuc.wire import (
     write_replies,
     write_requests,
 )
-from polycnc.servers.focas._commands import COMMANDS
+from polycnc.servers.focas._capture import explain_capture, from_hex
+from polycnc.servers.focas._commands import COMMANDS, WRITING, known
 from polycnc.servers.focas._control import FocasControl
+from polycnc.servers.focas._dissect import Dissector, Field, dissect
+from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
+from polycnc.servers.focas._layouts import LAYOUTS, Layout
+from polycnc.servers.focas._owner import HostOwner, Keeper, Owner
 from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
+from polycnc.servers.focas._served import ServedControl
 from polycnc.servers.focas._server import PORT, FocasServer
 from polycnc.servers.focas._session import TRANSITIONS, Answerer, Ending, Session, State, Status, Transition
 
 __all__ = [
     "CNC",
     "COMMANDS",
+    "LAYOUTS",
     "PMC",
     "PORT",
     "PROFILES",
     "TRANSITIONS",
     "VACANT",
+    "WRITING",
     "Answerer",
+    "Dissector",
     "Ending",
+    "Fault",
+    "FaultKind",
+    "Faults",
+    "Field",
     "FocasControl",
     "FocasServer",
     "Frame",
     "FrameReader",
     "FrameType",
+    "HostOwner",
+    "Keeper",
+    "Layout",
+    "Owner",
+    "Plan",
     "Profile",
     "Reply",
     "Request",
+    "ServedControl",
     "Session",
     "State",
     "Status",
     "Transition",
     "Value8",
+    "dissect",
+    "explain_capture",
+    "from_hex",
+    "known",
+    "load_faults",
     "load_profile",
     "read_replies",
     "read_requests",

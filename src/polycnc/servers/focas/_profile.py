@@ -29,6 +29,12 @@ class Profile(StrictModel):
     refused: tuple[int, ...] = ()
     """Command codes that this series does not know."""
     most_sessions: int = 5
+    most_spindles: int = Field(default=8, ge=1, le=8)
+
+    @property
+    def most_body(self) -> int:
+        """The bytes that the library accepts in the body of a reply of this frame version."""
+        return 1450 if self.frame_version <= 2 else 2910 if self.frame_version == 3 else 3470
 
 
 def load_profile(name: str) -> Profile:

@@ -1,7 +1,6 @@
 """The shell of the protocol: TCP connections of one control, each with a session of its own.
 
-A host owns the control. What a client sends is taken between two control cycles, so what one frame asks is answered
-from one cycle.
+What a client sends is taken between two control cycles, so what one frame asks is answered from one cycle.
 """
 
 from __future__ import annotations
@@ -9,38 +8,48 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import socket
+import struct
 from typing import Any
 
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
 from polycnc.machine import Host
 from polycnc.servers.focas._control import FocasControl
+from polycnc.servers.focas._faults import FaultKind, Faults
+from polycnc.servers.focas._owner import HostOwner, Keeper, Owner
 from polycnc.servers.focas._profile import Profile
 from polycnc.servers.focas._session import Ending, Session
 
 PORT = 8193
 LOOPBACK = "127.0.0.1"
-_READ = 1 << 14
+_LISTEN_BEAT_S = 0.05
 
 
 class FocasServer:
-    """Serve the control of a running `host` on `address`:`port`; port 0 takes a free one, see `port`."""
+    """Serve a control on `address`:`port`; port 0 takes a free one, see `port`.
+
+    `owner` lets its time pass: a running host, or a `Keeper`. `faults` are those of the script that it follows.
+    """
 
     def __init__(
         self,
-        host: Host[Any],
+        owner: Owner | Host[Any],
         control: PowerMate,
         profile: Profile,
         *,
-        address: str = "127.0.0.1",
+        address: str = LOOPBACK,
         port: int = PORT,
+        faults: Faults | None = None,
     ) -> None:
         self.port = port
         self.address = address
-        self._host = host
-        self._control = FocasControl(control, profile)
+        self.owner: Owner = HostOwner(owner) if isinstance(owner, Host) else owner
+        keep = isinstance(owner, Keeper) and owner.pace.rate >= 1.0
+        self.control = FocasControl(control, profile, faults, keep=keep)
         self._server: asyncio.Server | None = None
-        self._open: set[asyncio.Task[None]] = set()
+        self._lines: set[_Line] = set()
+        self._watch: asyncio.TimerHandle | None = None
+        self._task: asyncio.Task[None] | None = None  # keeps it from being collected
 
     async def start(self) -> None:
         """Listen.
@@ -49,50 +58,156 @@ class FocasServer:
             UsageError: The address or port cannot be listened on.
         """
         try:
-            self._server = await asyncio.start_server(self._serve, self.address, self.port)
+            await self._listen()
         except OSError as error:
             raise UsageError(
                 f"cannot listen on {self.address}:{self.port}: {error.strerror or error}",
-                hint="Choose another port; another server may have this one.",
+                hint="Choose another port or address; another server may have this one.",
             ) from None
+        assert self._server is not None
         self.port = self._server.sockets[0].getsockname()[1]
+        if self.control.faults.knows(FaultKind.UNREACHABLE):
+            self._follow()
+
+    async def _listen(self) -> None:
+        loop = asyncio.get_running_loop()
+        self._server = await loop.create_server(
+            lambda: _Line(self), self.address, self.port, reuse_address=True
+        )
+
+    def _follow(self) -> None:
+        """Listen, or do not, as the script says now."""
+        loop = asyncio.get_running_loop()
+        away = self.control.faults.has(FaultKind.UNREACHABLE)
+        if away and self._server is not None:
+            self._server.close()
+            self._server = None
+        elif not away and self._server is None:
+            self._task = loop.create_task(self._come_back())
+            return
+        self._watch = loop.call_later(_LISTEN_BEAT_S, self._follow)
+
+    async def _come_back(self) -> None:
+        with contextlib.suppress(OSError):  # somebody else has the port: tried again
+            await self._listen()
+        self._follow()
 
     async def serve_forever(self) -> None:
         """Serve until cancelled."""
-        assert self._server is not None
-        await self._server.serve_forever()
+        await asyncio.get_running_loop().create_future()
 
     async def close(self) -> None:
         """Stop listening and end every connection."""
+        if self._watch is not None:
+            self._watch.cancel()
         if self._server is not None:
             self._server.close()
-        for task in tuple(self._open):
-            task.cancel()
-        await asyncio.gather(*self._open, return_exceptions=True)
+        for line in tuple(self._lines):
+            line.abort()
+        await asyncio.sleep(0)  # lets the connections tell that they are lost
 
-    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        task = asyncio.current_task()
-        assert task is not None
-        self._open.add(task)
-        session = Session(self._control)
-        line: socket.socket = writer.get_extra_info("socket")
-        line.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        try:
-            while session.ending is None and (data := await reader.read(_READ)):
-                sent = await self._take(session, data)
-                if sent:
-                    writer.write(sent)
-                    await writer.drain()
-        except ConnectionError:
-            pass
-        finally:
-            self._open.discard(task)
-            if session.ending is Ending.RESET:
-                writer.transport.abort()
-            with contextlib.suppress(ConnectionError):
-                writer.close()
-            with contextlib.suppress(Exception):  # the host may have been closed before
-                self._host.post(lambda _: session.lost())
+    def joined(self, line: _Line) -> None:
+        """Note a connection."""
+        self._lines.add(line)
 
-    async def _take(self, session: Session, data: bytes) -> bytes:
-        return await asyncio.wrap_future(self._host.post(lambda _: session.receive(data)))
+    def left(self, line: _Line) -> None:
+        """Forget a connection."""
+        self._lines.discard(line)
+
+
+class _Line(asyncio.Protocol):
+    """One connection: bytes in and out of a session.
+
+    Nothing more is read while a reply waits for its time, for the peer to take bytes, or for the next turn, so a client
+    that only sends fills nobody's memory and keeps nobody else waiting.
+    """
+
+    _transport: asyncio.Transport
+
+    def __init__(self, server: FocasServer) -> None:
+        self._server = server
+        self._session = Session(server.control)
+        self._full = self._waiting = self._gone = False
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+        self._server.joined(self)
+
+    def data_received(self, data: bytes) -> None:
+        session = self._session
+        if session.ending is None:
+            self._server.owner.submit(lambda: session.receive(data), self._answer)
+
+    def _answer(self, sent: bytes) -> None:
+        session = self._session
+        if self._gone:
+            return
+        if session.delay_s:
+            delay_s, session.delay_s = session.delay_s, 0.0
+            self._hold(True)
+            asyncio.get_running_loop().call_later(delay_s, self._send, sent)
+        else:
+            self._send(sent)
+
+    def _send(self, sent: bytes) -> None:
+        session = self._session
+        if self._gone:
+            return
+        if sent:
+            self._transport.write(sent)
+        if session.ending is Ending.RESET:
+            self._reset()
+        elif session.ending is Ending.CLOSE:
+            self._transport.close()
+        elif session.more:
+            self._hold(True)
+            asyncio.get_running_loop().call_soon(self._go_on)
+        else:
+            self._hold(False)
+
+    def _go_on(self) -> None:
+        session = self._session
+        if not self._gone and not self._full:
+            self._server.owner.submit(lambda: session.receive(b""), self._answer)
+
+    def _reset(self) -> None:
+        """End with a reset, as controls do, not with the end of the stream; what was written goes out before."""
+        line: socket.socket = self._transport.get_extra_info("socket")
+        line.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        if self._transport.get_write_buffer_size():
+            self._transport.close()
+        else:
+            self._transport.abort()
+
+    def _hold(self, waiting: bool) -> None:
+        if waiting != self._waiting:
+            self._waiting = waiting
+            self._read()
+
+    def _read(self) -> None:
+        if self._transport.is_closing():
+            return
+        if self._waiting or self._full:
+            self._transport.pause_reading()
+        else:
+            self._transport.resume_reading()
+
+    def pause_writing(self) -> None:
+        self._full = True
+        self._read()
+
+    def resume_writing(self) -> None:
+        self._full = False
+        self._read()
+        if self._session.more:
+            self._go_on()
+
+    def connection_lost(self, error: Exception | None) -> None:
+        self._gone = True
+        self._server.left(self)
+        self._server.owner.submit(self._session.lost, lambda _: None)
+
+    def abort(self) -> None:
+        """End the connection at once."""
+        self._transport.abort()

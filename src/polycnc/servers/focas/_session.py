@@ -22,6 +22,7 @@ from polycnc.controllers.fanuc.wire import (
     write_replies,
 )
 from polycnc.errors import ProtocolError
+from polycnc.servers.focas._faults import FaultKind, Plan
 
 SESSIONS_USED_UP = 2
 """The code with which a control refuses one session too many."""
@@ -31,6 +32,7 @@ REJECTED = 13
 _START_BODY = 516
 _NAME_AT = 4
 _UPLOAD_PIECE = 0x500
+_MOST_AT_ONCE = 1 << 15
 
 
 class Status(NamedTuple):
@@ -56,7 +58,7 @@ class Answerer(Protocol):
     def opening(self) -> bytes:
         """Return the body of the frame that accepts a session."""
 
-    def answer(self, requests: Sequence[Request]) -> list[Reply] | Status:
+    def answer(self, requests: Sequence[Request], plan: Plan) -> list[Reply] | Status:
         """Carry out the commands of one frame in one cycle; a status refuses the frame as a whole."""
 
     def download_start(self, name: str) -> Status:
@@ -70,6 +72,9 @@ class Answerer(Protocol):
 
     def upload(self, name: str) -> Status | bytes:
         """Return the text of a program or range of programs."""
+
+    def plan(self) -> Plan:
+        """Count a frame of commands and say what a script of faults wants to happen to it."""
 
 
 class State(Enum):
@@ -126,22 +131,30 @@ class Ending(Enum):
 class Session:
     """Turn received bytes into bytes to send.
 
-    After `receive`, `ending` tells whether the connection shall be closed; `lost` is called when the peer is gone.
+    After `receive`, `ending` tells whether the connection shall be closed, `delay_s` how long what is to be sent shall
+    wait, and `more` whether there is more to be taken by `receive(b"")`: what is sent at once is bounded. `lost` is
+    called when the peer is gone.
     """
 
     control: Answerer
     state: State = State.NEW
     ending: Ending | None = None
     channel: int = 0
+    delay_s: float = 0.0
+    more: bool = False
     reader: FrameReader = field(default_factory=FrameReader)
     _out: list[bytes] = field(default_factory=list)
 
     def receive(self, data: bytes) -> bytes:
         """Take bytes from the peer; return what to send, in one piece."""
+        self.more = False
         try:
-            for frame in self.reader.feed(data):
+            for frame in self.reader.feed(b"" if self.ending else data):
                 self._take(frame)
-                if self.ending is not None:
+                if self.ending:
+                    break
+                if self.delay_s or sum(map(len, self._out)) >= _MOST_AT_ONCE:
+                    self.more = bool(self.reader.pending)
                     break
         except ProtocolError:
             self._end(Ending.RESET)
@@ -194,17 +207,33 @@ class Session:
         return following
 
     def _commands(self, frame: Frame, following: State) -> State:
+        plan = self.control.plan()
+        if plan.kind is FaultKind.DROP:
+            self._end(Ending.RESET)
+            return State.ENDED
+        before = len(self._out)
+        self._answer(frame, plan)
+        self.delay_s += plan.delay_s
+        if plan.kind is not None:
+            sent = b"".join(self._out[before:])
+            del self._out[before:]
+        if plan.kind is FaultKind.HALF:
+            self._out.append(sent[: len(sent) // 2])
+            self._end(Ending.RESET)
+            return State.ENDED
+        return following
+
+    def _answer(self, frame: Frame, plan: Plan) -> None:
         try:
             requests = read_requests(frame.body) if frame.body else []
         except ProtocolError:
             self._send(FrameType.COMMANDS_REFUSED, status_body(PROTOCOL_REFUSED, 1))
-            return following
-        answers = self.control.answer(requests)
+            return
+        answers = self.control.answer(requests, plan)
         if isinstance(answers, Status):
             self._send(FrameType.COMMANDS_REFUSED, status_body(*answers))
         else:
             self._send(FrameType.ANSWERS, write_replies(requests, answers))
-        return following
 
     def _download_start(self, frame: Frame, following: State) -> State:
         refused = self.control.download_start(_name(frame.body))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cache
 
 MM_PER_INCH = 25.4
 
@@ -48,6 +49,7 @@ class Scale:
         return counts / 10.0**self.decimals * (MM_PER_INCH if self.inch else 1.0)
 
 
+@cache
 def scale(increment: Increment, *, linear: bool, inch: bool) -> Scale:
     """Return the scale of an axis: inch counts for linear axes only."""
     in_inch = linear and inch

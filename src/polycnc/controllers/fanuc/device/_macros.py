@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 OPTION = "custom_macro"
 _JUMPS_PER_CYCLE = 500
+_MOST_PRINTED = 1 << 16
 _G_CALLS = {6050 + k: 9010 + k for k in range(10)}
 _SUB_CALLS = {6070 + k: 9000 + k for k in range(1, 10)}
 _M_CALLS = {6080 + k: 9020 + k for k in range(10)}
@@ -33,16 +34,24 @@ class Macros:
         self._variables = shared.variables
         self._turns = 0
         self.user_outputs = 0
+        self.printed = bytearray()
+        """The last that programs have put out (DPRNT, BPRNT)."""
         self.language = self._new_language()
 
     def _new_language(self) -> MacroLanguage:
-        return MacroLanguage(
+        language = MacroLanguage(
             self._variables,
             system=PowerMateVariables(self._power_mate, self),
             main_repeats=True,
             endless_loops=True,
             pause_jumps=_JUMPS_PER_CYCLE,
         )
+        language.output.sink = self._put_out
+        return language
+
+    def _put_out(self, data: bytes) -> None:
+        self.printed += data
+        del self.printed[:-_MOST_PRINTED]
 
     @property
     def languages(self) -> tuple[MacroLanguage, ...]:
@@ -76,7 +85,8 @@ class Macros:
             self._variables.clear_locals()
 
     def begin(self) -> None:
-        """Take over which codes call programs, before a program begins."""
+        """Take over what parameters say of macros, before a program begins."""
+        self.language.output.bare = self._power_mate.parameters.bit(6001, 1)
         value = self._power_mate.parameters.value
         self.language.calls = MacroCalls(
             g={float(value(number)): program for number, program in _G_CALLS.items() if value(number)},

@@ -45,6 +45,8 @@ _GROUP_NAMES = {
     7: Group.LENGTH_COMPENSATION,
 }
 _WORD = re.compile(r"([A-Z])\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+))")
+_STATEMENT = re.compile(r"=|\b(?:GOTO|IF|WHILE|DO|END|DPRNT|BPRNT|POPEN|PCLOS|SETVN)|GOTO")
+_STATEMENT_BEGINS = re.compile(r"\s*(?:/[1-9]?\s*)?(?:N\s*[0-9]+)?")
 _COMMENT = re.compile(r"\([^)]*\)")
 _LENGTHS = frozenset("IJKRQ")
 _BLOCKS = 3
@@ -165,7 +167,11 @@ class ModalData:
 
 
 def _words(line: str) -> list[tuple[str, str]]:
-    return _WORD.findall(_COMMENT.sub("", line).upper())
+    """Return the words of a block; statements of macros have none but the block number, expressions no number."""
+    bare = _COMMENT.sub("", line).upper()
+    if _STATEMENT.search(bare):
+        bare = bare[: _STATEMENT_BEGINS.match(bare).end()]  # type: ignore[union-attr]
+    return _WORD.findall(bare)
 
 
 def _code(word: tuple[str, str]) -> str:

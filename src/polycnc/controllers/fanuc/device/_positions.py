@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeAlias
 
-from polycnc.cnc import AxisStatus, Status
+from polycnc.cnc import AxisFigures, AxisStatus, Status
 from polycnc.controllers.fanuc.data._increment import Scale, scale
 from polycnc.nc import Group, ModalWords
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
-Axes: TypeAlias = Status | Mapping[str, AxisStatus]
+Axes: TypeAlias = Status | AxisFigures | Mapping[str, AxisStatus]
 
 _START_OFFSET = "G54"
 _LENGTH_AXIS = "Z"
@@ -48,29 +48,43 @@ class Positions:
 
         Acceleration is planned before the path is interpolated on this control, so nothing is delayed by it.
         """
-        axes = self._axes(of)
-        shift = self._shift(tuple(axes))
-        scales = self._scales()
-        found = []
-        for axis, each in enumerate(axes.values(), 1):
-            program, machine = scales[each.unit]
-            found.append(
-                AxisPositions(
-                    absolute=program.counts(each.work + shift.get(each.name, 0.0))
-                    + self._power_mate.axis_motion.shift(axis),
-                    machine=machine.counts(each.machine),
-                    relative=program.counts(each.relative),
-                    distance=program.counts(each.to_go),
-                    servo_delay=program.counts(each.following_error),
-                    acceleration_delay=0,
-                )
+        power_mate = self._power_mate
+        shift, scales = self._shift(), self._scales()
+        shifted = power_mate.axis_motion.shift
+        return tuple(
+            AxisPositions(
+                absolute=scales[unit][0].counts(work + shift.get(name, 0.0)) + shifted(axis),
+                machine=scales[unit][1].counts(machine),
+                relative=scales[unit][0].counts(relative),
+                distance=scales[unit][0].counts(to_go),
+                servo_delay=scales[unit][0].counts(delay),
+                acceleration_delay=0,
             )
-        return tuple(found)
+            for axis, (name, unit, work, machine, relative, to_go, delay) in enumerate(self._places(of), 1)
+        )
 
-    def _axes(self, of: Axes | None) -> Mapping[str, AxisStatus]:
-        if of is None:
-            return self._power_mate.control.axes()
-        return of.axes if isinstance(of, Status) else of
+    def _places(self, of: Axes | None) -> Iterator[tuple[str, str, float, float, float, float, float]]:
+        """Yield name, unit, work, machine and relative position, way to go and lag of each axis."""
+        control = self._power_mate.control
+        if of is not None and not isinstance(of, AxisFigures):
+            axes = of.axes if isinstance(of, Status) else of
+            for each in axes.values():
+                lag = each.following_error
+                yield each.name, each.unit, each.work, each.machine, each.relative, each.to_go, lag
+            return
+        figures = control.figures() if of is None else of
+        zeros = control.relative_zero
+        for index, axis in enumerate(control.machine.config.axes):
+            actual = figures.actual[index]
+            yield (
+                axis.name,
+                axis.unit,
+                actual - figures.zero[index],
+                actual,
+                actual - zeros[index],
+                figures.to_go[index],
+                figures.following_error[index],
+            )
 
     def _scales(self) -> dict[str, tuple[Scale, Scale]]:
         """Return the scales of input and output by the unit of an axis."""
@@ -82,11 +96,17 @@ class Positions:
 
     def feed(self, of: Axes | None = None) -> int:
         """Return the actual feed: mm/min, with inch input 0.01 inch/min; of rotary axes alone deg/min."""
-        axes = self._axes(of)
-        speeds = {
-            kind: math.hypot(*(axis.velocity for axis in axes.values() if axis.unit == kind))
-            for kind in ("mm", "deg")
-        }
+        if of is None or isinstance(of, AxisFigures):
+            figures = self._power_mate.control.figures() if of is None else of
+            units: list[str] = [axis.unit for axis in self._power_mate.control.machine.config.axes]
+            found = list(zip(units, figures.velocity, strict=True))
+        else:
+            axes = of.axes if isinstance(of, Status) else of
+            found = [(axis.unit, axis.velocity) for axis in axes.values()]
+        squares = {"mm": 0.0, "deg": 0.0}
+        for unit, velocity in found:
+            squares[unit] += velocity * velocity
+        speeds = {unit: math.sqrt(square) for unit, square in squares.items()}
         if speeds["mm"] > 0.0:
             return round(speeds["mm"] * _MM_MIN * (_INCH_FEED if self._power_mate.inch_input else 1.0))
         return round(speeds["deg"] * _MM_MIN)
@@ -99,17 +119,18 @@ class Positions:
                 power_mate.axis_name(axis), power_mate.input_scale(axis).value(value)
             )
 
-    def _shift(self, names: tuple[str, ...]) -> dict[str, float]:
+    def _shift(self) -> dict[str, float]:
         """Return what absolute positions have beside work positions: the tool length; before any block G54."""
         control = self._power_mate.control
         block = control.channels[0].executed
         if block is not None:
-            return (
-                {_LENGTH_AXIS: self._length(block.modal)} if control.tools and _LENGTH_AXIS in names else {}
-            )
+            length = self._length(block.modal)
+            return {_LENGTH_AXIS: length} if length else {}
         return {name: -value for name, value in control.offsets.get(_START_OFFSET, {}).items()}
 
     def _length(self, modal: ModalWords) -> float:
-        sign = {"G43": 1.0, "G44": -1.0}.get(modal.g.get(Group.LENGTH_COMPENSATION, ""), 0.0)
+        sign = {"G43": 1.0, "G44": -1.0}.get(modal.g.get(Group.LENGTH_COMPENSATION, ""))
+        if sign is None:
+            return 0.0
         tool = self._power_mate.control.tools.get(modal.h)
         return 0.0 if tool is None else sign * (tool.length_mm + tool.wear_length_mm)

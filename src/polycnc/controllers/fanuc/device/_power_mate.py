@@ -259,6 +259,7 @@ class PowerMate:
             raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
         if not channel.interrupted:
             self.custom_macros.begin()
+            self.signals.apply_lock()
         start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
         self.control.cycle_start(line=start + 1)
         self._cursor = 0

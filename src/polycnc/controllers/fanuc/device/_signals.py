@@ -54,6 +54,8 @@ _TEACHES = frozenset({_M.T_JOG, _M.T_HND})
 _FUNCTION_BITS = {"M": 0, "S": 2, "T": 3, "B": 7}
 _FUNCTION_BYTES = {"M": 10, "S": 22, "T": 26, "B": 30}
 _INTERRUPTED = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
+_MLK = 2
+_UINT = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,8 +89,9 @@ class Signals:
             12: lambda old, new: self.set_feed_override(255 - new),
             14: lambda old, new: self.set_rapid_override(new & 3),
             43: lambda old, new: self._select(new),
-            44: lambda old, new: self._switch(block_delete=bool(new & 1)),
+            44: self._delete_and_lock,
             46: self._switches,
+            53: self._interrupt,
             100: lambda old, new: self._jog_keys(old, new, 1),
             102: lambda old, new: self._jog_keys(old, new, -1),
             126: lambda old, new: self._servo_off(new),
@@ -300,8 +303,19 @@ class Signals:
         self._power_mate.select_mode(mode)
         self._hold_keys()
 
-    def _switch(self, *, block_delete: bool) -> None:
-        self._power_mate.control.set_switches(block_delete=frozenset({1} if block_delete else ()))
+    def _interrupt(self, old: int, new: int) -> None:
+        if new & ~old & _UINT:
+            self._power_mate.custom_macros.language.interrupt()
+
+    def _delete_and_lock(self, old: int, new: int) -> None:
+        self._power_mate.control.set_switches(block_delete=frozenset({1} if new & 1 else ()))
+        self.apply_lock()
+
+    def apply_lock(self) -> None:
+        """Let the machine lock be as its signal is, within a program not before the next start."""
+        lock = bool(self._given.get(44, 0) & _MLK)
+        if lock is not self._power_mate.control.switches.machine_lock:
+            self._press(lambda: self._power_mate.control.set_switches(machine_lock=lock))
 
     def _switches(self, old: int, new: int) -> None:
         power_mate = self._power_mate
@@ -373,7 +387,7 @@ class Signals:
                 lamp = _MODE_LAMPS.get(mode)
                 return (0 if lamp is None else 1 << lamp) | (mode in _TEACHES) << 7
             case 4:
-                lock = bool(self.g(44) & 2)
+                lock = bool(self.g(44) & _MLK)
                 return _bits(
                     {0: 1 in switches.block_delete, 1: lock, 3: switches.single_block, 5: mode is _M.REF}
                 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from polycnc.cnc import Emergency, Motion, RunState
+from polycnc.cnc import Emergency, Motion, RunState, Status
 from polycnc.controllers.fanuc.device._alarms import shown
 
 if TYPE_CHECKING:
@@ -38,9 +38,9 @@ class State:
     edit: int
 
 
-def read_state(power_mate: PowerMate, *, uploading: bool = False) -> State:
-    """Return the state; `uploading` says whether a program is going out."""
-    status = power_mate.status()
+def read_state(power_mate: PowerMate, status: Status | None = None, *, uploading: bool = False) -> State:
+    """Return the state, of `status` if it is given; `uploading` says whether a program is going out."""
+    status = status or power_mate.status()
     channel = status.channel
     reset = power_mate.signals.reset_is_on or status.emergency is Emergency.RESET_NEEDED
     stopped = status.emergency is Emergency.ON

@@ -16,6 +16,8 @@ MOST_POSITION = 99_999_999
 _HEADER = 4
 _DYNAMIC_HEADER = 22
 
+_MAX_AXIS_D = 2
+
 
 @call
 def cnc_actf(link: Link) -> tuple[EW, Annotated[ODBACT, Out("actualfeed")]]:
@@ -114,22 +116,24 @@ def cnc_rddynamic(
     check_length(length, _DYNAMIC_HEADER + 16 * (most if axis == ALL_AXES else 1))
     check_axis(axis, link.device.axes)
     device = link.read("cnc_rddynamic", axis)
-    axes = device.control.axes()
-    data = ODBDY() if device.max_axis > len(ODBDY_D().pos.faxis.absolute) else ODBDY_D()
+    data = ODBDY() if device.max_axis > _MAX_AXIS_D else ODBDY_D()
     data.axis = axis
     data.alarm = int(device.alarm_bits)
     data.prgnum, data.prgmnum = device.execution.numbers
     data.seqnum = device.execution.sequence
-    data.actf = device.positions.feed(axes)
-    for k, each in enumerate(device.positions.read(axes)):
-        values = (each.absolute, each.machine, each.relative, 2 * each.distance)
-        names = ("absolute", "machine", "relative", "distance")
-        if axis == ALL_AXES:
-            for name, value in zip(names, values, strict=True):
-                getattr(data.pos.faxis, name)[k] = value
-        elif k == axis - 1:
-            for name, value in zip(names, values, strict=True):
-                setattr(data.pos.oaxis, name, value)
+    figures = device.control.figures()
+    data.actf = device.positions.feed(figures)
+    places = device.positions.read(figures)
+    if axis == ALL_AXES:
+        every, count = data.pos.faxis, len(places)
+        every.absolute[:count] = [each.absolute for each in places]
+        every.machine[:count] = [each.machine for each in places]
+        every.relative[:count] = [each.relative for each in places]
+        every.distance[:count] = [2 * each.distance for each in places]
+    else:
+        one, place = data.pos.oaxis, places[axis - 1]
+        one.absolute, one.machine = place.absolute, place.machine
+        one.relative, one.distance = place.relative, 2 * place.distance
     return EW.EW_OK, data  # type: ignore[return-value]
 
 

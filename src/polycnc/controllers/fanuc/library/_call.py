@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
+from typing import Concatenate, ParamSpec, TypeVar
+
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
-from polycnc.controllers.fanuc.library._network import Session
+from polycnc.controllers.fanuc.library._network import Link, Session
+from polycnc.controllers.fanuc.library._remote import RemoteLink, carry_out
 from polycnc.controllers.library import USHORT, Facade, Refused
 
 LIBRARY = Facade("polycnc.controllers.fanuc.fwlib", Session(), code="short")
 session_call = LIBRARY.on(lambda session: session)
-call = LIBRARY.through(Session.find, USHORT, name="FlibHndl")
+_of_node = LIBRARY.through(Session.find, USHORT, name="FlibHndl")
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+
+def call(body: Callable[Concatenate[Link, P], R]) -> Callable[Concatenate[int, P], R]:
+    """Make a function of the library of its body, which gets what the handle stands for.
+
+    On a handle of the network the request of that name takes the body's place.
+    """
+
+    @wraps(body)
+    def either(link: Link | RemoteLink, /, *given: P.args, **named: P.kwargs) -> R:
+        if isinstance(link, RemoteLink):
+            result: R = carry_out(link, body.__name__, given)
+            return result
+        return body(link, *given, **named)
+
+    return _of_node(either)
 
 
 def check_length(length: int, least: int) -> None:

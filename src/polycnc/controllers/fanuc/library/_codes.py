@@ -11,6 +11,8 @@ class EW(Code):
     Some numbers have a second name in functions of the PMC.
     """
 
+    EW_PROTOCOL = -17, "who answers on the network does not speak the protocol"
+    EW_SOCKET = -16, "no connection over the network, or it was lost"
     EW_NODLL = -15, "the library of this control is missing"
     EW_INIERR = -14, "the library cannot be initialised"
     EW_ITLOW = -13, "low temperature alarm of the intelligent terminal"
@@ -46,6 +48,8 @@ class EW(Code):
     EW_DTSRVR = 14, "error of the data server"
 
 
+EW_PROTOCOL = EW.EW_PROTOCOL
+EW_SOCKET = EW.EW_SOCKET
 EW_NODLL = EW.EW_NODLL
 EW_INIERR = EW.EW_INIERR
 EW_ITLOW = EW.EW_ITLOW
@@ -117,9 +121,11 @@ __all__ = [
     "EW_PARITY",
     "EW_PATH",
     "EW_PROT",
+    "EW_PROTOCOL",
     "EW_RANGE",
     "EW_REJECT",
     "EW_RESET",
+    "EW_SOCKET",
     "EW_SYSTEM",
     "EW_SYSTEM2",
     "EW_TYPE",

@@ -8,7 +8,7 @@ from polycnc.controllers.fanuc.library._call import session_call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import NODES, Session
 from polycnc.controllers.fanuc.library._structs_a import ODBNODE
-from polycnc.controllers.library import LONG, USHORT, Out, Refused
+from polycnc.controllers.library import LONG, TEXT, USHORT, Out, Refused
 
 
 @session_call
@@ -21,6 +21,16 @@ def cnc_allclibhndl(session: Session) -> tuple[EW, Annotated[USHORT, Out("FlibHn
 def cnc_allclibhndl2(session: Session, node: LONG) -> tuple[EW, Annotated[USHORT, Out("FlibHndl")]]:
     """Open a handle of node 0 to 7 (Manual 000, cnc_allclibhndl2)."""
     return EW.EW_OK, session.link(node)
+
+
+@session_call
+def cnc_allclibhndl3(
+    session: Session, ip: Annotated[str, TEXT], port: USHORT, timeout: LONG
+) -> tuple[EW, Annotated[USHORT, Out("FlibHndl")]]:
+    """Open a handle of a control on the network by its address; it answers within `timeout` s, 0: for ever."""
+    if timeout < 0 or not port:
+        raise Refused(EW.EW_SOCKET)
+    return EW.EW_OK, session.connect(ip, port, timeout or None)
 
 
 @session_call
@@ -62,6 +72,7 @@ def cnc_setdefnode(session: Session, node: LONG) -> EW:
 __all__ = [
     "cnc_allclibhndl",
     "cnc_allclibhndl2",
+    "cnc_allclibhndl3",
     "cnc_freelibhndl",
     "cnc_rdnodeinfo",
     "cnc_rdnodenum",

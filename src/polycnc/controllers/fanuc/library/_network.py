@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.device._transfer import Upload
 from polycnc.controllers.fanuc.library._codes import EW
+from polycnc.controllers.fanuc.library._remote import RemoteLink, reached
+from polycnc.controllers.fanuc.wire import Client
 from polycnc.controllers.library import Handles, Refused
 from polycnc.controllers.library import Session as AnySession
 from polycnc.errors import UsageError
@@ -81,7 +83,7 @@ class Session(AnySession):
         self.lock = _LOCK
         self.nodes: dict[int, Node] = {}
         self.default_node = DEFAULT_NODE
-        self.open: Handles[Link] = Handles(EW.EW_HANDLE, 1, 0xFFFF)
+        self.open: Handles[Link | RemoteLink] = Handles(EW.EW_HANDLE, 1, 0xFFFF)
 
     def attach(self, node: int, device: PowerMate, clock: Way | None = None) -> Node:
         """Put a control on the bus as node 0 to 7; one that is there is taken away with its handles.
@@ -113,7 +115,7 @@ class Session(AnySession):
             for number in [number for number in self.nodes if node is None or number == node]:
                 gone = self.nodes.pop(number)
                 for handle, link in self.open.items():
-                    if link.node is gone:
+                    if isinstance(link, Link) and link.node is gone:
                         self.free(handle)
             if node is None:
                 self.default_node = DEFAULT_NODE
@@ -133,7 +135,16 @@ class Session(AnySession):
             raise Refused(there.fault)
         return self.open.add(Link(there))
 
-    def find(self, handle: int) -> Link:
+    def connect(self, host: str, port: int, timeout_s: float | None) -> int:
+        """Return a new handle of a control on the network.
+
+        Raises:
+            Refused: It is not there, takes no more sessions, or does not speak the protocol.
+        """
+        client = reached(lambda: Client(host, port, timeout_s))
+        return self.open.add(RemoteLink(client))
+
+    def find(self, handle: int) -> Link | RemoteLink:
         """Return what a handle stands for.
 
         Raises:
@@ -148,6 +159,9 @@ class Session(AnySession):
             Refused: It is none.
         """
         link = self.open.free(handle)
+        if isinstance(link, RemoteLink):
+            link.client.close()
+            return
         transfer = link.device.transfer
         if transfer is not None and transfer.owner is link:
             link.device.transfer = None

@@ -3,6 +3,7 @@
 from polycnc.controllers.fanuc.wire._blocks import (
     CNC,
     PMC,
+    REPLY_SIZE,
     Reply,
     Request,
     read_replies,
@@ -10,20 +11,25 @@ from polycnc.controllers.fanuc.wire._blocks import (
     write_replies,
     write_requests,
 )
+from polycnc.controllers.fanuc.wire._client import Client, Connection, WireRefusedError
 from polycnc.controllers.fanuc.wire._frames import Frame, FrameReader, FrameType, read_status, status_body
 from polycnc.controllers.fanuc.wire._numbers import VACANT, VALUE8_SIZE, Value8, text
 
 __all__ = [
     "CNC",
     "PMC",
+    "REPLY_SIZE",
     "VACANT",
     "VALUE8_SIZE",
+    "Client",
+    "Connection",
     "Frame",
     "FrameReader",
     "FrameType",
     "Reply",
     "Request",
     "Value8",
+    "WireRefusedError",
     "read_replies",
     "read_requests",
     "read_status",

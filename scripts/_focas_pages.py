@@ -1,0 +1,123 @@
+# ruff: noqa: E501
+"""The reference page of the FOCAS server, made from its tables: sessions, commands, series, faults."""
+
+from polycnc.servers.focas import (
+    COMMANDS,
+    LAYOUTS,
+    PMC,
+    PROFILES,
+    TRANSITIONS,
+    WRITING,
+    Request,
+    State,
+    load_profile,
+)
+from polycnc.servers.focas import known as known_command
+
+_HEAD = """# The FOCAS protocol as it is served
+
+<!-- Written by scripts/reference. -->
+
+Software reads FANUC controls over TCP, on port 8193, by a protocol without a public description. This page says what
+`polycnc serve --fanuc` answers. It stands on bytes that were seen on controls and on what clients of others send and read;
+what nobody is known to know is not answered with guesses, but with code 1, as a control answers that has not got a function.
+
+## Frames
+
+Everything is big-endian, timers excepted. A frame is `a0 a0 a0 a0`, a version (clients: 1; controls: 2 to 5, see the
+series), a type, the length of the body, the body. Commands travel in blocks: length, target (1 CNC, 2 PMC), path, command,
+four numbers, a tag and the length of data that follow. Each block is answered by one in the same order: length, target,
+path and command again, a status, two details, the length of the payload, the payload. A block that fails leaves the others
+valid. What does not fit the largest frame of the series (1,450, 2,910 or 3,470 bytes) is answered with code 2.
+
+A number of eight bytes is a mantissa, a base (10 or 2) and an exponent: mantissa / base ^ exponent. `00000000 ffffffff` is
+a value that is not set.
+
+## Sessions
+
+The first frame opens a session and says what the connection is for: programs (1) or commands (2). A frame that a state does
+not have resets the connection, and only that one.
+
+"""
+_COMPARED = """
+## What was compared
+
+Read, and held to each other; bytes of captures are in the tests.
+
+| source | what it shows | how it is held here |
+| --- | --- | --- |
+| pyfocas 0.1.1 (PyPI) | a client of identity, state and macro variables | it reads and writes every series over a real socket |
+| diohpix/pyfanuc: `pyfanuc.py` | a client of 20 commands, program upload, folders | sizes and layouts of its requests and replies |
+| diohpix/pyfanuc: `sample_multipacket.md` | a 31i with four axes: counts, names, servo loads in one frame | the same request; each block's length, head and unused places |
+| diohpix/pyfanuc: `sample_with_error.md` | a 160i: nine blocks, two of them refused | the same request; each block's length |
+| diohpix/pyfanuc: `compare_read_diag.md` | diagnosis records of a 160i and a 31i | records of both forms, byte for byte |
+| dooooling/mesa: fixture tests | which requests the maker's library sends for identity and state (40 and 96 bytes) | the request of three blocks in the golden files |
+| huienming/nclink-c: `focas_values.c` | numbers of eight bytes, vacant variables, codes of transfers | numbers, vacancy, status of a finished download |
+
+The maker's own library was never run against this server, and no control was at hand. Where sources contradict each other
+the one that shows captured bytes was followed.
+
+What is this control's own and not proven by anybody: the flags of commanded words (those of `cnc_modal`), the type of the
+tool offset memory, and sizes of the reply that accepts a session on old series.
+"""
+
+
+def _diagram() -> str:
+    arrows = [
+        f"    {row.state.name} --> {row.next.name}: {row.frame.name}{' for commands' if row.frame.name == 'OPEN' else ''}"
+        for row in TRANSITIONS
+    ]
+    lines = ["```mermaid", "stateDiagram-v2", "    [*] --> NEW", *arrows]
+    lines += ["    NEW --> TRANSFER: OPEN for programs", "    ENDED --> [*]", "```", ""]
+    names = [f"- `{state.name}`: {state.value}" for state in State]
+    return "\n".join([*lines, *names, ""])
+
+
+def _series() -> str:
+    lines = [
+        "\n## Series\n",
+        "| profile | version | identity | axes there is room for | values | does not know |",
+        "| --- | ---: | --- | ---: | --- | --- |",
+    ]
+    for name in PROFILES:
+        profile = load_profile(name)
+        identity = (
+            f"{profile.cnc_type.strip()} {profile.machine_type.strip()} {profile.series} {profile.software}"
+        )
+        width = "8 bytes" if profile.wide_values else "4 bytes"
+        refused = ", ".join(f"0x{code:02X}" for code in profile.refused)
+        lines.append(
+            f"| `{name}` | {profile.frame_version} | {identity} | {profile.most_axes} | {width} | {refused} |"
+        )
+    return "\n".join(lines) + "\n"
+
+
+def _commands() -> str:
+    lines = [
+        "\n## Commands\n",
+        "Fields are `name:code`: codes of Python's `struct`, `8` a number of eight bytes, `sN` a text, `?N` bytes of which "
+        "nothing is known, `4*` and `8*` one value for each axis that the series has room for. *each* repeats. "
+        "**W**: changes something. A command without series is known by name only and answered with code 1.\n",
+        "| code | function | arguments | data | reply | each | series |",
+        "| --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for (target, code), layout in LAYOUTS.items():
+        series = [
+            name
+            for name in PROFILES
+            if known_command(load_profile(name), Request(code, target=target)) is not None
+        ]
+        shown = "all" if len(series) == len(PROFILES) else ", ".join(series)
+        mark = " **W**" if (target, code) in WRITING else ""
+        where = "PMC " if target == PMC else ""
+        data = layout.data or layout.data_each
+        cells = [layout.arguments, data, layout.head, layout.each]
+        quoted = " | ".join(f"`{cell}`" if cell else "" for cell in cells)
+        lines.append(f"| {where}0x{code:02X} | {layout.function}{mark} | {quoted} | {shown} |")
+    assert set(COMMANDS) <= set(LAYOUTS)
+    return "\n".join(lines) + "\n"
+
+
+def page() -> str:
+    """Return the page."""
+    return _HEAD + _diagram() + _series() + _commands() + _COMPARED

@@ -1,0 +1,104 @@
+"""What ``polycnc run`` says for people: times, lengths, axes, tools, messages."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from polycnc.cli._output import bold, bold_red, columns, say, say_problem
+from polycnc.units import MM_PER_INCH
+
+if TYPE_CHECKING:
+    from polycnc.runner import RunResult
+
+_NUMBERS = (1, 2, 3)
+
+
+class Units(StrEnum):
+    """Units of lengths and feeds in a summary."""
+
+    MM = "mm"
+    INCH = "inch"
+
+
+class _Lengths:
+    """Lengths (mm), feeds (mm/min) and positions as texts in the units wanted."""
+
+    def __init__(self, units: Units) -> None:
+        inch = units is Units.INCH
+        self._factor = 1.0 / MM_PER_INCH if inch else 1.0
+        self.unit = "in" if inch else "mm"
+        self._decimals = 4 if inch else 3
+        self._feed_decimals = 2 if inch else 1
+
+    def length(self, value_mm: float) -> str:
+        return f"{value_mm * self._factor:,.{self._decimals}f} {self.unit}"
+
+    def feed(self, value_mm_min: float) -> str:
+        return f"{value_mm_min * self._factor:,.{self._feed_decimals}f} {self.unit}/min"
+
+    def position(self, value: float, unit: str) -> str:
+        """Return a position without its unit; degrees stay degrees."""
+        return f"{value * self._factor:,.{self._decimals}f}" if unit == "mm" else f"{value:,.3f}"
+
+    def name(self, unit: str) -> str:
+        return self.unit if unit == "mm" else unit
+
+
+def print_summary(result: RunResult, units: Units = Units.MM) -> None:
+    """Print what a run gave."""
+    from polycnc.runner import counted, time_text
+
+    lengths = _Lengths(units)
+    say(f"program    {result.program}")
+    say(f"           {counted(result.blocks, 'block')}, dialect {result.dialect}, machine {result.machine}")
+    say(lead="time       " + bold(time_text(result.time_s)))
+    parts = [
+        ("  cutting", time_text(result.cutting_time_s), lengths.length(result.cutting_path_mm)),
+        ("  rapid", time_text(result.rapid_time_s), lengths.length(result.rapid_path_mm)),
+        ("  waiting", time_text(result.waiting_time_s), ""),
+    ]
+    for line in columns(parts if result.waiting_time_s else parts[:2], right=_NUMBERS):
+        say(line)
+    _print_operations(result)
+    say(f"path       {lengths.length(result.path_mm)}, cut with up to {lengths.feed(result.top_feed_mm_min)}")
+    header = ("axis", "lowest", "highest", "end", "(machine coordinates)")
+    axes = [
+        (
+            f"  {axis}",
+            *(
+                lengths.position(value, result.axis_units[axis])
+                for value in (low, high, result.end_position_mm[axis])
+            ),
+            lengths.name(result.axis_units[axis]),
+        )
+        for axis, (low, high) in result.extents_mm.items()
+    ]
+    for line in columns([header, *axes], right=_NUMBERS):
+        say(line)
+    for message in result.messages:
+        times = f" ({message.count} times)" if message.count > 1 else ""
+        place = f"line {message.line}: " if message.line else ""
+        say(f"message    {place}{message.text}{times}")
+    for alarm in result.alarms:
+        say_problem(str(alarm), lead=bold_red("alarm: "))
+
+
+def _print_operations(result: RunResult) -> None:
+    """Print the operations with their tools, where there is more than one."""
+    from polycnc.runner import time_text
+
+    if len(result.operations) < 2:
+        return
+    rows = [
+        (
+            f"  T{each.tool}",
+            time_text(each.time_s),
+            time_text(each.cutting_s),
+            time_text(each.rapid_s),
+            each.name,
+        )
+        for each in result.operations
+    ]
+    for line in columns([("tool", "time", "cutting", "rapid", "operation"), *rows], right=_NUMBERS):
+        say(line)

@@ -1,0 +1,418 @@
+"""Functions of a handle that stands for a control on the network: each is a request to its server.
+
+What is not here answers `EW_FUNC`, as do functions that the control does not know.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from polycnc.controllers.fanuc.data._macro_variables import (
+    VACANT,
+    Value,
+    binary_pair,
+    decimal_pair,
+    from_binary,
+    from_decimal,
+)
+from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
+from polycnc.controllers.fanuc.library._structs_a import (
+    IODBMR,
+    IODBPSD,
+    ODBACT,
+    ODBAXIS,
+    ODBDY,
+    ODBM,
+    ODBPRO,
+    ODBSEQ,
+    ODBUP,
+)
+from polycnc.controllers.fanuc.library._structs_b import IODBPMC, ODBALM, ODBST, ODBSYS, iodbpmc
+from polycnc.controllers.fanuc.wire import (
+    PMC,
+    VALUE8_SIZE,
+    Client,
+    Reply,
+    Request,
+    Value8,
+    WireRefusedError,
+)
+from polycnc.controllers.library import Refused, variant
+from polycnc.errors import ProtocolError
+
+_KINDS = {
+    "absolute": 4,
+    "machine": 1,
+    "relative": 6,
+    "distance": 7,
+    "skip": 8,
+    "srvdelay": 9,
+    "accdecdly": 10,
+}
+_DYNAMIC = ("absolute", "machine", "relative", "distance")
+_FIELDS = {0: ("cdata", 0x80), 1: ("cdata", 0x80), 2: ("idata", 0), 3: ("ldata", 0)}
+_SIZES = (1, 2, 4)
+_MOST_AXES = 32
+_DECIMAL = 0
+_AXIS_HEADER, _SINGLE, _DYNAMIC_HEADER, _PMC_HEADER = 4, 10, 22, 8
+
+
+@dataclass(eq=False)
+class RemoteLink:
+    """What a handle of the network stands for: its connection, and what belongs to the handle alone."""
+
+    client: Client
+    macro_type: int = 0
+    upload: bytes | None = None
+    download: bytearray | None = None
+    wide: bool = field(default=True)  # parameters in eight bytes, until the control knows only four
+
+    def ask(self, *requests: Request) -> list[bytes]:
+        """Return the payloads of the answers.
+
+        Raises:
+            Refused: The control, or the way to it, refuses one.
+        """
+        replies: list[Reply] = reached(lambda: self.client.ask(requests))
+        for reply in replies:
+            if reply.status:
+                raise Refused(_code(reply.status))
+        return [reply.payload for reply in replies]
+
+    def values(self, request: Request) -> list[Value8]:
+        """Return the numbers of one answer."""
+        (payload,) = self.ask(request)
+        return _values(payload)
+
+
+T = TypeVar("T")
+
+
+def reached(action: Callable[[], T]) -> T:
+    """Return what an action on the network gives.
+
+    Raises:
+        Refused: The control refuses it, is not there, or does not speak the protocol.
+    """
+    try:
+        return action()
+    except WireRefusedError as error:
+        raise Refused(_code(error.code)) from None
+    except ProtocolError:
+        raise Refused(EW.EW_PROTOCOL) from None
+    except (OSError, ValueError):
+        raise Refused(EW.EW_SOCKET) from None
+
+
+def _code(number: int) -> EW:
+    return EW(number) if number in {each.value for each in EW} else EW.EW_UNEXP
+
+
+def _values(payload: bytes) -> list[Value8]:
+    try:
+        return [
+            Value8.from_wire(payload[at : at + VALUE8_SIZE]) for at in range(0, len(payload), VALUE8_SIZE)
+        ]
+    except ProtocolError:
+        raise Refused(EW.EW_PROTOCOL) from None
+
+
+def _unpacked(form: str, payload: bytes) -> tuple[Any, ...]:
+    if len(payload) < struct.calcsize(form):
+        raise Refused(EW.EW_PROTOCOL)
+    return struct.unpack_from(form, payload)
+
+
+def _check(holds: bool, code: EW) -> None:
+    if not holds:
+        raise Refused(code)
+
+
+# ---------------------------------------------------------------------- what it is and does
+
+
+def cnc_sysinfo(link: RemoteLink) -> tuple[EW, ODBSYS]:
+    (payload,) = link.ask(Request(0x18))
+    _, most, kind, machine, series, version, axes = _unpacked(">HH2s2s4s4s2s", payload)
+    made = ODBSYS(max_axis=most, cnc_type=kind, mt_type=machine, series=series, version=version, axes=axes)
+    return EW.EW_OK, made
+
+
+def cnc_statinfo(link: RemoteLink) -> tuple[EW, ODBST]:
+    payload = link.ask(Request(0x19), Request(0xE1), Request(0x98))[0]
+    aut, run, motion, mstb, emergency, alarm, edit = _unpacked(">7H", payload)
+    made = ODBST(aut=aut, run=run, motion=motion, mstb=mstb, emergency=emergency, alarm=alarm, edit=edit)
+    return EW.EW_OK, made
+
+
+def cnc_alarm(link: RemoteLink) -> tuple[EW, ODBALM]:
+    (bits,) = _unpacked(">I", link.ask(Request(0x1A))[0])
+    return EW.EW_OK, ODBALM(data=_short(bits))
+
+
+def _short(bits: int) -> int:
+    return (bits & 0xFFFF) - (0x10000 if bits & 0x8000 else 0)
+
+
+def cnc_rdprgnum(link: RemoteLink) -> tuple[EW, ODBPRO]:
+    current, main = _unpacked(">ii", link.ask(Request(0x1C))[0])
+    return EW.EW_OK, ODBPRO(data=current, mdata=main)
+
+
+def cnc_rdseqnum(link: RemoteLink) -> tuple[EW, ODBSEQ]:
+    (number,) = _unpacked(">i", link.ask(Request(0x1D))[0])
+    return EW.EW_OK, ODBSEQ(data=number)
+
+
+def cnc_actf(link: RemoteLink) -> tuple[EW, ODBACT]:
+    return EW.EW_OK, ODBACT(data=_first(link.values(Request(0x24))))
+
+
+def _first(values: Sequence[Value8]) -> int:
+    _check(bool(values), EW.EW_PROTOCOL)
+    return values[0].mantissa
+
+
+def _positions(name: str) -> Callable[..., tuple[EW, ODBAXIS]]:
+    def read(link: RemoteLink, axis: int, length: int) -> tuple[EW, ODBAXIS]:
+        _check(axis == ALL_AXES or axis >= 1, EW.EW_ATTRIB)
+        _check(length >= _AXIS_HEADER + 4, EW.EW_LENGTH)
+        values = link.values(Request(0x26, (_KINDS[name], axis, 0, 0)))
+        _check(length >= _AXIS_HEADER + 4 * len(values), EW.EW_LENGTH)
+        made = variant(ODBAXIS, data=max(len(values), 6))(type=axis)
+        made.data[: len(values)] = [each.mantissa for each in values]
+        return EW.EW_OK, made
+
+    return read
+
+
+def cnc_rddynamic(link: RemoteLink, axis: int, length: int) -> tuple[EW, ODBDY]:
+    _check(axis == ALL_AXES or axis >= 1, EW.EW_ATTRIB)
+    _check(length >= _DYNAMIC_HEADER + 16, EW.EW_LENGTH)
+    codes = (Request(each) for each in (0x1A, 0x1C, 0x1D, 0x24, 0x25))
+    places = (Request(0x26, (_KINDS[name], axis, 0, 0)) for name in _DYNAMIC)
+    alarm, programs, sequence, feed, spindle, *positions = link.ask(*codes, *places)
+    current, main = _unpacked(">ii", programs)
+    made = ODBDY(
+        axis=axis,
+        alarm=_short(_unpacked(">I", alarm)[0]),
+        prgnum=current,
+        prgmnum=main,
+        seqnum=_unpacked(">i", sequence)[0],
+        actf=_first(_values(feed)),
+        acts=_first(_values(spindle)),
+    )
+    for name, payload in zip(_DYNAMIC, positions, strict=True):
+        values = [each.mantissa for each in _values(payload)]
+        if axis == ALL_AXES:
+            room = getattr(made.pos.faxis, name)
+            _check(length >= _DYNAMIC_HEADER + 16 * len(values), EW.EW_LENGTH)
+            room[: len(values)] = values[: len(room)]
+        else:
+            _check(bool(values), EW.EW_PROTOCOL)
+            setattr(made.pos.oaxis, name, values[0])
+    return EW.EW_OK, made
+
+
+# ---------------------------------------------------------------------- data
+
+
+def _pair(link: RemoteLink, value: Value8) -> tuple[int, int]:
+    if value.number is None:
+        return VACANT
+    return decimal_pair(value.number) if link.macro_type == _DECIMAL else binary_pair(value.number)
+
+
+def _macro(link: RemoteLink, mantissa: int, exponent: int) -> Value8:
+    try:
+        made: Value | None = (from_decimal if link.macro_type == _DECIMAL else from_binary)(
+            mantissa, exponent
+        )
+    except ValueError:
+        raise Refused(EW.EW_DATA) from None
+    if made is None:
+        return Value8.of(None, 0)
+    mantissa, decimals = made.pair or decimal_pair(made.number)
+    _check((mantissa, decimals) != (-1, -1), EW.EW_DATA)
+    return Value8(mantissa, decimals)
+
+
+def cnc_rdmacro(link: RemoteLink, number: int, length: int) -> tuple[EW, ODBM]:
+    _check(length >= _SINGLE, EW.EW_LENGTH)
+    values = link.values(Request(0x15, (number, number, 0, 0)))
+    _check(len(values) == 1, EW.EW_PROTOCOL)
+    mantissa, exponent = _pair(link, values[0])
+    return EW.EW_OK, ODBM(datano=number, mcr_val=mantissa, dec_val=exponent)
+
+
+def cnc_wrmacro(link: RemoteLink, number: int, length: int, mcr_val: int, dec_val: int) -> EW:
+    _check(length >= _SINGLE, EW.EW_LENGTH)
+    link.ask(Request(0x16, (number, number, 0, 0), bytes(_macro(link, mcr_val, dec_val))))
+    return EW.EW_OK
+
+
+def cnc_rdmacror(link: RemoteLink, s_number: int, e_number: int, length: int) -> tuple[EW, IODBMR]:
+    _check(e_number >= s_number, EW.EW_NUMBER)
+    count = e_number - s_number + 1
+    _check(length >= 6 + 6 * count, EW.EW_LENGTH)
+    values = link.values(Request(0x15, (s_number, e_number, 0, 0)))
+    _check(len(values) == count, EW.EW_PROTOCOL)
+    made = variant(IODBMR, data=count)(datano_s=s_number, datano_e=e_number)
+    for entry, value in zip(made.data, values, strict=True):
+        entry.mcr_val, entry.dec_val = _pair(link, value)
+    return EW.EW_OK, made
+
+
+def cnc_getmactype(link: RemoteLink) -> tuple[EW, int]:
+    return EW.EW_OK, link.macro_type
+
+
+def cnc_setmactype(link: RemoteLink, macro_type: int) -> EW:
+    link.macro_type = macro_type
+    return EW.EW_OK
+
+
+def cnc_rdparam(link: RemoteLink, number: int, axis: int, length: int) -> tuple[EW, IODBPSD]:
+    _check(length >= _AXIS_HEADER + 1, EW.EW_LENGTH)
+    while True:
+        try:
+            (payload,) = link.ask(Request(0x8D if link.wide else 0x0E, (number, number, axis, 0)))
+            break
+        except Refused as refusal:
+            if refusal.code != EW.EW_FUNC or not link.wide:
+                raise
+            link.wide = False
+    _, _, kind = _unpacked(">Ihh", payload)
+    _check(kind in _FIELDS, EW.EW_PROTOCOL)
+    size = VALUE8_SIZE if link.wide else 4
+    slots = [payload[at : at + size] for at in range(8, len(payload), size)]
+    values = (
+        [each.mantissa for slot in slots for each in _values(slot)]
+        if link.wide
+        else [int.from_bytes(slot, "big", signed=True) for slot in slots]
+    )
+    _check(bool(values), EW.EW_PROTOCOL)
+    made = IODBPSD(datano=number, type=axis)
+    name, sign = _FIELDS[kind]
+    values = [value - 256 if sign and value >= sign else value for value in values]
+    if axis == ALL_AXES:
+        room = getattr(made.u, f"{name}s")
+        for k, value in enumerate(values[: len(room)]):
+            room[k] = value
+    else:
+        setattr(made.u, name, values[0])
+    return EW.EW_OK, made
+
+
+def pmc_rdpmcrng(
+    link: RemoteLink, adr_type: int, data_type: int, s_number: int, e_number: int, length: int
+) -> tuple[EW, IODBPMC]:
+    _check(0 <= data_type < len(_SIZES), EW.EW_ATTRIB)
+    size, count = _SIZES[data_type], e_number - s_number + 1
+    _check(count >= 1, EW.EW_NUMBER)
+    _check(count % size == 0 and length == _PMC_HEADER + count, EW.EW_LENGTH)
+    (data,) = link.ask(Request(0x8001, (s_number, e_number, adr_type, data_type), target=PMC))
+    _check(len(data) == count, EW.EW_PROTOCOL)
+    made = iodbpmc(count // size, IODBPMC)(
+        type_a=adr_type, type_d=data_type, datano_s=s_number, datano_e=e_number
+    )
+    part = (made.u.cdata, made.u.idata, made.u.ldata)[data_type]
+    memoryview(part).cast("B")[:] = _swapped(data, size)
+    return EW.EW_OK, made
+
+
+def pmc_wrpmcrng(link: RemoteLink, length: int, buf: bytes) -> EW:
+    _check(_PMC_HEADER <= length <= len(buf), EW.EW_LENGTH)
+    kind, data_type, first, last = struct.unpack_from("<4h", buf)
+    _check(0 <= data_type < len(_SIZES), EW.EW_ATTRIB)
+    data = _swapped(buf[_PMC_HEADER:length], _SIZES[data_type])
+    link.ask(Request(0x8002, (first, last, kind, data_type), data, target=PMC))
+    return EW.EW_OK
+
+
+def _swapped(data: bytes, width: int) -> bytes:
+    return b"".join(data[at : at + width][::-1] for at in range(0, len(data), width))
+
+
+# ---------------------------------------------------------------------- programs
+
+
+def cnc_search(link: RemoteLink, number: int) -> EW:
+    link.ask(Request(0x03, (number, 0, 0, 0)))
+    return EW.EW_OK
+
+
+def cnc_delete(link: RemoteLink, number: int) -> EW:
+    link.ask(Request(0x05, (number, number, 0, 0)))
+    return EW.EW_OK
+
+
+def cnc_upstart(link: RemoteLink, number: int) -> EW:
+    _check(link.upload is None, EW.EW_BUSY)
+    link.upload = reached(lambda: link.client.upload(f"O{number:04d}-O{number:04d}"))
+    return EW.EW_OK
+
+
+def cnc_upload(link: RemoteLink, number: int) -> tuple[EW, ODBUP, int]:
+    if link.upload is None:
+        raise Refused(EW.EW_FUNC)
+    _check(number > 0, EW.EW_LENGTH)
+    piece, link.upload = link.upload[:number], link.upload[number:]
+    return EW.EW_OK, variant(ODBUP, data=number)(data=piece), len(piece)
+
+
+def cnc_upend(link: RemoteLink) -> EW:
+    _check(link.upload is not None, EW.EW_FUNC)
+    link.upload = None
+    return EW.EW_OK
+
+
+def cnc_dwnstart(link: RemoteLink) -> EW:
+    _check(link.download is None, EW.EW_BUSY)
+    link.download = bytearray()
+    return EW.EW_OK
+
+
+def cnc_download(link: RemoteLink, data: bytes, number: int) -> EW:
+    if link.download is None:
+        raise Refused(EW.EW_FUNC)
+    _check(1 <= number <= 256 and len(data) >= number, EW.EW_LENGTH)
+    link.download += data[:number]
+    return EW.EW_OK
+
+
+def cnc_dwnend(link: RemoteLink) -> EW:
+    if link.download is None:
+        raise Refused(EW.EW_FUNC)
+    text, link.download = bytes(link.download), None
+    reached(lambda: link.client.download(text))
+    return EW.EW_OK
+
+
+REMOTE: dict[str, Callable[..., Any]] = {
+    **{
+        function.__name__: function
+        for function in (
+            cnc_sysinfo, cnc_statinfo, cnc_alarm, cnc_rdprgnum, cnc_rdseqnum, cnc_actf, cnc_rddynamic,
+            cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_getmactype, cnc_setmactype, cnc_rdparam,
+            pmc_rdpmcrng, pmc_wrpmcrng, cnc_search, cnc_delete, cnc_upstart, cnc_upload, cnc_upend,
+            cnc_dwnstart, cnc_download, cnc_dwnend,
+        )
+    },
+    **{f"cnc_{name}": _positions(name) for name in _KINDS},
+}  # fmt: skip
+"""The functions that a handle of the network has, by name."""
+
+
+def carry_out(link: RemoteLink, name: str, given: Sequence[Any]) -> Any:
+    """Carry out a function on the network.
+
+    Raises:
+        Refused: The control, or the way to it, refuses; or no request does what the function does.
+    """
+    if name not in REMOTE:
+        raise Refused(EW.EW_FUNC)
+    return REMOTE[name](link, *given)

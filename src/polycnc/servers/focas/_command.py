@@ -1,0 +1,113 @@
+"""What every command of the protocol is made from: the view of a control in one cycle, refusals, packing."""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING, TypeAlias
+
+from polycnc.controllers.fanuc import AxisPositions, PowerMate
+from polycnc.controllers.fanuc.wire import VALUE8_SIZE, Request, Value8
+from polycnc.servers.focas._profile import Profile
+
+if TYPE_CHECKING:
+    from polycnc.cnc import Status
+
+NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED, REJECTED = 1, 2, 3, 4, 5, 6, 7, 13
+"""Codes that clients get, by the names of the function library."""
+ALL = -1
+MOST_NUMBERS = 200
+_LONG = (-(1 << 31), (1 << 31) - 1)
+
+
+class RefusedError(Exception):
+    """A command that is answered with a code instead of data."""
+
+    def __init__(self, code: int, detail: int = 0) -> None:
+        super().__init__(f"code {code}")
+        self.code, self.detail = code, detail
+
+
+class View:
+    """A control and the series it is shown as; what was read once in a frame is not computed again."""
+
+    def __init__(self, control: PowerMate, profile: Profile) -> None:
+        self.control = control
+        self.profile = profile
+
+    @cached_property
+    def status(self) -> Status:
+        """What the control is and does."""
+        return self.control.status()
+
+    @cached_property
+    def positions(self) -> tuple[AxisPositions, ...]:
+        """Where its axes are, in increments."""
+        return self.control.positions.read(self.status)
+
+    def forget(self) -> None:
+        """Read anew: something has been changed."""
+        self.__dict__.pop("status", None)
+        self.__dict__.pop("positions", None)
+
+
+Command: TypeAlias = Callable[[View, Request], bytes]
+"""Carries out a request and returns the payload; it refuses by raising `RefusedError`."""
+
+
+def shorts(*values: int) -> bytes:
+    """Return numbers of 16 bits, of either sign."""
+    return struct.pack(f">{len(values)}H", *(value & 0xFFFF for value in values))
+
+
+def longs(*values: int) -> bytes:
+    """Return numbers of 32 bits; what does not fit is the nearest that does."""
+    return struct.pack(f">{len(values)}i", *(max(_LONG[0], min(_LONG[1], value)) for value in values))
+
+
+def numbers(request: Request) -> range:
+    """Return the numbers from the first to the second argument."""
+    first, last = request.arguments[:2]
+    if last < first or last - first >= MOST_NUMBERS:
+        raise RefusedError(NUMBER)
+    return range(first, last + 1)
+
+
+def one_number(request: Request) -> int:
+    """Return the one number that both first arguments say."""
+    first, last = request.arguments[:2]
+    if first != last:
+        raise RefusedError(NUMBER)
+    return first
+
+
+def axes_of(view: View, axis: int) -> range:
+    """Return the axes that are asked for: one, or all."""
+    axes = view.control.axes
+    if axis == ALL:
+        return range(1, axes + 1)
+    if not 1 <= axis <= axes:
+        raise RefusedError(ATTRIBUTE)
+    return range(axis, axis + 1)
+
+
+def padded(values: list[Value8], view: View, axis: int = ALL) -> bytes:
+    """Return the value of one axis, or of all with room for as many as the series can have.
+
+    Unused places hold 0 with the base that the others have, as seen on a 31i.
+    """
+    body = b"".join(map(bytes, values))
+    return body + bytes(Value8(0)) * (view.profile.most_axes - len(values)) if axis == ALL else body
+
+
+def data_of(request: Request, size: int) -> bytes:
+    """Return the data of a request that have to be so many bytes."""
+    if len(request.data) != size:
+        raise RefusedError(LENGTH)
+    return request.data
+
+
+def pieces(data: bytes, size: int = VALUE8_SIZE) -> list[bytes]:
+    """Cut data into pieces of one size."""
+    return [data[at : at + size] for at in range(0, len(data), size)]

@@ -1,0 +1,357 @@
+"""Commands that read and write data: macro variables, parameters, diagnosis, offsets, timers, PMC memory."""
+
+from __future__ import annotations
+
+import math
+import struct
+from collections.abc import Callable
+
+from polycnc.controllers.fanuc import DIAGNOSIS, Attribute, ParameterRow, pmc
+from polycnc.controllers.fanuc.wire import VALUE8_SIZE, Request, Value8
+from polycnc.servers.focas._command import (
+    ATTRIBUTE,
+    DATA,
+    LENGTH,
+    MOST_NUMBERS,
+    NO_OPTION,
+    NOT_THERE,
+    NUMBER,
+    PROTECTED,
+    RefusedError,
+    View,
+    axes_of,
+    data_of,
+    longs,
+    numbers,
+    one_number,
+    padded,
+    pieces,
+    shorts,
+)
+
+# ---------------------------------------------------------------------- macro variables
+
+_LOCALS = range(1, 34)
+_DECIMALS = 9
+
+
+def _macro(view: View, number: int) -> float | None:
+    if number in _LOCALS:
+        return view.control.local_variable(number)
+    try:
+        return view.control.macros.get(number)
+    except KeyError:
+        raise RefusedError(NUMBER) from None
+
+
+def _value(number: float | None) -> Value8:
+    """Return a number with as many decimals as it needs, for a client that shows what it gets."""
+    made = Value8.of(number, _DECIMALS)
+    mantissa, exponent = made.mantissa, made.exponent
+    while made.base and exponent > 0 and mantissa % 10 == 0:
+        mantissa, exponent = mantissa // 10, exponent - 1
+    return Value8(mantissa, exponent, made.base)
+
+
+def read_macros(view: View, request: Request) -> bytes:
+    """Return macro variables; a vacant one is marked."""
+    return b"".join(bytes(_value(_macro(view, number))) for number in numbers(request))
+
+
+def _set_macros(view: View, values: dict[int, float | None]) -> bytes:
+    """Set variables, all or none."""
+    for number, value in values.items():
+        if number in _LOCALS:
+            raise RefusedError(NUMBER)
+        _macro(view, number)
+        if value is not None and not abs(value) < 1e12:
+            raise RefusedError(DATA)
+    with view.control.store.transaction():
+        for number, value in values.items():
+            view.control.macros.set(number, value)
+    return b""
+
+
+def write_macros(view: View, request: Request) -> bytes:
+    """Set macro variables."""
+    found = numbers(request)
+    data = pieces(data_of(request, len(found) * VALUE8_SIZE))
+    return _set_macros(view, dict(zip(found, (Value8.from_wire(each).number for each in data), strict=True)))
+
+
+def read_doubles(view: View, request: Request) -> bytes:
+    """Return macro variables as floating-point numbers; a vacant one is no number."""
+    first, count = request.arguments[:2]
+    if not 0 < count <= MOST_NUMBERS:
+        raise RefusedError(NUMBER)
+    values = [_macro(view, number) for number in range(first, first + count)]
+    return struct.pack(f">{count}d", *(math.nan if value is None else value for value in values))
+
+
+def write_double(view: View, request: Request) -> bytes:
+    """Set a macro variable; what is no number makes it vacant."""
+    (value,) = struct.unpack(">d", data_of(request, 8))
+    if math.isinf(value):
+        raise RefusedError(DATA)
+    return _set_macros(view, {request.arguments[0]: None if math.isnan(value) else value})
+
+
+def macro_range(view: View, request: Request) -> bytes:
+    """Return how many local and how many common variables there are."""
+    commons = (last - first + 1 for first, last in view.control.macros.variables.ranges)
+    return longs(len(_LOCALS), sum(commons))
+
+
+# ---------------------------------------------------------------------- parameters, settings, diagnosis
+
+
+def _records(view: View, rows: list[tuple[int, int, bool, Callable[[int], int]]], asked: int) -> bytes:
+    """Return one record for each number: number, axis, type, and room for the values of all axes."""
+    made = b""
+    for number, kind, per_axis, value in rows:
+        if per_axis and asked == 0:
+            raise RefusedError(ATTRIBUTE)
+        values = [value(axis) for axis in (axes_of(view, asked) if per_axis else range(1))]
+        slots = view.profile.most_axes
+        if view.profile.wide_values:
+            body = padded([Value8(each) for each in values], view)
+        else:
+            body = longs(*values, *[0] * (slots - len(values)))
+        made += struct.pack(">Ihh", number, asked if per_axis else 0, kind) + body
+    if not rows:
+        raise RefusedError(NUMBER)
+    if len(made) > view.profile.most_body - 32:
+        raise RefusedError(LENGTH)
+    return made
+
+
+def _readable(view: View, request: Request) -> list[ParameterRow]:
+    rows = view.control.parameters.rows
+    found = [rows[number] for number in numbers(request) if number in rows]
+    return [row for row in found if Attribute.NOT_READABLE not in row.attributes]
+
+
+def _of_parameters(view: View, rows: list[ParameterRow], asked: int) -> bytes:
+    value = view.control.parameters.value
+    return _records(
+        view,
+        [
+            (row.number, int(row.kind), row.per_axis, lambda axis, number=row.number: value(number, axis))  # type: ignore[misc]
+            for row in rows
+        ],
+        asked,
+    )
+
+
+def parameters(view: View, request: Request) -> bytes:
+    """Return parameters, of one axis or all; numbers without one are left out."""
+    return _of_parameters(view, _readable(view, request), request.arguments[2])
+
+
+def settings(view: View, request: Request) -> bytes:
+    """Return the parameters that stand on the setting screen."""
+    rows = [row for row in _readable(view, request) if Attribute.SETTING in row.attributes]
+    return _of_parameters(view, rows, request.arguments[2])
+
+
+def parameter_types(view: View, request: Request) -> bytes:
+    """Return numbers and type words of so many parameters from one on, and the numbers before and behind."""
+    first, count = request.arguments[:2]
+    if not 0 < count <= MOST_NUMBERS:
+        raise RefusedError(LENGTH)
+    known = [
+        row for row in view.control.parameters.rows.values() if Attribute.NOT_READABLE not in row.attributes
+    ]
+    found = [row for row in known if row.number >= first][:count]
+    if not found:
+        raise RefusedError(NUMBER)
+    before = max((row.number for row in known if row.number < found[0].number), default=0)
+    behind = min((row.number for row in known if row.number > found[-1].number), default=0)
+    made = longs(before, behind) + b"".join(longs(row.number, row.type_word) for row in found)
+    if len(made) > view.profile.most_body - 32:
+        raise RefusedError(LENGTH)
+    return made
+
+
+_OLD_DIAGNOSIS = {0: 3, 1: 0, 2: 1, 3: 2}
+"""Type numbers of diagnosis data on old series, by those of parameters: bits, byte, word, two words."""
+
+
+def diagnosis(view: View, request: Request) -> bytes:
+    """Return diagnosis data, of one axis or all; numbers without any are left out."""
+    control = view.control
+    rows = [(number, DIAGNOSIS[number]) for number in numbers(request) if number in DIAGNOSIS]
+    return _records(
+        view,
+        [
+            (
+                number,
+                int(row.kind) if view.profile.wide_values else _OLD_DIAGNOSIS[int(row.kind)],
+                row.per_axis,
+                lambda axis, row=row: int(row.value(control, axis)),  # type: ignore[misc]
+            )
+            for number, row in rows
+        ],
+        request.arguments[2],
+    )
+
+
+# ---------------------------------------------------------------------- offsets
+
+
+_OFFICIAL = 1000
+_LENGTHS = (0, 3)
+"""Types of tool offsets: none (one value for each tool), and the geometry of its length, which that value is."""
+_AS_IT_IS = struct.pack(">Hh", 0, -1)
+
+
+def _check_type(kind: int) -> None:
+    if kind % _OFFICIAL not in _LENGTHS or kind // _OFFICIAL not in (0, 1):
+        raise RefusedError(ATTRIBUTE)
+
+
+def _increments(data: bytes, decimals: int) -> int:
+    """Return a value that comes in increments, or with decimals of its own."""
+    if data[4:] == _AS_IT_IS:
+        return int.from_bytes(data[:4], "big", signed=True)
+    number = Value8.from_wire(data).number
+    if number is None or not abs(number) < 1e9:
+        raise RefusedError(DATA)
+    counted: float = number * 10.0**decimals
+    if abs(counted - round(counted)) > 1e-6:
+        raise RefusedError(DATA)
+    return round(counted)
+
+
+def _offset_decimals(view: View) -> int:
+    return view.control.increment.decimals + int(view.control.inch_input)
+
+
+def read_tool_offsets(view: View, request: Request) -> bytes:
+    """Return tool offsets."""
+    _check_type(request.arguments[2])
+    try:
+        found = [view.control.tool_offsets.get(number) for number in numbers(request)]
+    except KeyError:
+        raise RefusedError(NUMBER) from None
+    return b"".join(bytes(Value8(value, _offset_decimals(view))) for value in found)
+
+
+def write_tool_offset(view: View, request: Request) -> bytes:
+    """Set a tool offset."""
+    number = one_number(request)
+    _check_type(request.arguments[2])
+    value = _increments(data_of(request, VALUE8_SIZE), _offset_decimals(view))
+    try:
+        view.control.tool_offsets.set_all({number: value})
+    except KeyError:
+        raise RefusedError(NUMBER) from None
+    except ValueError:
+        raise RefusedError(DATA) from None
+    return b""
+
+
+def tool_offset_range(view: View, request: Request) -> bytes:
+    """Return how many tool offsets there are, and the type of their memory: one value each."""
+    return shorts(0, view.control.tool_offsets.count, 0, 0)
+
+
+_EXTERNAL, _FIRST_EXTRA, _MOST_EXTRA = "EXT", 7, 300
+
+
+def _offset_name(number: int) -> str:
+    """Return the name of a work offset: external, G54 to G59, then the extra ones."""
+    if not 0 <= number < _FIRST_EXTRA + _MOST_EXTRA:
+        raise RefusedError(NUMBER)
+    if number == 0:
+        return _EXTERNAL
+    return f"G{53 + number}" if number < _FIRST_EXTRA else f"G54.P{number - _FIRST_EXTRA + 1}"
+
+
+def read_work_offset(view: View, request: Request) -> bytes:
+    """Return a work offset of one axis or all."""
+    control, name, asked = view.control, _offset_name(one_number(request)), request.arguments[2]
+    values = control.control.offsets.get(name, {})
+    made = []
+    for axis in axes_of(view, asked):
+        units = control.input_scale(axis)
+        made.append(Value8(units.counts(values.get(control.axis_name(axis), 0.0)), units.decimals))
+    return padded(made, view, asked)
+
+
+def write_work_offset(view: View, request: Request) -> bytes:
+    """Set a work offset of one axis, or of all."""
+    control, name, asked = view.control, _offset_name(one_number(request)), request.arguments[2]
+    axes = axes_of(view, asked)
+    data = pieces(data_of(request, VALUE8_SIZE * len(axes)))
+    values = {}
+    for axis, each in zip(axes, data, strict=True):
+        units = control.input_scale(axis)
+        count = _increments(each, units.decimals)
+        if abs(count) > control.increment.offset_limit:
+            raise RefusedError(DATA)
+        values[control.axis_name(axis)] = units.value(count)
+    control.control.offsets.set(name, values)
+    return b""
+
+
+# ---------------------------------------------------------------------- timers
+
+
+_TIMERS = {0: (None, 6750), 1: (6751, 6752), 2: (6753, 6754), 3: (6757, 6758)}
+"""Parameters of each timer: milliseconds and minutes."""
+
+
+def timer(view: View, request: Request) -> bytes:
+    """Return a timer: minutes and milliseconds."""
+    found = _TIMERS.get(request.arguments[0])
+    if found is None:
+        raise RefusedError(NUMBER)
+    ms, minutes = (0 if number is None else view.control.parameters.value(number) for number in found)
+    return struct.pack("<ii", minutes, ms)  # little-endian, unlike all else: seen on two series
+
+
+def no_tool_life(view: View, request: Request) -> bytes:
+    """Refuse: this control manages no tool life, which is an option."""
+    raise RefusedError(NO_OPTION)
+
+
+# ---------------------------------------------------------------------- PMC
+
+
+_WIDTHS = {0: 1, 1: 2, 2: 4}
+
+
+def _pmc_place(view: View, request: Request) -> tuple[str, int, int]:
+    first, last, area, kind = request.arguments
+    if not view.control.has_option("pmc"):
+        raise RefusedError(NOT_THERE)
+    if kind not in _WIDTHS or not 0 <= area < len(pmc.LETTERS):
+        raise RefusedError(ATTRIBUTE)
+    letter = pmc.LETTERS[area]
+    if last - first >= view.profile.most_body - 32 or not pmc.exists(letter, first, last):
+        raise RefusedError(NUMBER)
+    if (last - first + 1) % _WIDTHS[kind]:
+        raise RefusedError(LENGTH)
+    return letter, first, last
+
+
+def _swapped(data: bytes, width: int) -> bytes:
+    """Turn values of the PMC, the low byte first, into those of the wire, and back."""
+    return b"".join(each[::-1] for each in pieces(data, width))
+
+
+def read_pmc(view: View, request: Request) -> bytes:
+    """Return bytes, words or double words of an area."""
+    letter, first, last = _pmc_place(view, request)
+    return _swapped(view.control.pmc.read(letter, first, last), _WIDTHS[request.arguments[3]])
+
+
+def write_pmc(view: View, request: Request) -> bytes:
+    """Set bytes, words or double words of an area that is not protected."""
+    letter, first, last = _pmc_place(view, request)
+    data = data_of(request, last - first + 1)
+    if not pmc.writable(letter, first, last):
+        raise RefusedError(PROTECTED)
+    view.control.pmc.write(letter, first, _swapped(data, _WIDTHS[request.arguments[3]]))
+    return b""

@@ -1,0 +1,356 @@
+"""Commands that read what the control is and does: system, state, alarms, messages, axes, spindle, modal words."""
+
+from __future__ import annotations
+
+import struct
+from datetime import datetime
+
+from polycnc.controllers.fanuc import (
+    MODAL_ADDRESSES,
+    MODAL_CODES,
+    PANEL_SIGNALS,
+    AlarmBit,
+    bit_of,
+    read_state,
+    shown,
+)
+from polycnc.controllers.fanuc.wire import Request, Value8, text
+from polycnc.nc import Group
+from polycnc.servers.focas._command import (
+    ALL,
+    ATTRIBUTE,
+    DATA,
+    LENGTH,
+    MOST_NUMBERS,
+    NO_OPTION,
+    NOT_THERE,
+    NUMBER,
+    RefusedError,
+    View,
+    axes_of,
+    data_of,
+    longs,
+    padded,
+    shorts,
+)
+
+
+def system(view: View, request: Request) -> bytes:
+    """Return the 18 bytes that say which control this is."""
+    profile = view.profile
+    names = (profile.cnc_type, 2), (profile.machine_type, 2), (profile.series, 4), (profile.software, 4)
+    return shorts(profile.additional_info, profile.most_axes) + b"".join(
+        text(value, size) for value, size in (*names, (f"{view.control.axes:02d}", 2))
+    )
+
+
+_LATER_RUN = {4: 3}
+_LATER_MOTION = {3: 2}
+
+
+def state(view: View, request: Request) -> bytes:
+    """Return mode, run state, motion, functions, emergency stop, alarm and editing."""
+    found = read_state(view.control, view.status)
+    run, motion = found.run, found.motion
+    if not view.profile.old_states:
+        run, motion = _LATER_RUN.get(run, run), _LATER_MOTION.get(motion, motion)
+    return shorts(found.aut, run, motion, found.mstb, found.emergency, found.alarm, found.edit)
+
+
+def handle_retrace(view: View, request: Request) -> bytes:
+    """Return the state of manual handle retrace: 0, since this control never retraces by the handle."""
+    return longs(0)
+
+
+def machining_type(view: View, request: Request) -> bytes:
+    """Return the side of a compound machine that is chosen: 0, as it is on every other one."""
+    return shorts(0)
+
+
+_TYPES = (  # alarm groups by the type numbers of later series
+    (AlarmBit.PS100 | AlarmBit.PS000 | AlarmBit.PS101 | AlarmBit.PS_OTHER | AlarmBit.PS5000, 3),
+    (AlarmBit.OVERTRAVEL, 4),
+    (AlarmBit.OVERHEAT, 5),
+    (AlarmBit.SERVO | AlarmBit.APC, 6),
+    (AlarmBit.EXTERNAL, 15),
+)
+
+
+def _type_of(bits: AlarmBit) -> int:
+    return next(number for group, number in _TYPES if bits & group)
+
+
+def alarm_bits(view: View, request: Request) -> bytes:
+    """Return the groups of the alarms that are on."""
+    bits = view.control.alarm_bits
+    later = sum(1 << number for group, number in _TYPES if bits & group)
+    return struct.pack(">I", int(bits) if view.profile.old_states else later)
+
+
+_ALARM_HEAD = 16
+
+
+def alarms(view: View, request: Request) -> bytes:
+    """Return the alarms that are on, of one type or all, as many as are asked for and fit a frame."""
+    kind, most, mode, size = request.arguments
+    if not (0 <= most <= MOST_NUMBERS and 0 <= size <= 64):
+        raise RefusedError(LENGTH)
+    rows = []
+    names = [view.control.axis_name(axis) for axis in range(1, view.control.axes + 1)]
+    for alarm in shown(view.status.alarms):
+        number = _type_of(bit_of(alarm.number))
+        if kind in (ALL, number):
+            axis = names.index(alarm.axis) + 1 if alarm.axis in names else 0
+            words = text(alarm.text, size if mode else 0)
+            rows.append(longs(alarm.number, number, axis, len(words.rstrip(b"\0"))) + words)
+    room = view.profile.most_body // (_ALARM_HEAD + size)
+    return b"".join(rows[: min(most, room)])
+
+
+_MESSAGE_SIZE = 268
+_OPERATOR, _MOST_TYPE = 0, 4
+
+
+def messages(view: View, request: Request) -> bytes:
+    """Return the messages to the operator; other types than these this control has not got, so they are empty."""
+    if not 0 <= request.arguments[0] <= _MOST_TYPE:
+        raise RefusedError(ATTRIBUTE)
+    if not view.control.has_option("external_message"):
+        raise RefusedError(NO_OPTION)
+    found = view.status.messages if request.arguments[0] == _OPERATOR else ()
+    made = [
+        longs(each.number, _OPERATOR, len(text(each.text, 256).rstrip(b"\0"))) + text(each.text, 256)
+        for each in found
+    ]
+    return b"".join(made[: view.profile.most_body // _MESSAGE_SIZE])
+
+
+# ---------------------------------------------------------------------- axes and spindle
+
+
+_KINDS = {
+    0: "absolute", 1: "machine", 2: "relative", 3: "distance", 4: "absolute", 6: "relative", 7: "distance",
+    9: "servo_delay", 10: "acceleration_delay",
+}  # fmt: skip
+_SKIP = 8
+
+
+def positions(view: View, request: Request) -> bytes:
+    """Return positions of a kind, of one axis or all."""
+    kind, asked = request.arguments[:2]
+    name = _KINDS.get(kind)
+    if name is None and kind != _SKIP:
+        raise RefusedError(NUMBER)
+    control = view.control
+    made = []
+    for axis in axes_of(view, asked):
+        units = control.output_scale(axis) if name == "machine" else control.input_scale(axis)
+        counts = control.skip_positions[axis - 1] if name is None else getattr(view.positions[axis - 1], name)
+        made.append(Value8(counts, units.decimals))
+    return padded(made, view, asked)
+
+
+def feed(view: View, request: Request) -> bytes:
+    """Return the actual feed: mm/min, with inch input 0.01 inch/min."""
+    return bytes(Value8(view.control.positions.feed(view.status), 2 if view.control.inch_input else 0))
+
+
+def spindle_speed(view: View, request: Request) -> bytes:
+    """Return the actual spindle speed."""
+    return bytes(Value8.of(abs(view.status.spindle.actual_rpm), 0))
+
+
+def axis_names(view: View, request: Request) -> bytes:
+    """Return the names of the axes."""
+    return b"".join(text(view.control.axis_name(axis), 4) for axis in range(1, view.control.axes + 1))
+
+
+def spindle_names(view: View, request: Request) -> bytes:
+    """Return the name of the spindle."""
+    return text("S1", 4)
+
+
+_SPINDLES = 1
+
+
+def counts(view: View, request: Request) -> bytes:
+    """Return how many spindles (1) or axes there are."""
+    return shorts(1 if request.arguments[0] == _SPINDLES else view.control.axes)
+
+
+_LOAD_PERCENT = 1
+
+
+def servo_meter(view: View, request: Request) -> bytes:
+    """Return the load of the servo motors in percent.
+
+    It follows the speed, as the current of `cnc_rdcurrent` does: 100 at the highest speed of the axis, no more than
+    the torque override allows, and none with the servo off. Amperes this control does not know.
+    """
+    if request.arguments[0] != _LOAD_PERCENT:
+        raise RefusedError(NOT_THERE)
+    control, signals = view.control, view.control.signals
+    made = []
+    for number, axis in enumerate(view.status.axes.values(), 1):
+        share = 100.0 * axis.velocity / control.machine.config.axes[number - 1].vmax
+        most = signals.torque_override(number)
+        made.append(Value8.of(0.0 if signals.servo_is_off(number) else max(-most, min(most, share)), 0))
+    return padded(made, view)
+
+
+_MOST_RPM, _MOTOR_RPM, _LOAD_METER = 1, 5, 4
+
+
+def spindle(view: View, request: Request) -> bytes:
+    """Return the highest speed of the spindle, or its speed now; a load is not simulated.
+
+    An old series answers the load meter with the code that makes the library ask otherwise.
+    """
+    kind, asked = request.arguments[:2]
+    if asked not in (ALL, 1):
+        raise RefusedError(ATTRIBUTE)
+    if kind == _MOST_RPM:
+        rpm = view.control.machine.config.spindle.max_rpm
+    elif kind == _MOTOR_RPM:
+        rpm = abs(view.status.spindle.actual_rpm)
+    else:
+        old = kind == _LOAD_METER and not view.profile.wide_values
+        raise RefusedError(ATTRIBUTE if old else NOT_THERE)
+    value = bytes(Value8.of(rpm, 0))
+    return value + bytes(Value8(0)) * (view.profile.most_spindles - 1) if asked == ALL else value
+
+
+_AXES, _OFFSET, _MACRO, _ZERO, _CUT = range(5)
+
+
+def figures(view: View, request: Request) -> bytes:
+    """Return the decimals of positions, tool offsets, macro variables, work zero offsets or the cutting feed."""
+    control = view.control
+    least = control.increment.decimals + control.inch_input
+    if request.arguments[0] in (_AXES, _ZERO):
+        pairs = [
+            (control.input_scale(axis).decimals, control.output_scale(axis).decimals)
+            for axis in range(1, control.axes + 1)
+        ]
+    elif request.arguments[0] in (_OFFSET, _MACRO):
+        pairs = [(max(least, 3) if request.arguments[0] == _MACRO else least,) * 2]
+    elif request.arguments[0] == _CUT:
+        pairs = [(2 if control.inch_input else 0,) * 2]
+    else:
+        raise RefusedError(ATTRIBUTE)
+    return longs(len(pairs)) + b"".join(shorts(*pair) for pair in pairs)
+
+
+# ---------------------------------------------------------------------- modal words
+
+
+_BLOCKS = range(3)
+_GROUPS = {
+    0: Group.MOTION, 1: Group.PLANE, 2: Group.DISTANCE, 4: Group.FEED_MODE, 5: Group.UNITS,
+    6: Group.RADIUS_COMPENSATION, 7: Group.LENGTH_COMPENSATION, 12: Group.SPINDLE_MODE, 13: Group.WORK_OFFSET,
+    14: Group.STOPPING, 15: Group.ROTATION, 16: Group.POLAR,
+}  # fmt: skip
+_LAST_GROUP = 23
+_WITH_DECIMAL = 1
+
+
+def modal_code(view: View, request: Request) -> bytes:
+    """Return the G code of a group that holds with the executed block or one of the next two.
+
+    Of the blocks that come next only the groups of `cnc_modal` are known; what is not known is refused.
+    """
+    group, block = request.arguments[:2]
+    if not 0 <= group <= _LAST_GROUP:
+        raise RefusedError(NUMBER)
+    if block not in _BLOCKS:
+        raise RefusedError(ATTRIBUTE)
+    control = view.control
+    if group in MODAL_CODES:
+        value, _ = control.modal_data.block(block).g[group]
+        code = next(name for name, number in MODAL_CODES[group].items() if number == value)
+    else:
+        executed = control.execution.block
+        word = executed.modal.g.get(_GROUPS[group]) if executed and not block and group in _GROUPS else None
+        if word is None or not word.removeprefix("G").replace(".", "", 1).isdigit():
+            raise RefusedError(NOT_THERE)
+        code = word.removeprefix("G")
+    whole, _, tenth = code.partition(".")
+    number = int(whole + tenth)
+    return shorts(group, 0, 0, number, 0, _WITH_DECIMAL if tenth else 0)
+
+
+_COMMANDS = "DEFHLMNOST"
+_FIRST_ADDRESS = 100
+_HERE, _POINT, _NEGATIVE, _DIGITS = 0x80, 0x40, 0x20, 0x1F
+
+
+def commanded(view: View, request: Request) -> bytes:
+    """Return the last word of an address, or of ten of them, as it is written."""
+    asked, block = request.arguments[:2]
+    if block not in _BLOCKS:
+        raise RefusedError(ATTRIBUTE)
+    names = list(_COMMANDS) if asked == ALL else []
+    if 0 <= asked - _FIRST_ADDRESS < len(MODAL_ADDRESSES):
+        names = [MODAL_ADDRESSES[asked - _FIRST_ADDRESS]]
+    if not names:
+        raise RefusedError(NUMBER)
+    words = view.control.modal_data.block(block).words
+    made = b""
+    for name in names:
+        word = words.get(name)
+        written = "" if word is None else word.text
+        digits = "".join(each for each in written if each.isdigit())
+        value = int(digits or 0) * (-1 if written.startswith("-") else 1)
+        flag = (_HERE if word is not None and word.here else 0) | (_POINT if "." in written else 0)
+        flag |= (_NEGATIVE if value < 0 else 0) | len(digits) & _DIGITS
+        which = int(name[1:] or 1)
+        made += bytes((ord(name[0]), which)) + shorts(flag) + longs(value, len(written.partition(".")[2]))
+    return made
+
+
+_PANEL = (
+    "mode", "hndl_ax", "hndl_mv", "rpd_ovrd", "jog_ovrd", "feed_ovrd", "spdl_ovrd", "blck_del", "sngl_blck",
+    "machn_lock", "dry_run", "mem_prtct", "feed_hold",
+)  # fmt: skip
+_PANEL_BITS = {name: bit for bit, (name, _) in PANEL_SIGNALS.items()}
+
+
+def panel(view: View, request: Request) -> bytes:
+    """Return the signals of the software operator's panel that the mask names; the others are 0."""
+    mask = request.arguments[0]
+    made = []
+    for name in _PANEL:
+        bit = _PANEL_BITS.get(name)
+        made.append(view.control.panel.value(name) if bit is not None and mask >> bit & 1 else 0)
+    return shorts(*made)
+
+
+# ---------------------------------------------------------------------- date and time
+
+
+_DATE, _TIME = 0, 1
+
+
+def clock(view: View, request: Request) -> bytes:
+    """Return date and time, whichever was asked for: clients take the half that they want."""
+    now = view.control.clock.now
+    return shorts(now.year, now.month, now.day, now.hour, now.minute, now.second)
+
+
+def set_clock(view: View, request: Request) -> bytes:
+    """Set the date or the time of the control."""
+    year, month, day, *time = struct.unpack(">6H", data_of(request, 12))
+    now = view.control.clock.now
+    try:
+        if request.arguments[0] == _DATE:
+            wanted = datetime.combine(datetime(year, month, day), now.time())
+        elif request.arguments[0] == _TIME:
+            wanted = datetime(now.year, now.month, now.day, *time)
+        else:
+            raise RefusedError(ATTRIBUTE)
+        if not 1980 <= wanted.year < 2100:
+            raise RefusedError(DATA)
+    except ValueError:
+        raise RefusedError(DATA) from None
+    view.control.clock.set_now(wanted)
+    return b""

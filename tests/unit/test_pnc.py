@@ -1,0 +1,363 @@
+"""The control as a device: channels with their own axes, the operator, errors, memory (Manual 003, 4.2, 4.13, 4.14)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from polycnc.cnc import ControlError, RunState
+from polycnc.controllers.bosch import Pnc
+from polycnc.controllers.bosch.ncs import Mode
+from polycnc.controllers.bosch.system import Signals
+from polycnc.machine import SnapshotError
+
+LINEAR = "vmax_mm_s = 500\namax_mm_s2 = 5000\n"
+ROTARY = 'kind = "rotary"\nvmax_deg_s = 100\namax_deg_s2 = 400\n'
+NAMES = ("X", "Y", "Z", "X2", "Y2", "Z2", "A")
+SURFACES = "[[surface]]\nlow = { A = 123.5 }\n[[surface]]\nlow = { Y2 = 87.25 }\n"
+MACHINE = 'name = "example"\n' + "".join(
+    f'[[axis]]\nname = "{name}"\n{ROTARY if name == "A" else LINEAR}' for name in NAMES
+)
+
+
+class Example:
+    """The manual's configuration: X Y Z in channel 1, X2 Y2 Z2 in channel 2, A (the 8th physical axis) in channel 3."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.machine = folder / "example.toml"
+        self.machine.write_text(MACHINE + SURFACES)
+        self.pnc = self.switched_on()
+
+    def switched_on(self) -> Pnc:
+        channels = [("X", "Y", "Z"), ("X2", "Y2", "Z2"), ("A",)]
+        return Pnc(self.folder, self.machine, channels=channels, numbers=(1, 2, 3, 4, 5, 6, 8))
+
+    def write(self, name: str, program: str) -> None:
+        (self.folder / name).write_text(program + "\n")
+
+    def start(self, program: str, channel: int = 1) -> None:
+        name = f"main{channel}.npg"
+        self.write(name, program)
+        self.pnc.select_program(name, channel=channel)
+        self.pnc.cycle_start(channel=channel)
+
+    def run(self, program: str, channel: int = 1, cycles: int = 20_000) -> dict[str, object]:
+        """Run a program to its end and return the variables."""
+        self.start(program, channel)
+        self.pnc.advance(cycles, until=lambda: self.pnc.run_state(channel) is not RunState.ACTIVE)
+        assert self.pnc.run_state(channel) is RunState.COMPLETED, self.pnc.status().alarms
+        return self.pnc.variables(channel)
+
+    def value(self, expression: str, channel: int = 1) -> object:
+        return self.run(f"10 WAIT\n20 #V!={expression}", channel)["#V!"]
+
+    def refuses(self, expression: str, channel: int = 1) -> str:
+        """Return the number of the error of an expression."""
+        self.start(f"1 #V!={expression}", channel)
+        self.pnc.advance(3)
+        assert self.pnc.run_state(channel) is RunState.ALARM, expression
+        run = self.pnc.control.channels[channel - 1].run
+        assert run is not None
+        assert run.error is not None
+        assert (run.error.what, run.error.position.line if run.error.position else 0) == (
+            "INVALID PARAMETER",
+            1,
+        )
+        self.pnc.reset(channel=channel)
+        self.pnc.advance(1)
+        return run.channel.errors[0].code
+
+
+@pytest.fixture
+def example(tmp_path: Path) -> Iterator[Example]:
+    found = Example(tmp_path)
+    yield found
+    found.pnc.close()
+
+
+# ---------------------------------------------------------------------- axes and positions
+
+
+@pytest.mark.covers(
+    "cpl.ex.1398", "cpl.arg.coordsel", "cpl.seltype.0", "cpl.seltype.1", "cpl.err.RUNTIME_AXIS"
+)
+def test_g92_shifts_are_read_in_the_own_channel_only(example: Example) -> None:
+    found = example.run(
+        'N10 G1 G90 X100 Y200 F60000\nN20 G92 X75 Y125\n30 #XD = AXO("X")\n40 #YD = AXO(2,0)\n'
+        "41 #A=AXO(2,1) : #B=AXO(3)"
+    )
+    assert [found[name] for name in ("#XD", "#YD", "#A", "#B")] == [25, 75, 75, 0]
+    assert example.refuses("AXO(4,0)") == "1970"
+    assert example.refuses("AXO(4)") == "1938"
+    assert example.refuses("AXO(7,0)") == "1938"
+    assert example.refuses('AXO("X2")') == "1970"
+    assert example.refuses('AXO("Q")') == "1938"
+    assert example.refuses("AXO(1,2)") == ""
+
+
+@pytest.mark.covers("cpl.ex.1420", "cpl.CPOS", "cpl.axis.logical", "cpl.axis.physical", "cpl.axis.example")
+def test_programmed_positions_of_channel_2(example: Example) -> None:
+    found = example.run(
+        "N01 G0 G90 X2=150 Y2=100\n02 #A=CPOS(1)\nN03 G91 X2=10\n04 #B=CPOS(1,1)\nN05 X2=5 Y2=10\n"
+        '06 #C=CPOS("Y2",1)\n07 #D=CPOS("X2")\n08 #E=CPOS(5,0)',
+        channel=2,
+    )
+    assert [found[f"#{name}"] for name in "ABCDE"] == [150, 160, 110, 165, 110]
+    assert example.refuses("CPOS(1,0)", 2) == "1970"
+    assert example.refuses('CPOS("X")', 2) == "1970"
+
+
+@pytest.mark.covers("cpl.ex.1493", "cpl.WPOS", "cpl.posfn.types")
+def test_workpiece_positions_of_other_channels(example: Example) -> None:
+    example.run("N1 G168 Z2=1.5\nN2 G0 Z2=8 Y2=-3", channel=2)
+    example.run("N1 G92 Y4\nN2 G0 X11 Y7")
+    found = example.run(
+        '10 WAIT\n20 #A = WPOS(3,1,2)\n21 #B=WPOS("Y")\n22 #C=WPOS(1)\n23 #D=WPOS("Z2",1,2)\n24 #E=WPOS(5,0)',
+        channel=2,
+    )
+    assert [found[f"#{name}"] for name in "ABCDE"] == [9.5, 3, 0, 9.5, -3]
+    assert example.refuses("WPOS(1,0,2)", 2) == ""
+    assert example.refuses("WPOS(4,1,2)") == "1938"
+    assert example.refuses("WPOS(1,1,4)") == ""
+
+
+@pytest.mark.covers("cpl.ex.1556", "cpl.MPOS", "cpl.arg.axissel", "cpl.coord.index.note")
+def test_commanded_positions_of_axes(example: Example) -> None:
+    example.run("N1 G0 X-7")
+    found = example.run(
+        'N10 G0 G90 X2=150 Y2=100\n20 WAIT\n30 #A=MPOS("X2")\nN40 G91 X2=10 Y2=10\n50 WAIT\n60 #B=MPOS(1)\n'
+        '70 #C=MPOS("Y2",1,2)\n80 #D=MPOS(1,0)\n90 #E=MPOS(1,1,1) : #F=MPOS("X")',
+        channel=2,
+    )
+    assert [found[f"#{name}"] for name in "ABCDEF"] == [150, 160, 110, -7, -7, -7]
+    assert example.refuses('MPOS("X",1,2)') == ""
+    assert example.refuses("MPOS(7,0)") == "1938"
+
+
+@pytest.mark.covers("cpl.ex.1683", "cpl.ex.1712", "cpl.APOS", "cpl.SPOS", "cpl.arg.axissel.phys")
+def test_physical_axes_are_read_from_everywhere(example: Example) -> None:
+    example.run("N1 G0 A33.5", channel=3)
+    example.run("N1 G0 X2=4.5 Y2=-6", channel=2)
+    example.run("N1 G0 X2")
+    found = example.run('10 WAIT\n30 #A=APOS(4) : #B=APOS("A") : #C=APOS(8) : #D=SPOS(1) : #E=SPOS("Y2")')
+    assert [found[f"#{name}"] for name in "ABCDE"] == [4.5, 33.5, 33.5, 2, -6]
+    assert example.refuses("APOS(7)") == "1938"
+    assert example.refuses('SPOS("U")') == "1938"
+
+
+@pytest.mark.covers("cpl.ex.1602", "cpl.ex.1635")
+def test_measured_positions_of_the_own_channel(example: Example) -> None:
+    text = (
+        "N10 G1 G75 A250 F5000\n20 IF SD(9) = 1 THEN\nN30 (MSG, Measuring probe was not deflected!)\n40 GOTO .ERROR\n"
+        "50 ELSE\n60 #AMEAS = PPOS(1,1)\n70 ENDIF\n80 .ERROR"
+    )
+    assert example.run(text, channel=3)["#AMEAS"] == pytest.approx(123.5)
+    text = (
+        "N70 G75 Y2=250 F6000\n80 IF SD(9)=1 THEN\nN90 (MSG, Measuring probe was not deflected!)\n100 GOTO .ERROR\n"
+        "110 ELSE\n120 #Y2MEAS=PROBE(2)\n130 ENDIF\n140 .ERROR"
+    )
+    assert example.run(text, channel=2)["#Y2MEAS"] == pytest.approx(87.25)
+    assert example.refuses("PPOS(8,0)") == "1970"
+    assert example.refuses("CPROBE(4,0)") == "1970"
+
+
+def test_a_program_reaches_the_axes_of_its_channel_only(example: Example) -> None:
+    example.start("N1 G0 X2=5")
+    example.pnc.advance(5)
+    assert example.pnc.run_state(1) is RunState.ALARM
+    assert example.pnc.axes["X2"].setpoint == 0
+
+
+@pytest.mark.covers("cpl.axis.sync", "cpl.coord")
+def test_axes_go_from_channel_to_channel_and_indices_follow(example: Example) -> None:
+    example.run("N1 G0 X3 Y4 Z5")
+    example.run("N1 G70\nN2 G0 Z2=1", channel=2)
+    assert example.value('SD(22,"Z",1)') == 3
+    example.pnc.transfer_axis("Y", None)
+    assert [example.value(each) for each in ("SD(20)", 'SD(22,"Z",1)', "MPOS(2)", "SD(25,2)")] == [
+        2,
+        2,
+        5,
+        -1,
+    ]
+    assert example.refuses('CPOS("Y")') == "1970"
+    # an asynchronous axis is in mm, whatever the unit of the channel
+    found = example.run('N1 G70\n2 #A=MPOS("Y") : #B=MPOS("Z") : #C=WPOS("Y")')
+    assert [found[f"#{name}"] for name in "ABC"] == pytest.approx([4, 5 / 25.4, 4])
+    example.pnc.transfer_axis("Y", 2)
+    assert [example.value(each, 2) for each in ("SD(20)", 'SD(22,"X2")', "MPOS(1)", "SD(25,2)")] == [
+        4,
+        2,
+        4,
+        2,
+    ]
+    assert example.run("N1 G1 G91 Y1.5 F6000\n2 WAIT\n3 #A=MPOS(2,0)", channel=2)["#A"] == 5.5
+    with pytest.raises(ControlError):
+        example.pnc.transfer_axis("W", 1)
+    example.start("N1 G1 X100 F600")
+    example.pnc.advance(50)
+    with pytest.raises(ControlError, match="channel 1 executes a program"):
+        example.pnc.transfer_axis("Z", 2)
+
+
+@pytest.mark.covers("cpl.param.1003_00001", "cpl.param.1003_00002")
+def test_parameters_have_gaps_where_there_is_no_axis(example: Example) -> None:
+    found = example.run(
+        "1 DIM N$(8)\n2 #A%=MCA(100300002,3) : #B%=MCA(100300002,6) : #C%=MCA(100300002,7)\n3 N$=MCA(100300001,7)\n"
+        "4 DIM #N$(8) : #N$=N$"
+    )
+    assert [found[name] for name in ("#A%", "#B%", "#C%", "#N$")] == [2, 0, 3, "A"]
+
+
+# ---------------------------------------------------------------------- channels ask each other
+
+
+def test_a_channel_selects_starts_and_watches_another(example: Example) -> None:
+    example.write("other.npg", "N10 G1 X2=20 F6000\nN20 M30")
+    found = example.run(
+        '10 #A%=MCOPS(4,2,"other.npg") : #B%=MCOPS(6,2)\n20 DIM BUF%(2) : VERSION=0\n'
+        "30 E%=MCODS(32,2,VERSION,BUF%,2) : #C%=BUF%(1)\n40 WHILE BUF%(1)<>1 DO\n50 E%=MCODS(32,2,VERSION,BUF%,2)\n"
+        '60 #N%=BUF%(1)\n70 END\n80 WAIT\n90 #D=MPOS("X2") : #E%=MCOPS(4,2,"none.npg") : #F%=MCOPS(4,4,"other.npg")\n'
+        '100 #G%=MCOPS(6,1) : #H%=MCOPS(4,1,"other.npg")'
+    )
+    assert [found[f"#{name}"] for name in ("A%", "B%", "C%", "N%", "D", "E%", "F%", "G%", "H%")] == [
+        0, 0, 3, 1, 20, 6, 1, 9, 11,
+    ]  # fmt: skip
+
+
+def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> None:
+    example.start("N1 G1 X2=400 F600", channel=2)
+    example.pnc.advance(100)
+    found = example.run(
+        "10 #A%=MCOPS(7,2,4) : #B%=MCOPS(5,2) : #C%=MCOPS(2,2)\n20 WAIT(,200)\n30 #D%=MCOPS(7,2,4)\n"
+        '40 #E%=MCOPS(4,2,"G1 X2=3 F6000",,,160) : #F%=MCOPS(7,2,99)\n50 WAIT(,2000)\n60 #G=SPOS(4)'
+    )
+    assert [found[f"#{name}"] for name in ("A%", "B%", "C%", "D%", "E%", "F%")] == [13, 0, 0, 0, 0, 18]
+    assert found["#G"] == pytest.approx(3)
+
+
+@pytest.mark.covers("cpl.ex.2607", "cpl.err.1938", "cpl.err.1970")
+def test_errors_of_another_channel_are_told_in_their_order(example: Example) -> None:
+    example.start("1 A=CPOS(9)", channel=2)
+    example.pnc.advance(3)
+    program = (
+        "10 DIM ERRNO%(5,3):REM Integer array with 5 elements\n20 CHAN%=2 : CATEGORY%=0\n"
+        "30 ERG%= GETERR(CHAN%, CATEGORY%, ERRNO%, 5)\n40 FOR I%= 1 TO ERG%\n50 IF ERRNO%(I%,3)=6 THEN\n"
+        '60 PRN#(0, "Part program error: ",ERRNO%(I%,1))\n70 ENDIF\n80 NEXT I%\n90 #ERG%=ERG% : #E%=ERRNO%(1,2)'
+    )
+    found = example.run(program)
+    assert (found["#ERG%"], found["#E%"]) == (1, 2)
+    run = example.pnc.control.channels[0].run
+    assert run is not None
+    assert [message.text.split() for message in run.channel.messages.all()] == [
+        ["MSG:", "Part", "program", "error:", "1938"]
+    ]
+    example.pnc.reset(channel=2)
+    assert example.run(program)["#ERG%"] == 0
+    assert example.refuses("PROBE(1,0)", 2) == "1970"
+
+
+def test_an_error_stops_its_channel_alone_and_closes_its_files(example: Example) -> None:
+    example.start("N1 G1 X30 F6000\n1 WAIT\n2 #A=1")
+    example.start('10 OPENW(1,"R") : PRN#(1,"KEPT") : @7%=5\n20 A=CPOS(9)', channel=2)
+    example.pnc.advance(2000)
+    assert example.pnc.run_state(1) is RunState.COMPLETED
+    assert example.pnc.run_state(2) is RunState.ALARM
+    assert (example.folder / "R").read_bytes() == b"KEPT\n\x03\n"
+    found = example.run('1 OPENW(1,"R") : PRN#(1,"NEXT") : #B%=@7%')  # number 1 and the file are free
+    assert found["#B%"] == 5
+    with pytest.raises(ControlError):
+        example.pnc.cycle_start(channel=2)
+    example.pnc.reset(channel=2)
+    example.pnc.cycle_start(channel=2)
+
+
+# ---------------------------------------------------------------------- the operator
+
+
+@pytest.mark.covers("cpl.start", "cpl.sig.NC-I_1.0")
+def test_programs_are_selected_started_held_and_reset(example: Example) -> None:
+    pnc = example.pnc
+    with pytest.raises(ControlError, match="there is no program"):
+        pnc.select_program("none.npg")
+    with pytest.raises(ControlError):
+        pnc.cycle_start()
+    example.start("10 FOR I%=1 TO 3\nN10 G91 G1 X10 F6000\n20 NEXT I%")
+    pnc.advance(150)
+    pnc.feed_hold(channel=1)
+    pnc.advance(100)
+    held = pnc.axes["X"].setpoint
+    assert 0 < held < 30
+    assert pnc.run_state() is RunState.HOLD
+    pnc.advance(500)
+    assert pnc.axes["X"].setpoint == held
+    pnc.cycle_start()
+    pnc.advance(2000)
+    assert (pnc.axes["X"].setpoint, pnc.run_state()) == (30, RunState.COMPLETED)
+    pnc.cycle_start()
+    pnc.advance(100)
+    pnc.reset()
+    pnc.advance(500)
+    assert pnc.run_state() is RunState.RESET
+    assert 30 < pnc.axes["X"].setpoint < 60
+
+
+def test_single_block_stops_behind_each_block(example: Example) -> None:
+    example.pnc.select_mode(Mode.SINGLE_BLOCK, channel=1)
+    example.start("N1 G1 X1 F6000\n10 A=CPOS(1)+1\nN2 X[A]\nN3 X7")
+    reached = []
+    for _ in range(3):
+        example.pnc.advance(500)
+        reached.append(example.pnc.axes["X"].setpoint)
+        example.pnc.cycle_start()
+    assert reached == [1, 2, 7]
+    assert example.run("1 A%=0 : #A%=SD(13)", channel=2)["#A%"] == 1
+
+
+@pytest.mark.parametrize(
+    "loop",
+    ["10 WHILE 1=1 DO\n20 A=A\n30 END", "10 A%=1\n20 GOTO 10", "10 REPEAT\n20 A?=IC(1)\n30 UNTIL 1=2"],
+)
+def test_an_endless_loop_lets_time_pass_and_ends_with_a_reset(example: Example, loop: str) -> None:
+    example.start(loop.replace("20 A=A", "20 A=1"))
+    example.start("N1 G1 X2=2 F6000", channel=2)
+    assert example.pnc.advance(60) == 60
+    assert example.pnc.run_state(1) is RunState.ACTIVE
+    assert example.pnc.axes["X2"].setpoint > 1
+    example.pnc.reset(channel=1)
+    assert example.pnc.run_state(1) is RunState.RESET
+    assert example.run("N1 G1 X4 F6000\n1 #A=1")["#A"] == 1
+
+
+def test_a_wait_ends_by_a_signal_in_its_cycle(example: Example) -> None:
+    example.start("10 WAIT(IC(4,1,2)=TRUE,5000,#R%)\nN1 G1 X1 F6000\n20 WAIT\n30 #T%=CLOCK")
+    example.pnc.advance(250)
+    assert example.pnc.axes["X"].setpoint == 0
+    example.pnc.system.interface.set_bit(Signals.AXIS_INPUTS, 2, 4, True)
+    example.pnc.advance(100)
+    assert (example.pnc.variables()["#R%"], example.pnc.axes["X"].setpoint) == (2, 1)
+
+
+def test_what_is_permanent_is_there_after_switching_on_again(example: Example) -> None:
+    example.run('1 @5%=17 : FXC("X2",55,1)=2.5 : TC(1,7,4)=30 : TDA(1,2,9)=4711')
+    example.pnc.close()
+    example.pnc = example.switched_on()
+    found = example.run(
+        "1 #A%=@5% : #B=TC(1,7,4) : #C%=TDA(1,2,9)\nN1 G55\nN2 G0 X2=1\n2 WAIT\n3 #D=MPOS(1)", channel=2
+    )
+    assert [found[name] for name in ("#A%", "#B", "#C%", "#D")] == [17, 30, 4711, 3.5]
+
+
+def test_snapshots_are_taken_between_cpl_programs(example: Example) -> None:
+    example.run("N1 G0 X5")
+    snapshot = example.pnc.snapshot()
+    example.run("N1 G0 X9")
+    example.pnc.restore(snapshot)
+    assert example.pnc.axes["X"].setpoint == 5
+    example.start("10 WAIT(,500)\n20 #A=1")
+    example.pnc.advance(5)
+    with pytest.raises(SnapshotError):
+        example.pnc.snapshot()
