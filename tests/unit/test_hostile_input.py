@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import threading
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
@@ -15,7 +16,7 @@ from typer.testing import CliRunner
 from polycnc import runner
 from polycnc.cli import _errors
 from polycnc.cli._app import app
-from polycnc.controllers.apci import sap
+from polycnc.controllers.apci import Board, pcap, sap
 from polycnc.controllers.imc import parse_card
 from polycnc.errors import ConfigurationError, PolycncError, ProgramError, UsageError
 from polycnc.jit._files import Files
@@ -84,7 +85,7 @@ def test_json_beyond_reason_is_refused(case: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("statement", ["LOADTL/1e400", "TOOLNO/1e400", "LOADTL/-1", "LOADTL/2.5"])
 def test_a_tool_number_that_is_none_is_refused(statement: str, tmp_path: Path) -> None:
     (tmp_path / "p.cls").write_text(f"FROM/0,0,9\n{statement}\nGOTO/1,2,3\nFINI\n")
-    with pytest.raises(ProgramError, match="must be a whole number"):
+    with pytest.raises(ProgramError, match=r"must be a whole number|beyond all others"):
         runner.post_file(tmp_path / "p.cls", "din")
 
 
@@ -252,3 +253,72 @@ def test_files_in_passing_of_killed_processes_are_swept_from_the_cache(tmp_path:
     assert not left.exists()
     assert passing.exists()
     assert files.read("one-1") == b"content"
+
+
+@pytest.mark.parametrize("dialect", ["din", "fanuc"])
+@pytest.mark.parametrize("words", ["X1 ", "".join(f"M{code} " for code in range(100, 1100))])
+def test_a_line_without_end_is_one_error(words: str, dialect: str) -> None:
+    """Forty thousand words on a line: one look at each, not one at every pair."""
+    text = words * (40_000 // words.count(" "))
+    errors = runner.check(f"G1 X3 F100\n{text}\nM30\n", dialect=dialect)
+    assert errors[0].what == "a block with 40000 words"
+    position = errors[0].position
+    assert position is not None
+    assert (position.line, text[: position.column - 1].count(" ")) == (2, 1000)
+
+
+def test_arrays_and_routines_of_a_library_are_what_they_are_said_to_be() -> None:
+    pcap.attach(Board(), clock=None)
+    try:
+        pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
+        for wrong in (7, "records", None, [1, 2], pcap.TSRP(), object()):
+            with pytest.raises(UsageError):
+                pcap.jhi(pcap.AS.of(0), wrong)  # type: ignore[arg-type]
+        for wrong in (7, "f", None):
+            with pytest.raises(UsageError, match="outine"):
+                pcap.MCUG3_SetBoardIntRoutine(wrong)  # type: ignore[arg-type]
+        with pytest.raises(UsageError):
+            pcap.rdSysVarInt(2**2000)
+    finally:
+        pcap.detach()
+
+
+def test_calls_from_several_threads_are_carried_out_one_by_one() -> None:
+    """Direct commands wait in one list on the board; threads that command and read find it whole."""
+    board = Board()
+    pcap.attach(board)
+    records, rosi = pcap.tsrp_array(), pcap.ROSI()
+    failed: list[BaseException] = []
+
+    def work(axis: int) -> None:
+        chosen = pcap.AS.of(axis)
+        mine = pcap.tsrp_array()
+        for number in range(40):
+            try:
+                mine[axis].tp = float(number + axis)
+                pcap.ja(chosen, mine)
+                pcap.rdrp(mine[axis])
+                pcap.rdaxst(mine[axis])
+                pcap.jhi(chosen, mine)
+                pcap.ra(chosen)
+            except Exception as error:
+                failed.append(error)
+                return
+
+    try:
+        pcap.InitMcuSystem3(records, rosi, 0, "system.dat")
+        pcap.cl(pcap.AS.of(0, 1))
+        threads = [threading.Thread(target=work, args=(number % 2,)) for number in range(4)]
+        before = sys.getswitchinterval()
+        sys.setswitchinterval(1e-6)
+        try:
+            for thread in threads:
+                thread.start()
+            for thread in threads:
+                thread.join()
+        finally:
+            sys.setswitchinterval(before)
+    finally:
+        pcap.detach()
+    assert failed == []
+    assert not board.pending or board.clock.cycles > 0

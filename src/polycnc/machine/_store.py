@@ -14,7 +14,7 @@ import sqlite3
 import threading
 import weakref
 from collections.abc import Iterator, Mapping, MutableMapping
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -95,7 +95,8 @@ class Store:
                     self._execute("COMMIT")
             except BaseException:
                 if self._depth == 1 and connection.in_transaction and not self._is_foreign:
-                    connection.execute("ROLLBACK")
+                    with suppress(sqlite3.Error):  # what broke it is what is told
+                        connection.execute("ROLLBACK")
                 raise
             finally:
                 self._depth -= 1
@@ -247,7 +248,7 @@ class Area(MutableMapping[Key, V], Generic[V]):
         rows = self._store.query(
             "SELECT key, attributes FROM item WHERE area = ? ORDER BY key", (self._name,)
         )
-        return {key: json.loads(attributes) for key, attributes in rows}
+        return {key: _from_json(attributes) for key, attributes in rows}
 
     def __delitem__(self, key: Key) -> None:
         """Forget `key`.

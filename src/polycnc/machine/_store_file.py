@@ -9,10 +9,11 @@ from __future__ import annotations
 import ctypes
 import os
 import sqlite3
-from contextlib import closing, suppress
+from contextlib import closing
 from pathlib import Path
 
 from polycnc.errors import UsageError
+from polycnc.outputs import complete_or_absent, is_special
 
 APPLICATION_ID = 0x706F6C79  # "poly"
 # Each entry brings a store from the version before to its own (1, 2, ...). Never change a released one.
@@ -55,7 +56,7 @@ class StoreError(UsageError):
 
 def refusal(error: sqlite3.Error | OverflowError | UnicodeError, name: str) -> StoreError:
     """Return what an error of SQLite means for who uses the store called `name`."""
-    if isinstance(error, UnicodeError):
+    if isinstance(error, UnicodeEncodeError):
         return StoreError(f"{name} cannot hold this text: {error}", hint="store it as bytes")
     if isinstance(error, sqlite3.DataError | OverflowError):
         return StoreError(
@@ -109,7 +110,7 @@ def open_file(path: Path) -> sqlite3.Connection:
             f"cannot open the store '{path}': {error}",
             hint="a store belongs to one machine at a time: close the other one, and check the access rights",
         ) from error
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.Error, UnicodeError) as error:  # UnicodeError: of the text of a damaged schema
         connection.close()
         raise StoreError(
             f"the store '{path}' is damaged: {error}", hint="restore a snapshot of it"
@@ -135,7 +136,7 @@ def read_snapshot(path: Path) -> sqlite3.Connection:
         with closing(_connect_unchanged(path)) as original:
             original.backup(copy)
         _migrate(copy, f"'{path}'")
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.Error, UnicodeError) as error:
         copy.close()
         raise StoreError(f"the snapshot '{path}' is damaged: {error}", hint="use another snapshot") from error
     except StoreError:
@@ -152,22 +153,19 @@ def write_file(connection: sqlite3.Connection, target: Path) -> None:
     """
     if not is_new(target):
         check_header(target)
+    if is_special(target):
+        raise StoreError(f"'{target}' is no file", hint="a store needs a file of its own")
     _refuse_unclosed(target)
-    part = target.with_name(f".{target.name}.{os.getpid()}.part")
     try:
-        with closing(_connect(part)) as copy:
+        with complete_or_absent(target, durable=True) as part, closing(_connect(part)) as copy:
             connection.backup(copy)
             # A copy of a WAL file says it is one; a snapshot shall be a single plain file.
             copy.execute("PRAGMA journal_mode = DELETE")
-        os.replace(part, target)
-    except (OSError, sqlite3.Error) as error:
+    except (OSError, sqlite3.Error, UsageError) as error:
+        why = error.what if isinstance(error, UsageError) else error
         raise StoreError(
-            f"cannot write '{target}': {error}", hint="check that the folder exists, is writable and has room"
+            f"cannot write '{target}': {why}", hint="check that the folder exists, is writable and has room"
         ) from error
-    finally:
-        with suppress(OSError):
-            part.unlink(missing_ok=True)
-    _sync_folder(target.parent)
 
 
 def is_new(path: Path) -> bool:
@@ -203,7 +201,7 @@ def check_header(path: Path) -> None:
         raise StoreError(
             f"cannot read '{path}': {error}", hint="check the name and the access rights"
         ) from error
-    except sqlite3.DatabaseError:
+    except (sqlite3.Error, UnicodeError):
         application, version = 0, 0
     if application != APPLICATION_ID:
         raise StoreError(f"'{path}' is not a store of polycnc", hint="name a store, or a new file")
@@ -259,13 +257,3 @@ def _refuse_unclosed(path: Path) -> None:
                 f"'{leftover}' shows that the store is in use or was not closed",
                 hint="close the store, or open and close it once; if the store is gone, remove the leftover",
             )
-
-
-def _sync_folder(folder: Path) -> None:
-    """Make a rename durable, where the system can."""
-    if hasattr(os, "O_DIRECTORY"):
-        handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(handle)
-        finally:
-            os.close(handle)

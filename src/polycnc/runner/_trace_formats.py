@@ -246,7 +246,7 @@ def _read_csv_with_programs(names: list[str], lines: Iterator[list[str]]) -> dic
 
 def _read_npz(path: Path) -> dict[str, npt.NDArray[Any]]:
     with np.load(path, allow_pickle=False) as archive:
-        columns: dict[str, npt.NDArray[Any]] = {name: archive[name] for name in archive.files}
+        columns: dict[str, npt.NDArray[Any]] = {name: np.asarray(archive[name]) for name in archive.files}
     if PROGRAM in columns:
         columns[PROGRAM] = columns.pop(PROGRAMS).astype(object)[columns[PROGRAM]]
     return columns

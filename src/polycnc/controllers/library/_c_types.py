@@ -127,11 +127,15 @@ class Bytes:
 
 @dataclass(frozen=True, slots=True)
 class Pointer:
-    """A structure or an array, passed as it is, so that a call can fill it; with `refusal` null is refused so."""
+    """A structure or an array, passed as it is, so that a call can fill it; with `refusal` null is refused so.
+
+    `ctype` is the structure; `of` is what an array holds, a list among them, or `callable` for a routine.
+    """
 
     c: str
     ctype: Any = None
     refusal: int | None = None
+    of: Any = None
 
     def take(self, value: Any, to: Any) -> Any:
         """Refuse a null pointer."""
@@ -139,7 +143,23 @@ class Pointer:
             raise Refused(self.refusal)
         if value is None or (self.ctype is not None and kind_of(type(value)) is not self.ctype):
             raise TypeError(f"it is {self.c}")
+        if self.of is callable and not callable(value):
+            raise TypeError(f"it is a routine: {self.c}")
+        if self.of not in (None, callable) and not _is_array(value, self.of):
+            raise TypeError(f"it is an array: {self.c}")
         return value
+
+
+def _is_array(value: Any, of: Any) -> bool:
+    """Tell whether a value is an array of these elements, of Python or of ctypes."""
+    if isinstance(value, (str, bytes, bytearray, dict)) or not hasattr(value, "__getitem__"):
+        return False
+    try:
+        return all(
+            isinstance(each, int | float) if of is int else kind_of(type(each)) is of for each in value
+        )
+    except TypeError:
+        return False
 
 
 def kind_of(cls: Any) -> Any:

@@ -81,7 +81,7 @@ class Argument:
             return value
         try:
             return self.type.take(value, to)
-        except (TypeError, ValueError, AttributeError) as error:
+        except (TypeError, ValueError, OverflowError, AttributeError) as error:
             raise BadArgument(f"{self.name} cannot be {value!r:.60}: {error}") from None
 
     @property

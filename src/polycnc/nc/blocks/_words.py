@@ -13,6 +13,8 @@ from polycnc.nc.text._scan_plain import Block, Word
 Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
+MOST_WORDS = 1000
+"""Words of a block: far more than any control reads. A file of one line would take hours otherwise."""
 _OF_MOVES = range(40, 50)  # offsets, behind which axis words are still a move
 _NOT_YET = "What it does would be left out: take it out, or post the program without it."
 _OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
@@ -110,6 +112,12 @@ def sort_words(block: Block, dialect: Dialect, fail: Fail, count: Callable[[str]
         ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
     """
     words = BlockWords()
+    if len(block.words) > MOST_WORDS:
+        raise fail(
+            f"a block with {len(block.words)} words",
+            f"No block has more than {MOST_WORDS}: check the line ends.",
+            block.words[MOST_WORDS],
+        )
     for word in block.words:
         if word.letter == "G" and word.index is None:
             _add_g(word, words, dialect, fail, count)

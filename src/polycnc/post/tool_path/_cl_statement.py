@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -91,15 +92,20 @@ class Statement:
                 f"'{token.text}' is no number: {self.major} needs {what}", "Write a number.", token
             )
         self._next += 1
-        return value
+        return self._sane(token, value)
 
     def numbers(self) -> list[float]:
         """Take the numbers up to the next word."""
         found = []
         while (token := self.peek()) is not None and (value := token.number) is not None:
-            found.append(value)
+            found.append(self._sane(token, value))
             self._next += 1
         return found
+
+    def _sane(self, token: Token, value: float) -> float:
+        if math.isinf(value):
+            raise self.fail(f"the number {token.text:.20} is beyond all others", "Check it.", token)
+        return value
 
     def value_of(self, word: str, what: str) -> float | None:
         """Return the number behind a word, wherever it stands; None if the word is not there.
@@ -113,7 +119,7 @@ class Statement:
                 value = after.number if after is not None else None
                 if value is None:
                     raise self.fail(f"{word} needs {what}", f"Write it behind {word}, like {word},5.", token)
-                return value
+                return self._sane(token, value)
         return None
 
     def fail(self, what: str, hint: str, at: Token | None = None) -> ProgramError:

@@ -76,7 +76,7 @@ def read_cnc(data: bytes) -> Program:
         raise CncFileError(INVALID_TYPE, "damaged: size or checksum is wrong")
     try:
         return _program(json.loads(body), task)
-    except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
+    except (ValueError, TypeError, LookupError, AttributeError, OverflowError, RecursionError):
         raise CncFileError(INVALID_TYPE, "damaged: not a program") from None
 
 

@@ -22,7 +22,9 @@ PASSWORD_LEAST, PASSWORD_BELOW = 4, 100
 
 
 def _stretch(value: object) -> object:
-    if isinstance(value, tuple) and (len(value) != 2 or not value[0] < value[1]):
+    if not isinstance(value, tuple) or not all(isinstance(each, int | float) for each in value):
+        return value  # the type says what is wrong
+    if len(value) != 2 or not value[0] < value[1]:
         raise problem("the stretch is empty", hint="write [from, to] with from < to")
     return value
 

@@ -94,8 +94,8 @@ def _number(c: str, ctype: Any, low: int, high: int, refusal: IMC_STATUS = IMC_O
     return Whole(c, ctype, low, high, refusal)
 
 
-def _pointer(c: str, ctype: Any = None) -> Pointer:
-    return Pointer(c, ctype, IMC_INVALID_PARAM)
+def _pointer(c: str, ctype: Any = None, of: Any = None) -> Pointer:
+    return Pointer(c, ctype, IMC_INVALID_PARAM, of)
 
 
 _INSTRUCTIONS = frozenset((FIFO_SEL.SEL_IFIFO, FIFO_SEL.SEL_QFIFO, FIFO_SEL.SEL_PFIFO1, FIFO_SEL.SEL_PFIFO2))
@@ -139,10 +139,10 @@ AnyQueue: TypeAlias = Annotated[int, Queues(frozenset(FIFO_SEL))]
 
 HANDLE: TypeAlias = Annotated[IMC_HANDLE, Pointer("IMC_HANDLE", None, IMC_INVALID_HANDLE)]
 Adapters: TypeAlias = Annotated[NIC_INFO, _pointer("NIC_INFO *", NIC_INFO), OUT]
-Descriptions: TypeAlias = Annotated[Elements[WR_MUL_DES], _pointer("pWR_MUL_DES")]
+Descriptions: TypeAlias = Annotated[Elements[WR_MUL_DES], _pointer("pWR_MUL_DES", of=WR_MUL_DES)]
 Filled: TypeAlias = Annotated[Descriptions, INOUT]
-Events: TypeAlias = Annotated[Elements[EventInfo], _pointer("PEventInfo")]
-Points: TypeAlias = Annotated[Elements[int], _pointer("short *")]
+Events: TypeAlias = Annotated[Elements[EventInfo], _pointer("PEventInfo", of=EventInfo)]
+Points: TypeAlias = Annotated[Elements[int], _pointer("short *", of=int)]
 SegmentData: TypeAlias = Annotated[PFIFOSegData, _pointer("PFIFOSegData *", PFIFOSegData)]
 SegmentInfo: TypeAlias = Annotated[PFIFOSegInfo, _pointer("PFIFOSegInfo *", PFIFOSegInfo)]
 
