@@ -54,6 +54,7 @@ def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> No
     assert abs(here) > 1000
     for towards in (
         [("mcstgpos", here + 37 * way), ("mcsgo", FLAG)],
+        [("mcstgpos", here + way), ("mcsgo", FLAG)],
         [("mcsdist", 41 * way), ("mcsgo", FLAG)],
         [("mcstgvel", 7 * way)],
         [("homeseq", 0x11 if way > 0 else 0x31), ("highvel", 5), ("gohome", FLAG)],

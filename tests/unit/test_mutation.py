@@ -63,6 +63,14 @@ def test_every_kind_of_change_is_made_and_nothing_else_is_touched() -> None:
     ]
 
 
+def test_an_index_becomes_that_of_the_first() -> None:
+    source = b"def f(rows, i, name):\n    return rows[i] + rows[i, 2][name]\n"
+    found = [
+        each.applied(source).decode().splitlines()[1] for each in mutants_of(source) if each.kind == "index"
+    ]
+    assert found == ["    return rows[0] + rows[i, 2][name]", "    return rows[i] + rows[0, 2][name]"]
+
+
 def test_a_changed_module_still_is_one_and_differs_in_one_line() -> None:
     for each in mutants_of(MODULE):
         compile(each.applied(MODULE), "module.py", "exec")

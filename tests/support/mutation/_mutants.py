@@ -99,6 +99,11 @@ class _Finder:
                 yield self._mutant("constant", node, repr(value + step).encode())
             case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test) if not _is_equality(test):
                 yield self._mutant("condition", test, b"not (" + self._text(test) + b")")
+            case (
+                ast.Subscript(slice=ast.Name(id=name) as at)
+                | ast.Subscript(slice=ast.Tuple(elts=[ast.Name(id=name) as at, *_]))
+            ) if len(name) == 1:
+                yield self._mutant("index", at, b"0")  # what happens to the first alone
             case ast.Return(value=ast.Tuple(elts=[first, second, *_])):
                 yield from self._swapped("return", first, second)
             case ast.Call(args=[*_, first, second]) if not _is_symmetrical(node):
