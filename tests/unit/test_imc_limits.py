@@ -113,12 +113,22 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
 
 
 @pytest.mark.covers("imc.param.stopmode")
-def test_stopmode_names_the_errors_that_stop_at_once() -> None:
-    card = ready_card(LIMITS)
-    set_now(card, ("aioctr", 0x000F), ("stopmode", 1))
-    send(card, IFIFO, ("mcstgvel", 20))
-    card.advance(100)
-    assert 1000 <= card.read("curpos") <= 1020
+@pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
+def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
+    soft: int, way: int, bit: int
+) -> None:
+    for mode, least, most in ((bit, 0, 20), (~bit, 180, 240)):  # 20 pulses/ms and 1 pulse/ms2: 200 to brake
+        card = ready_card(
+            "number_of_axes = 3\n[[axis]]\n[[axis]]\nlimit_positive = 500\nlimit_negative = -500\n"
+        )
+        set_now(card, ("aioctr", 0xC000 - 0x10000 if soft else 0x000F, 1), ("stopmode", mode, 1))
+        if soft:
+            set_now(card, ("psoftlim", 500, 1), ("nsoftlim", -500, 1))
+        send(card, IFIFO, ("mcstgvel", 20 * way, 1), ("mcstgvel", 3, 2))
+        card.advance(200)
+        assert card.read("error", 1) == bit
+        assert least <= card.read("curpos", 1) * way - 500 <= most
+        assert (card.read("curvel", 1), card.read("curvel", 2)) == (0, 3)
 
 
 @pytest.mark.covers("imc.param.exitfilt")

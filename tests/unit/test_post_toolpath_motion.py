@@ -387,3 +387,19 @@ def test_the_control_is_told_of_a_rise_between_holes_of_different_heights() -> N
         *(("RAPID", 11.0, 13.0, 30.0), ("RAPID", 29.0, 17.0, 30.0), ("RAPID", 29.0, 17.0, 24.0)),
         *(("LINEAR", 29.0, 17.0, 14.0), ("RAPID", 29.0, 17.0, 30.0)),
     ]
+
+
+def test_a_cycle_that_leaves_to_one_level_goes_on_from_hole_to_hole() -> None:
+    moves = moves_of(HOLES.format("DRILL,DEPTH,12,CLEAR,2,RETURN,10"))
+    assert [(macro, words.get("HOLE")) for macro, words in moves[2:]] == [
+        ("CYCLE_DRILL", 1.0),
+        ("CYCLE_DRILL", 2.0),
+        ("CYCLE_OFF", None),
+    ]
+    # From a low start to the level of the cycle, then a cycle without one: the control needs it anew.
+    text = "FROM/3,4,5\nFEDRAT/90\nCYCLE/DRILL,DEPTH,7,CLEAR,2,RETURN,9\nGOTO/11,13,0\nCYCLE/DRILL,DEPTH,7,CLEAR,2\n"
+    found = [(macro, words.get("RETRACT")) for macro, words in moves_of(f"{text}GOTO/17,19,0\n")]
+    assert found == [
+        *(("RAPID", None), ("CYCLE_DRILL", 98.0), ("CYCLE_OFF", None)),
+        *(("CYCLE_DRILL", 99.0), ("CYCLE_OFF", None)),
+    ]
