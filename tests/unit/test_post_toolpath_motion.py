@@ -403,3 +403,16 @@ def test_a_cycle_that_leaves_to_one_level_goes_on_from_hole_to_hole() -> None:
         *(("RAPID", None), ("CYCLE_DRILL", 98.0), ("CYCLE_OFF", None)),
         *(("CYCLE_DRILL", 99.0), ("CYCLE_OFF", None)),
     ]
+
+
+def test_every_length_of_a_hole_is_in_the_unit_of_the_control() -> None:
+    text = "FROM/12.7,38.1,50.8\nCYCLE/DEEP,DEPTH,25.4,STEP,6.35,MMPM,381,CLEAR,2.54\nGOTO/63.5,76.2,10.16\n"
+    (macro, words), _ = moves_of(text, units="inch")
+    assert macro == "CYCLE_DEEP"
+    assert words == pytest.approx({
+        "X": 2.5, "Y": 3.0, "Z": -0.6, "STARTX": 0.5, "STARTY": 1.5, "STARTZ": 2.0, "SURFACE": 0.4, "R": 0.5,
+        "OUT": 0.5, "RETRACT": 99.0, "HOLE": 1.0, "P": 0.0, "Q": 0.25, "F": 15.0, "FEEDMODE": 94.0,
+    })  # fmt: skip
+    tapped = f"SPINDL/RPM,500,CLW\n{text.replace('DEEP', 'TAP').replace('STEP,6.35,MMPM,381', 'MMPR,1.27')}"
+    ((_, words), _) = moves_of(tapped, units="inch")
+    assert (words["PITCH"], words["F"], words["S"]) == pytest.approx((0.05, 25.0, 500.0))
