@@ -416,3 +416,10 @@ def test_every_length_of_a_hole_is_in_the_unit_of_the_control() -> None:
     tapped = f"SPINDL/RPM,500,CLW\n{text.replace('DEEP', 'TAP').replace('STEP,6.35,MMPM,381', 'MMPR,1.27')}"
     ((_, words), _) = moves_of(tapped, units="inch")
     assert (words["PITCH"], words["F"], words["S"]) == pytest.approx((0.05, 25.0, 500.0))
+
+
+def test_holes_by_moves_have_the_feed_of_their_cycle_and_leave_the_other_alone() -> None:
+    text = "FROM/3,4,50\nSPINDL/RPM,500,CLW\nFEDRAT/170\nCYCLE/DRILL,DEPTH,7,MMPR,.3,CLEAR,2\nGOTO/11,13,0\nCYCLE/OFF\n"
+    moves = moves_of(f"{text}GOTO/17,19,5\n", cycles="moves")
+    feeds = [(words["Z"], words["F"], words["FEEDMODE"]) for macro, words in moves if macro == "LINEAR"]
+    assert feeds == [(-7.0, 0.3, 95.0), (5.0, 170.0, 94.0)]
