@@ -150,3 +150,28 @@ def test_an_effective_radius_counts_in_the_position_unit(pu: int, unit_mm: float
     assert (pc.rp(0), pc.rp(1)) == near((16.0, turned_deg))
     assert pcap.rdEffRadius(1) == near(45.0 / unit_mm)
     assert pc.board.time_s == near(path_mm / 20.0, abs=6 * SCAN_S)
+
+
+@pytest.mark.covers("apci.MODEREG.10.rotaxisunit")
+def test_the_unit_of_rotary_axes_can_be_changed_between_two_moves() -> None:
+    pc = Pc('[[axis]]\n[[axis]]\nunit = "deg"\n')
+    axes = pc.close(0, 1)
+    pcap.wrEffRadius(1, 45.0)
+    places = []
+    for modes in (0, ModeReg.rotaxisunit, 0):
+        pcap.wrModeReg(modes)
+        pcap.mlr(axes, pcap.LMP(ac=1e5, vl=300.0, dtm=[2.0, 37.0, *[0.0] * 16]))
+        pc.scans_until_rest()
+        places.append(pc.rp(1))
+    assert places == near([47.109863, 84.109863, 131.219726])  # 37 / 45 rad, 37 degrees, 37 / 45 rad
+
+
+@pytest.mark.parametrize("unit", ["counts", "steps"])
+def test_an_axis_that_is_planned_in_counts_moves_in_counts(unit: str) -> None:
+    pc = Pc(f'[[axis]]\n[[axis]]\nunit = "{unit}"\nslsp = 4000.0\ngf = 0.25\n')
+    axes = pc.close(1)
+    for pu, way in ((6, 3100.0), (7, -1700.0)):
+        pcap.ctru(pcap.TRU(pu=pu))
+        pcap.mlr(axes, pcap.LMP(ac=1e8, vl=50_000.0, dtm=[0.0, way, *[0.0] * 16]))
+        pc.scans_until_rest()
+    assert pc.rp(1) == near(1400.0)

@@ -31,8 +31,9 @@ def test_a_point_is_a_move_with_the_feed_and_behind_rapid_one_without() -> None:
 
 
 def test_lengths_and_feeds_in_inch() -> None:
-    (_, words), *_ = moves_of("FEDRAT/254\nGOTO/25.4,50.8,-2.54\n", units="inch")
+    (_, words), *_ = moves_of("FROM/12.7,38.1,63.5\nFEDRAT/254\nGOTO/25.4,50.8,-2.54\n", units="inch")
     assert (words["X"], words["Y"], words["Z"], words["F"]) == pytest.approx((1.0, 2.0, -0.1, 10.0))
+    assert (words["STARTX"], words["STARTY"], words["STARTZ"]) == pytest.approx((0.5, 1.5, 2.5))
 
 
 def test_a_move_without_a_way_is_left_out() -> None:
@@ -423,3 +424,11 @@ def test_holes_by_moves_have_the_feed_of_their_cycle_and_leave_the_other_alone()
     moves = moves_of(f"{text}GOTO/17,19,5\n", cycles="moves")
     feeds = [(words["Z"], words["F"], words["FEEDMODE"]) for macro, words in moves if macro == "LINEAR"]
     assert feeds == [(-7.0, 0.3, 95.0), (5.0, 170.0, 94.0)]
+
+
+@pytest.mark.parametrize(("units", "scale"), [("mm", 1.0), ("inch", 25.4)])
+def test_an_arc_begins_where_the_tool_is_in_the_unit_of_the_control(units: str, scale: float) -> None:
+    text = "FROM/10,3,7\nFEDRAT/600\nCIRCLE/4,-5,7,0,0,1,10\nGOTO/-4,1,7\n"
+    (_, words), *_ = moves_of(text, units=units)
+    starts = [words[name] * scale for name in ("STARTX", "STARTY", "STARTZ", "X", "Y", "Z")]
+    assert starts == pytest.approx([10.0, 3.0, 7.0, -4.0, 1.0, 7.0])
