@@ -176,12 +176,12 @@ class ProgramRun:
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
-    def hold(self) -> None:
+    def hold(self, *, at_once: bool = False) -> None:
         """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed.
 
-        While the program suppresses feed holds it comes as soon as it does no more.
+        While the program suppresses feed holds it comes as soon as it does no more, or `at_once`.
         """
-        if self._state is RunState.ACTIVE and self._suppressed.hold:
+        if self._state is RunState.ACTIVE and self._suppressed.hold and not at_once:
             self._held_back = True
         elif self._state is RunState.ACTIVE:
             self._hold = True
@@ -598,7 +598,7 @@ class ProgramRun:
         self._give_axes()
         self.channel.state.modal.position[:] = state.paths.position[path]
         kernel.start_path(state.paths, path)
-        self._hold = False
+        self._hold = self._held_back = False
         self._row["limit"] = kernel.NO_LIMIT
         self._row["tag"] = 0
         if self._approach is not None:

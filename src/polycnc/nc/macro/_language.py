@@ -169,8 +169,28 @@ class MacroLanguage:
             assert compiled is not None
         return MacroSource(self, compiled, given)
 
+    def source_at(self, text: ProgramText, offset: int, line: int, start: int) -> MacroSource | None:
+        """Return a source that begins at byte `start`, the beginning of a line; None where plain text needs none.
+
+        Raises:
+            ProgramError: The program is wrong, or cannot begin there.
+        """
+        compiled = self._compile(text, offset, line, False, force=False, start=start)
+        if compiled is None:
+            return None
+        if compiled.errors:
+            raise compiled.errors[0]
+        return MacroSource(self, compiled, None)
+
     def _compile(
-        self, text: ProgramText, offset: int, line: int, plain: bool, *, force: bool
+        self,
+        text: ProgramText,
+        offset: int,
+        line: int,
+        plain: bool,
+        *,
+        force: bool,
+        start: int | None = None,
     ) -> _Compiled | None:
         calls = _PLAIN_CALLS if plain else self.calls
         if id(text) not in self._latin:
@@ -193,7 +213,7 @@ class MacroLanguage:
         name = f"<macro {id(text)} {offset} {plain}>"
         code = None
         if not flaws:
-            made, flaws = shape(whole, parts, returns=returns)
+            made, flaws = shape(whole, parts, returns=returns, start=start)
             if not flaws:
                 increment = self.channel.dialect.increment
                 code, flaws = compile_program(made, self, increment, name)
