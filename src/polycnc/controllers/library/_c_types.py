@@ -155,7 +155,9 @@ def _is_array(value: Any, of: Any) -> bool:
     if isinstance(value, (str, bytes, bytearray, dict)) or not hasattr(value, "__getitem__"):
         return False
     try:
-        return all(isinstance(each, int | float) if of is int else kind_of(type(each)) is of for each in value)
+        return all(
+            isinstance(each, int | float) if of is int else kind_of(type(each)) is of for each in value
+        )
     except TypeError:
         return False
 
