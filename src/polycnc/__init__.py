@@ -21,10 +21,12 @@ if TYPE_CHECKING:
     from polycnc.machine import Machine, MachineConfig, load_machine
     from polycnc.runner import (
         Alarm,
+        BatchResult,
         Comparison,
         RunResult,
         Trace,
         Violation,
+        batch,
         check,
         compare,
         plot,
@@ -38,10 +40,12 @@ _HOME = {
     "machine": ("Machine", "MachineConfig", "load_machine"),
     "runner": (
         "Alarm",
+        "BatchResult",
         "Comparison",
         "RunResult",
         "Trace",
         "Violation",
+        "batch",
         "check",
         "compare",
         "plot",
@@ -54,6 +58,7 @@ _HOME = {
 __all__ = [
     "Alarm",
     "AlarmError",
+    "BatchResult",
     "Comparison",
     "ConfigurationError",
     "Machine",
@@ -64,6 +69,7 @@ __all__ = [
     "Trace",
     "UsageError",
     "Violation",
+    "batch",
     "check",
     "compare",
     "load_machine",

@@ -27,6 +27,7 @@ def _polycnc(command: str) -> int:
 
 def _step(kind: str, what: str, text: str, session: dict[str, Any]) -> int:
     if kind == "file":
+        Path(what).parent.mkdir(parents=True, exist_ok=True)
         Path(what).write_text(text, encoding="utf-8")
     elif kind == "polycnc":
         return _polycnc(what)

@@ -7,6 +7,7 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import time
 from pathlib import Path
 
@@ -162,7 +163,93 @@ def test_check_reports_every_error_of_every_program(tmp_path: Path) -> None:
 
 
 def test_check_of_good_programs_is_clean(part: Path) -> None:
+    (part / "part.nc").write_text("T1 M6\nM3 S500\n" + PROGRAM)
     assert polycnc("check", "part.nc", cwd=part).stdout == "part.nc: no errors\n"
+
+
+def test_check_tells_remarks_and_strict_checking_makes_them_errors(part: Path) -> None:
+    told = polycnc("check", "part.nc", cwd=part).stdout.splitlines()
+    assert told == [
+        "remark: part.nc:1:1: cuts with the spindle at rest",
+        "remark: part.nc:1:1: cuts without a tool in the spindle",
+        "part.nc: no errors",
+    ]
+    strict = polycnc("check", "part.nc", "--strict", cwd=part, status=1).stdout.splitlines()
+    assert strict[0] == "error: part.nc:1:1: cuts with the spindle at rest"
+    assert strict[-1] == "2 errors"
+    report = json.loads(polycnc("check", "part.nc", "--json", cwd=part).stdout)
+    assert report["errors"] == 0
+    assert [(each["code"], each["line"], each["count"]) for each in report["remarks"]["part.nc"]] == [
+        ("spindle_off", 1, 1),
+        ("no_tool", 1, 1),
+    ]
+
+
+def test_check_goes_on_behind_a_file_that_cannot_be_read(part: Path) -> None:
+    (part / "wrong.nc").write_text("G1 X5\n")
+    done = polycnc("check", "missing.nc", "wrong.nc", "part.nc", cwd=part, status=2)
+    assert "wrong.nc:1:1: a feed move without a feed" in done.stdout
+    assert "part.nc: no errors" in done.stdout
+    assert done.stdout.endswith("2 errors\n")
+    assert "error: no such file: missing.nc" in done.stderr
+    report = json.loads(polycnc("check", "missing.nc", "wrong.nc", "--json", cwd=part, status=2).stdout)
+    assert report["unreadable"]["missing.nc"]["text"] == "no such file: missing.nc"
+    assert len(report["programs"]["wrong.nc"]) == 1
+
+
+def test_several_programs_and_standard_input_run_one_after_the_other(part: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-m", "polycnc", "run", "part.nc", "-", "--units", "inch"],
+        cwd=part,
+        env=environment(),
+        input="G1 X25.4 F1524\nM30\n",
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout
+    assert [line for line in done.splitlines() if line.startswith("program")] == [
+        "program    part.nc",
+        "program    <stdin>",
+    ]
+    assert "  cutting  1.018 s  1.0000 in" in done
+    assert "cut with up to 60.00 in/min" in done
+    assert done.splitlines()[-1] == "total      3.091 s, 2 programs"
+    report = json.loads(polycnc("run", "part.nc", "part.nc", "--json", cwd=part).stdout)
+    assert len(report["programs"]) == 2
+    assert report["time_s"] == pytest.approx(2 * report["programs"][0]["time_s"])
+    told = polycnc("run", "part.nc", "part.nc", "--trace", "t.csv", cwd=part, status=2).stderr
+    assert told.startswith("error: a trace of 2 programs")
+
+
+def test_codes_are_left_out_on_demand(part: Path) -> None:
+    (part / "five.tap").write_text("G43.4 H1 Z5.\nM198 P7\nM30\n")
+    polycnc("run", "five.tap", cwd=part, status=1)
+    told = polycnc("run", "five.tap", "--ignore", "G43.4,M198", cwd=part).stdout
+    assert "message    line 1: G43.4 is left out, as told" in told
+    assert "message    line 2: M198 is left out, as told" in told
+    assert polycnc("check", "five.tap", "--ignore", "X5", cwd=part, status=2).stderr.startswith(
+        "error: 'X5' is no"
+    )
+
+
+def test_colours_are_for_terminals_and_can_be_switched_off() -> None:
+    import typer
+
+    from polycnc.cli._output import bold_red
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("NO_COLOR", raising=False)
+        assert bold_red("error") == typer.style("error", bold=True, fg="red") != "error"
+        patch.setenv("NO_COLOR", "1")
+        assert bold_red("error") == "error"
+
+
+def test_the_shell_is_taught_to_complete() -> None:
+    from polycnc.cli._programs import dialect_names, machine_names
+
+    assert machine_names("mill") == ["mill3", "mill5"]
+    assert "fanuc-lathe" in dialect_names("fan")
+    assert "--show-completion" in polycnc("--help").stdout
 
 
 # ---------------------------------------------------------------------- machine, conformance, help
@@ -220,7 +307,7 @@ WRONG_USAGE = {
     "no program": ("run",),
     "unknown command": ("walk",),
     "skip level": ("run", "part.nc", "--skip", "10"),
-    "one missing of two": ("check", "part.nc", "missing.nc"),
+    "one missing of two": ("run", "part.nc", "missing.nc"),
     "unknown system": ("conformance", "heidenhain"),
     "state of nothing": ("conformance", "--list", "open"),
 }

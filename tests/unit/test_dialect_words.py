@@ -528,3 +528,27 @@ def test_run_and_check_leave_codes_out() -> None:
     assert [(each.text, each.line) for each in result.messages if "left out" in each.text] == [
         ("G43.4 is left out, as told", 1)
     ]
+
+
+# --- blanks inside numbers
+
+
+@pytest.mark.parametrize("ordinary_blocks", [0, 1000])
+@pytest.mark.parametrize(
+    ("block", "plain"),
+    [
+        ("G0 X1 0. Y-2 5.7 5", "G0 X10. Y-25.75"),
+        ("G 0 1 X - 1 . 5 F 1 0 0", "G01 X-1.5 F100"),
+        ("N 1 0 G1 X. 5 Y 2 . F300", "N10 G1 X.5 Y2. F300"),
+        ("G1 X1\t2 (3) Y4 F9 9", "G1 X12 Y4 F99"),
+    ],
+)
+def test_blanks_inside_numbers_count_for_nothing(block: str, plain: str, ordinary_blocks: int) -> None:
+    options = {"dialect": "fanuc", "ordinary_blocks": ordinary_blocks}
+    assert moves(f"{block}\n", **options) == moves(f"{plain}\n", **options)
+    assert refusal("G0 X1 0\n") == "1:7: '0' has no letter"  # din
+
+
+@pytest.mark.parametrize("block", ["X1 .2.3", "X1 (a) 0", "X", "X 1 0 0 . 1 . 2"])
+def test_what_is_no_number_with_blanks_is_refused(block: str) -> None:
+    assert refusal(f"{block}\n", dialect="fanuc")

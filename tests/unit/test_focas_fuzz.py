@@ -84,8 +84,16 @@ class Bench:
         content = tuple(
             tuple(map(tuple, self.power_mate.store.query(f'SELECT * FROM "{name}"'))) for name in tables
         )
-        snapshot = self.power_mate.snapshot()
-        return content, snapshot, self.power_mate.transfer is None, self.power_mate.clock.epoch
+        made = self.power_mate
+        seen = (
+            made.status(),
+            made.signals.snapshot(),
+            made.pmc.snapshot(),
+            made.mode,
+            made.cursor,
+            made.mdi.blocks,
+        )
+        return content, seen, made.transfer is None, made.clock.epoch
 
     def look(self, case: object) -> None:
         """Hold the others to what they saw."""

@@ -90,6 +90,11 @@ def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: 
     assert every.modal.g_rdata[group] == value | 0x80
 
 
+def _executes(control: PowerMate, block: str) -> bool:
+    executed = control.execution.block
+    return executed is not None and executed.text.startswith(block)
+
+
 @pytest.mark.covers("fanuc.modal.G.11.1", "fanuc.modal.addr.102")
 def test_a_modal_call_of_a_macro_and_the_argument_e() -> None:
     control = PowerMate()

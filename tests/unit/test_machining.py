@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import polycnc
-from polycnc.machine import load_machine
+from polycnc.machine import MachineConfig, load_machine
 from polycnc.runner import inspect
 from support.programs import LINEAR, SPINDLE, machine_config, prepare
 

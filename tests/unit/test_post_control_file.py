@@ -249,11 +249,11 @@ def test_shipped_files_write_plain_blocks(name: str) -> None:
     text = "".join(written)
     assert "(PART 1)" in text
     assert re.search(r"S1500 M0?3$", text, re.MULTILINE)
-    assert re.search(r"G94 G0?1 Z-1\.?(000)? F120\.?$", text, re.MULTILINE) or re.search(
+    assert re.search(r"G9[48] G0?1 Z-1\.?(000)? F120\.?$", text, re.MULTILINE) or re.search(
         r"^(N\d+ )?G0?1 Z-1\.?(000)? F120\.?$", text, re.MULTILINE
     )
-    assert re.search(r"^(N\d+ )?X12\.?(000)?$", text, re.MULTILINE)
-    assert re.search(r"^(N\d+ )?G95 Z-3\.?(000)? F120\.?$", text, re.MULTILINE)  # F anew with its mode
+    assert re.search(r"^(N\d+ )?X(12|24)\.?(000)?$", text, re.MULTILINE)
+    assert re.search(r"^(N\d+ )?G9[59] Z-3\.?(000)? F120\.?$", text, re.MULTILINE)  # F anew with its mode
     assert "M30" in text
 
 
@@ -278,7 +278,7 @@ def test_shipped_files_are_places_to_begin(name: str, tmp_path: Path) -> None:
     own = tmp_path / "own.toml"
     own.write_text(text.replace('extension = "', 'extension = ".own'), encoding="utf-8")
     assert load_control(own).parameters.extension.startswith(".own.")
-    assert load_control(own).parameters.dialect in ("fanuc", "bosch", "din")
+    assert load_control(own).parameters.dialect in ("fanuc", "fanuc-lathe", "bosch", "din")
 
 
 # --- files

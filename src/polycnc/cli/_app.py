@@ -8,6 +8,7 @@ import typer
 
 from polycnc import __version__
 from polycnc.cli import (
+    _batch,
     _check,
     _compare,
     _conformance,
@@ -17,6 +18,7 @@ from polycnc.cli import (
     _post,
     _run,
     _sap,
+    _schema,
     _serve,
     _view,
     _warmup,
@@ -55,6 +57,7 @@ app.command("run", short_help="Run a part program: times, path, alarms.")(guarde
 app.command("view", short_help="Write a page that shows a run: path, time, blocks, tools.")(
     guarded(_view.view_command)
 )
+app.command("batch", short_help="Run or check whole folders of programs.")(guarded(_batch.batch_command))
 app.command("compare", short_help="Compare two programs, or one on two machines.")(
     guarded(_compare.compare_command)
 )
@@ -69,6 +72,9 @@ app.command("serve", short_help="Serve a simulated control to clients on the net
 )
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
+)
+app.command("schema", short_help="Print the JSON schema of outputs and files.")(
+    guarded(_schema.schema_command)
 )
 app.command("warmup", short_help="Compile beforehand what the first use would wait for.")(
     guarded(_warmup.warmup_command)

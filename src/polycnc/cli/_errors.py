@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import errno
 import functools
 import os
 import platform
@@ -45,17 +46,23 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             _end(str(error), PROGRAM)
         except KeyboardInterrupt:
             _end("interrupted", INTERRUPTED)
-        except BrokenPipeError:
-            # Whoever read the output has left; nothing more can be said, at the end of the process neither.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            sys.exit(PROGRAM)
         except OSError as error:
+            if _reader_left(error):
+                # Nothing more can be said, at the end of the process neither.
+                os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+                sys.exit(PROGRAM)
             name = f"{error.filename}: " if error.filename else ""
             _end(f"{name}{error.strerror or error}", PROGRAM)
         except Exception as error:  # whatever it is, it is ours: nobody is shown a traceback
             end_with_report(error)
 
     return run
+
+
+def _reader_left(error: OSError) -> bool:
+    """Tell whether whoever read the output has left; Windows calls that an invalid argument."""
+    windows = sys.platform == "win32" and error.errno == errno.EINVAL and error.filename is None
+    return windows or isinstance(error, BrokenPipeError)
 
 
 def end_with_report(error: Exception) -> NoReturn:
@@ -98,4 +105,6 @@ def end_on_termination() -> None:
     def leave(number: int, _: object) -> None:
         sys.exit(128 + number)
 
-    signal.signal(signal.SIGTERM, leave)
+    for name in ("SIGTERM", "SIGBREAK"):  # the latter is Ctrl-Break, and the closing of a console, of Windows
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), leave)

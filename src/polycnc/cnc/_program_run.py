@@ -7,28 +7,28 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from typing import Any, NamedTuple, TypeAlias
+from typing import TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
-from polycnc.cnc._block_search import block_line
-from polycnc.cnc._path_feed import FeedSnapshot, PathFeed
+from polycnc.cnc._block_search import block_line, calculate_to
+from polycnc.cnc._path_feed import PathFeed
+from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._probing import Probing, delete_rest, positions
+from polycnc.cnc._run_snapshot import RunSnapshot, put_back, taken_of
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import LEAST_OVERRIDE, Machine, MachineConfig, Reason
+from polycnc.machine import Machine, MachineConfig, Reason
 from polycnc.nc import (
     LINE_MASK,
     BlockRecord,
     Call,
     Channel,
-    ChannelSnapshot,
     Dialect,
     Event,
     Language,
@@ -60,26 +60,6 @@ _STANDING = {
 }
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
-HIGHEST_OVERRIDE = 2.0
-
-
-# Plain values that a run holds besides its channel.
-_SAVED = (
-    "optional_stop", "alarm", "_block_delete", "_single_block", "_state", "_hold", "_stop",
-    "_met", "_dropping", "_locked", "_unanswered", "_approach", "_tool_times", "_probing",
-    "skip_signal", "_suppressed", "_held_back", "_override_kept",
-)  # fmt: skip
-
-
-class RunSnapshot(NamedTuple):
-    """Everything that a run holds at one cycle, to go back to."""
-
-    program: ProgramText
-    channel: Channel
-    prepared: ChannelSnapshot
-    feed: FeedSnapshot
-    stopper: Stopper
-    fields: dict[str, Any]
 
 
 class ProgramRun:
@@ -138,7 +118,6 @@ class ProgramRun:
         self._dropping = False
         self._suppressed = Suppressed()  # what the program keeps from acting now
         self._held_back = False  # a feed hold that comes when the program lets it
-        self._override_kept = 1.0  # the feed override while the program keeps it from acting
         self._locked = False
         self._tool_times = ToolTimes()
         self._approach: tuple[tuple[float, ...], int] | None = (
@@ -150,6 +129,12 @@ class ProgramRun:
         self.channel: Channel = self._new_channel(program, None if before is None else before.channel)
         self.stopper = Stopper(self.channel.records, Step.INTO if self._single_block else Step.RUN)
         self.feed = PathFeed(machine, self.channel, self._ahead, self.stopper)
+        self.overrides = PathOverrides(
+            self._row,
+            self.feed.replan,
+            dry_run_mm_s=options.dry_run_mm_s,
+            rapid_f0_mm_s=options.rapid_f0_mm_s,
+        )
 
     def _new_channel(
         self, program: ProgramText, before: Channel | None, *, keeps_modal: bool = True
@@ -253,31 +238,13 @@ class ProgramRun:
         if not calculate:
             self.channel.go_to(target)
             return target
-        state = self.machine.state
-        kernel.give_to_path(state, self.path)
-        self.channel.state.modal.position[:] = state.paths.position[self.path]
         try:
-            found = self.channel.calculate_to(target, self._skip_queue)
-            problem = (
-                None
-                if found
-                else UsageError(
-                    f"the program ends before line {target}",
-                    hint="Search a block that is executed." if self.error is None else str(self.error),
-                )
-            )
-        except UsageError as error:
-            problem = error
-        kernel.drop_queue(state.seg, state.paths, self.path)
-        if problem is not None:
+            calculate_to(self.machine, self.channel, target)
+        except UsageError:
             self._replace_channel(self.program, keeps_modal=False)
-            raise problem
+            raise
         self._approach = (tuple(self.channel.state.modal.position.tolist()), target)
         return target
-
-    def _skip_queue(self) -> None:
-        for name in ("head", "prepared", "planned"):
-            self._row[name] = self._row["tail"]
 
     def step_into(self) -> None:
         """Go on to the end of the next block, into a sub-program if it calls one.
@@ -364,14 +331,11 @@ class ProgramRun:
     @property
     def dry_run(self) -> bool:
         """Whether moves at feed go with the feed of a dry run."""
-        return bool(self._row["dry_feed_mm_s"] > 0.0)
+        return self.overrides.dry_run
 
     @dry_run.setter
     def dry_run(self, on: bool) -> None:
-        if on and not self._options.dry_run_mm_s > 0.0:
-            raise UsageError("there is no feed for a dry run", hint="Give `dry_run_mm_s` in the options.")
-        self._row["dry_feed_mm_s"] = self._options.dry_run_mm_s if on else 0.0
-        self.feed.replan()
+        self.overrides.dry_run = on
 
     @property
     def machine_lock(self) -> bool:
@@ -399,30 +363,20 @@ class ProgramRun:
     @property
     def rapid_override(self) -> float:
         """Factor of positioning speeds, 0 to 1; 0 is the lowest speed of the options (F0)."""
-        return 0.0 if self._row["rapid_top"] < np.inf else float(self._row["rapid_override"])
+        return self.overrides.rapid
 
     @rapid_override.setter
     def rapid_override(self, factor: float) -> None:
-        _check_factor(factor, 1.0, "the rapid override")
-        lowest = self._options.rapid_f0_mm_s
-        slow = factor == 0.0 and lowest > 0.0
-        self._row["rapid_override"] = 1.0 if slow else factor
-        self._row["rapid_top"] = lowest if slow else np.inf
-        self.feed.replan()
+        self.overrides.rapid = factor
 
     @property
     def feed_override(self) -> float:
         """Factor of the programmed feeds, 0 to 2; at 0 moves at feed stand."""
-        return self._override_kept if self._suppressed.override else float(self._row["override"])
+        return self.overrides.feed
 
     @feed_override.setter
     def feed_override(self, factor: float) -> None:
-        _check_factor(factor, HIGHEST_OVERRIDE, "the feed override")
-        if self._suppressed.override:
-            self._override_kept = factor
-            return
-        self._row["override"] = factor
-        self.feed.replan()
+        self.overrides.feed = factor
 
     def stands_at(self, stop: Stop) -> bool:
         """Tell whether the program would stand at such a stop now."""
@@ -609,27 +563,11 @@ class ProgramRun:
         Raises:
             UsageError: a language executes the program; where that stands cannot be kept.
         """
-        return RunSnapshot(
-            self.program,
-            self.channel,
-            self.channel.snapshot(),
-            self.feed.snapshot(),
-            replace(self.stopper),
-            {name: getattr(self, name) for name in _SAVED},
-        )
+        return taken_of(self)
 
     def restore(self, saved: RunSnapshot) -> None:
         """Go back to a snapshot of this run."""
-        self.program = saved.program
-        self.channel = self.feed.channel = saved.channel
-        self.channel.restore(saved.prepared)
-        self.feed.restore(saved.feed)
-        self.stopper.records = saved.stopper.records
-        self.stopper.step, self.stopper.depth = saved.stopper.step, saved.stopper.depth
-        self.stopper.breakpoints = saved.stopper.breakpoints
-        for name, value in saved.fields.items():
-            setattr(self, name, value)
-        self.channel.skip_levels = self._block_delete
+        put_back(self, saved)
 
     # ------------------------------------------------------------------ within
 
@@ -792,11 +730,7 @@ class ProgramRun:
         if now == was:
             return
         self._suppressed = now
-        if now.override is not was.override:
-            if now.override:
-                self._override_kept = float(self._row["override"])
-            self._row["override"] = 1.0 if now.override else self._override_kept
-            self.feed.replan()
+        self.overrides.suppress_feed(now.override)
         if now.single_block is not was.single_block and self._single_block:
             self.stopper.step = self._step_of_switch
             self.feed.look_again()
@@ -852,9 +786,3 @@ class ProgramRun:
         return {
             name: float(value) for name, value in zip(self.machine.config.axis_names, values, strict=True)
         }
-
-
-def _check_factor(factor: float, highest: float, what: str) -> None:
-    if not (factor == 0.0 or LEAST_OVERRIDE <= factor <= highest):
-        hint = f"Give 0, or a factor from {LEAST_OVERRIDE:g} to {highest:g}."
-        raise UsageError(f"{what} cannot be {factor:g}", hint=hint)

@@ -161,6 +161,9 @@ class Text(StrictModel):
     semicolon_comments: bool = Field(default=True, description="; begins a comment to the end of the line.")
     parenthesis_comments: bool = Field(default=True, description="( ) enclose a comment.")
     unclosed_comments: bool = Field(default=False, description="A comment may end with its line.")
+    blanks_in_numbers: bool = Field(
+        default=False, description="Blanks between the digits of a number do not end it: X1 0 is X10."
+    )
     line_numbers: bool = Field(
         default=False, description="A block may begin with a bare number or a point: then it is a statement."
     )

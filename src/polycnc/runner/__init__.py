@@ -28,12 +28,16 @@ from polycnc.runner._wall import WallClock
 if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
+    from polycnc.runner._schemas import SCHEMAS, json_schema
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
+    from polycnc.runner.batches import BatchResult, batch
     from polycnc.runner.comparison import Comparison, PathDeviation, compare
     from polycnc.runner.machine_sources import machine_from
     from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
 
 _LATER = {
+    "SCHEMAS": "_schemas",
+    "BatchResult": "batches",
     "Comparison": "comparison",
     "Debugger": "_debugger",
     "Deviation": "_verify_post",
@@ -42,8 +46,10 @@ _LATER = {
     "PostResult": "_post",
     "PostVerification": "_verify_post",
     "View": "view",
+    "batch": "batches",
     "check_view_file": "view",
     "compare": "comparison",
+    "json_schema": "_schemas",
     "machine_from": "machine_sources",
     "open_in_browser": "view",
     "post_file": "_post",
@@ -53,9 +59,11 @@ _LATER = {
 
 __all__ = [
     "PLOT_FORMATS",
+    "SCHEMAS",
     "SCREEN_FORMATS",
     "TRACE_FORMATS",
     "Alarm",
+    "BatchResult",
     "CheckReport",
     "Comparison",
     "Debugger",
@@ -76,12 +84,14 @@ __all__ = [
     "View",
     "Violation",
     "WallClock",
+    "batch",
     "check",
     "check_plot_file",
     "check_view_file",
     "compare",
     "counted",
     "inspect",
+    "json_schema",
     "machine_from",
     "open_in_browser",
     "plot",

@@ -101,6 +101,8 @@ def post_file(
         if isinstance(tool_path, ToolPath)
         else open_tool_path(tool_path, arc_axis or chosen.parameters.arc_axis)
     )
+    if chosen.parameters.turning_plane == "xy":
+        path = path.turned_from_xy()
     block_map = BlockMap() if verify else None
     text = io.StringIO()
     with ExitStack() as stack:

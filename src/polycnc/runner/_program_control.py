@@ -76,6 +76,11 @@ def control_for(
     return None if make is None else make(program, machine, surroundings)
 
 
+def needs_root(dialect: Dialect) -> bool:
+    """Say whether programs of a dialect may read and write files of their control."""
+    return dialect.language in _CONTROLS
+
+
 def root_of(program: str | Path | ProgramText, root: str | Path | None) -> Path:
     """Return the root of the control: a folder that is given, else that of the program.
 

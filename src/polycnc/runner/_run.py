@@ -45,6 +45,7 @@ def run(
     trace: Literal[True],
     servo: bool = False,
     check: bool = True,
+    feed_override: float = 1.0,
     skip_levels: Iterable[int] = (),
     stop_at_m0: bool = False,
     rows: Rows | None = None,
@@ -66,6 +67,7 @@ def run(
     trace: bool = False,
     servo: bool = False,
     check: bool = True,
+    feed_override: float = 1.0,
     skip_levels: Iterable[int] = (),
     stop_at_m0: bool = False,
     rows: Rows | None = None,
@@ -88,6 +90,7 @@ def run(
     check: bool = True,
     skip_levels: Iterable[int] = (),
     stop_at_m0: bool = False,
+    feed_override: float = 1.0,
     rows: Rows | None = None,
     tagged_rows: TaggedRows | None = None,
     progress: Progress | None = None,
@@ -104,9 +107,9 @@ def run(
     [cycles, columns], as it is recorded, `tagged_rows` gets with each piece the tags of its blocks and the records that
     read them. `servo` simulates the position loops. Blocks with a skip mark `/n`
     are left out for n in `skip_levels`. Program stops are passed, and told in the messages; with `stop_at_m0` the
-    run ends at the first M0. `progress` is called now and then with the part that is done, 0 to 1;
-    it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that count as if they were not
-    there.
+    run ends at the first M0. `feed_override` is the operator's, up to 2. `progress` is called now and then with the
+    part that is done, 0 to 1; it goes back where sub-programs repeat. `ignore` names G and M codes, like "G43.4", that
+    count as if they were not there.
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
     absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
@@ -117,6 +120,8 @@ def run(
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
+    if not feed_override > 0.0:
+        raise UsageError(f"a feed override of {feed_override:g}", hint="Give more than 0, up to 2.")
     text = program_text(program)
     config = load_machine(machine)
     collector = TraceCollector(config, servo) if trace else None
@@ -155,6 +160,8 @@ def run(
         rows=to_all if recorded else None,
         on_event=lambda event: _note(event, events, operations, execution),
     )
+    if feed_override != 1.0:
+        execution.feed_override = feed_override
     stuck: ProgramError | None = None
     if control is None:
         run_to_end(execution, every_cycle=every_cycle, progress=None if every_cycle else progress)

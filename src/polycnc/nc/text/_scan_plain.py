@@ -22,6 +22,10 @@ _LETTER = "([A-Za-z])"
 
 _BLANKS = re.compile(_B)
 _WORD = re.compile(_LETTER + "()" + _B + _NUMBER)  # letter, index, sign, digits
+# The same with blanks among digits and point.
+_WIDE_NUMBER = rf"([+-]?){_B}((?:[0-9]{_B})+(?:\.(?:{_B}[0-9])*)?|\.(?:{_B}[0-9])+)"
+_WIDE_WORD = re.compile(_LETTER + "()" + _B + _WIDE_NUMBER)
+_ALL_BLANKS = re.compile(f"[{re.escape(BLANK_BYTES.decode('ascii'))}]+")
 _HALF_WORD = re.compile(rf"[A-Za-z]{_B}(?:[+-]{_B})?\.?")
 _ASSIGNMENT = re.compile(rf"[A-Za-z]{_B}=")
 _LABEL = re.compile(rf":(?:{_B}(?P<digits>[0-9]++\.?[0-9]*+))?")
@@ -167,9 +171,11 @@ class _LineReader:
             raise self._misplaced(char)
 
     def _read_word(self) -> None:
-        for pattern in _word_patterns(self.rules) if self.has_equals else (_WORD,):
+        plain = _WIDE_WORD if self.rules.blanks_in_numbers else _WORD
+        for pattern in _word_patterns(self.rules) if self.has_equals else (plain,):
             if match := pattern.match(self.line, self.place):
                 letter, index, sign, digits = match.groups()
+                digits = _ALL_BLANKS.sub("", digits)
                 self._add(letter.upper(), sign, digits, int(index) if index else None)
                 self.place = match.end()
                 return

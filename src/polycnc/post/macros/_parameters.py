@@ -25,6 +25,11 @@ class MotionParameters(StrictModel):
         description="What the axis of CIRCLE/ in a tool path is for: arcs by the right-hand rule, or against it; "
         '"auto": against it in a CLSF of NX.',
     )
+    turning_plane: Literal["zx", "xy"] = Field(
+        default="zx",
+        description="Plane of turning in the tool path: X is the radius and Z the axis, or with xy, as NX has it, "
+        "X the axis and Y the radius.",
+    )
     units: Literal["mm", "inch"] = Field(default="mm", description="Units in which lengths are written.")
     decimals: Annotated[int, Field(ge=0, le=9)] = Field(
         default=3, description="Decimals of positions; centres of arcs are reckoned from rounded positions."

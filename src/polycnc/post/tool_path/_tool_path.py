@@ -12,6 +12,7 @@ from polycnc.post.tool_path._cl_reading import ArcAxis
 from polycnc.post.tool_path._json_path import read_json
 from polycnc.post.tool_path._records import Record
 from polycnc.post.tool_path._source import Remarks, Source
+from polycnc.post.tool_path._turned import turned_from_xy
 
 _Reader = Callable[[Source, Remarks], Iterator[Record]]
 
@@ -28,6 +29,10 @@ class ToolPath:
     def __iter__(self) -> Iterator[Record]:
         self.remarks = Remarks()
         return self._read(self._source, self.remarks)
+
+    def turned_from_xy(self) -> ToolPath:
+        """Return a path of turning in XY as a lathe's: X becomes Z, Y the radius X."""
+        return ToolPath(self._source, turned_from_xy(self._read))
 
     @property
     def part_read(self) -> float:

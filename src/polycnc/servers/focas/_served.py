@@ -16,8 +16,8 @@ _LOOK_CYCLES = 20
 class ServedControl:
     """Let the time of a control pass as it is served, in the place of the control itself.
 
-    `again` starts the selected program whenever it has come to its end, at most 20 cycles later. Faults of the script
-    come in the very cycle that it says, however time is cut.
+    `again` starts the selected program whenever it has come to its end, at most 20 cycles later; what an alarm, a reset
+    or an emergency stop broke off stays so. Faults come in the very cycle that the script says, however time is cut.
     """
 
     def __init__(self, control: PowerMate, faults: Faults | None = None, *, again: bool = False) -> None:
@@ -54,14 +54,19 @@ class ServedControl:
         """Return how many cycles may pass at once."""
         clock = self.clock
         # a program's end is looked for at cycles that do not depend on how time is cut
-        most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if self.again and self.busy else 1 << 30
+        looks = self.again and (self.busy or self._is_over)
+        most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if looks else 1 << 30
         next_s = self.faults.next_s()
         if next_s == math.inf:
             return most
         return max(1, min(most, math.ceil((next_s - clock.now_s) / clock.cycle_s - 1e-6)))
 
+    @property
+    def _is_over(self) -> bool:
+        return self.control.control.channels[0].run_state is RunState.COMPLETED
+
     def _start_again(self) -> None:
-        if self.control.control.channels[0].run_state is RunState.COMPLETED:
+        if self._is_over and self.clock.cycles % _LOOK_CYCLES == 0:
             try:
                 self.control.cycle_start()
             except ControlError:

@@ -1,0 +1,199 @@
+"""One program of a batch: what is to be run, and what came out, as plain values that travel between processes.
+
+A report is a pure function of its job: program, machine, dialect and options alone make it, wherever it is run.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from polycnc.errors import PolycncError
+from polycnc.machine import MachineConfig
+from polycnc.nc import Dialect, ProgramText
+from polycnc.runner._blocks import Execution
+from polycnc.runner._result import RunResult
+from polycnc.runner._run import check, run
+from polycnc.runner.batches._thumbnail import thumbnail
+from polycnc.runner.view import TrackCollector
+
+_SLOWEST = 5
+_THUMBNAIL_POINTS = 2_000
+_MOST_ERRORS = 50  # of one program; the rest is counted
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """On what programs are run, and how: one for each combination of a sweep.
+
+    With `detail` a report has the slowest blocks and a picture of the path, for which every cycle is looked at.
+    """
+
+    machine: MachineConfig
+    dialect: str | Dialect | None = None
+    override_percent: float = 100.0
+    check_only: bool = False
+    detail: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A program and the number of its setup; `root` is the folder of the control's files where it needs one."""
+
+    key: str
+    name: str
+    content: bytes
+    setup: int
+    root: str | None = None
+
+
+@dataclass(slots=True)
+class ProgramReport:
+    """Say how one program of a batch ran.
+
+    `status` is "ok", "error", "time-out", "memory" (it needed more than it may), or "lost" (its process ended again and
+    again). Times (s) and lengths (mm) are None where it was only checked or did not come to a result. `tools` are rows
+    of tool, cutting and rapid time, `extents` rows of axis, lowest and highest position, `slowest` rows of line, text
+    and time.
+    """
+
+    program: str
+    machine: str
+    dialect: str = ""
+    override_percent: float = 100.0
+    tolerance_mm: float | None = 0.0
+    status: str = "ok"
+    time_s: float | None = None
+    cutting_time_s: float | None = None
+    rapid_time_s: float | None = None
+    waiting_time_s: float | None = None
+    path_mm: float | None = None
+    cutting_path_mm: float | None = None
+    top_feed_mm_min: float | None = None
+    blocks: int | None = None
+    cycles: int | None = None
+    errors: list[str] = field(default_factory=list)
+    messages: list[str] = field(default_factory=list)
+    tools: list[tuple[int, float, float]] = field(default_factory=list)
+    extents: list[tuple[str, float, float]] = field(default_factory=list)
+    slowest: list[tuple[int, str, float]] = field(default_factory=list)
+    thumbnail: tuple[str, str] | None = None
+    """Paths of the cuts and of the rapids as SVG path data, in a box of 96 x 64."""
+
+    @property
+    def ok(self) -> bool:
+        """Whether the program has no error and ran to its end."""
+        return self.status == "ok"
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return {"ok": self.ok, **asdict(self)}
+
+
+def blank_report(job: Job, setup: Setup, status: str, *errors: str) -> ProgramReport:
+    """Return the report of a program that gave no result."""
+    tolerance = setup.machine.path.path_tolerance_mm
+    return ProgramReport(
+        job.name,
+        setup.machine.name,
+        override_percent=setup.override_percent,
+        tolerance_mm=None if tolerance == "free" else tolerance,
+        status=status,
+        errors=list(errors),
+    )
+
+
+def report_of(job: Job, setup: Setup) -> ProgramReport:
+    """Run or check a program; whatever is wrong with it is in the report."""
+    try:
+        if job.root is None:
+            return _report(job, setup, None)
+        with tempfile.TemporaryDirectory(prefix="polycnc-") as folder:  # what the program writes stays here
+            root = Path(folder) / "root"
+            shutil.copytree(job.root, root)
+            return _report(job, setup, root)
+    except MemoryError:
+        raise
+    except PolycncError as error:
+        return blank_report(job, setup, "error", str(error))
+    except Exception as error:  # one broken program stops nothing, whatever it has found
+        return blank_report(job, setup, "error", f"polycnc failed on it: {type(error).__name__}: {error}")
+
+
+def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
+    text = ProgramText(job.name, job.content)
+    report = blank_report(job, setup, "ok")
+    if setup.check_only:
+        found = check(text, setup.machine, setup.dialect, root=root)
+        report.errors = _bounded([str(error) for error in found])
+        report.status = "error" if found else "ok"
+        return report
+    collector = None
+    if setup.detail:
+        units = tuple(axis.unit for axis in setup.machine.axes)
+        collector = TrackCollector(units, most=_THUMBNAIL_POINTS)
+    result = run(
+        text,
+        setup.machine,
+        setup.dialect,
+        check=False,
+        feed_override=setup.override_percent / 100.0,
+        tagged_rows=None if collector is None else collector.add,
+        root=root,
+    )
+    _fill(report, result)
+    if collector is not None:
+        execution = collector.execution()
+        report.slowest = _slowest(result, execution)
+        report.thumbnail = thumbnail(collector.track(execution), setup.machine)
+    return report
+
+
+def _fill(report: ProgramReport, result: RunResult) -> None:
+    report.dialect = result.dialect
+    report.status = "ok" if result.ok else "error"
+    report.time_s = result.time_s
+    report.cutting_time_s = result.cutting_time_s
+    report.rapid_time_s = result.rapid_time_s
+    report.waiting_time_s = result.waiting_time_s
+    report.path_mm = result.path_mm
+    report.cutting_path_mm = result.cutting_path_mm
+    report.top_feed_mm_min = result.top_feed_mm_min
+    report.blocks = result.blocks
+    report.cycles = result.cycles
+    report.errors = _bounded([str(alarm) for alarm in result.alarms])
+    report.messages = [
+        (f"line {each.line}: " if each.line else "")
+        + each.text
+        + (f" ({each.count} times)" if each.count > 1 else "")
+        for each in result.messages
+    ]
+    report.tools = [(tool, each.cutting_s, each.rapid_s) for tool, each in sorted(result.tool_times.items())]
+    report.extents = [(axis, low, high) for axis, (low, high) in result.extents_mm.items()]
+
+
+def _bounded(errors: list[str]) -> list[str]:
+    if len(errors) <= _MOST_ERRORS:
+        return errors
+    return [*errors[:_MOST_ERRORS], f"and {len(errors) - _MOST_ERRORS:,} more errors"]
+
+
+def _slowest(result: RunResult, execution: Execution) -> list[tuple[int, str, float]]:
+    """Return the blocks that took longest, all their executions together; each with its program's text."""
+    if not len(execution.start):
+        return []
+    cycles = np.diff(execution.start, append=result.cycles)
+    counts = np.bincount(execution.number, weights=cycles, minlength=len(execution.blocks))
+    times_s = counts * (result.time_s / max(result.cycles, 1))
+    found = []
+    for number in np.argsort(-times_s, kind="stable")[:_SLOWEST].tolist():
+        block = execution.blocks[number]
+        text = execution.texts.get(block.program)
+        shown = "" if text is None or not block.line else text.line(text.line_start(block.line)).strip()[:120]
+        found.append((block.line, shown, float(times_s[number])))
+    return found

@@ -1,0 +1,209 @@
+"""Where chunks of programs are run: in processes of this computer, or on a cluster of Dask."""
+
+from __future__ import annotations
+
+import queue
+import threading
+from collections.abc import Iterator, Sequence
+from typing import Any, Protocol
+
+from polycnc.errors import UsageError
+from polycnc.runner.batches._child import BatchError, Child, Limits
+from polycnc.runner.batches._job import Job, ProgramReport, Setup, blank_report
+from polycnc.runner.batches._store import version_digest
+
+Chunk = list[Job]
+Reported = list[tuple[str, ProgramReport]]
+_PLUGIN = "polycnc-batch"
+_AHEAD = 3  # chunks for each worker that are on their way
+
+
+class Workers(Protocol):
+    """What runs chunks of jobs, in any order; the iterator is asked for no more than is needed soon."""
+
+    def run(self, chunks: Iterator[Chunk], setups: Sequence[Setup], limits: Limits) -> Iterator[Reported]:
+        """Yield the reports of each chunk, by the keys of their jobs, as they come."""
+
+
+class LocalWorkers:
+    """Processes of this computer, started for one batch and ended with it."""
+
+    def __init__(self, count: int) -> None:
+        if count < 1:
+            raise UsageError(f"{count} processes", hint="Give 1 or more jobs.")
+        self.count = count
+
+    def run(self, chunks: Iterator[Chunk], setups: Sequence[Setup], limits: Limits) -> Iterator[Reported]:
+        """Yield the reports of each chunk as they come."""
+        todo: queue.Queue[Chunk | None] = queue.Queue()
+        done: queue.Queue[Reported | BatchError] = queue.Queue()
+        children = [Child(limits) for _ in range(self.count)]
+        threads = [
+            threading.Thread(
+                target=_work, args=(child, todo, done, setups), name="polycnc batch", daemon=True
+            )
+            for child in children
+        ]
+        for thread in threads:
+            thread.start()
+        under_way = 0
+        try:
+            for _ in range(_AHEAD * self.count):
+                under_way += _next(chunks, todo)
+            while under_way:
+                reported = done.get()
+                if isinstance(reported, BatchError):
+                    raise reported
+                under_way += _next(chunks, todo) - 1
+                yield reported
+        finally:
+            for child in children:
+                child.close()
+            for _ in threads:
+                todo.put(None)
+            for thread in threads:
+                thread.join()
+
+
+def _next(chunks: Iterator[Chunk], todo: queue.Queue[Chunk | None]) -> int:
+    chunk = next(chunks, None)
+    if chunk is None:
+        return 0
+    todo.put(chunk)
+    return 1
+
+
+def _work(
+    child: Child,
+    todo: queue.Queue[Chunk | None],
+    done: queue.Queue[Reported | BatchError],
+    setups: Sequence[Setup],
+) -> None:
+    while (chunk := todo.get()) is not None:
+        keys = [job.key for job in chunk]
+        try:
+            done.put(list(zip(keys, child.reports(chunk, setups), strict=True)))
+        except BatchError as error:
+            done.put(error)
+            return
+
+
+class ClusterWorkers:
+    """The workers of a Dask cluster, each with a process of its own for every thread; the cluster is left as it was."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+
+    @property
+    def client(self) -> Any:
+        """The client of the cluster."""
+        return self._client
+
+    @classmethod
+    def at(cls, address: str) -> ClusterWorkers:
+        """Return the workers of the scheduler at an address like tcp://10.0.0.7:8786.
+
+        Raises:
+            UsageError: dask.distributed is not installed, or nobody answers at the address.
+        """
+        distributed = distributed_module()
+        try:
+            client = distributed.Client(address, timeout=10, set_as_default=False)
+        except (OSError, ValueError, TimeoutError) as error:
+            raise UsageError(
+                f"no Dask scheduler answers at {address}: {error}",
+                hint="Start one with `dask scheduler`, and give the address that it prints.",
+            ) from None
+        return cls(client)
+
+    def close(self) -> None:
+        """Take the connection away."""
+        self._client.close()
+
+    def run(self, chunks: Iterator[Chunk], setups: Sequence[Setup], limits: Limits) -> Iterator[Reported]:
+        """Yield the reports of each chunk as they come; what a lost worker had is run by another."""
+        distributed = distributed_module()
+        from polycnc.runner.batches._on_worker import ChildrenPlugin, run_chunk
+
+        client = self._client
+        threads = sum(client.nthreads().values())
+        if not threads:
+            raise UsageError(
+                "the Dask cluster has no worker",
+                hint="Start one with `dask worker ADDRESS`, on as many computers as you like.",
+            )
+        _check_versions(client)
+        client.register_plugin(ChildrenPlugin(limits), name=_PLUGIN)
+        sent = client.scatter([tuple(setups)], broadcast=True, hash=False)[0]
+        waiting: dict[Any, Chunk] = {}
+        futures = distributed.as_completed([], loop=client.loop)
+
+        def submit(chunk: Chunk) -> None:
+            future = client.submit(run_chunk, chunk, sent, limits, pure=False)
+            waiting[future] = chunk
+            futures.add(future)
+
+        try:
+            for _ in range(_AHEAD * threads):
+                if (chunk := next(chunks, None)) is not None:
+                    submit(chunk)
+            for future in futures:
+                chunk = waiting.pop(future)
+                try:
+                    reported: Reported = future.result()
+                except (distributed.KilledWorker, distributed.client.FutureCancelledError) as error:
+                    if len(chunk) > 1:  # one of them may be why: each by itself
+                        for job in chunk:
+                            submit([job])
+                        continue
+                    reported = [(job.key, _lost(job, setups, error)) for job in chunk]
+                future.release()
+                if (following := next(chunks, None)) is not None:
+                    submit(following)
+                yield reported
+        finally:
+            client.cancel(list(waiting))
+            client.unregister_worker_plugin(_PLUGIN)
+
+
+def _check_versions(client: Any) -> None:
+    """Refuse workers whose polycnc is another one: their results could differ.
+
+    Raises:
+        UsageError: a worker has no polycnc, or another one.
+    """
+    try:
+        found: dict[str, bytes] = client.run(version_digest)
+    except ImportError as error:
+        raise UsageError(
+            f"the workers of the cluster cannot run polycnc: {error}",
+            hint="Install it where they run: pip install 'polycnc[cluster]'.",
+        ) from None
+    others = [address for address, digest in found.items() if digest != version_digest()]
+    if others:
+        raise UsageError(
+            f"another polycnc runs on {', '.join(sorted(others)[:3])}"
+            + (f" and {len(others) - 3} more workers" if len(others) > 3 else ""),
+            hint="Install the same version on all computers of the cluster and start the workers again.",
+        )
+
+
+def _lost(job: Job, setups: Sequence[Setup], error: Exception) -> ProgramReport:
+    text = f"{job.name}: the workers that ran it were lost, one after the other ({type(error).__name__})"
+    return blank_report(job, setups[job.setup], "lost", text)
+
+
+def distributed_module() -> Any:
+    """Return dask.distributed.
+
+    Raises:
+        UsageError: it is not installed.
+    """
+    try:
+        import distributed
+    except ImportError:
+        raise UsageError(
+            "a cluster needs dask.distributed",
+            hint="Install it: pip install 'polycnc[cluster]'; without --cluster it is not needed.",
+        ) from None
+    return distributed

@@ -1,0 +1,131 @@
+"""Batches on a Dask cluster: a real scheduler and two worker processes on loopback, one of which is killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import polycnc
+from polycnc.errors import UsageError
+from polycnc.runner import batches
+from support.command import environment
+from support.command import polycnc as command
+
+pytest.importorskip("distributed", reason="no dask.distributed: pip install 'polycnc[cluster]'")
+
+PROGRAM = "G0 X{0} Y2\nG1 X{1} F{2}\nG2 X{1} Y2 I7\nM30\n"
+PLAIN = {"NUMBA_DISABLE_JIT": "1"}  # the same bits, and quick to start
+
+
+@contextmanager
+def _dask(*arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    running = subprocess.Popen(
+        [sys.executable, "-m", "dask", *arguments],
+        env=environment(**PLAIN),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield running
+    finally:
+        running.kill()
+        running.wait()
+
+
+def _client(card: Path) -> Any:
+    import distributed
+
+    make: Any = distributed.Client
+    return make(scheduler_file=str(card), timeout=60, set_as_default=False)
+
+
+@pytest.fixture
+def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Start a scheduler and two workers, as the how-to does; yield the address and the workers."""
+    card = tmp_path / "scheduler.json"
+    worker = ("worker", "--scheduler-file", str(card), "--nthreads", "1", "--no-dashboard", "--no-nanny")
+    local = str(tmp_path / "local")
+    scheduler = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
+    with (
+        _dask(*scheduler, "--scheduler-file", str(card)),
+        _dask(*worker, "--local-directory", local) as one,
+        _dask(*worker, "--local-directory", local) as other,
+        _client(card) as client,
+    ):
+        client.wait_for_workers(2, timeout=60)
+        yield client.scheduler.address, [one, other]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    parts = tmp_path / "parts"
+    parts.mkdir()
+    for number in range(150):
+        (parts / f"p{number:03}.nc").write_text(PROGRAM.format(number, 200 + number, 900 + number))
+    (parts / "p077.nc").write_text("G1 X5 F100\nG1 X7 Q\n")
+    return parts
+
+
+def _reports(result: polycnc.BatchResult) -> list[dict[str, Any]]:
+    with result:
+        return [report.as_dict() for report in result]
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")  # of sockets that dask leaves to the garbage collector
+def test_a_worker_is_killed_and_everything_comes_once(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    address, workers = cluster
+    monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
+    here = _reports(polycnc.batch(folder, jobs=1))
+    seen: list[int] = []
+
+    def kill(number: int, total: int) -> None:
+        seen.append(number)
+        if len(seen) == 5:
+            os.kill(workers[0].pid, signal.SIGKILL)
+
+    connected = batches.ClusterWorkers.at(address)
+    try:
+        there = _reports(polycnc.batch(folder, client=connected.client, progress=kill))
+    finally:
+        connected.close()
+    assert workers[0].wait(60) == -signal.SIGKILL
+    assert seen[-1] == len(there) == 150
+    assert there == here
+    assert [each["ok"] for each in there].count(False) == 1
+
+
+def test_the_command_on_a_cluster(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, tmp_path: Path
+) -> None:
+    address, workers = cluster
+    (folder / "endless.tap").write_text("WHILE [1 EQ 1] DO1\n#1=#1+1\nEND1\n")
+    arguments = ("batch", "parts", "--cluster", address, "-o", "out.csv", "--timeout", "2")
+    done = command(*arguments, cwd=tmp_path, status=1)
+    assert "151 runs, 2 with errors\n" in done.stdout
+    assert "endless.tap: stopped after 2 s\n" in done.stdout
+    again = command(*arguments, cwd=tmp_path, status=1)
+    assert "done before and unchanged: 150\n" in again.stdout
+    assert [worker.poll() for worker in workers] == [None, None]  # the cluster is left as it was
+
+
+def test_nobody_answers() -> None:
+    with pytest.raises(UsageError, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9"):
+        batches.ClusterWorkers.at("tcp://127.0.0.1:9")
+
+
+def test_without_the_extra_the_command_says_what_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(UsageError, match=r"polycnc\[cluster\]"):
+        batches.ClusterWorkers.at("tcp://127.0.0.1:8786")

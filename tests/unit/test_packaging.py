@@ -1,0 +1,93 @@
+"""What is delivered: sdist and wheel, the steps of the image, the workflow that the how-to prints."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import sys
+from importlib import util
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from support.pages import fences
+
+REPOSITORY = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    """Build sdist and wheel as for a release, without a network."""
+    for tool in ("build", "hatchling", "twine", "check_wheel_contents"):
+        if util.find_spec(tool) is None:
+            pytest.skip(f"no {tool}: pip install '.[test]'")
+    folder = tmp_path_factory.mktemp("dist")
+    command = [sys.executable, "-m", "build", "--no-isolation", "--outdir", str(folder), str(REPOSITORY)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return sorted(folder.iterdir())
+
+
+def _tool(name: str) -> str:
+    return shutil.which(name, path=str(Path(sys.executable).parent)) or name
+
+
+def test_sdist_and_wheel_pass_the_checks_of_the_index(built: list[Path]) -> None:
+    assert [path.suffix for path in built] == [".whl", ".gz"]
+    both, wheel = [str(path) for path in built], str(built[0])
+    for tool, *rest in (["twine", "check", "--strict", *both], ["check-wheel-contents", wheel]):
+        done = subprocess.run([_tool(tool), *rest], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_wheel_has_everything_that_is_no_code(built: list[Path]) -> None:
+    from zipfile import ZipFile
+
+    names = set(ZipFile(built[0]).namelist())
+    source = REPOSITORY / "src"
+    wanted = {
+        path.relative_to(source).as_posix()
+        for path in source.rglob("*")
+        if path.is_file() and path.suffix not in (".pyc", ".nbc")
+    }
+    assert wanted - names == set()
+    assert "polycnc/conformance/data/not_applicable.toml" in names
+
+
+def test_the_image_is_made_of_steps_that_can_be_done_without_docker() -> None:
+    text = (REPOSITORY / "Dockerfile").read_text("utf-8")
+    words = [line.split()[0] for line in text.splitlines() if line and not line.startswith("#")]
+    known = set(re.findall(r'case "([A-Z]+)"', (REPOSITORY / "scripts" / "_image.py").read_text("utf-8")))
+    assert set(words) == known
+    assert words.index("RUN") < words.index("USER")
+    extras = re.findall(r"/src\[([\w,]+)\]", text)[0].split(",")
+    declared = re.findall(r"^(\w+) = \[", (REPOSITORY / "pyproject.toml").read_text("utf-8"), re.MULTILINE)
+    assert set(extras) <= set(declared)
+
+
+def test_the_workflow_of_the_how_to_installs_what_it_has_checked_out(tmp_path: Path) -> None:
+    yaml: Any = pytest.importorskip("yaml")
+    page = REPOSITORY / "docs" / "how-to" / "check-programs-in-ci.md"
+    (workflow,) = (fence.text for fence in fences(page) if fence.language == "yaml" and "jobs:" in fence.text)
+    steps = yaml.safe_load(workflow)["jobs"]["programs"]["steps"]
+    checked_out: set[str] = set()
+    ran = []
+    (tmp_path / "parts").mkdir()
+    shutil.copy(REPOSITORY / "examples" / "bracket.nc", tmp_path / "parts" / "a.nc")
+    shutil.copy(REPOSITORY / "examples" / "my_machine.toml", tmp_path / "shop.toml")
+    for step in steps:
+        if step.get("uses", "").startswith("actions/checkout"):
+            checked_out.add(step.get("with", {}).get("path", "."))
+        run = step.get("run", "")
+        if run.startswith("pip install"):
+            assert run.removeprefix("pip install ").removeprefix("./") in checked_out
+        elif run:
+            command = run.replace("polycnc ", f"{sys.executable} -m polycnc.cli ", 1)
+            done = subprocess.run(
+                command, shell=True, cwd=tmp_path, capture_output=True, text=True, check=False
+            )
+            assert done.returncode == 0, done.stdout + done.stderr
+            ran.append(run)
+    assert ran == ["polycnc check --machine shop.toml parts/*.nc"]
