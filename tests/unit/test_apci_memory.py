@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ from polycnc.machine import Store, StoreError
 SOURCE = "program p;\nbegin\n writeln('seven');\n ci[3] := 21;\nend.\n"
 
 
-def loaded(folder: Path, memory: Path | Store | None, *boards: Board) -> tuple[pcap.Slot, ...]:
+def loaded(folder: Path, memory: Path | Store | None, *boards: Board) -> tuple[Any, ...]:
     slots = pcap.attach(*(boards or (Board(),)), clock=None, folder=folder, memory=memory)
     pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
     return slots
