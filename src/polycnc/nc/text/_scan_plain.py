@@ -15,6 +15,7 @@ from functools import lru_cache
 from polycnc.errors import ProgramError
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import BLANK_BYTES, COMMENT, LABEL, MESSAGE, PERCENT, PLAIN, STATEMENT
+from polycnc.units import whole
 
 _B = f"[{re.escape(BLANK_BYTES.decode('ascii'))}]*+"  # blanks; '+' gives nothing back
 _NUMBER = rf"([+-]?){_B}([0-9]++\.?[0-9]*+|\.[0-9]++)"
@@ -161,7 +162,7 @@ class _LineReader:
             self.place = len(self.line)
         elif char == "/" and self.skip_level == 0 and self._may_skip():
             match = _matched(_SKIP, self.line, self.place)
-            self.skip_level = int(match["level"] or 1)
+            self.skip_level = whole(match["level"] or "1")
             self.place = match.end()
         elif char == ":" and at_start:
             self._read_label()
