@@ -177,7 +177,7 @@ class _LineReader:
             if match := pattern.match(self.line, self.place):
                 letter, index, sign, digits = match.groups()
                 digits = _ALL_BLANKS.sub("", digits)
-                self._add(letter.upper(), sign, digits, int(index) if index else None)
+                self._add(letter.upper(), sign, digits, whole(index) if index else None)
                 self.place = match.end()
                 return
         if _ASSIGNMENT.match(self.line, self.place):
