@@ -34,7 +34,8 @@ class RecordingHost:
     def insert(self, value: object) -> tuple[tuple[str, int | None, float], ...]:
         if isinstance(value, str):
             return tuple((word[0], None, float(word[1:])) for word in value.split())
-        assert isinstance(value, tuple)
+        if not isinstance(value, tuple):
+            raise Fault("neither a text nor an axis word stands in the bracket")
         return (value,)
 
     def program(self, address: str, name: str) -> tuple[str, str] | None:

@@ -8,38 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.controllers.bosch import BoschSystem, ChannelHost
 from polycnc.errors import UsageError
-from polycnc.machine import Clock
-from polycnc.nc.cpl import Linker, Run
 from polycnc.runner import read_keys
 from support.cpl_runs import Root
-from support.programs import MILL
-
-
-class Shown:
-    """A program without NC blocks that ran to its end on a control of its own: its screen and global variables."""
-
-    def __init__(self, text: str, folder: Path, *keys: str, finish: bool = True) -> None:
-        host = ChannelHost(BoschSystem(folder, Clock(0.001), MILL), keys=keys)
-        linker = Linker(host.program)
-        main, errors = linker.link(text, "main.npg")
-        assert main is not None, str(errors[0])
-        run = Run(main, linker, host)
-        while run.step() is not None:
-            pass
-        if finish:
-            host.dialog.finish()
-        self.globals = run.globals
-        self.surface = host.screen
-        self.lines = self.surface.lines()
-
-    def __getitem__(self, line: int) -> str:
-        return self.lines[line - 1].rstrip()
-
-    def colour(self, x: int, y: int) -> int:
-        return int(self.surface.pixels[y + 40, x])
-
+from support.cpl_screens import Shown
 
 # ---------------------------------------------------------------------- text
 
@@ -80,11 +52,23 @@ def test_dsp_puts_numbers_into_formats_wherever_they_stand(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("program", "what"),
     [
-        ('1 DSP(47,1,"A")', "1: Invalid line or column number in CPL command"),
+        pytest.param(
+            '1 DSP(47,1,"A")',
+            "1: Invalid line or column number in CPL command",
+            marks=pytest.mark.covers("cpl.err.INVALID_LINE_COLUMN"),
+        ),
         ('1 DSP(1,80,"A")', "1: Invalid line or column number in CPL command"),
         ('1 DSP(0.4,1,"A")', "1: Invalid line or column number in CPL command"),
-        ('1 DSP(1,1,"' + "A" * 78 + '")', "1: maximum string length exceeded"),
-        ('1 DSP(1,1,"#.#",123.5)', "1: format not permitted"),
+        pytest.param(
+            '1 DSP(1,1,"' + "A" * 78 + '")',
+            "1: maximum string length exceeded",
+            marks=pytest.mark.covers("cpl.err.MAX_STRING_LENGTH"),
+        ),
+        pytest.param(
+            '1 DSP(1,1,"#.#",123.5)',
+            "1: format not permitted",
+            marks=pytest.mark.covers("cpl.err.FORMAT_NOT_PERMITTED"),
+        ),
         ("1 GWD(0,633,0,374)", "1: INVALID PARAMETER"),
         ("1 GWD(5,5,0,374)", "1: INVALID PARAMETER"),
         ("1 GMD(5)", "1: INVALID PARAMETER"),
@@ -430,6 +414,7 @@ def test_bitmaps_are_copied_and_linked(
     )
 
 
+@pytest.mark.covers("cpl.err.BMP_NOT_EXISTING")
 def test_a_bitmap_that_is_not_there_is_told_and_the_program_goes_on(tmp_path: Path) -> None:
     (tmp_path / "secret.bmp").write_bytes(_bmp([[RED]]))
     (tmp_path / "cplbmp").mkdir()

@@ -88,8 +88,8 @@ class Calls:
         """The calls under way, the outermost first."""
         return self._calls
 
-    def trouble(self, program: int | ProgramText) -> tuple[str, str] | None:
-        """Return what is against calling a sub-program and what to do about it, None if nothing is.
+    def trouble(self, program: int | ProgramText) -> tuple[str, str, str] | None:
+        """Return what is against calling a sub-program, what to do about it and its code; None if nothing is.
 
         Raises:
             UsageError: its file cannot be read.
@@ -100,17 +100,23 @@ class Calls:
             return (
                 f"sub-programs are nested more than {deepest} deep",
                 f"Dialect '{self._dialect.name}' allows {deepest} levels: does a sub-program call itself?",
+                self._code("PS0077"),
             )
         try:
             found = self._find(program)
         except UsageError as error:
-            return error.what, error.hint
+            return error.what, error.hint, ""
         if found is None:
             return (
                 f"there is no sub-program {program}",
                 f"Write it behind the program, beginning with O{program}, or in a file O{program} beside it.",
+                self._code("PS0078"),
             )
         return None
+
+    def _code(self, code: str) -> str:
+        """Return the number that controls with custom macros give an error; others have none here."""
+        return code if self._dialect.language == "macro" else ""
 
     def enter(self, program: int | ProgramText, repeats: int, back: Back, arguments: object = None) -> bool:
         """Begin a sub-program that `trouble` had nothing against; False for no repeats."""

@@ -8,6 +8,7 @@ from contextlib import contextmanager
 
 from polycnc.language import Chain, Emitter, Flaw, Link, Python, Source, Traced
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
+from polycnc.nc.cpl._reader import single
 from polycnc.nc.cpl._shape import every, taken_apart
 from polycnc.nc.cpl._syntax import (
     Assign,
@@ -329,7 +330,7 @@ class Compiler:
         if given == "N":
             put(f"{place} = None")
         elif constant is not None and kind in ("R", "D") and given in ("I", "R", "D"):
-            put(f"{place} = {float(constant)!r}")
+            put(f"{place} = {single(constant) if kind == 'R' else float(constant)!r}")
         elif _fits(kind, typed, constant):
             put(f"{place} = {text}")
         elif typed.leaf or (kind == "I" and given != "I") or not self._is_hot:

@@ -58,12 +58,15 @@ def to_double(value: object) -> float | None:
     """Return a value as DOUBLE; NUL stays NUL.
 
     Raises:
-        Fault: It is no number.
+        Fault: It is no number, or too large.
     """
-    if value is None or value.__class__ is float:
-        return value
-    if value.__class__ is int:
-        return float(value)
+    if value is None:
+        return None
+    if value.__class__ is float or value.__class__ is int:
+        number = float(value)
+        if number - number:  # not finite
+            raise OverflowError
+        return number
     raise Fault(INVALID_ASSIGNMENT, f"a number is needed, not {_shown(value)}")
 
 

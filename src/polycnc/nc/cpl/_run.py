@@ -96,9 +96,8 @@ class Execution:
         """
         program = self._linker.sub_program(call.address, call.name)
         if program is None:
-            raise self._error(
-                call, f"there is no sub-program {call.name}", "write it into a file of this name"
-            )
+            shown = f"{call.address}{call.name}" if call.address in ("G", "M") else call.name
+            raise self._error(call, f"there is no sub-program {shown}", "write it into a file of this name")
         if len(running) > NESTING:
             raise self._error(call, f"sub-programs are nested more than {NESTING} deep")
         if program in running:
@@ -233,20 +232,13 @@ def _parameter(arguments: Arguments, name: str, kind: Kind) -> object:
     if value is None or isinstance(value, str) != (kind == "S"):
         return None
     if isinstance(value, str):
-        return value if arguments.linked else _Unlinked(value)
+        return value if arguments.linked else _strings.Unlinked(value)
     if kind == "B":
         return _numbers.to_boolean(value)
     if kind == "I":
         whole = isinstance(value, float) and value.is_integer()
         return _numbers.to_integer(int(value) if whole and isinstance(value, float) else value)
     return (_numbers.to_real if kind == "R" else _numbers.to_double)(value)
-
-
-class _Unlinked:
-    """A text from a program that was not linked: only PDIM makes room for it."""
-
-    def __init__(self, text: str) -> None:
-        self.text = text
 
 
 def _parameter_field(arguments: Arguments, name: str, size: int) -> object:
@@ -260,14 +252,6 @@ def _parameter_field(arguments: Arguments, name: str, size: int) -> object:
             )
         field.assign(value)
     return field
-
-
-def _text_of(value: object) -> str | None:
-    if isinstance(value, _Unlinked):
-        raise Fault(
-            INVALID_VARIABLE._replace(what="invalid variable"), "write PDIM before: the caller is not linked"
-        )
-    return _strings.text_of(value)
 
 
 def _kept(value: object) -> object:
@@ -311,7 +295,7 @@ _SCOPE: dict[str, object] = {
     "to_boolean": _numbers.to_boolean, "sine": _numbers.sine, "cosine": _numbers.cosine,
     "tangent": _numbers.tangent, "arc_sine": _numbers.arc_sine, "arc_cosine": _numbers.arc_cosine,
     "arc_tangent": _numbers.arc_tangent, "root": _root, "whole": _numbers.whole, "nearest": _numbers.nearest,
-    "to_bcd": _numbers.to_bcd, "from_bcd": _numbers.from_bcd, "text_of": _text_of, "put": _strings.put,
+    "to_bcd": _numbers.to_bcd, "from_bcd": _numbers.from_bcd, "text_of": _strings.text_of, "put": _strings.put,
     "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,
     "dimension_field": dimension_field, "middle": _strings.middle, "section": _strings.section,
     "trimmed": _strings.trimmed,

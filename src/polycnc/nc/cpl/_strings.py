@@ -11,6 +11,7 @@ from polycnc.nc.cpl._faults import (
     INVALID_ASSIGNMENT,
     INVALID_FIELD_LIMIT,
     INVALID_PARAMETER,
+    INVALID_VARIABLE,
     Fault,
 )
 from polycnc.nc.cpl._formats import default_format, in_format
@@ -81,7 +82,16 @@ class Section:
         self.field.overwrite(self._start, self.length, text)
 
 
-Stored: TypeAlias = CharacterField | Part | str | None
+class Unlinked:
+    """A text from a program that was not linked: only PDIM makes room for it."""
+
+    __slots__ = ("text",)
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+
+Stored: TypeAlias = CharacterField | Part | Unlinked | str | None
 
 
 def text_of(value: object) -> str | None:
@@ -98,6 +108,8 @@ def text_of(value: object) -> str | None:
         whole: str | None = value.field.text
         part = (whole or "")[value.begin : value.begin + value.length]
         return part or (None if value.length else "")
+    if value.__class__ is Unlinked:
+        raise _no_room()
     raise Fault(INVALID_ASSIGNMENT, "a text is needed")
 
 
@@ -108,6 +120,8 @@ def put(old: Stored, value: Stored) -> Stored:
         return old
     if isinstance(value, CharacterField):
         return None if value.text is None else Part(value, 0, len(value.text))
+    if isinstance(value, Unlinked):
+        raise _no_room()
     return value
 
 
@@ -159,7 +173,7 @@ def middle(value: Stored, start: object, number: object = None) -> Stored:
     if isinstance(value, Part):
         length = min(length, value.length - begin)
         return Part(value.field, value.begin + begin, length) if length > 0 else None
-    return (value or "")[begin : begin + length] or None
+    return (text_of(value) or "")[begin : begin + length] or None
 
 
 def section(target: Stored, start: object, number: object = None) -> Section:
@@ -271,6 +285,11 @@ def added(left: str | None, right: str | None) -> str:
     if left is None or right is None:
         raise not_assigned()
     return left + right
+
+
+def _no_room() -> Fault:
+    what = INVALID_VARIABLE._replace(what="invalid variable")
+    return Fault(what, "write PDIM before: the caller is not linked")
 
 
 def _place(value: object) -> int:
