@@ -31,7 +31,6 @@ def measured(tmp_path_factory: pytest.TempPathFactory) -> tuple[RunResult, Path]
     return result, folder
 
 
-@pytest.mark.covers("cpl.use")
 def test_the_report_is_what_was_measured_and_reached(measured: tuple[RunResult, Path]) -> None:
     result, folder = measured
     assert (folder / "flange.txt").read_bytes() == REPORT.encode() + b"\x03\n"
