@@ -29,7 +29,7 @@ def post_command(
         typer.Option(
             "--control",
             "-c",
-            help="The control file: bosch-pnc, din, fanuc-lathe, fanuc-mill or a file.",
+            help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-lathe, fanuc-mill or a file.",
             metavar="FILE|NAME",
         ),
     ] = None,
