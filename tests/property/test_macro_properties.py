@@ -112,7 +112,7 @@ class Writer:
 
 def run(text: str) -> tuple[Channel, MacroLanguage]:
     """Prepare a program to its end, or to its first error."""
-    language = MacroLanguage()
+    language = MacroLanguage(nat=True)  # angles are -180 to 180 there too
     language.longest_loop_pauses = 2
     made = ProgramRun(
         Machine(load_machine(None)),
@@ -241,9 +241,8 @@ def fuzz(seeds: range) -> None:
         language = MacroLanguage()
         language.longest_loop_pauses = 1
         channel = Channel(ProgramText.from_text(text, "x.tap"), dialect, machine, language=language)
-        for _ in range(200):
-            before = channel.blocks
-            channel.fill(before + 20)
+        for _ in range(15):  # some programs go on for ever
+            channel.fill(20)
             while channel.waits:
                 channel.go_on()
                 if chance.random() < 0.1:

@@ -35,6 +35,16 @@ class RecordingControl:
         """Begin a program."""
         return self
 
+    def names(self, word: str) -> bool:
+        """Tell whether any macro uses a word: one does."""
+        return True
+
+    def keep(self, words: Mapping[str, float | str]) -> None:
+        """Take words that hold in every macro: tests of their own look at them."""
+
+    def forget(self, names: Any) -> None:
+        """Let the next output not be omitted."""
+
     def call(self, macro: str, words: Mapping[str, float | str] = {}) -> None:
         """Keep a call."""
         if self.has(macro):

@@ -211,9 +211,9 @@ def test_several_programs_and_standard_input_run_one_after_the_other(part: Path)
         "program    part.nc",
         "program    <stdin>",
     ]
-    assert "  cutting  1.018 s  1.0000 in" in done
+    assert "  cutting  1.006 s  1.0000 in" in done
     assert "cut with up to 60.00 in/min" in done
-    assert done.splitlines()[-1] == "total      3.091 s, 2 programs"
+    assert done.splitlines()[-1] == "total      3.079 s, 2 programs"
     report = json.loads(polycnc("run", "part.nc", "part.nc", "--json", cwd=part).stdout)
     assert len(report["programs"]) == 2
     assert report["time_s"] == pytest.approx(2 * report["programs"][0]["time_s"])

@@ -31,6 +31,14 @@ def test_a_public_program(name: str, data_nc: Path) -> None:
     assert channel_state(fast) == channel_state(ordinary)
 
 
+@pytest.mark.parametrize("name", ["arc-ijk", "arc-xz-plane", "arc-yz-plane", "circle", "circle-inch", "jsdc"])
+def test_a_public_program_for_grbl_is_the_same_motion_there(name: str, data_nc: Path) -> None:
+    text = ProgramText.from_path(data_nc / f"{name}.gcode")
+    grbl = prepare(text, config=CONFIG, dialect="grbl", segments=1 << 14)
+    assert grbl.error is None
+    assert grbl.state.modal.position.tolist() == prepare(text, config=CONFIG).state.modal.position.tolist()
+
+
 def test_the_engraving_with_an_arc_without_a_centre_is_refused_there(data_nc: Path) -> None:
     """Its line 11 is `N55 X.75` with G2 in force: its author left out a G1."""
     text = ProgramText.from_path(data_nc / "full-circle-without-xyz.gcode")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from polycnc.cnc import ControlEvent, RunState
+from polycnc.cnc import ControlError, ControlEvent, RunState
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.machine import SnapshotError
@@ -139,6 +139,10 @@ def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
         ("#2001=1000.", 119, "ILLEGAL ARGUMENT"),
         ("DO1", 124, "MISSING END STATEMENT"),
         ("DO4", 126, "ILLEGAL LOOP NUMBER"),
+        ("M98P1", 77, "SUB PROGRAM NESTING ERROR"),
+        ("M98P77", 78, "NUMBER NOT FOUND"),
+        ("G65P77", 78, "NUMBER NOT FOUND"),
+        ("G65P1", 122, "FOUR FOLD MACRO MODAL-CALL"),
     ],
 )
 def test_errors_of_macros_have_the_controls_numbers(block: str, number: int, text: str) -> None:
@@ -251,6 +255,40 @@ def test_a_snapshot_of_plain_programs_is_kept_and_one_of_macros_refused() -> Non
     running(control, 4, lambda: control.status().channel.run_state is RunState.ACTIVE)
     with pytest.raises(SnapshotError):
         control.snapshot()
+
+
+def test_a_snapshot_of_something_else_is_refused_and_none_goes_to_a_file() -> None:
+    control, _ = attached()
+    for snapshot in (control.machine.snapshot(), control.control.snapshot()):
+        with pytest.raises(SnapshotError, match="not of a Power Mate"):
+            control.restore(snapshot)
+    with pytest.raises(SnapshotError, match="file"):
+        control.snapshot().to_bytes()
+    assert control.snapshot() == control.snapshot()
+
+
+def test_a_program_with_macros_may_begin_at_a_block() -> None:
+    control, handle = attached()
+    registered(
+        control,
+        O1="\nN10G1X9.F6000\n#500=1\nN20G1X2.F6000\nN25Y3.\n#501=5\nIF[#501EQ6]GOTO10\nN30#502=#502+1\n"
+        "WHILE[#502LT3]DO1\nN40#502=#502+1\nEND1\nIF[#503EQ1]GOTO50\n#503=1\nGOTO25\nN50M30\n",
+    )
+    control.select_mode("MEM")
+    control.select_program(1)
+    assert fwlib.cnc_seqsrch(handle, 25) == OK
+    assert until_over_again(control) is RunState.COMPLETED
+    assert [control.macros.get(number) for number in (500, 501, 502, 503)] == [None, 5.0, 4.0, 1.0]
+    assert [each.absolute for each in control.positions.read()] == [0, 3000, 0]
+    assert fwlib.cnc_seqsrch(handle, 40) == OK
+    with pytest.raises(ControlError, match="inside a loop"):
+        control.cycle_start()
+
+
+def until_over_again(control: PowerMate) -> RunState:
+    control.cycle_start()
+    control.advance(20_000, until=ControlEvent.RUN_STATE)
+    return control.status().channel.run_state
 
 
 def until_rest(control: PowerMate) -> RunState:

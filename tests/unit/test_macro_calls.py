@@ -225,6 +225,30 @@ def test_a_feed_hold_comes_when_the_program_lets_it() -> None:
     assert control.positions.read()[0].absolute == 9000
 
 
+def test_an_alarm_stops_the_axes_whatever_the_program_suppresses() -> None:
+    control, _ = attached()
+    registered(control, O1="\n#3004=3\nG1X50.F600\nM30\n")
+    running(control, 1, lambda: control.positions.read()[0].absolute > 500)
+    control.raise_alarm(401, "SERVO", axis=1)
+    control.advance(300)
+    at = control.positions.read()[0].absolute
+    control.advance(300)
+    assert (control.positions.read()[0].absolute, control.status().channel.run_state) == (at, RunState.ALARM)
+
+
+def test_a_hold_that_never_came_is_forgotten_with_its_program() -> None:
+    control, _ = attached()
+    text = "\n#3004=1\nG1X2.F600\nM30\n"
+    registered(control, O1=text, O2="\n#3004=1\nG1X4.F600\n#3004=0\nX6.\nM30\n")
+    running(control, 1, lambda: control.positions.read()[0].absolute > 500)
+    control.feed_hold()
+    control.advance(2000)
+    assert control.status().channel.run_state is RunState.COMPLETED
+    running(control, 2)
+    control.advance(2000)
+    assert control.status().channel.run_state is RunState.COMPLETED
+
+
 def test_the_feed_override_is_suppressed_and_acts_again() -> None:
     def took(text: str, override: float) -> int:
         run, _ = made(text)

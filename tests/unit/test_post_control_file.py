@@ -278,7 +278,7 @@ def test_shipped_files_are_places_to_begin(name: str, tmp_path: Path) -> None:
     own = tmp_path / "own.toml"
     own.write_text(text.replace('extension = "', 'extension = ".own'), encoding="utf-8")
     assert load_control(own).parameters.extension.startswith(".own.")
-    assert load_control(own).parameters.dialect in ("fanuc", "fanuc-lathe", "bosch", "din")
+    assert load_control(own).parameters.dialect in ("fanuc", "fanuc-lathe", "bosch", "din", "haas")
 
 
 # --- files

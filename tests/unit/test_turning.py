@@ -487,3 +487,75 @@ def test_the_lathe_dialect_refuses_what_it_does_not_know() -> None:
     assert dialect.g_action(34) is not None
     for block in ("G34 Z-5. F1. K0.1", "G83 Z-5. F0.1", "G10 P1 X0", "G12.1", "G84 Z-5. F1."):
         assert "is not supported yet" in refusal(f"{block}\n", config=LATHE, dialect="fanuc-lathe")
+
+
+# --- corners between straight moves
+
+
+def test_a_chamfer_and_a_rounding_between_straight_moves() -> None:
+    """From (25, 2) along Z to -10 and out along X to 30: 3 mm chamfer, or radius 3 about (28, -7)."""
+    assert turned("G1 Z-10. C3. F0.2\nX60.\nZ-20.\n") == [
+        *("line Z-7 F200", "line X28 Z-10 F200", "line X30 F200", "line Z-20 F200")
+    ]
+    assert turned("G1 Z-10. R3. F0.2\nX60.\n") == [
+        *("line Z-7 F200", "arc X28 Z-10 about Z-7 X28 by -90 F200", "line X30 F200")
+    ]
+    assert turned("G1 X60. R3. F0.2\nZ-10.\n") == [
+        *("line X27 F200", "arc X30 Z-1 about Z-1 X27 by 90 F200", "line Z-10 F200")
+    ]
+
+
+def test_corners_follow_one_another() -> None:
+    """Round to X30, chamfer of 2 to Z-20, and a remark between changes nothing."""
+    assert turned("G1 Z-10. R3. F0.2\nX60. C2.\n(A REMARK)\nN5\nZ-20.\n") == [
+        "line Z-7 F200",
+        "arc X28 Z-10 about Z-7 X28 by -90 F200",
+        "line X30 Z-12 F200",
+        "line Z-20 F200",
+    ]
+
+
+def test_a_rounding_of_a_slope_touches_both_moves() -> None:
+    """A corner of 135 degrees and radius 4: it begins 4 tan 22.5 degrees before."""
+    found = turned("G1 Z-10. R4. F0.2\nX70. Z-20.\n")
+    reach = 4.0 * math.tan(math.radians(22.5))
+    assert found[0] == f"line Z{_text(-10 + reach)} F200"
+    assert found[1] == (
+        f"arc X{_text(25 + reach / math.sqrt(2))} Z{_text(-10 - reach / math.sqrt(2))} "
+        f"about Z{_text(-10 + reach)} X29 by -45 F200"
+    )
+    assert found[2] == "line X35 Z-20 F200"
+
+
+@pytest.mark.parametrize(
+    ("program", "text"),
+    [
+        ("G1 Z-10. R3. F0.2\nG0 X60.", "R3 of the block before needs a straight move at feed behind it"),
+        ("G1 Z-10. C3. F0.2\nM8\nX60.", "C3 of the block before needs a straight move at feed behind it"),
+        ("G1 Z-10. C3. F0.2\nX60. M8", "C3 of the block before needs a straight move at feed behind it"),
+        (
+            "G1 Z-10. R3. F0.2\nG2 X60. Z-15. R5.",
+            "R3 of the block before needs a straight move at feed behind it",
+        ),
+        ("G1 Z-10. R3. F0.2\nM30", "R3 of the block before needs a straight move at feed behind it"),
+        ("G1 Z-10. R3. F0.2", "R3 at the end of the program"),
+        ("G1 Z-10. R3. C2. F0.2\nX60.", "R and C in one block"),
+        ("G1 Z-10. R6. F0.2\nX60.", "R6 needs 6 mm of both moves, and one has 5 mm"),
+        ("G1 Z-10. C13. F0.2\nX90.", "C13 needs 13 mm of both moves, and one has 12 mm"),
+        ("G1 Z-10. R3. F0.2\nZ-5.", "R3 where the path turns back"),
+        ("G0 Z-10. R3.", "'R' has no meaning in this block"),
+    ],
+)
+def test_corners_that_cannot_be(program: str, text: str) -> None:
+    assert wrong(program) == text
+
+
+def test_a_contour_may_have_corners() -> None:
+    contour = "N10 G0 X20.\nG1 Z-10. R2. F0.1\nX30. C1.\nZ-20.\nN20 X50.\n"
+    found = turned(f"G71 U4. R1.\nG71 P10 Q20 U0 W0 F0.3\n{contour}G70 P10 Q20\n")
+    assert "arc X12 Z-10 about Z-8 X12 by -90 F300" in found
+    assert "arc X12 Z-10 about Z-8 X12 by -90 F100" in found
+    assert found.count("line X15 Z-11 F100") == 1
+    assert "R2 at the end" in wrong(
+        f"G71 U4. R1.\nG71 P10 Q20 F0.3\n{CONTOUR.replace('N20 X50.', 'N20 X50. R2.')}"
+    )

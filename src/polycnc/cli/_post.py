@@ -29,7 +29,8 @@ def post_command(
         typer.Option(
             "--control",
             "-c",
-            help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-lathe, fanuc-mill or a file.",
+            help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-5axis, fanuc-lathe, fanuc-mill, haas-mill or a "
+            "file.",
             metavar="FILE|NAME",
         ),
     ] = None,
@@ -148,6 +149,9 @@ def _report_proof(proof: PostVerification, tell: Callable[..., None]) -> None:
             else ""
         )
         tell(f"{what:<10} {found.mm:.6f} mm{at}")
+    tell(f"compared   {proof.compared}")
+    if proof.tool_axis_deg > 0.0:
+        tell(f"tool axis  {proof.tool_axis_deg:.4f} degree at line {proof.tool_axis_line} of the tool path")
     if proof.rapid_cuts:
         tell(f"rapids     where the tool path has feed: {proof.rapid_cuts} records")
     if proof.arc_remark:
@@ -159,7 +163,9 @@ def _report_proof(proof: PostVerification, tell: Callable[..., None]) -> None:
         )
         return
     verdict = bold("verified") if proof.ok else bold_red("deviates")
-    tell(
-        f" within {proof.tolerance_mm:g} mm" if proof.ok else f": more than {proof.tolerance_mm:g} mm",
-        lead=verdict,
-    )
+    if proof.ok:
+        tell(f" within {proof.tolerance_mm:g} mm", lead=verdict)
+    elif proof.deviation_mm > proof.tolerance_mm or proof.rapid_cuts:
+        tell(f": more than {proof.tolerance_mm:g} mm", lead=verdict)
+    else:
+        tell(f": the tool axis, by {proof.tool_axis_deg:.4f} degree", lead=verdict)

@@ -269,13 +269,13 @@ class ControlChannel:
             if not self._displaced():
                 self._take_back(Step.RUN)
 
-    def hold(self) -> None:
-        """Hold the program, or the return of axes."""
+    def hold(self, *, at_once: bool = False) -> None:
+        """Hold the program, or the return of axes; `at_once` even where the program suppresses it."""
         if self.returning:
             self.returning = False
             self._manual.stop_all(self.axes)
         elif self.run is not None:
-            self.run.hold()
+            self.run.hold(at_once=at_once)
 
     def reset(self) -> None:
         """Break off whatever is being executed; the axes brake on the path."""
@@ -289,7 +289,7 @@ class ControlChannel:
     def fail(self) -> None:
         """Stop because of an alarm; only a reset helps."""
         if self.returning or self.interrupted or self.active:
-            self.hold()
+            self.hold(at_once=True)
             self.broken = True
 
     def lend(self) -> None:

@@ -156,7 +156,8 @@ def copied(run: ProgramRun | None, keep: Iterable[object]) -> ProgramRun | None:
         return copy.deepcopy(run, memo)
     except TypeError as error:
         raise SnapshotError(
-            f"the program under way cannot be kept: {error}", hint="take the snapshot when it has ended"
+            "the program under way cannot be kept: its language cannot tell where it stands",
+            hint="take the snapshot when it has ended, or of a program without statements of a language",
         ) from error
 
 

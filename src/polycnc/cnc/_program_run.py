@@ -60,6 +60,7 @@ _STANDING = {
 }
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
+_MOST_MARKS = 1000
 
 
 class ProgramRun:
@@ -176,12 +177,12 @@ class ProgramRun:
         elif self._state is not RunState.ACTIVE:
             self.resume()
 
-    def hold(self) -> None:
+    def hold(self, *, at_once: bool = False) -> None:
         """Brake the axes on the path and stand (feed hold); without effect where nothing is being executed.
 
-        While the program suppresses feed holds it comes as soon as it does no more.
+        While the program suppresses feed holds it comes as soon as it does no more, or `at_once`.
         """
-        if self._state is RunState.ACTIVE and self._suppressed.hold:
+        if self._state is RunState.ACTIVE and self._suppressed.hold and not at_once:
             self._held_back = True
         elif self._state is RunState.ACTIVE:
             self._hold = True
@@ -598,7 +599,7 @@ class ProgramRun:
         self._give_axes()
         self.channel.state.modal.position[:] = state.paths.position[path]
         kernel.start_path(state.paths, path)
-        self._hold = False
+        self._hold = self._held_back = False
         self._row["limit"] = kernel.NO_LIMIT
         self._row["tag"] = 0
         if self._approach is not None:
@@ -668,7 +669,9 @@ class ProgramRun:
 
     def _stand_at_marks(self) -> bool:
         """Carry out the blocks without segments that come next; return whether the program stops behind one."""
-        while (tag := self.feed.take_mark()) is not None:
+        for _ in range(_MOST_MARKS):  # a loop may have no other blocks
+            if (tag := self.feed.take_mark()) is None:
+                break
             self._met = int(self._row["head"]), tag
             following = self.feed.next_tag()
             if following is None:

@@ -155,6 +155,19 @@ class Language(Protocol):
 
 
 @runtime_checkable
+class SearchingLanguage(Language, Protocol):
+    """A language whose programs may begin at another line than their first."""
+
+    def source_at(self, text: ProgramText, offset: int, line: int, start: int) -> BlockSource | None:
+        """Return what `source` does, but for beginning at byte `start`, the beginning of a line.
+
+        Raises:
+            ProgramError: the program cannot be translated, or cannot begin there.
+        """
+        ...
+
+
+@runtime_checkable
 class BoundLanguage(Language, Protocol):
     """A language that reads the state of the channel it works for."""
 

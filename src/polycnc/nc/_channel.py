@@ -21,6 +21,7 @@ from polycnc.nc._block_source import (
     EndSource,
     Language,
     Pause,
+    SearchingLanguage,
     SourceItem,
     Statement,
     TextSpan,
@@ -253,11 +254,21 @@ class Channel:
         """Begin at a line of the main program instead of its first, with the modal state as it is.
 
         Raises:
-            UsageError: a language executes the program.
+            UsageError: a language executes the program, and cannot begin there.
         """
         place = self._target(line)
         self._begun = True
-        self._calls.running.begun = True
+        running = self._calls.running
+        running.begun = True
+        if isinstance(self._language, SearchingLanguage):
+            begin = running.begin
+            try:
+                running.source = self._language.source_at(begin.text, begin.offset, begin.line, place.offset)
+            except ProgramError as error:
+                raise UsageError(error.what, hint=error.hint) from error
+            if running.source is not None:
+                self._jump(begin, begin.offset)  # no text for now
+                return
         self._jump(place, len(place.text))
 
     def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
@@ -491,7 +502,8 @@ class Channel:
     def _call(self, text: ProgramText, call: CallProgram) -> None:
         trouble = self._trouble_of_call(call.program, text, call.offset)
         if trouble is not None:
-            raise ProgramError(trouble[0], position=text.position(call.offset), hint=trouble[1])
+            what, hint, code = trouble
+            raise ProgramError(what, position=text.position(call.offset), hint=hint, code=code)
         back = Back(self._here(), self._text_end, call.line, self._calls_within)
         if self._calls.enter(call.program, call.repeats, back, call.arguments):
             self._begin()

@@ -231,6 +231,9 @@ class Dialect(StrictModel):
     incremental: dict[str, str] = Field(
         default={}, description='Addresses of ways = the axis that goes them, like `U = "X"`.'
     )
+    corner_words: bool = Field(
+        default=False, description="R and C of a straight move round or chamfer the corner to the next one."
+    )
     tool_word: Literal["select", "turret"] = Field(
         default="select",
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',

@@ -2,6 +2,7 @@
 
 from polycnc.post.macros._control_file import CONTROLS, ControlFile, load_control, parse_control, shipped_text
 from polycnc.post.macros._control_parameters import Parameters
+from polycnc.post.macros._parameters import FiveAxis, RotaryAxis
 from polycnc.post.macros._reference import control_file_reference
 from polycnc.post.macros._run import MacroRun
 from polycnc.post.output._program import BlockMap, PostSummary, post_program
@@ -17,10 +18,12 @@ __all__ = [
     "ArcAxis",
     "BlockMap",
     "ControlFile",
+    "FiveAxis",
     "MacroRun",
     "Parameters",
     "PostSummary",
     "Remark",
+    "RotaryAxis",
     "Sweep",
     "Tangency",
     "ToolPath",

@@ -139,6 +139,7 @@ def post_file(
             parameters.dialect,
             tolerance_mm,
             progress,
+            parameters,
         )
     return PostResult(
         tool_path=path.name,

@@ -21,13 +21,17 @@ class Moves:
     """The moves of a tool path in arrays, in the order of its records.
 
     `first[r]` is the first move of record r, `first[r + 1]` the one behind its last; `only_rapid` and `only_feed`
-    tell of each record whether all its moves are, from points that are known.
+    tell of each record whether all its moves are, from points that are known. `axis` is the tool axis of each move,
+    empty without `with_axes`.
     """
 
-    def __init__(self, sweeps: Iterable[Sweep], records: int) -> None:
+    def __init__(self, sweeps: Iterable[Sweep], records: int, with_axes: bool = False) -> None:
         rows = []
         owner = []
+        axes: list[tuple[float, float, float]] = []
         for move in sweeps:
+            if with_axes:
+                axes.append(move.axis)
             start = move.start if move.start is not None else move.end
             owner.append((move.record, move.line, move.rapid, move.start is not None))
             rows.append((*start, *move.end, *move.center, *move.normal, move.angle))
@@ -38,6 +42,7 @@ class Moves:
         self.start, self.end = table[:, 0:3], table[:, 3:6]
         self.center, self.normal, self.angle = table[:, 6:9], table[:, 9:12], table[:, 12]
         self.first = np.searchsorted(self.record, np.arange(records + 1))
+        self.axis = np.array(axes, dtype=np.float64).reshape(len(axes), 3)
         self.only_rapid = np.ones(records, np.bool_)
         self.only_feed = np.zeros(records, np.bool_)
         used = np.flatnonzero(self.first[1:] > self.first[:-1])
@@ -45,6 +50,13 @@ class Moves:
             begins = self.first[used]
             self.only_rapid[used] = np.logical_and.reduceat(self.rapid, begins)
             self.only_feed[used] = ~np.logical_or.reduceat(self.rapid | ~self.known, begins)
+
+    def last_axes(self) -> tuple[Floats, npt.NDArray[np.bool_]]:
+        """Return the tool axis with which each record ends, and whether it moves."""
+        moving = self.first[1:] > self.first[:-1]
+        axes = np.zeros((len(moving), 3))
+        axes[moving] = self.axis[self.first[1:][moving] - 1]
+        return axes, moving
 
     def lengths(self) -> Floats:
         """Return the length of each move."""

@@ -11,7 +11,7 @@ compensate the length of its tool deviates by that length.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,18 +20,29 @@ import numpy.typing as npt
 
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.kernel import BLOCK, IS_RAPID, LEADING
-from polycnc.machine import Machine, MachineConfig, PathConfig, TimesConfig, ToolConfig, load_machine
+from polycnc.machine import (
+    Machine,
+    MachineConfig,
+    PathConfig,
+    RotaryAxis,
+    TimesConfig,
+    ToolConfig,
+    load_machine,
+)
 from polycnc.nc import BlockRecords, Dialect, Group, ModalWords, ProgramText, dialect_for
-from polycnc.post import BlockMap, Sweep, Tangency, ToolPath, sweep_tool_path
+from polycnc.post import BlockMap, Parameters, Sweep, Tangency, ToolPath, sweep_tool_path
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
+from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
 from polycnc.runner._program_control import Surroundings, control_for, root_of
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run
 
 DEFAULT_TOLERANCE_MM = 1e-3
+TOOL_AXIS_TOLERANCE_DEG = 0.01
 _SAMPLING = 0.1  # part of the tolerance that the distance of the machine's positions may cost
 _AXES = "XYZ"
+_LEVER_MM = 300.0  # no point of a part is much further from the rotary axes that swing it
 _RECORD_CYCLES = 1 << 14
 _CONTEXT_SHIFT = 32
 
@@ -54,7 +65,8 @@ class PostVerification:
     tool path stays from the machine's way, `detour_mm` how far rapids leave the straight line, which is allowed.
     `rapid_cuts` counts records with feed that the program goes along by rapid. `kinked_arcs` of the tool path turn
     back on the spot where straight feed moves meet them, and `smooth_arcs` do not: an arc that is read with the wrong
-    sense does, so more of the former are no proof. `run` is the run on the machine.
+    sense does, so more of the former are no proof. `run` is the run on the machine. `compared` says which axes were
+    compared; `tool_axis_deg` is the greatest angle between the tool axes where a record ends, on `tool_axis_line`.
     """
 
     tolerance_mm: float
@@ -68,6 +80,9 @@ class PostVerification:
     path_feed_mm: float
     path_rapid_mm: float
     run: RunResult
+    compared: str = _AXES
+    tool_axis_deg: float = 0.0
+    tool_axis_line: int = 0
 
     @property
     def deviation_mm(self) -> float:
@@ -82,6 +97,7 @@ class PostVerification:
             and not self.rapid_cuts
             and not self.arc_remark
             and self.deviation_mm <= self.tolerance_mm
+            and self.tool_axis_deg <= TOOL_AXIS_TOLERANCE_DEG
         )
 
     def as_dict(self) -> dict[str, Any]:
@@ -92,6 +108,8 @@ class PostVerification:
             "deviation_mm": self.deviation_mm,
             "off_path": {"mm": self.off_path.mm, "block": self.off_path.block, "line": self.off_path.line},
             "missed": {"mm": self.missed.mm, "block": self.missed.block, "line": self.missed.line},
+            "compared": self.compared,
+            "tool_axis": {"deg": self.tool_axis_deg, "line": self.tool_axis_line},
             "detour_mm": self.detour_mm,
             "rapid_cuts": self.rapid_cuts,
             "smooth_arcs": self.smooth_arcs,
@@ -113,11 +131,13 @@ def verify_post(
     dialect: str,
     tolerance_mm: float = DEFAULT_TOLERANCE_MM,
     progress: Progress | None = None,
+    parameters: Parameters | None = None,
 ) -> PostVerification:
     """Run a posted program and compare its path with the tool path; `block_map` is what posting filled.
 
     The run is that on the machine as it is. Tool radii count as 0 in the comparison, which is in the coordinates of the
-    part. Rotary axes are not compared.
+    part. With rotary axes in the `parameters` of the control file the tool axis is compared too, where a record ends,
+    and positions of the machine's axes are taken to the part by the geometry that stands there.
 
     Raises:
         UsageError: no such machine or dialect.
@@ -127,12 +147,14 @@ def verify_post(
     tangency = Tangency()
     carried = _carried(program, block_map, read)
     sweeps = (sweep._replace(record=int(carried[sweep.record])) for sweep in sweep_tool_path(tool_path))
-    moves = Moves(_judged(sweeps, tangency), len(block_map.line))
+    frame = PartFrame(parameters or Parameters())
+    moves = Moves(_judged(sweeps, tangency), len(block_map.line), bool(frame.axes))
     result = run(program, config, read, check=False)
-    comparison = _Comparison(moves, block_map, carried, config, read)
+    comparison = _Comparison(moves, block_map, carried, config, read, frame)
     if result.ok:
         _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress)
     lengths = moves.lengths()
+    tool_axis_deg, tool_axis_line = comparison.tool_axis() if result.ok else (0.0, 0)
     return PostVerification(
         tolerance_mm=tolerance_mm,
         off_path=comparison.off_path,
@@ -145,6 +167,9 @@ def verify_post(
         kinked_arcs=tangency.kinked,
         arc_remark=tangency.text() if tangency.mostly_kinked else "",
         run=result,
+        compared=frame.compared,
+        tool_axis_deg=tool_axis_deg,
+        tool_axis_line=tool_axis_line,
     )
 
 
@@ -221,9 +246,12 @@ def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineC
     lies v dt w / 4 off the corner: acceleration times dt squared by 4, in each axis.
     """
     highest = 4.0 * distance_mm / (config.cycle_s**2 * len(_AXES) ** 0.5)
+    turning = float(np.degrees(highest / _LEVER_MM))
     axes = tuple(
         axis.model_copy(update={"amax_mm_s2": min(axis.amax, highest), "jump_mm_s": None})
         if axis.name in _AXES
+        else axis.model_copy(update={"amax_deg_s2": min(axis.amax, turning), "jump_deg_s": None})
+        if isinstance(axis, RotaryAxis)
         else axis
         for axis in config.axes
     )
@@ -238,18 +266,19 @@ def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineC
 class _TipFrame:
     """Where the tip of the tool in the spindle is on the part: what to take from the axes' positions."""
 
-    def __init__(self, config: MachineConfig, dialect: Dialect) -> None:
+    def __init__(self, config: MachineConfig, dialect: Dialect, letters: Sequence[str]) -> None:
         self._config = config
-        self._columns = [config.axis_names.index(name) if name in config.axis_names else -1 for name in _AXES]
+        names = config.axis_names
+        self._columns = [names.index(name) if name in names else -1 for name in (*_AXES, *letters)]
         signs = {"length_plus": 1.0, "length_minus": -1.0}
         self._signs = {f"G{code}": signs[action] for code, action in dialect.g.items() if action in signs}
-        self._last = np.zeros(3)
+        self._last = np.zeros(len(self._columns))
 
     def shifts(self, tags: Indices, records: BlockRecords) -> Floats:
-        """Return what to take from the X, Y, Z positions of each row."""
+        """Return what to take from the positions of each row: X, Y, Z, and the rotary axes."""
         contexts = tags >> _CONTEXT_SHIFT
         begins = np.flatnonzero(np.concatenate(([True], contexts[1:] != contexts[:-1])))
-        found = np.empty((len(begins), 3))
+        found = np.empty((len(begins), len(self._columns)))
         for place, begin in enumerate(begins.tolist()):
             block = records.block(int(tags[begin]))
             if block is not None:
@@ -272,7 +301,13 @@ class _Comparison:
     """Compare rows of a run with the moves of the tool path, as they come."""
 
     def __init__(
-        self, moves: Moves, block_map: BlockMap, carried: Indices, config: MachineConfig, dialect: Dialect
+        self,
+        moves: Moves,
+        block_map: BlockMap,
+        carried: Indices,
+        config: MachineConfig,
+        dialect: Dialect,
+        frame: PartFrame,
     ) -> None:
         self._carried = carried
         self.off_path = Deviation()
@@ -290,7 +325,16 @@ class _Comparison:
         self._at_block = np.zeros(len(self._owner), np.int64)
         names = dict(zip(config.axis_names, config.start_positions, strict=True))
         self._here = np.array([[names.get(name, 0.0) for name in _AXES]])
-        self._frame = _TipFrame(config, dialect)
+        self._frame = _TipFrame(config, dialect, frame.letters)
+        self._part = frame
+        self._angle_columns = angle_columns(frame, config.axis_names)
+        self._angles = np.array([[names.get(name, 0.0) for name in frame.letters]], dtype=np.float64)
+        self._tool_mm = np.array(block_map.tool_mm if len(block_map.tool_mm) else [0.0] * records)
+        self._wanted_axes: Floats = np.zeros((0, 3))
+        self._moving = np.zeros(0, np.bool_)
+        if frame.axes:
+            self._wanted_axes, self._moving = moves.last_axes()
+        self._tool_axes = ToolAxisCheck(frame, records)
         self._begin: Floats | None = None
         self._record = 0
         self._reached = np.full((records, 3), np.nan)
@@ -307,7 +351,9 @@ class _Comparison:
         before_records = np.concatenate(([self._record], records[:-1]))
         shifts = self._frame.shifts(tags, blocks_of)
         self._here, self._record = points[-1:].copy(), int(records[-1])
-        points, before = points - shifts, before - shifts
+        points, before = points - shifts[:, :3], before - shifts[:, :3]
+        if self._part.axes:
+            points, before = self._on_part(rows, points, before, shifts[:, 3:], records)
         if self._begin is None:
             self._begin = before[:1]
         self._reached[records] = points
@@ -319,6 +365,26 @@ class _Comparison:
         self._visit(before, points, blocks, records)
         crossing = records != before_records
         self._visit(before[crossing], points[crossing], blocks[crossing], before_records[crossing])
+
+    def _on_part(
+        self, rows: Floats, points: Floats, before: Floats, shifts: Floats, records: Indices
+    ) -> tuple[Floats, Floats]:
+        """Return where the tip is on the part; and hold the tool axis against that of the records."""
+        angles = np.zeros((len(rows), len(self._angle_columns)))
+        for place, column in enumerate(self._angle_columns):
+            if column >= 0:
+                angles[:, place] = rows[:, LEADING + column]
+        angles_before = np.concatenate((self._angles, angles[:-1])) - shifts
+        self._angles = angles[-1:].copy()
+        angles = angles - shifts
+        self._tool_axes.add(angles_before, angles, records, self._wanted_axes)
+        lengths = self._tool_mm[records]
+        return self._part.tips(points, angles, lengths), self._part.tips(before, angles_before, lengths)
+
+    def tool_axis(self) -> tuple[float, int]:
+        """Return the greatest angle of a tool axis, in degree, and the line of the tool path."""
+        angle, record = self._tool_axes.worst(self._moving)
+        return angle, int(self._lines[record]) if record >= 0 else 0
 
     def missed(self) -> Deviation:
         """Return the farthest point that the machine did not come to."""

@@ -13,6 +13,7 @@ from polycnc.nc._block_records import Call
 from polycnc.nc._block_source import BlockSource
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.text._program import ProgramText
+from polycnc.units import whole
 
 Library: TypeAlias = Callable[[int], ProgramText | None]
 """Where sub-programs come from that are in no file beside the main program: a program by its number, or None."""
@@ -87,8 +88,8 @@ class Calls:
         """The calls under way, the outermost first."""
         return self._calls
 
-    def trouble(self, program: int | ProgramText) -> tuple[str, str] | None:
-        """Return what is against calling a sub-program and what to do about it, None if nothing is.
+    def trouble(self, program: int | ProgramText) -> tuple[str, str, str] | None:
+        """Return what is against calling a sub-program, what to do about it and its code; None if nothing is.
 
         Raises:
             UsageError: its file cannot be read.
@@ -99,17 +100,23 @@ class Calls:
             return (
                 f"sub-programs are nested more than {deepest} deep",
                 f"Dialect '{self._dialect.name}' allows {deepest} levels: does a sub-program call itself?",
+                self._code("PS0077"),
             )
         try:
             found = self._find(program)
         except UsageError as error:
-            return error.what, error.hint
+            return error.what, error.hint, ""
         if found is None:
             return (
                 f"there is no sub-program {program}",
                 f"Write it behind the program, beginning with O{program}, or in a file O{program} beside it.",
+                self._code("PS0078"),
             )
         return None
+
+    def _code(self, code: str) -> str:
+        """Return the number that controls with custom macros give an error; others have none here."""
+        return code if self._dialect.language == "macro" else ""
 
     def enter(self, program: int | ProgramText, repeats: int, back: Back, arguments: object = None) -> bool:
         """Begin a sub-program that `trouble` had nothing against; False for no repeats."""
@@ -207,7 +214,7 @@ def _labels(text: ProgramText) -> dict[int, Place]:
     """Return where the programs of a file begin, by number; the first of a number counts."""
     found: dict[int, Place] = {}
     for match in _LABEL.finditer(text.content):
-        number = int(match[1])
+        number = whole(match[1])
         if number not in found:
             position = text.position(match.start())
             found[number] = Place(text, match.start(), position.line)

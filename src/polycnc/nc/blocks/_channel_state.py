@@ -12,6 +12,7 @@ import numpy.typing as npt
 from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._compensation import RadiusCompensation
 from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
+from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._frame import Frame
 from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
@@ -69,6 +70,7 @@ class Plain(NamedTuple):
     rigid_tap: bool
     turning: Turning
     tip: TipShift
+    corner: Corner | None
 
 
 class ModalSnapshot(NamedTuple):
@@ -138,6 +140,7 @@ class ChannelState:
         self.rigid_tap = False
         self.turning = Turning()
         self.tip = TipShift()
+        self.corner: Corner | None = None  # a straight move that waits for the next one
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -184,6 +187,7 @@ class ChannelState:
             self.rigid_tap,
             self.turning,
             self.tip,
+            self.corner,
         )
 
     def snapshot(self) -> ModalSnapshot:

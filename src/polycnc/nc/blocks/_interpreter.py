@@ -23,10 +23,14 @@ from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
 from polycnc.nc.blocks._calls import Place
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._corners import Corner, CornerError, joined
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
 from polycnc.nc.blocks._frames import Frames
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import (
+    AXIS_P,
+    AXIS_Q,
+    AXIS_R,
     FEED_MODE,
     FEED_PER_MINUTE,
     MOTION,
@@ -35,11 +39,13 @@ from polycnc.nc.blocks._modal import (
     MOTION_LINEAR,
     MOTION_NONE,
     MOTION_RAPID,
+    NO_AXIS,
     ORDINARY,
+    length_scale,
 )
 from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
+from polycnc.nc.blocks._moves import Arc, Line, Move, QueueItem, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
 from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
@@ -92,8 +98,8 @@ _BELONGS_TO = {
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
 
-Trouble = tuple[str, str]
-"""What is wrong and what to do, of something that is not a matter of the block's words alone."""
+Trouble = tuple[str, str, str]
+"""What is wrong, what to do and its code, of something that is not a matter of the block's words alone."""
 
 
 class Control(Enum):
@@ -178,6 +184,7 @@ class Interpreter:
         self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
         self._behind: Place | None = None  # where the program goes on, behind a contour that a cycle has cut
         self._capturing = False
+        self._holds: Corner | None = None  # the corner that the present block asks for
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
         """Execute one block of `text`.
@@ -216,6 +223,13 @@ class Interpreter:
         """
         try:
             items = self._flushed()
+            if (corner := self.state.corner) is not None:
+                self.state.corner = None
+                raise ProgramError(
+                    f"{corner.word} at the end of the program",
+                    position=self._text.line_position(corner.move.line),
+                    hint="A corner needs a straight move behind it.",
+                )
         finally:
             self.state.compensation.reset()
         for item in items:
@@ -309,7 +323,7 @@ class Interpreter:
         for group in (Group.ROTATION, Group.POLAR):
             if g := words.g.get(group):
                 self._frames.set_modal(g, words)
-        items += self._move(words, line)
+        items += self._moved(words, line, functions=bool(items))
         if words.left_out:
             self._take_parameters(words)
         self._refuse_unused(words)
@@ -378,6 +392,7 @@ class Interpreter:
             stage.active
             or self._cycles.active
             or self._turning.active
+            or self.state.corner is not None
             or whole[FEED_MODE] != FEED_PER_MINUTE
             or self.state.frame.active
         )
@@ -497,7 +512,80 @@ class Interpreter:
                 "Write G0, G1, G2, G3 or a cycle in this or an earlier block.",
                 self._motion.place(),
             )
-        return list(self._motion.moves(self._motion.target(values), motion, line))
+        moves = self._motion.moves(self._motion.target(values), motion, line)
+        if motion == MOTION_LINEAR and self.dialect.corner_words:
+            return self._held_corner(list(moves), words)
+        return list(moves)
+
+    def _moved(self, words: BlockWords, line: int, *, functions: bool) -> list[QueueItem]:
+        """Return the block's moves, with the move before it that waits for its corner."""
+        moves = self._move(words, line)
+        if not self.dialect.corner_words:
+            return moves
+        if functions and self.state.corner is not None:
+            raise self._no_straight_move(self.state.corner)
+        return self._with_corner(moves, words)
+
+    def _no_straight_move(self, corner: Corner) -> ProgramError:
+        return self.fail(
+            f"{corner.word} of the block before needs a straight move at feed behind it",
+            "Write G1 and nothing else in this block, or take the corner out.",
+            None,
+        )
+
+    def _held_corner(self, moves: list[Move], words: BlockWords) -> list[QueueItem]:
+        """Hold the last of a block's moves if R or C asks for a corner behind it; return the others."""
+        letters = [each for each in "RC" if each in words.by_letter and each not in self.state.axis_names]
+        if not letters:
+            return list(moves)
+        word = words.by_letter[letters[-1]]
+        size = words.length(letters[-1])
+        if len(letters) > 1 or size is None:
+            raise self.fail("R and C in one block", "Write one of them.", word)
+        if size == 0.0:
+            return list(moves)
+        last = moves[-1]
+        assert isinstance(last, Line)
+        text = f"{letters[-1]}{code_text(word.value)}"
+        self._holds = Corner(last, abs(size) * length_scale(self.state.modal), letters[-1] == "R", text)
+        return list(moves[:-1])
+
+    def _with_corner(self, items: list[QueueItem], words: BlockWords) -> list[QueueItem]:
+        """Return the items behind a move that waits for its corner, with that move and the corner.
+
+        Raises:
+            ProgramError: the block is no straight move at feed, or the corner does not fit.
+        """
+        corner, holds = self.state.corner, self._holds
+        self._holds = None
+        if corner is None or not (
+            items or holds or words.by_letter.keys() - set(_NUMBERS) or words.g or words.m
+        ):
+            self.state.corner = holds or corner
+            return items
+        moves = [*items, *([holds.move] if holds else [])]
+        after = moves[0] if moves else None
+        whole = self.state.modal.whole
+        plane = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
+        if not isinstance(after, Line) or after.rapid or NO_AXIS in plane[:2]:
+            raise self._no_straight_move(corner)
+        try:
+            found: list[QueueItem] = list(joined(corner, after, plane))
+        except CornerError as error:
+            raise self.fail(error.what, error.hint, None) from None
+        for item in found:
+            if isinstance(item, Arc):
+                self._motion.check_limits(item.end, "would pass")
+        last = found.pop()
+        if holds is None:
+            self.state.corner = None
+            return [*found, last, *items[1:]]
+        assert isinstance(last, Line)
+        if len(moves) == 1:
+            self.state.corner = replace(holds, move=last)
+            return found
+        self.state.corner = holds
+        return [*found, last, *items[1:]]
 
     def _contour_cycle(self, g: GWord, words: BlockWords, line: int) -> list[QueueItem]:
         """Return the moves of a cycle about a contour, which stands in other blocks: from P to Q."""
@@ -510,6 +598,7 @@ class Interpreter:
         if g.action is Action.TURN_FINISH:
             self._refuse_unused(words)
             found = [item for block in blocks for item in self._of_contour(block, g)]
+            self._refuse_open_corner(g)
             return [*found, *self._turning.back_to(start, line)]
         state = self.state
         saved = state.save()
@@ -521,10 +610,19 @@ class Interpreter:
                 for item in self._of_contour(self._without_compensation(block), g)
                 if isinstance(item, (Line, Arc))
             ]
+            self._refuse_open_corner(g)
         finally:
             self._capturing = False
             state.restore(saved)
         return self._turning.contour_cycle(g, words, moves, line)
+
+    def _refuse_open_corner(self, g: GWord) -> None:
+        if (corner := self.state.corner) is not None:
+            raise self.fail(
+                f"{corner.word} at the end of the contour of G{g.code}",
+                "A corner needs a straight move behind it.",
+                g.word,
+            )
 
     def _of_contour(self, block: Block, g: GWord) -> list[QueueItem]:
         """Execute a block of a contour within the present block; return its moves."""
@@ -594,6 +692,9 @@ class Interpreter:
 
     def _note_position(self, items: list[QueueItem]) -> None:
         """Remember the programmed position, which is not compensated."""
+        if self.state.corner is not None:
+            self.state.modal.position[:] = self.state.corner.move.end
+            return
         for item in reversed(items):
             if isinstance(item, (Line, Arc)):
                 self.state.modal.position[:] = item.end
@@ -638,7 +739,10 @@ class Interpreter:
         if l_word is None and program > 9999 and self.dialect.sub_program.repeats_in_p:
             repeats, program = divmod(program, 10_000)
         if trouble := self._call_trouble(program, self._text, p_word.place):
-            raise self.fail(*trouble, p_word)
+            what, hint, number = trouble
+            error = self.fail(what, hint, p_word)
+            error.code = number
+            raise error
         return Outcome(Control.CALL, program, repeats)
 
     def _take_parameters(self, words: BlockWords) -> None:

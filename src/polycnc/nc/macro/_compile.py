@@ -159,7 +159,7 @@ class _Compiler:
             return
         out = self.out
         at = f"at{region.number}"
-        out.put(f"{at} = 0")
+        out.put(f"{at} = {self.shape.start if region is self.shape.main else 0}")
         self.loops.append(region)
         self.escapes.append(set())
         with out.block("while True:"):

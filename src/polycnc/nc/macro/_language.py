@@ -169,8 +169,28 @@ class MacroLanguage:
             assert compiled is not None
         return MacroSource(self, compiled, given)
 
+    def source_at(self, text: ProgramText, offset: int, line: int, start: int) -> MacroSource | None:
+        """Return a source that begins at byte `start`, the beginning of a line; None where plain text needs none.
+
+        Raises:
+            ProgramError: The program is wrong, or cannot begin there.
+        """
+        compiled = self._compile(text, offset, line, False, force=False, start=start)
+        if compiled is None:
+            return None
+        if compiled.errors:
+            raise compiled.errors[0]
+        return MacroSource(self, compiled, None)
+
     def _compile(
-        self, text: ProgramText, offset: int, line: int, plain: bool, *, force: bool
+        self,
+        text: ProgramText,
+        offset: int,
+        line: int,
+        plain: bool,
+        *,
+        force: bool,
+        start: int | None = None,
     ) -> _Compiled | None:
         calls = _PLAIN_CALLS if plain else self.calls
         if id(text) not in self._latin:
@@ -193,7 +213,7 @@ class MacroLanguage:
         name = f"<macro {id(text)} {offset} {plain}>"
         code = None
         if not flaws:
-            made, flaws = shape(whole, parts, returns=returns)
+            made, flaws = shape(whole, parts, returns=returns, start=start)
             if not flaws:
                 increment = self.channel.dialect.increment
                 code, flaws = compile_program(made, self, increment, name)
@@ -646,7 +666,8 @@ def _meaning(error: Exception) -> tuple[str, str, str]:
 
 
 def _error(text: ProgramText, flaw: Flaw) -> ProgramError:
-    return ProgramError(flaw.what, code=flaw.code, position=text.position(flaw.at), hint=flaw.hint)
+    hint = flaw.hint or "A block holds words like X12.5 or X#1, or a statement; remarks stand in a comment."
+    return ProgramError(flaw.what, code=flaw.code, position=text.position(flaw.at), hint=hint)
 
 
 def _program_number(text: str, offset: int) -> int:

@@ -10,6 +10,7 @@ from polycnc.language import Flaw
 from polycnc.nc.macro._calls import MacroCalls
 from polycnc.nc.macro._reader import LineReader
 from polycnc.nc.macro._syntax import End, Goto, If, Line, Number, Part, Span, While
+from polycnc.units import whole
 
 _B = r"[ \t]*"
 _ANYWHERE = r"[#\[\]=]|\b(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN)|\b(?:DO|END)[ \t]*[0-9]"
@@ -125,6 +126,8 @@ class Shape:
     regions: list[Region]
     labels: dict[int, list[Label]]
     open_jumps: bool
+    start: int = 0
+    """The piece of the main region that is executed first."""
 
     def find(self, number: int, offset: int) -> Label | None:
         """Return the label that a GOTO at `offset` finds: the next one behind it, else the first of all."""
@@ -169,8 +172,12 @@ def parse(
     return parts, flaws
 
 
-def shape(text: str, parts: list[Part], *, returns: bool) -> tuple[Shape, list[Flaw]]:
-    """Put parts into loops and find the targets of all jumps."""
+def shape(
+    text: str, parts: list[Part], *, returns: bool, start: int | None = None
+) -> tuple[Shape, list[Flaw]]:
+    """Put parts into loops and find the targets of all jumps; the program begins at byte `start`, if one is given."""
+    if start is not None:
+        parts = list(_cut(text, parts, start))
     jumps = [each for part in parts if isinstance(part, Line) for each in _jumps(part)]
     open_jumps = returns or any(not isinstance(each.target, Number) for each in jumps)
     wanted = {int(each.target.value) for each in jumps if isinstance(each.target, Number)}
@@ -179,8 +186,11 @@ def shape(text: str, parts: list[Part], *, returns: bool) -> tuple[Shape, list[F
     regions = [Region(0, None)]
     stack = [regions[0]]
     labels: dict[int, list[Label]] = {}
+    begin: tuple[Region, int] | None = None
     for part in parts:
         here = stack[-1]
+        if part.offset == start and start is not None:
+            begin = here, len(here.parts)
         for number, offset in _labels(text, part):
             labels.setdefault(number, []).append(Label(offset, here, len(here.parts)))
         first = part.statements[0] if isinstance(part, Line) and part.statements else None
@@ -220,12 +230,27 @@ def shape(text: str, parts: list[Part], *, returns: bool) -> tuple[Shape, list[F
         if each.head is not None
     ]
     made = Shape(regions[0], regions, labels, open_jumps)
+    if start is not None and begin is None:
+        flaws.append(Flaw(start, "the program cannot begin here", "Choose a block of it.", code="PS0128"))
+    elif begin is not None and begin[0] is not regions[0]:
+        flaws.append(
+            Flaw(
+                start or 0,
+                "the program cannot begin inside a loop",
+                "Choose a block before it.",
+                code="PS0128",
+            )
+        )
+    elif begin is not None:
+        regions[0].targets[begin[1]] = 0
     for number, found in labels.items():
         if open_jumps or number in wanted:
             for label in found:
                 label.region.targets[label.part] = 0
     for region in regions:
         region.targets = {part: index for index, part in enumerate(sorted(region.targets), 1)}
+    if begin is not None and begin[0] is regions[0]:
+        made.start = regions[0].targets[begin[1]]
     return made, flaws
 
 
@@ -243,7 +268,17 @@ def _labels(text: str, part: Part) -> Iterator[tuple[int, int]]:
         return
     found = _LABEL.match(text, part.offset, part.end)
     if found:
-        yield int(found[1]), part.offset
+        yield whole(found[1]), part.offset
+
+
+def _cut(text: str, parts: list[Part], start: int) -> Iterator[Part]:
+    """Cut the plain text in which a line begins in two."""
+    for part in parts:
+        if isinstance(part, Span) and part.offset < start < part.end:
+            yield Span(part.line, part.offset, start)
+            yield Span(part.line + len(_NEWLINE.findall(text, part.offset, start)), start, part.end)
+        else:
+            yield part
 
 
 def _split(text: str, parts: list[Part], wanted: set[int] | None) -> Iterator[Part]:
@@ -254,7 +289,7 @@ def _split(text: str, parts: list[Part], wanted: set[int] | None) -> Iterator[Pa
             continue
         at, line = part.offset, part.line
         for found in _LABEL.finditer(text, part.offset, part.end):
-            if found.start() == at or (wanted is not None and int(found[1]) not in wanted):
+            if found.start() == at or (wanted is not None and whole(found[1]) not in wanted):
                 continue
             yield Span(line, at, found.start())
             line += len(_NEWLINE.findall(text, at, found.start()))

@@ -221,6 +221,12 @@ class _Writer:
         self._check_number(Name(element.at, name))
         if name in symbols.codes:
             raise Flaw(element.at, f"{name} is a code and has no value", f"set its mode with !*{name}!")
+        if symbols.is_kept(name):
+            raise Flaw(
+                element.at,
+                f"{name} is set by events, not by macros",
+                "use another name, or write strict = true in the parameters if the name is your own",
+            )
         self.out.place = (self.out.place[0], element.value.at)
         self.out.put(f"value = {python_value(element.value, self._value)}")
         self.out.put("if value - value: raise OverflowError")

@@ -23,7 +23,15 @@ from polycnc.post.macros._macro import If, Statement, read_macro
 from polycnc.post.macros._run import MacroRun, Write
 from polycnc.post.macros._symbols import Symbols
 
-CONTROLS: tuple[str, ...] = ("bosch-pnc", "bosch-pnc-cpl", "din", "fanuc-lathe", "fanuc-mill")
+CONTROLS: tuple[str, ...] = (
+    "bosch-pnc",
+    "bosch-pnc-cpl",
+    "din",
+    "fanuc-5axis",
+    "fanuc-lathe",
+    "fanuc-mill",
+    "haas-mill",
+)
 """Names of the control files that come with polycnc."""
 
 _SHOWN_FLAWS = 20
@@ -50,6 +58,10 @@ class ControlFile:
     def uses(self, macro: str, word: str) -> bool:
         """Tell whether the text of a macro names a word."""
         return re.search(rf"\b{word}\b", self._texts.get(macro, ""), re.IGNORECASE) is not None
+
+    def names(self, word: str) -> bool:
+        """Tell whether any macro names a word."""
+        return any(self.uses(macro, word) for macro in self._texts)
 
     def start(self, write: Write) -> MacroRun:
         """Return a run for one output program; every block goes to `write` as a line with a line feed."""

@@ -25,6 +25,11 @@ class Parameters(MotionParameters):
 
     name: str = Field(default="", description="Name of the control.")
     description: str = Field(default="", description="Any text.")
+    strict: bool = Field(
+        default=False,
+        description="Only what Manual 001 has: the events and words that are marked as additions do not exist, and "
+        "their names are free for variables.",
+    )
     encoding: Literal["utf-8", "ascii", "shift-jis"] = Field(
         default="utf-8", description="Encoding of the program."
     )

@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from polycnc.machine import KeyPath
 from polycnc.post.macros._control_parameters import CodeKey, ControlTables, NcCode
 from polycnc.post.macros._elements import KEY
-from polycnc.post.macros._events import MACROS
+from polycnc.post.macros._events import MACROS, is_added_macro, is_macro
 from polycnc.post.macros._format import FormatError, read_format
-from polycnc.post.macros._symbols import RESERVED, SEQUENCE_NUMBER, CodeSymbol, Symbols, VariableSymbol
+from polycnc.post.macros._symbols import SEQUENCE_NUMBER, CodeSymbol, Symbols, VariableSymbol, reserved
 
 _DEFAULT_SEQUENCE_ORDER = -100
 _ORIGIN_AXES = ("X", "Y", "Z")
@@ -34,7 +34,7 @@ def read_symbols(tables: ControlTables) -> Symbols:
     Raises:
         ControlFlaw: A key is no name, is defined twice, or is given for nothing; a format is none.
     """
-    symbols = Symbols()
+    symbols = Symbols(strict=tables.parameters.strict)
     entries = _entries(tables)
     taken: dict[str, str] = {}
     for section, codes in (("g_code", tables.g_code), ("m_code", tables.m_code)):
@@ -55,7 +55,7 @@ def read_symbols(tables: ControlTables) -> Symbols:
             )
         symbols.orders[key] = entry.order
     symbols.orders.setdefault(SEQUENCE_NUMBER, _DEFAULT_SEQUENCE_ORDER)
-    _check_macros(tables.nc_macros)
+    _check_macros(tables.nc_macros, tables.parameters.strict)
     return symbols
 
 
@@ -77,7 +77,7 @@ def _add_codes(
     taken: dict[str, str],
 ) -> None:
     for key, code in codes.items():
-        name = _new_name(section, key, KEY, taken)
+        name = _new_name(section, key, KEY, taken, symbols.strict)
         entry = entries[name][1] if name in entries else NcCode()
         text = key if entry.code is None else entry.code
         group = symbols.group(f"{section} {code.group}" if code.group else "")
@@ -92,7 +92,7 @@ def _add_variables(
 ) -> None:
     origins = {str(axis): value for axis, value in tables.parameters.machining_origin.items()}
     for key, variable in tables.function_variables.items():
-        name = _new_name("function_variables", key, _VARIABLE_KEY, taken)
+        name = _new_name("function_variables", key, _VARIABLE_KEY, taken, symbols.strict)
         try:
             number = read_format(variable.format, variable.zeros, variable.scale)
         except FormatError as flaw:
@@ -106,14 +106,14 @@ def _add_variables(
         )
 
 
-def _new_name(section: str, key: str, spelling: re.Pattern[str], taken: dict[str, str]) -> str:
+def _new_name(section: str, key: str, spelling: re.Pattern[str], taken: dict[str, str], strict: bool) -> str:
     path = (section, key)
     name = key.upper()
     if not spelling.fullmatch(key):
         raise ControlFlaw(
             f"'{key}' is not a search key", "begin with a letter, go on with letters, digits and _", path
         )
-    if name in RESERVED:
+    if name in reserved(strict):
         raise ControlFlaw(f"'{key}' is a reserved word", "choose another search key", path)
     if name in taken:
         raise ControlFlaw(
@@ -125,9 +125,15 @@ def _new_name(section: str, key: str, spelling: re.Pattern[str], taken: dict[str
     return name
 
 
-def _check_macros(macros: Mapping[str, str]) -> None:
+def _check_macros(macros: Mapping[str, str], strict: bool) -> None:
     for name in macros:
-        if name not in MACROS:
+        if strict and is_added_macro(name):
+            raise ControlFlaw(
+                f"the event of '{name}' is an addition to the manual's",
+                "leave the macro out, or 'strict' in the parameters",
+                ("nc_macros", name),
+            )
+        if not is_macro(name):
             close = difflib.get_close_matches(name.upper(), MACROS, n=1)
             hint = f"did you mean {close[0]}?" if close else f"macros: {', '.join(sorted(MACROS))}"
             raise ControlFlaw(f"no event calls a macro '{name}'", hint, ("nc_macros", name))

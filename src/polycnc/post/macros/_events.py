@@ -6,17 +6,25 @@ Lengths are in the units of the output (`units` of the control file), angles in 
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
 
 @dataclass(frozen=True, slots=True)
 class WordRow:
-    """A word that an event sets before its macro runs: a number, or a text."""
+    """A word that an event sets before its macro runs: a number, or a text.
+
+    `added`: an addition to the words of Manual 001, which a control file with `strict` does not have. `kept`: the
+    driver keeps it, so that a macro cannot set it.
+    """
 
     name: str
     kind: Literal["number", "text"]
     meaning: str
+    added: bool = False
+    kept: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +39,7 @@ class EventRow:
     group: Literal["frame", "state", "motion", "arc", "cycle"]
     when: str
     words: tuple[str, ...] = ()
+    added: bool = False
 
 
 _POINT = ("X", "Y", "Z")
@@ -42,6 +51,7 @@ _FEED = ("F", "FEEDMODE")
 _ARC = (*_POINT, *_START, "I", "J", "K", "R", "PLANE", "SWEEP", *_FEED)
 _HOLE = (*_POINT, *_START, "SURFACE", "R", "OUT", "RETRACT", "HOLE", *_FEED)
 _SPINDLE = ("S", "SPINDLEMODE", "MAXRPM")
+_NUMBERS = tuple(f"NUMBER{place}" for place in range(1, 10))
 _TOOL = ("T", "TOOLCHANGE", "TOOLNAME", "TOOLDIAMETER", "TOOLLENGTH", "H", "D")
 
 WORDS: tuple[WordRow, ...] = (
@@ -75,8 +85,7 @@ WORDS: tuple[WordRow, ...] = (
     WordRow("PITCH", "number", "pitch of the thread: feed per revolution"),
     WordRow("S", "number", "spindle speed, or surface speed, as SPINDLEMODE says"),
     WordRow("SPINDLEMODE", "number", "97: S is revolutions per minute; 96: m per minute, in inch feet per minute"),
-    WordRow("MAXRPM", "number", "highest speed that is allowed with a surface speed, 0 if none is given (an addition "
-            "to the manual's words)"),
+    WordRow("MAXRPM", "number", "highest speed that is allowed with a surface speed, 0 if none is given", added=True),
     WordRow("T", "number", "tool number"),
     WordRow("TOOLCHANGE", "text", "the tool number as the control writes it: T in its own format"),
     WordRow("TOOLNAME", "text", "name of the tool"),
@@ -92,6 +101,13 @@ WORDS: tuple[WordRow, ...] = (
     WordRow("PATHNUMBER", "number", "1 for the first operation, then 2, 3, ..."),
     WordRow("MACHINENAME", "text", "name in the MACHIN record"),
     WordRow("UNITS", "number", "21: lengths are written in mm; 20: in inch"),
+    WordRow("WORD", "text", "first word of the record, like AUXFUN", added=True, kept=True),
+    WordRow("WORDTEXT", "text", "what stands behind its slash, as it stands", added=True, kept=True),
+    WordRow("NUMBERS", "number", "how many numbers the record has", added=True, kept=True),
+    *(
+        WordRow(name, "number", f"its number {name[6:]} as it stands, 0 if it has fewer", added=True, kept=True)
+        for name in _NUMBERS
+    ),
 )  # fmt: skip
 
 EVENTS: tuple[EventRow, ...] = (
@@ -126,13 +142,34 @@ EVENTS: tuple[EventRow, ...] = (
     EventRow("OPTIONAL_STOP", "state", "OPSTOP"),
     EventRow("COMMENT", "frame", "PPRINT", ("COMMENT",)),
     EventRow("INSERT", "state", "INSERT: a text that is a block of the control", ("COMMENT",)),
+    EventRow("WORD", "state", "a record that no other event takes, like AUXFUN, PREFUN, OPSKIP, CLAMP",
+             ("WORD", "WORDTEXT", "NUMBERS", *_NUMBERS), added=True),
 )  # fmt: skip
+
+STATES: tuple[WordRow, ...] = (
+    WordRow("SPINDLESTATE", "number", "3: the spindle turns clockwise; 4: counter-clockwise; 5: it stands", True, True),
+    WordRow("COOLANTSTATE", "number", "8: flood; 7: mist; 88: through the tool; 9: off", True, True),
+    WordRow("NEXTTOOL", "number", "tool of the next tool change, 0 behind the last one", True, True),
+    WordRow("FIRSTMOTION", "number", "2: the first move or hole of the program, behind a tool change or in another "
+            "work offset; 1: the first of an operation otherwise; 0: any other", True, True),
+    WordRow("WORKOFFSET", "number", "number of the work offset, 1 if the tool path names none", True, True),
+)  # fmt: skip
+"""Words that hold in every macro: what the tool path has switched, whatever a tool change does to it in between."""
 
 MACROS: frozenset[str] = frozenset(event.macro for event in EVENTS)
 """Names of the macros that a control file may have."""
 
-NUMBER_WORDS: frozenset[str] = frozenset(word.name for word in WORDS if word.kind == "number")
+NUMBER_WORDS: frozenset[str] = frozenset(word.name for word in (*WORDS, *STATES) if word.kind == "number")
 """Words that events set to numbers: function variables of the control file, or variables of its macros."""
+
+ADDED_WORDS: frozenset[str] = frozenset(word.name for word in (*WORDS, *STATES) if word.added)
+"""Words that are no words with `strict`."""
+
+KEPT_WORDS: frozenset[str] = frozenset(word.name for word in (*WORDS, *STATES) if word.kept)
+"""Words that macros cannot set."""
+
+MOST_NUMBERS = len(_NUMBERS)
+"""How many numbers of a record WORD has words for."""
 
 TEXT_WORDS: frozenset[str] = frozenset(word.name for word in WORDS if word.kind == "text")
 """Words that events set to texts."""
@@ -141,3 +178,25 @@ TEXT_WORDS: frozenset[str] = frozenset(word.name for word in WORDS if word.kind 
 def words_of(macro: str) -> tuple[str, ...]:
     """Return the words that the event of a macro sets."""
     return next(event.words for event in EVENTS if event.macro == macro)
+
+
+_WORD_MACRO = re.compile(r"WORD(_[A-Z][A-Z0-9]*){1,2}")
+
+
+def word_macros(name: str, first: str) -> Iterable[str]:
+    """Return the macros that may take a record, the narrowest first.
+
+    A condition cannot compare texts (Manual 001, 8), so the name of the record, and the first word behind its slash,
+    are part of the macro's: WORD_OPSKIP_ON, WORD_OPSKIP, WORD.
+    """
+    return f"WORD_{name}_{first}", f"WORD_{name}", "WORD"
+
+
+def is_macro(name: str) -> bool:
+    """Tell whether an event may call a macro of that name."""
+    return name in MACROS or _WORD_MACRO.fullmatch(name) is not None
+
+
+def is_added_macro(name: str) -> bool:
+    """Tell whether a macro is an addition, which a control file with `strict` cannot have."""
+    return name == "WORD" or name.startswith("WORD_")

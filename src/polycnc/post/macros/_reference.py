@@ -22,6 +22,7 @@ from polycnc.post.macros._control_parameters import (
 )
 from polycnc.post.macros._expression import EQUAL_WITHIN, LOGICAL_OPERATORS, NESTED_PARENTHESES
 from polycnc.post.macros._macro import NESTED_IFS
+from polycnc.post.macros._parameters import FiveAxis, RotaryAxis
 from polycnc.post.macros._reference_text import (
     AFTER_SECTIONS,
     ELEMENTS,
@@ -34,6 +35,8 @@ from polycnc.post.macros._reference_text import (
 
 _ENTRIES: tuple[tuple[str, str, type[BaseModel]], ...] = (
     ("`[parameters]`", ENTRIES["parameters"], Parameters),
+    ("`[parameters.five_axis]`", ENTRIES["five_axis"], FiveAxis),
+    ("`[[parameters.five_axis.axis]]`", ENTRIES["rotary_axis"], RotaryAxis),
     ("`[nc_code]`", ENTRIES["nc_code"], NcCode),
     ("`[g_code]` and `[m_code]`", ENTRIES["codes"], CodeKey),
     ("`[function_variables]`", ENTRIES["function_variables"], FunctionVariable),
@@ -104,9 +107,12 @@ def _value(annotation: Any) -> str:
         case origin if origin is UnionType:
             return " or ".join(_value(choice) for choice in choices if choice is not type(None))
         case origin if origin is tuple:
-            return f"list of {_value(choices[0])}"
+            each = _value(choices[0])
+            return f"list of {each}" if choices[-1] is Ellipsis else f"list of {len(choices)} {each}s"
         case origin if origin is dict:
             return f"table of {_value(choices[0])}"
+        case _ if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+            return "table"
         case _:
             return _PLAIN[annotation]
 

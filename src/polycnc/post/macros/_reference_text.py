@@ -36,6 +36,15 @@ ENDIF
 
 ENTRIES = {
     "parameters": "Plain values. The first group says how moves are made, the second what blocks look like.",
+    "five_axis": """\
+A machine that turns the tool axis by two rotary axes. Of all positions of the two that give a tool axis within their
+limits the nearest are taken; where the tool axis lies along the first axis, that one stays. None is an error, a feed
+move that turns an axis by more than 90 degree is remarked.
+
+With `output = "machine"` a feed move that turns the tool axis is cut into pieces, so that the tip stays within
+`tolerance_mm` of its line although the machine moves its axes in proportion; arcs become lines, and holes moves, unless
+the rotary axes stand at 0. A head needs the length of the tool, from the tool path. `fanuc-5axis` is an example.""",
+    "rotary_axis": "Two of them, in their order from the part to the tool.",
     "nc_code": """\
 One entry for each search key of a code, function variable or reserved word that needs one, like
 `G00 = { code = "G0", order = 10 }`; `SEQUENCE_NUMBER` stands for the sequence number, whose order is -100 without an
@@ -146,6 +155,12 @@ RULINGS = [
     ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds behind", "fixed"),
     ("TAN, ASIN, ACOS, ATAN", "in radians", "fixed"),
     ("`&&` and `||`", "`&&` binds closer; what is decided is not looked at further", "fixed"),
+    ("IF on texts", "refused: an expression is of words with numbers, constants and operators (8)", "fixed"),
+    (
+        "Words and events that the manual does not list",
+        "marked as additions; with `strict` there are none",
+        "`strict`",
+    ),
     ("Unknown search keys, words and macros", "refused when the file is read", "fixed"),
     ("`$V1$` for a variable without a format", "refused when the file is read", "fixed"),
     ("Division by zero and the like", "an error; no program is written", "fixed"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn
 
 from polycnc.errors import ProgramError, SourcePosition, UsageError
@@ -25,7 +25,7 @@ class MacroRun:
     Modes, last outputs, variables and the sequence number last from call to call, over all paths of the program.
     """
 
-    __slots__ = ("_known", "_locate", "_macros", "_symbols", "_traced", "_values")
+    __slots__ = ("_known", "_last", "_locate", "_macros", "_symbols", "_texts", "_traced", "_values")
 
     def __init__(
         self, macros: Mapping[str, TracedMacro], symbols: Symbols, style: Style, write: Write, locate: Locate
@@ -35,11 +35,13 @@ class MacroRun:
         self._traced = {each.code.co_filename: (name, each) for name, each in macros.items()}
         self._values: dict[str, Value] = dict(symbols.values)
         self._known = len(self._values)
+        self._last: list[float | None] = [None] * len(symbols.variables)
+        self._texts: list[str | None] = [None] * len(symbols.variables)
         state = (
             self._values,
             [0] * len(symbols.groups),
-            [None] * len(symbols.variables),
-            [None] * len(symbols.variables),
+            self._last,
+            self._texts,
             [style.number_start],
             write,
         )
@@ -72,6 +74,17 @@ class MacroRun:
             function()
         except (ArithmeticError, ValueError, TypeError) as error:
             self._explain(error, words)
+
+    def keep(self, words: Mapping[str, Value]) -> None:
+        """Set words for the macros that follow."""
+        self._values.update(words)
+        self._known = len(self._values)
+
+    def forget(self, names: Iterable[str]) -> None:
+        """Let the next output of function variables not be omitted, as `&X&` does."""
+        for name in names:
+            if variable := self._symbols.variables.get(name):
+                self._last[variable.memory] = self._texts[variable.memory] = None
 
     def formatted(self, name: str, value: float) -> str:
         """Return a number in the format of a function variable, as `$T$` would write it.

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from polycnc.post.macros._events import NUMBER_WORDS, TEXT_WORDS
+from polycnc.post.macros._events import ADDED_WORDS, KEPT_WORDS, NUMBER_WORDS, TEXT_WORDS
 from polycnc.post.macros._expression import FUNCTIONS
 from polycnc.post.macros._format import NumberFormat
 
@@ -21,8 +21,11 @@ LINE_TEXTS = (STARTOFLINE, ENDOFLINE)
 SEQUENCE_NUMBER = "SEQUENCE_NUMBER"
 """Key of the sequence number in the section of NC codes."""
 
-RESERVED = frozenset({OUTPUTORDER, *LINE_TEXTS, *TEXT_WORDS, *FUNCTIONS})
-"""Names that no code and no function variable may have."""
+
+def reserved(strict: bool) -> frozenset[str]:
+    """Return the names that no code and no function variable may have."""
+    names = frozenset({OUTPUTORDER, *LINE_TEXTS, *TEXT_WORDS, *FUNCTIONS})
+    return names - ADDED_WORDS if strict else names
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +54,12 @@ class VariableSymbol:
 
 @dataclass(slots=True)
 class Symbols:
-    """All names of a control file; `values` holds what each word and variable that a macro uses begins with."""
+    """All names of a control file; `values` holds what each word and variable that a macro uses begins with.
+
+    With `strict` the additions to the manual's words are no words.
+    """
+
+    strict: bool = False
 
     codes: dict[str, CodeSymbol] = field(default_factory=dict)
     variables: dict[str, VariableSymbol] = field(default_factory=dict)
@@ -73,16 +81,24 @@ class Symbols:
 
     def is_text(self, name: str) -> bool:
         """Tell whether a reserved word holds a text."""
-        return name in TEXT_WORDS or name in LINE_TEXTS
+        return (name in TEXT_WORDS and not self._is_missing(name)) or name in LINE_TEXTS
 
     def is_number(self, name: str) -> bool:
         """Tell whether a reserved word holds a number and can be written without a format.
 
         Words of one letter are addresses: they are written by the format of their function variable, or not at all.
         """
-        return name == OUTPUTORDER or (name in NUMBER_WORDS and len(name) > 1)
+        return name == OUTPUTORDER or (name in NUMBER_WORDS and len(name) > 1 and not self._is_missing(name))
+
+    def is_kept(self, name: str) -> bool:
+        """Tell whether a word is kept by the driver, so that a macro cannot set it."""
+        return name in KEPT_WORDS and not self._is_missing(name)
+
+    def _is_missing(self, name: str) -> bool:
+        return self.strict and name in ADDED_WORDS
 
     def words(self) -> Iterable[str]:
         """Return what `$...$` may name."""
         numbers = (name for name in NUMBER_WORDS if len(name) > 1)
-        return sorted({*self.variables, *TEXT_WORDS, *LINE_TEXTS, OUTPUTORDER, *numbers})
+        found = {*TEXT_WORDS, *LINE_TEXTS, OUTPUTORDER, *numbers}
+        return sorted({*self.variables, *(found - ADDED_WORDS if self.strict else found)})

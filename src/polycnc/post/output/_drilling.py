@@ -41,6 +41,7 @@ class Drilling:
             self._output.parameters.cycles == "macros"
             and self._output.control.has(self._macro(act.cycle))
             and math.dist(act.axis, UPRIGHT) < 1e-6
+            and not self._motion.turned_on_machine
         )
         if by_macro:
             self._by_macro(act)
@@ -91,6 +92,7 @@ class Drilling:
         }
         words.update(self._feed_words(line, cycle))
         self._output.call(self._macro(cycle), words)
+        motion.began()
         steps = hole_steps(without_pecks(cycle), point, UPRIGHT, motion.position, levels, 0.0, 0.0)
         motion.travelled(steps, (x, y, out))
 

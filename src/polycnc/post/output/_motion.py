@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from polycnc.post.output._kinematics import Angles, Kinematics
 from polycnc.post.output._output import Output
 from polycnc.post.output._rotary import table_angles
 from polycnc.post.tool_path._arcs import Arc, cuts
@@ -15,6 +16,7 @@ from polycnc.post.tool_path._tangency import Tangency
 
 _TILTED = 1e-6
 _FLAT_MM = 1e-7
+_LARGE_TURN_DEG = 90.0
 
 
 class Motion:
@@ -33,8 +35,13 @@ class Motion:
         self._parameters = output.parameters
         self._scale = output.scale
         self._must_write = True
+        self._first = 0.0
         self._tilt = self._turn = 0.0
         self._rotary: dict[str, float] = {}
+        five_axis = output.parameters.five_axis
+        self._kinematics = Kinematics(five_axis) if five_axis is not None else None
+        self.angles: Angles = (0.0, 0.0)
+        self.tool_length_mm: float | None = None
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
 
     def set_feed(self, record: Feed) -> None:
@@ -58,6 +65,17 @@ class Motion:
         """Take where the tool stands; its axis is written with the next move."""
         self.position = position
 
+    def first(self, rank: float) -> None:
+        """Say with FIRSTMOTION that the next move or hole is a first one; the higher rank counts."""
+        self._first = max(self._first, rank)
+        self._output.keep(FIRSTMOTION=self._first)
+
+    def began(self) -> None:
+        """Know that the first move or hole is written."""
+        if self._first:
+            self._first = 0.0
+            self._output.keep(FIRSTMOTION=0.0)
+
     def moved_by_macro(self) -> None:
         """Know that the machine may stand elsewhere: the next move is written, wherever it goes."""
         self._must_write = True
@@ -70,9 +88,13 @@ class Motion:
 
     def straight(self, line: int, end: Vector, axis: Vector | None, rapid: bool) -> None:
         """Move straight to a point, by rapid or with the feed."""
+        before = self.angles
         if axis is not None and axis != self.axis:
             self._lean(line, axis)
             self._must_write = True
+        if self._kinematics is not None:
+            self._turn_to(line, self._kinematics, before, end, rapid)
+            return
         start = self.position
         if start == end and not self._must_write:
             return
@@ -101,6 +123,116 @@ class Motion:
             self._check("LINEAR", line)
             words["F"], words["FEEDMODE"] = self.feed_words(line)
             self._call("LINEAR", words)
+        if self._first:
+            self.began()
+
+    @property
+    def has_head(self) -> bool:
+        """Whether positions depend on the length of the tool."""
+        return self._kinematics is not None and self._kinematics.on_machine and self._kinematics.has_head
+
+    @property
+    def turned_on_machine(self) -> bool:
+        """Whether X, Y, Z are those of a machine whose rotary axes are not at 0, so that they are not the part's."""
+        return self._kinematics is not None and self._kinematics.on_machine and self.angles != (0.0, 0.0)
+
+    def _turn_to(self, line: int, kinematics: Kinematics, before: Angles, end: Vector, rapid: bool) -> None:
+        """Move straight to a point with rotary axes, in pieces that keep the tip on its line."""
+        start = self.position
+        if start == end and not self._must_write:
+            return
+        self._must_write = False
+        after = self.angles
+        length = self._reach(line, kinematics, after)
+        tolerance = self._parameters.tolerance_mm
+        pieces: Iterable[tuple[Vector, Angles]] = ((end, after),)
+        turn = max(abs(after[0] - before[0]), abs(after[1] - before[1]))
+        if not rapid and start is not None and turn > 0.0:
+            pieces = kinematics.pieces(start, before, end, after, length, tolerance)
+            if turn > _LARGE_TURN_DEG:
+                self._output.remark(
+                    line, f"a feed move turns a rotary axis by more than {_LARGE_TURN_DEG:g} degree"
+                )
+        here, angles = (end if start is None else start), before
+        for point, turned in pieces:
+            self._piece(line, kinematics, (here, angles), (point, turned), length, rapid)
+            here, angles = point, turned
+        self.position = end
+
+    def _piece(
+        self,
+        line: int,
+        kinematics: Kinematics,
+        start: tuple[Vector, Angles],
+        end: tuple[Vector, Angles],
+        length: float,
+        rapid: bool,
+    ) -> None:
+        way = math.dist(start[0], end[0])
+        scale = self._scale
+        if kinematics.on_machine:
+            begin, place = kinematics.position(*start, length), kinematics.position(*end, length)
+        else:
+            begin, place = start[0], end[0]
+        words: dict[str, float | str] = {
+            name: value * scale
+            for name, value in zip(
+                ("X", "Y", "Z", "STARTX", "STARTY", "STARTZ"), (*place, *begin), strict=True
+            )
+        }
+        words |= zip(("TOOLI", "TOOLJ", "TOOLK"), kinematics.axis_of(end[1]), strict=True)
+        words |= zip(kinematics.letters, end[1], strict=True)
+        macro = "RAPID" if rapid else "LINEAR"
+        self._check(macro, line)
+        if rapid:
+            self.rapid_mm += way
+        else:
+            self.feed_mm += way
+            words["F"], words["FEEDMODE"] = self._turning_feed(line, way, start[1], end[1])
+        self._call(macro, words)
+        if self._first:
+            self.began()
+
+    def _turning_feed(self, line: int, way: float, before: Angles, after: Angles) -> tuple[float, float]:
+        """Return F and FEEDMODE of a move with rotary axes: the inverse of its time if they turn."""
+        plain = self.feed_words(line)
+        five_axis = self._parameters.five_axis
+        turn = max(abs(after[0] - before[0]), abs(after[1] - before[1]))
+        if five_axis is None or turn == 0.0:
+            return plain
+        if not five_axis.inverse_time:
+            if five_axis.output == "machine":
+                self._output.remark(
+                    line,
+                    "the feed of moves that turn the tool axis is that of the machine's axes, not of the tip: see "
+                    "inverse_time",
+                )
+            return plain
+        assert self.feed is not None
+        if self.per_revolution:
+            raise self._output.fail(
+                line,
+                "a feed per revolution with inverse time",
+                "Let the CAM system write feeds per minute where the tool axis turns.",
+            )
+        minutes = way / self.feed if way > _FLAT_MM else turn / five_axis.turning_deg_min
+        return 1.0 / minutes, 93.0
+
+    def _reach(self, line: int, kinematics: Kinematics, angles: Angles) -> float:
+        """Return the length of the tool, which counts where a head turns it.
+
+        Raises:
+            ProgramError: it is not known.
+        """
+        if not self.has_head:
+            return 0.0
+        if not self.tool_length_mm and angles != (0.0, 0.0):
+            raise self._output.fail(
+                line,
+                "the head turns a tool whose length is not known",
+                "Let the CAM system write the length with the tool, like LOADTL/3,LENGTH,120.",
+            )
+        return self.tool_length_mm or 0.0
 
     def feed_words(self, line: int) -> tuple[float, float]:
         """Return F and FEEDMODE.
@@ -136,6 +268,7 @@ class Motion:
         found = arc.plane()
         return (
             p.arcs == "arcs"
+            and not self.turned_on_machine
             and found is not None
             and found[0] in p.arc_planes
             and p.arc_min_radius_mm <= arc.radius <= p.arc_max_radius_mm
@@ -183,6 +316,8 @@ class Motion:
         self.position = arc.end
         self._must_write = False
         self._call("ARC_CW" if clockwise else "ARC_CCW", words)
+        if self._first:
+            self.began()
 
     def _check(self, macro: str, line: int) -> None:
         if not self._needs[macro]:
@@ -196,6 +331,18 @@ class Motion:
         """Take a new tool axis, and the rotary positions or words for it."""
         kind = self._parameters.rotary
         self.axis = axis
+        if self._kinematics is not None:
+            angles = self._kinematics.nearest(axis, self.angles)
+            if angles is None:
+                raise self._output.fail(
+                    line,
+                    f"the rotary axes {' and '.join(self._kinematics.letters)} cannot reach the tool axis "
+                    f"{axis[0]:.6g}, {axis[1]:.6g}, {axis[2]:.6g}",
+                    "Look at limits_deg and direction of the axes in the control file, or tilt the part in the CAM "
+                    "system.",
+                )
+            self.angles = angles
+            return
         if kind == "none":
             if math.dist(axis, UPRIGHT) > _TILTED:
                 raise self._output.fail(

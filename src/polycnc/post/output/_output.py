@@ -26,6 +26,7 @@ class Output:
         self._written = 0
         self._run = control.start(self._lines.append)
         self.call = self._run.call
+        self._keeps = not control.parameters.strict
 
     @property
     def blocks(self) -> int:
@@ -49,6 +50,15 @@ class Output:
                 line, f"the control file has no macro {macro}, so nothing was written"
             )
         self.call(macro, words)
+
+    def keep(self, **words: float) -> None:
+        """Set words that hold in every macro from here on; with `strict` there are none."""
+        if self._keeps:
+            self._run.keep(words)
+
+    def forget(self, *names: str) -> None:
+        """Let the next output of function variables not be omitted."""
+        self._run.forget(names)
 
     def formatted(self, variable: str, value: float) -> str:
         """Return a number as the control writes it behind an address, plainly if it has no such address."""

@@ -7,11 +7,12 @@ gives to macros is told in `_events`. Moves and holes have files of their own.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from polycnc.post.macros._control_file import ControlFile
+from polycnc.post.macros._events import MOST_NUMBERS, word_macros
 from polycnc.post.output._drilling import Drilling
 from polycnc.post.output._motion import Motion
 from polycnc.post.output._output import Output
@@ -38,6 +39,7 @@ from polycnc.post.tool_path._records import (
     Text,
     Tool,
     ToolShape,
+    Word,
 )
 from polycnc.post.tool_path._source import Remark
 from polycnc.post.tool_path._tool_path import ToolPath
@@ -66,10 +68,12 @@ class BlockMap:
     """Say for each line of the program which record of the tool path, and which line, it came from.
 
     Entry r is for record r, from 0: its last block, and its line. One more is for what ends the program, with line 0.
+    `tool_mm` is the length of the tool at each record, if a head of the control file turns it; otherwise it is empty.
     """
 
     last_block: array[int] = field(default_factory=lambda: array("q"))
     line: array[int] = field(default_factory=lambda: array("q"))
+    tool_mm: array[float] = field(default_factory=lambda: array("d"))
 
     def add(self, last_block: int, line: int) -> None:
         """Say that the blocks up to `last_block`, from where the last entry ended, came from `line`."""
@@ -94,14 +98,18 @@ def post_program(
         ProgramError: the tool path or the control file asks for what cannot be posted.
     """
     output = Output(control, tool_path, out)
-    driver = _Driver(output)
+    tools = _tool_numbers(tool_path) if control.names("NEXTTOOL") else ()
+    driver = _Driver(output, tools)
     handlers = driver.handlers()
     records = 0
+    has_head = driver.motion.has_head
     for record in tool_path:
         records += 1
         handlers[record.__class__](record)
         if block_map is not None:
             block_map.add(output.blocks, record.line)
+            if has_head:
+                block_map.tool_mm.append(driver.motion.tool_length_mm or 0.0)
         if not records % _CHUNK_RECORDS:
             output.flush()
             if progress is not None:
@@ -112,6 +120,8 @@ def post_program(
     driver.end()
     if block_map is not None and output.blocks > last_of_path:
         block_map.add(output.blocks, 0)
+        if has_head:
+            block_map.tool_mm.append(driver.motion.tool_length_mm or 0.0)
     output.flush()
     motion = driver.motion
     if motion.tangency.mostly_kinked:
@@ -128,11 +138,27 @@ def post_program(
     )
 
 
+_SPINDLE_STATES = {"cw": 3.0, "ccw": 4.0, "off": 5.0}
+_COOLANT_STATES = {"mist": 7.0, "flood": 8.0, "through": 88.0, "off": 9.0}
+
+
+def _tool_numbers(tool_path: ToolPath) -> list[int]:
+    """Return the tools of all tool changes: NEXTTOOL must be known before its change is read."""
+    numbers = []
+    for record in tool_path:
+        if record.__class__ is End:
+            break
+        if isinstance(record, Tool):
+            numbers.append(record.number)
+    return numbers
+
+
 class _Driver:
     """One program: the frame of program, operations and tools around its moves."""
 
-    def __init__(self, output: Output) -> None:
+    def __init__(self, output: Output, tool_numbers: Sequence[int]) -> None:
         self.output = output
+        self._tool_numbers = tool_numbers
         self.motion = Motion(output)
         self.drilling = Drilling(output, self.motion)
         self.course = Course()
@@ -142,6 +168,7 @@ class _Driver:
         self._path_number = 0
         self._started = self._in_path = False
         self._shape = ToolShape(0, "", 0.0, 0.0)
+        self._length_said = False
         self._tool_number = 0
         self._turning: Spindle | None = None
         # With the number of tool changes before them: what came before the last one must be said again.
@@ -172,6 +199,7 @@ class _Driver:
             Compensation: self._working(self._compensation),
             Dwell: self._working(self._dwell),
             Stop: self._working(self._stop),
+            Word: self._word,
             End: self._end_record,
         }
 
@@ -201,12 +229,20 @@ class _Driver:
                 "MACHINENAME": self._machine,
                 "UNITS": units,
             }
+            self.output.keep(SPINDLESTATE=5.0, COOLANTSTATE=9.0, WORKOFFSET=float(self.course.work_offset))
+            self._keep_next_tool()
+            self.motion.first(2.0)
             self.output.frame("PROGRAM_START", words)
+
+    def _keep_next_tool(self) -> None:
+        numbers = self._tool_numbers
+        self.output.keep(NEXTTOOL=float(numbers[self.tools]) if self.tools < len(numbers) else 0.0)
 
     def _begin_path(self) -> None:
         self._begin()
         self._in_path = True
         self._path_number += 1
+        self.motion.first(1.0)
         self.output.frame("PATH_START", self._path_words())
 
     def _end_path(self) -> None:
@@ -221,6 +257,23 @@ class _Driver:
     def _path_record(self, record: Path) -> None:
         self._end_path()
         self._path = _plain(record.name or "")
+        before = self.course.work_offset
+        self._take(record)
+        if self.course.work_offset != before:
+            self._work_offset(record.line)
+
+    def _work_offset(self, line: int) -> None:
+        """Take another work offset: nothing that was written before says where the tool is in it."""
+        if not self.output.control.names("WORKOFFSET"):
+            raise self.output.fail(
+                line,
+                f"work offset {self.course.work_offset}, and no macro of the control file writes WORKOFFSET",
+                "Write it in PATH_START, or leave work offsets out of the tool path.",
+            )
+        self.output.keep(WORKOFFSET=float(self.course.work_offset))
+        self.output.forget("X", "Y", "Z")
+        self.motion.first(2.0)
+        self.motion.moved_by_macro()
 
     def _end_record(self, record: End) -> None:
         """Nothing: the end of the tool path follows."""
@@ -242,6 +295,7 @@ class _Driver:
 
     def _tool_shape(self, record: ToolShape) -> None:
         old = self._shape
+        self._length_said |= record.length is not None
         self._shape = ToolShape(
             record.line,
             old.name if record.name is None else _plain(record.name),
@@ -256,6 +310,11 @@ class _Driver:
         self._tool_shape(ToolShape(record.line, record.name, None, record.length))
         self.tools += 1
         self._tool_number = record.number
+        # A length that was said of an earlier tool is not that of this one.
+        self.motion.tool_length_mm = self._shape.length if self._length_said else None
+        self._length_said = False
+        self._keep_next_tool()
+        self.motion.first(2.0)
         number = float(record.number)
         scale = self.output.scale
         words: dict[str, float | str] = {
@@ -274,6 +333,7 @@ class _Driver:
         self.drilling.close()
         if record.sense == "off":
             self._spindle_words = None
+            self.output.keep(SPINDLESTATE=_SPINDLE_STATES["off"])
             self.output.state("SPINDLE_OFF", record.line)
             return
         before = self._turning
@@ -292,8 +352,10 @@ class _Driver:
         words: dict[str, float | str] = {
             "S": self._spindle_number(speed, surface),
             "SPINDLEMODE": 96.0 if surface else 97.0,
-            "MAXRPM": record.max_rpm,
         }
+        if not self.output.parameters.strict:
+            words["MAXRPM"] = record.max_rpm
+        self.output.keep(SPINDLESTATE=_SPINDLE_STATES[self._turning.sense])
         macro = "SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW"
         if record.max_rpm and not self.output.control.uses(macro, "MAXRPM"):
             self.output.remark(
@@ -361,6 +423,7 @@ class _Driver:
 
     def _coolant(self, record: Coolant) -> None:
         self._coolant_mode = (record.mode, self.tools)
+        self.output.keep(COOLANTSTATE=_COOLANT_STATES[record.mode])
         self.output.state(f"COOLANT_{record.mode.upper()}", record.line)
 
     def _compensation(self, record: Compensation) -> None:
@@ -375,12 +438,34 @@ class _Driver:
         words: dict[str, float | str] = {"DWELL": record.seconds, "DWELLREV": record.revolutions}
         self.output.state("DWELL", record.line, words)
 
+    def _word(self, record: Word) -> None:
+        """Hand a record that no other event takes to a macro of its own, if there is one."""
+        control = self.output.control
+        macro = next((each for each in word_macros(record.name, record.first) if control.has(each)), None)
+        if macro is None or self.output.parameters.strict:
+            self.output.remark(record.line, f"{record.name} is not known and was left out")
+            return
+        if not self._in_path:
+            self._begin_path()
+        self.drilling.close()
+        numbers = (*record.numbers, *(0.0,) * MOST_NUMBERS)[:MOST_NUMBERS]
+        words: dict[str, float | str] = {
+            "WORD": _printable(record.name),
+            "WORDTEXT": _printable(record.text),
+            "NUMBERS": float(len(record.numbers)),
+        }
+        words |= {f"NUMBER{place}": number for place, number in enumerate(numbers, 1)}
+        self.output.call(macro, words)
+
     def _stop(self, record: Stop) -> None:
         self.drilling.close()
         self.output.state("OPTIONAL_STOP" if record.optional else "STOP", record.line)
 
 
+def _printable(text: str) -> str:
+    return "".join(char if char.isprintable() else " " for char in text)
+
+
 def _plain(text: str) -> str:
     """Return a text that can stand in a comment of any control: one line, no parentheses."""
-    text = "".join(char if char.isprintable() else " " for char in text)
-    return text.replace("(", "[").replace(")", "]").strip()
+    return _printable(text).replace("(", "[").replace(")", "]").strip()

@@ -1,7 +1,7 @@
 """Read tool paths in APT words (ISO 4343), as CAM systems write them: line by line, whatever their length.
 
 A point is read on a short way of its own; every other statement goes through `Statement` and the table of
-`_cl_words`. Statements that are not known are remarked, unless they would move the tool: those are errors.
+`_cl_words`. Statements that are not known become words, unless they would move the tool: those are errors.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from polycnc.errors import ProgramError
 from polycnc.post.tool_path._cl_reading import ArcAxis, Reading
 from polycnc.post.tool_path._cl_statement import Piece, Statement
 from polycnc.post.tool_path._cl_words import CLSF_WORDS, HANDLERS, HINTS, IGNORED, LEFT_OUT_MOTION, TEXTS
-from polycnc.post.tool_path._records import LARGEST_MM, Circle, End, Goto, Record
+from polycnc.post.tool_path._records import LARGEST_MM, Circle, End, Goto, Record, Word
 from polycnc.post.tool_path._source import Remarks, Source, decoded
 
 _CREO = re.compile(r"(->\s*)(?=(CUTTER|CSYS)\b)", re.IGNORECASE)
@@ -130,4 +130,12 @@ def _statement(source: Source, reading: Reading, pieces: list[Piece]) -> Iterato
         reading.known += 1
     else:
         reading.unknown += 1
-        reading.remarks.add(statement.line, f"{major} is not known and was left out")
+        yield _word(statement, major)
+
+
+def _word(statement: Statement, major: str) -> Word:
+    """Return a statement that is not known as it stands."""
+    tokens = list(statement)
+    first = next((token.text for token in tokens if token.number is None), "")
+    numbers = tuple(value for token in tokens if (value := token.number) is not None)
+    return Word(statement.line, major, first, numbers, statement.rest.strip())

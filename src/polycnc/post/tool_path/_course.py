@@ -21,6 +21,7 @@ from polycnc.post.tool_path._records import (
     From,
     Goto,
     Home,
+    Path,
     Rapid,
     Record,
     Retract,
@@ -83,6 +84,7 @@ class Course:
     def __init__(self) -> None:
         self.here: Vector | None = None
         self.axis: Vector = UPRIGHT
+        self.work_offset = 1
         self.cycle: Cycle | None = None
         self._home: Vector | None = None
         self._rapid = False
@@ -124,6 +126,8 @@ class Course:
                 self.cycle = None
             case Tool():
                 self.cycle, self._changed = None, True
+            case Path(work_offset=int(number)) if number != self.work_offset:
+                self.work_offset, self._changed = number, True
             case CycleOff(on=True):
                 if self._last is None:
                     raise CourseError(

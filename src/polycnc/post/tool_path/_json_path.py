@@ -31,10 +31,13 @@ class DoPath(StrictModel):
 
     do: Literal["operation"]
     name: str = Field(description="Its name.")
+    work_offset: Annotated[int, Field(ge=1, le=999)] | None = Field(
+        default=None, description="Number of its work offset; absent: as before, at first 1."
+    )
 
     def records(self, line: int, scale: float) -> Iterator[Record]:
         """Yield the records."""
-        yield records.Path(line, self.name)
+        yield records.Path(line, self.name, self.work_offset)
 
 
 class DoTool(StrictModel):

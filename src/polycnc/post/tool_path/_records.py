@@ -30,10 +30,11 @@ class Text(NamedTuple):
 
 
 class Path(NamedTuple):
-    """The beginning of an operation; with None for a name its end."""
+    """The beginning of an operation; with None for a name its end. `work_offset` None: as before."""
 
     line: int
     name: str | None
+    work_offset: int | None = None
 
 
 class ToolShape(NamedTuple):
@@ -204,6 +205,19 @@ class Stop(NamedTuple):
     optional: bool = False
 
 
+class Word(NamedTuple):
+    """A record that is not known here: its first word, the numbers and the text behind its slash.
+
+    `first` is the first word behind the slash, empty if there is none.
+    """
+
+    line: int
+    name: str
+    first: str
+    numbers: tuple[float, ...]
+    text: str
+
+
 class End(NamedTuple):
     """The end of the tool path."""
 
@@ -212,5 +226,5 @@ class End(NamedTuple):
 
 Record: TypeAlias = (
     Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis | Circle
-    | Cycle | CycleOff | Coolant | Compensation | Dwell | Stop | End
+    | Cycle | CycleOff | Coolant | Compensation | Dwell | Stop | Word | End
 )  # fmt: skip

@@ -16,7 +16,8 @@ from polycnc.post.tool_path._records import UPRIGHT, Record, Vector
 class Sweep(NamedTuple):
     """One move: straight if `angle` is 0, else turning by `angle` rad about `normal` through `center`.
 
-    `record` counts the records of the tool path from 0; `start` is None where it is not known.
+    `record` counts the records of the tool path from 0; `start` is None where it is not known; `axis` is the tool
+    axis at the end.
     """
 
     record: int
@@ -27,6 +28,7 @@ class Sweep(NamedTuple):
     center: Vector = (0.0, 0.0, 0.0)
     normal: Vector = UPRIGHT
     angle: float = 0.0
+    axis: Vector = UPRIGHT
 
 
 def sweep_tool_path(records: Iterable[Record]) -> Iterator[Sweep]:
@@ -44,18 +46,18 @@ def sweep_tool_path(records: Iterable[Record]) -> Iterator[Sweep]:
         if act is None:
             continue
         if isinstance(act, Straight):
-            line, start, end, _, rapid = act
-            yield Sweep(number, line, rapid, start, end)
+            line, start, end, axis, rapid = act
+            yield Sweep(number, line, rapid, start, end, axis=axis)
         elif isinstance(act, Hole):
             yield from _hole(act, number)
         else:
-            line, start, end, _, center, normal, angle = act
-            yield Sweep(number, line, False, start, end, center, normal, angle)
+            line, start, end, axis, center, normal, angle = act
+            yield Sweep(number, line, False, start, end, center, normal, angle, axis)
 
 
 def _hole(hole: Hole, number: int) -> Iterator[Sweep]:
     here = hole.start
     for step in hole_steps(without_pecks(hole.cycle), hole.point, hole.axis, here, hole.levels, 0.0, 0.0):
         if step.kind in ("rapid", "feed") and step.point != here:
-            yield Sweep(number, hole.line, step.kind == "rapid", here, step.point)
+            yield Sweep(number, hole.line, step.kind == "rapid", here, step.point, axis=hole.axis)
             here = step.point

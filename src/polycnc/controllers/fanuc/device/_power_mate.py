@@ -54,10 +54,10 @@ from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
 from polycnc.controllers.fanuc.device._signals import Signals
-from polycnc.controllers.fanuc.device._snapshot import PowerMateSnapshot
+from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
-from polycnc.machine import AnyAxis, Clock, Machine, Store
+from polycnc.machine import AnyAxis, Clock, Machine, Snapshot, SnapshotError, Store
 from polycnc.nc import Dialect, load_dialect
 
 MOST_AXES = {"H": 6, "D": 2}
@@ -429,8 +429,14 @@ class PowerMate:
 
     def snapshot(self) -> PowerMateSnapshot:
         """Return the state of the present cycle; what is durable is not in it."""
+        control = self.control.snapshot()
         return PowerMateSnapshot(
-            control=self.control.snapshot(),
+            device=DEVICE,
+            made_from=control.made_from,
+            cycle=control.cycle,
+            blocks=(),
+            beside="",
+            control=control,
             mode=self._mode,
             cursor=self._cursor,
             mdi=self.mdi.blocks,
@@ -447,12 +453,17 @@ class PowerMate:
             sampling_stopped=self.history.stopped,
         )
 
-    def restore(self, snapshot: PowerMateSnapshot) -> None:
+    def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot; what is durable stays as it is.
 
         Raises:
             SnapshotError: It is of another control, or axes have other limits now; nothing has changed.
         """
+        if not isinstance(snapshot, PowerMateSnapshot):
+            raise SnapshotError(
+                f"this is a snapshot of {snapshot.device}, not of a Power Mate",
+                hint="restore it where it was taken",
+            )
         self.control.restore(snapshot.control)
         self._mode, self._cursor = snapshot.mode, snapshot.cursor
         self.control.channels[0].set_skip_signal(snapshot.skip)
@@ -515,7 +526,11 @@ class PowerMate:
                 emergency_needs_reset=False,
             ),
         )
-        control.channels[0].on_skip = self._note_skip
+
+        def note_skip() -> None:  # a function, not a method: a copy of the run shares it
+            self._note_skip()
+
+        control.channels[0].on_skip = note_skip
         control.change_axes(axes)
         for axis, name in enumerate(names, 1):
             if self.parameters.value(1020, axis) != ord(name):

@@ -8,10 +8,13 @@ from polycnc.cnc import ControlSnapshot
 from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._signals import SignalState
+from polycnc.machine import Snapshot, SnapshotError
+
+DEVICE = "power mate"
 
 
 @dataclass(frozen=True, slots=True)
-class PowerMateSnapshot:
+class PowerMateSnapshot(Snapshot):
     """Everything but programs, parameters, offsets, variables and other durable data, and open transfers."""
 
     control: ControlSnapshot
@@ -30,7 +33,12 @@ class PowerMateSnapshot:
     pmc: dict[tuple[str, int], int]
     sampling_stopped: bool
 
-    @property
-    def cycle(self) -> int:
-        """The cycle in which it was taken."""
-        return self.control.cycle
+    def to_bytes(self) -> bytes:
+        """Refuse to be written to a file.
+
+        Raises:
+            SnapshotError: Always; what a Power Mate keeps durably is in its memory file.
+        """
+        raise SnapshotError(
+            "a snapshot of a Power Mate cannot be written to a file", hint="keep it in this process"
+        )

@@ -18,7 +18,7 @@ from polycnc.controllers.fanuc.data._macro_variables import (
     from_binary,
     from_decimal,
 )
-from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
+from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW, MAX_AXIS
 from polycnc.controllers.fanuc.library._structs_a import (
     IODBMR,
     IODBPSD,
@@ -181,9 +181,11 @@ def _positions(name: str) -> Callable[..., tuple[EW, ODBAXIS]]:
         _check(axis == ALL_AXES or axis >= 1, EW.EW_ATTRIB)
         _check(length >= _AXIS_HEADER + 4, EW.EW_LENGTH)
         values = link.values(Request(0x26, (_KINDS[name], axis, 0, 0)))
-        _check(length >= _AXIS_HEADER + 4 * len(values), EW.EW_LENGTH)
-        made = variant(ODBAXIS, data=max(len(values), 6))(type=axis)
-        made.data[: len(values)] = [each.mantissa for each in values]
+        count = min(
+            len(values), (length - _AXIS_HEADER) // 4
+        )  # of more axes than the control has nothing is known
+        made = variant(ODBAXIS, data=max(count, MAX_AXIS))(type=axis)
+        made.data[:count] = [each.mantissa for each in values[:count]]
         return EW.EW_OK, made
 
     return read
@@ -209,8 +211,8 @@ def cnc_rddynamic(link: RemoteLink, axis: int, length: int) -> tuple[EW, ODBDY]:
         values = [each.mantissa for each in _values(payload)]
         if axis == ALL_AXES:
             room = getattr(made.pos.faxis, name)
-            _check(length >= _DYNAMIC_HEADER + 16 * len(values), EW.EW_LENGTH)
-            room[: len(values)] = values[: len(room)]
+            count = min(len(values), len(room), (length - _DYNAMIC_HEADER) // 16)
+            room[:count] = values[:count]
         else:
             _check(bool(values), EW.EW_PROTOCOL)
             setattr(made.pos.oaxis, name, values[0])
@@ -264,6 +266,19 @@ def cnc_rdmacror(link: RemoteLink, s_number: int, e_number: int, length: int) ->
     for entry, value in zip(made.data, values, strict=True):
         entry.mcr_val, entry.dec_val = _pair(link, value)
     return EW.EW_OK, made
+
+
+def cnc_wrmacror(link: RemoteLink, length: int, macror: IODBMR) -> EW:
+    first, last = macror.datano_s, macror.datano_e
+    _check(last >= first, EW.EW_NUMBER)
+    count = last - first + 1
+    _check(length >= 6 + 6 * count and count <= len(macror.data), EW.EW_LENGTH)
+    values = [
+        _macro(link, entry.mcr_val, entry.dec_val)
+        for entry, _ in zip(macror.data, range(count), strict=False)
+    ]
+    link.ask(Request(0x16, (first, last, 0, 0), b"".join(map(bytes, values))))
+    return EW.EW_OK
 
 
 def cnc_getmactype(link: RemoteLink) -> tuple[EW, int]:
@@ -397,7 +412,7 @@ REMOTE: dict[str, Callable[..., Any]] = {
         function.__name__: function
         for function in (
             cnc_sysinfo, cnc_statinfo, cnc_alarm, cnc_rdprgnum, cnc_rdseqnum, cnc_actf, cnc_rddynamic,
-            cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_getmactype, cnc_setmactype, cnc_rdparam,
+            cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_wrmacror, cnc_getmactype, cnc_setmactype, cnc_rdparam,
             pmc_rdpmcrng, pmc_wrpmcrng, cnc_search, cnc_delete, cnc_upstart, cnc_upload, cnc_upend,
             cnc_dwnstart, cnc_download, cnc_dwnend,
         )

@@ -1,4 +1,4 @@
-"""The Ethernet protocol of FANUC controls without sockets: frames, command blocks and numbers, for both ends."""
+"""The Ethernet protocol of FANUC controls: frames, command blocks and numbers for both ends, and a client."""
 
 from polycnc.controllers.fanuc.wire._blocks import (
     CNC,
