@@ -22,6 +22,7 @@ SCRIPTS = {
     "bench_cli.py": "Command",
     "bench_blocks.py": "Long programs",
     "bench_scan.py": "Block scanner",
+    "bench_cpl.py": "CPL",
     "bench_macros.py": "Custom macros",
     "bench_lookahead.py": "Look-ahead",
     "bench_profile.py": "Point-to-point planning",

@@ -26,6 +26,7 @@ EXAMPLES = REPOSITORY / "examples"
 PARTS = {
     "fanuc-mill": ("mount_plate.cl", "cover.cl", "badge.json"),
     "bosch-pnc": ("cover.cl", "mount_plate.cl", "badge.json"),
+    "bosch-pnc-cpl": ("mount_plate.cl",),
     "din": ("badge.json", "cover.cl", "mount_plate.cl"),
     "fanuc-lathe": ("pin.cl",),
     "fanuc-5axis": ("ring.cl", "cover.cl"),

@@ -29,7 +29,8 @@ def post_command(
         typer.Option(
             "--control",
             "-c",
-            help="The control file: bosch-pnc, din, fanuc-5axis, fanuc-lathe, fanuc-mill, haas-mill or a file.",
+            help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-5axis, fanuc-lathe, fanuc-mill, haas-mill or "
+            "a file.",
             metavar="FILE|NAME",
         ),
     ] = None,

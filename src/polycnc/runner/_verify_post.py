@@ -34,6 +34,7 @@ from polycnc.post import BlockMap, Parameters, Sweep, Tangency, ToolPath, sweep_
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
 from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
+from polycnc.runner._program_control import Surroundings, control_for, root_of
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run
 
@@ -144,10 +145,12 @@ def verify_post(
     config = load_machine(machine)
     read = dialect_for(program.name, dialect)
     tangency = Tangency()
+    carried = _carried(program, block_map, read)
+    sweeps = (sweep._replace(record=int(carried[sweep.record])) for sweep in sweep_tool_path(tool_path))
     frame = PartFrame(parameters or Parameters())
-    moves = Moves(_judged(sweep_tool_path(tool_path), tangency), len(block_map.line), bool(frame.axes))
+    moves = Moves(_judged(sweeps, tangency), len(block_map.line), bool(frame.axes))
     result = run(program, config, read, check=False)
-    comparison = _Comparison(moves, block_map, config, read, frame)
+    comparison = _Comparison(moves, block_map, carried, config, read, frame)
     if result.ok:
         _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress)
     lengths = moves.lengths()
@@ -168,6 +171,24 @@ def verify_post(
         tool_axis_deg=tool_axis_deg,
         tool_axis_line=tool_axis_line,
     )
+
+
+def _carried(program: ProgramText, block_map: BlockMap, dialect: Dialect) -> Indices:
+    """Return the record whose blocks do what each record asks for.
+
+    It is the record itself, unless its last block only computes: then its moves come from a block behind, maybe one
+    in a loop that moves for many records. They and all that lie between are compared as one.
+    """
+    records = np.arange(len(block_map.line), dtype=np.int64)
+    if dialect.language != "cpl":
+        return records
+    lines = program.content.split(b"\n")
+    for record in range(len(records) - 2, -1, -1):
+        last = block_map.last_block[record]
+        wrote = last > (block_map.last_block[record - 1] if record else 0)
+        if wrote and lines[last - 1].lstrip()[:1].isdigit():
+            records[record] = records[record + 1]
+    return records
 
 
 def _judged(sweeps: Iterator[Sweep], tangency: Tangency) -> Iterator[Sweep]:
@@ -199,8 +220,23 @@ def _run_closely(
             progress(min(float(rows[-1, BLOCK]) / lines, 1.0))
 
     options = RunOptions(stands_at_stops=False)
-    execution = ProgramRun(machine, program, dialect, options=options, rows=compare)
+    control = control_for(dialect, program, machine, Surroundings(root_of(program, None)))
+    if control is None or not control.has_statements(program):
+        execution = ProgramRun(machine, program, dialect, options=options, rows=compare)
+        run_to_end(execution, every_cycle=True)
+        return
+    execution = ProgramRun(
+        machine,
+        program,
+        dialect,
+        options=options,
+        rows=compare,
+        language=control.language,
+        config=control.config,
+    )
+    control.attach(execution)
     run_to_end(execution, every_cycle=True)
+    control.finish()
 
 
 def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineConfig:
@@ -265,8 +301,15 @@ class _Comparison:
     """Compare rows of a run with the moves of the tool path, as they come."""
 
     def __init__(
-        self, moves: Moves, block_map: BlockMap, config: MachineConfig, dialect: Dialect, frame: PartFrame
+        self,
+        moves: Moves,
+        block_map: BlockMap,
+        carried: Indices,
+        config: MachineConfig,
+        dialect: Dialect,
+        frame: PartFrame,
     ) -> None:
+        self._carried = carried
         self.off_path = Deviation()
         self.detour_mm = 0.0
         self._moves = moves
@@ -303,7 +346,7 @@ class _Comparison:
             if column >= 0:
                 points[:, place] = rows[:, LEADING + column]
         blocks = rows[:, BLOCK].astype(np.int64)
-        records = np.minimum(np.searchsorted(self._last_block, blocks), len(self._lines) - 1)
+        records = self._carried[np.minimum(np.searchsorted(self._last_block, blocks), len(self._lines) - 1)]
         before = np.concatenate((self._here, points[:-1]))
         before_records = np.concatenate(([self._record], records[:-1]))
         shifts = self._frame.shifts(tags, blocks_of)

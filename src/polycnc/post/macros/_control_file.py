@@ -23,7 +23,15 @@ from polycnc.post.macros._macro import If, Statement, read_macro
 from polycnc.post.macros._run import MacroRun, Write
 from polycnc.post.macros._symbols import Symbols
 
-CONTROLS: tuple[str, ...] = ("bosch-pnc", "din", "fanuc-5axis", "fanuc-lathe", "fanuc-mill", "haas-mill")
+CONTROLS: tuple[str, ...] = (
+    "bosch-pnc",
+    "bosch-pnc-cpl",
+    "din",
+    "fanuc-5axis",
+    "fanuc-lathe",
+    "fanuc-mill",
+    "haas-mill",
+)
 """Names of the control files that come with polycnc."""
 
 _SHOWN_FLAWS = 20
