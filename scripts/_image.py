@@ -68,6 +68,12 @@ class Image:
             case _:
                 raise SystemExit(f"nobody said how to do '{word}' here")
 
+    @property
+    def reachable(self) -> bool:
+        """Whether any user may run the interpreter."""
+        real = Path(sys.executable).resolve()
+        return all(folder.stat().st_mode & 0o005 == 0o005 for folder in real.parents)
+
     def moved(self, text: str) -> str:
         """Return a text with the places of the image moved into the folder."""
         for place in PLACES:
@@ -76,7 +82,7 @@ class Image:
 
     def run(self, *arguments: str) -> tuple[str, str, float]:
         """Run the entry point as the user of the image; return what it said, and how long it took."""
-        user = self.user if os.geteuid() == 0 else None
+        user = self.user if os.geteuid() == 0 and self.reachable else None
         begin = time.monotonic()
         done = subprocess.run(
             [str(self.root / "venv" / "bin" / self.entry[0]), *arguments],
@@ -112,6 +118,10 @@ def main() -> None:
         raise SystemExit(f"the first run is not warm or not quiet:\n{remarks}")
     print(f"warm from the start: {seconds:.1f} s")
     print(image.run("batch", "bracket.nc", "--jobs", "1")[0], end="")
+    if os.geteuid() == 0 and not image.reachable:
+        print(
+            f"run as root: {sys.executable} lies where no other user may look (POLYCNC_PYTHON names another)"
+        )
     print(f"The image is {root}")
 
 

@@ -61,6 +61,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--claims-file", metavar="PATH", help="write the claims of all tests to PATH")
     parser.addoption("--fuzz-cases", type=int, default=5000, help="cases of each target of a long campaign")
     parser.addoption("--fuzz-campaign", type=int, default=1, help="number of the campaign: other cases")
+    parser.addoption("--kills", type=int, default=50, help="kills of each kind of write in a long campaign")
     parser.addoption("--update-goldens", action="store_true", help="write the golden texts anew")
 
 

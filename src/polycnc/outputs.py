@@ -34,6 +34,7 @@ else:
 
 _TOKEN_BYTES = 8
 _ATTEMPTS = 16
+_BESIDE = r"\.before|-journal|-wal|-shm"  # what writers make beside the file that they write
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
 
@@ -178,12 +179,20 @@ def _copied(path: Path) -> Iterator[Path]:
 def sweep(target: Path) -> None:
     """Remove what killed processes have left of files that were to become `target`."""
     pattern = re.compile(
-        rf"\.{re.escape(target.stem)}\.[0-9a-f]{{{2 * _TOKEN_BYTES}}}\.partial{re.escape(target.suffix)}(\.before)?"
+        rf"(\.{re.escape(target.stem)}\.[0-9a-f]{{{2 * _TOKEN_BYTES}}}\.partial{re.escape(target.suffix)})({_BESIDE})?"
     )
+    beside: list[tuple[Path, Path]] = []
     for path in target.parent.iterdir() if os.access(target.parent, os.R_OK) else ():
-        if pattern.fullmatch(path.name) and not path.is_symlink():
-            with suppress(OSError):
+        found = pattern.fullmatch(path.name)
+        if found is None or path.is_symlink():
+            continue
+        with suppress(OSError):
+            if not found[2]:
                 _remove_if_left(path)
+            beside.append((path, path.with_name(found[1])))
+    for path, partial in beside:  # what is beside a file goes with it
+        if not partial.exists():
+            path.unlink(missing_ok=True)
 
 
 def _remove_if_left(path: Path) -> None:

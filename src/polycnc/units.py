@@ -8,6 +8,9 @@ MM_PER_INCH = 25.4
 MM_PER_M = 1000.0
 SECONDS_PER_MINUTE = 60.0
 
+_MOST_DIGITS = 300
+_BEYOND = 10**_MOST_DIGITS
+
 
 def mm_from_inch(inch: float) -> float:
     """Convert inch to mm."""
@@ -27,3 +30,8 @@ def per_s_from_per_min(per_min: float) -> float:
 def per_min_from_per_s(per_s: float) -> float:
     """Convert a rate per second to a rate per minute."""
     return per_s * SECONDS_PER_MINUTE
+
+
+def whole(digits: str | bytes) -> int:
+    """Return a whole number from its digits; with more of them than Python reads it is one beyond all that count."""
+    return int(digits) if len(digits) <= _MOST_DIGITS else _BEYOND

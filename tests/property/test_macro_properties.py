@@ -241,7 +241,7 @@ def fuzz(seeds: range) -> None:
         language = MacroLanguage()
         language.longest_loop_pauses = 1
         channel = Channel(ProgramText.from_text(text, "x.tap"), dialect, machine, language=language)
-        for _ in range(100):  # some programs go on for ever
+        for _ in range(15):  # some programs go on for ever
             channel.fill(20)
             while channel.waits:
                 channel.go_on()

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import atexit
+import functools
+import json
 import os
+import select
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from polycnc.jit import COMPILING
 
 COMMAND = (sys.executable, "-m", "polycnc.cli")
+TIMEOUT_S = 240.0
 
 
 def environment(**more: str) -> dict[str, str]:
@@ -22,18 +28,64 @@ def polycnc(
     *arguments: str | Path, cwd: Path | None = None, status: int = 0, **more: str
 ) -> subprocess.CompletedProcess[str]:
     """Run the command, hold it to an exit status, and return what it printed."""
-    done = subprocess.run(
-        [*COMMAND, *map(str, arguments)],
+    words = [str(each) for each in arguments]
+    done = _from_nothing(words, cwd, more) if more or not hasattr(os, "fork") else _forked(words, cwd)
+    assert done.returncode == status, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
+    assert "Traceback" not in done.stderr, done.stderr
+    done.stderr = done.stderr.replace(f"{COMPILING}\n", "")  # said or not, depending on what ran before
+    return done
+
+
+def _from_nothing(
+    words: list[str], cwd: Path | None, more: dict[str, str]
+) -> subprocess.CompletedProcess[str]:
+    """Start a Python for the command, as the settings in `more` act from the beginning."""
+    return subprocess.run(
+        [*COMMAND, *words],
         cwd=cwd,
         env=environment(**more),
         capture_output=True,
         text=True,
         encoding="utf-8",
-        timeout=240,
+        timeout=TIMEOUT_S,
         stdin=subprocess.DEVNULL,
         check=False,
     )
-    assert done.returncode == status, f"exit status {done.returncode}\n{done.stdout}\n{done.stderr}"
-    assert "Traceback" not in done.stderr, done.stderr
-    done.stderr = done.stderr.replace(f"{COMPILING}\n", "")  # said or not, depending on what ran before
-    return done
+
+
+def _forked(words: list[str], cwd: Path | None) -> subprocess.CompletedProcess[str]:
+    """Let a process that has its imports behind it become the command."""
+    server = _server(tuple(sorted(environment().items())))
+    assert server.stdin is not None
+    assert server.stdout is not None
+    with tempfile.TemporaryDirectory() as folder:
+        outputs = [Path(folder, name) for name in ("stdout", "stderr")]
+        request = {
+            "arguments": words,
+            "folder": str(cwd or Path.cwd()),
+            "outputs": [str(path) for path in outputs],
+        }
+        server.stdin.write(json.dumps(request) + "\n")
+        server.stdin.flush()
+        if not select.select([server.stdout], [], [], TIMEOUT_S)[0]:
+            _server.cache_clear()
+            server.kill()
+            raise subprocess.TimeoutExpired([*COMMAND, *words], TIMEOUT_S)
+        answer = int(server.stdout.readline())
+        said = [path.read_text(encoding="utf-8") for path in outputs]
+    return subprocess.CompletedProcess([*COMMAND, *words], answer, *said)
+
+
+@functools.lru_cache(maxsize=1)
+def _server(environment: tuple[tuple[str, str], ...]) -> subprocess.Popen[str]:
+    """Return the running server; another where a test has changed the environment."""
+    server = subprocess.Popen(
+        [sys.executable, str(Path(__file__).with_name("command_server.py"))],
+        env=dict(environment),
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+    )
+    atexit.register(server.kill)
+    return server

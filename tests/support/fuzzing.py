@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 from polycnc.errors import PolycncError
 
 LIMIT_S = 10.0
-"""How long a case may take; uncompiled, on a busy machine, the slowest good ones take a tenth of that."""
+"""How much processor time a case may take; uncompiled, the slowest good ones take a tenth of that."""
 
 NUMBERS = (
     "0", "-0", "1", "-1", ".", "-", "+", "..5", "0.000000000000001", "1e-300", "1E400", "-1e400", "1e20", "nan", "inf",
@@ -166,20 +166,20 @@ def _too_long(number: int, frame: object) -> None:
 def failures(target: Target, seeds: Iterator[int]) -> Iterator[Failure]:
     """Run the cases of some seeds; yield those that fail.
 
-    What does not even return to Python ends the process with a traceback, after twice the limit.
+    What does not even return to Python, or waits for ever, ends the process with a traceback some minutes later.
     """
-    signal.signal(signal.SIGALRM, _too_long)
+    signal.signal(signal.SIGPROF, _too_long)
     for seed in seeds:
         case = target.case(random.Random(f"{target.name} {seed}"))
-        faulthandler.dump_traceback_later(2 * target.limit_s + LIMIT_S, exit=True)
-        signal.setitimer(signal.ITIMER_REAL, target.limit_s)
+        faulthandler.dump_traceback_later(30 * LIMIT_S, exit=True)
+        signal.setitimer(signal.ITIMER_PROF, target.limit_s)
         try:
             target.run(case)
         except (Exception, TookTooLong) as error:
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
             if isinstance(error, (PolycncError, *target.allowed)):
                 continue
             yield Failure(target.name, seed, ascii(traceback.format_exc()[-3000:]), ascii(case)[:3000])
         finally:
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
             faulthandler.cancel_dump_traceback_later()

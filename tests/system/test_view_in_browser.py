@@ -175,3 +175,39 @@ def test_a_phone_in_the_dark(chromium: Any, tmp_path: Path) -> None:
     view.page.locator("#theme").click()
     assert view.page.locator("html").get_attribute("data-theme") == "light"
     view.close()
+
+
+def test_five_axes_as_the_part_sees_them(chromium: Any, tmp_path: Path) -> None:
+    """In the frame of the part the tool is drawn where two rotations bring it; a chart shows the speed of C."""
+    rotation = pytest.importorskip("scipy.spatial.transform").Rotation
+    view = Opened(chromium, tmp_path, "five_axis.nc", "mill5")
+    view.page.locator("#frame").select_option("part")
+    view.page.wait_for_function("() => document.querySelector('#frame')?.value === 'part'", timeout=WAIT_MS)
+    view.page.wait_for_selector("html[data-ready=yes]", timeout=WAIT_MS)
+    view.slide(0.9)  # in the groove: all axes move
+    row = view.row_at()
+    x, y, z, a, c = view.trace.setpoint[row]
+    turned = rotation.from_euler("z", c, degrees=True) * rotation.from_euler("x", a, degrees=True)
+    assert view.marker() == pytest.approx(turned.apply((x, y, z)), abs=0.4)
+    assert abs(c) > 100.0
+    assert float(view.cell("C").split()[0]) == pytest.approx(c, abs=0.2)
+    view.page.locator("#shown").select_option(label="speed C")
+    shown = view.page.evaluate("() => Math.max(...document.getElementById('chart').data[0].y)")
+    assert shown == pytest.approx(np.max(np.abs(np.diff(view.trace.setpoint[:, 4]))) / 0.001, rel=0.01)
+    assert "The groove" in view.page.locator("#operations").inner_text()
+    view.requests.remove(view.requests[-1])  # the page was loaded once more
+    view.close()
+
+
+def test_a_distance_is_measured_between_two_places(chromium: Any, tmp_path: Path) -> None:
+    view = Opened(chromium, tmp_path, "bracket.nc", "mill3")
+    view.page.locator("#measure").click()
+    assert view.page.locator("#measure").get_attribute("aria-pressed") == "true"
+    for point in ((3.0, 4.0, 1.0), (6.0, 8.0, 13.0)):  # clicks as the library tells them
+        view.page.evaluate(
+            "([x, y, z]) => document.getElementById('path').emit('plotly_click', "
+            "{ points: [{ x, y, z, curveNumber: 0, pointNumber: 0 }] })",
+            point,
+        )
+    assert view.page.locator("#status").inner_text() == "Distance 13.000 mm (X 3.000, Y 4.000, Z 12.000)"
+    view.close()

@@ -269,7 +269,7 @@ def test_backlash_is_compensated_and_its_shift_outlives_shp() -> None:
     assert load["position"] == pytest.approx(5.0, abs=1e-5)
 
 
-@pytest.mark.covers("apci.var.dpoffset", "apci.wrdpoffset", "apci.wrdvoffset")
+@pytest.mark.covers("apci.var.dpoffset", "apci.wrdpoffset", "apci.wrdvoffset", "apci.var.dvoffset")
 def test_offset_of_the_setpoint() -> None:
     rig = Rig()
     axis = rig.board.axes[0]

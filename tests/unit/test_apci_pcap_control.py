@@ -212,7 +212,7 @@ def test_old_operating_systems_lack_some_status_bits() -> None:
 # ---------------------------------------------------------------------- zeros and overrides
 
 
-@pytest.mark.covers("apci.shp", "apci.wrsll", "apci.wrslr")
+@pytest.mark.covers("apci.shp", "apci.wrsll", "apci.wrslr", "apci.TSRP.sll", "apci.TSRP.slr")
 def test_shp_sets_the_machine_zero_and_arms_the_software_limits(pc: Pc) -> None:
     pc.close(0)
     go(pc, 0, 30.0)  # beyond slr = 20, which is not watched yet

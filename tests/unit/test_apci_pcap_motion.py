@@ -100,7 +100,8 @@ def test_jr_goes_on_from_the_instantaneous_position_and_rejects_the_queue(pc: Pc
     assert pc.rp(0) == near(here - 5.0)
 
 
-@pytest.mark.covers("apci.ja", "apci.jr", "apci.wrjac", "apci.wrjtvl", "apci.wrjovr")
+@pytest.mark.covers("apci.ja", "apci.jr", "apci.wrjac", "apci.wrjtvl", "apci.wrjovr", "apci.wrjvl")
+@pytest.mark.covers("apci.TSRP.jac", "apci.TSRP.jvl", "apci.TSRP.jtv", "apci.TSRP.jovr")
 def test_jogs_obey_what_was_written_before(pc: Pc) -> None:
     axes = pc.close(0)
     pcap.wrjac(pcap.TSRP(an=0, jac=-50.0))  # the braking ramp: 0.5 + 1.25 + 1.0 s
@@ -112,14 +113,17 @@ def test_jogs_obey_what_was_written_before(pc: Pc) -> None:
     pcap.jr(axes, pc.tsrp)
     assert pc.scans_until_rest() == scans(4.5)
     pcap.wrjovr(pcap.TSRP(an=0, jovr=1.0))
-    pcap.wrjtvl(pcap.TSRP(an=0, jtv=20.0))
+    pcap.wrjvl(pcap.TSRP(an=0, jvl=40.0))  # 0.4 + 2.1 + 0.4 s
+    pcap.jr(axes, pc.tsrp)
+    assert pc.scans_until_rest() == scans(2.9)
+    pcap.wrjtvl(pcap.TSRP(an=0, jtv=17.0))
     pcap.jr(axes, pc.tsrp)
     pc.scans_until_rest()
     pc.board.advance(10)
-    assert (pcap.rdaxstb(0, 13), pc.dv(0)) == (1, near(20.0))  # ended, and goes on
+    assert (pcap.rdaxstb(0, 13), pc.dv(0)) == (1, near(17.0))  # ended, and goes on
 
 
-@pytest.mark.covers("apci.jhl", "apci.jhr", "apci.wrhac", "apci.wrhvl")
+@pytest.mark.covers("apci.jhl", "apci.jhr", "apci.wrhac", "apci.wrhvl", "apci.TSRP.hac", "apci.TSRP.hvl")
 def test_the_search_runs_endlessly_until_the_reference_switch_and_brakes_with_hac(pc: Pc) -> None:
     axes = pc.close(0)
     pcap.wrhvl(pcap.TSRP(an=0, hvl=40.0))
@@ -164,7 +168,7 @@ def test_jhi_stops_behind_the_index_or_where_its_distance_is_used_up(pc: Pc) -> 
     assert record.lp == 9.0
 
 
-@pytest.mark.covers("apci.js", "apci.wrsdec")
+@pytest.mark.covers("apci.js", "apci.wrsdec", "apci.TSRP.sdec", "apci.var.sdec")
 def test_js_brakes_with_sdec_and_stops_at_once_with_0(pc: Pc) -> None:
     axes = pc.close(0)
     pc.tsrp[0].tp = 1000.0
@@ -254,29 +258,6 @@ def test_a_line_that_cannot_be_is_not_begun(pc: Pc, name: str) -> None:
     assert at(pc) == (0.0,) * 4
 
 
-@pytest.mark.parametrize(
-    ("phi", "end"), [(90.0, (0.0, 10.0)), (-90.0, (0.0, -10.0)), (720.0, (10.0, 0.0)), (45.0, None)]
-)
-@pytest.mark.covers("apci.mca", "apci.CMP", "apci.CMP.phi", "apci.CMP.dtca1", "apci.CMP.dtca2")
-@pytest.mark.covers("apci.mcr", "apci.CMP.ac", "apci.CMP.vl", "apci.CMP.tvl")
-def test_circles_about_an_absolute_and_a_relative_centre(
-    pc: Pc, phi: float, end: tuple[float, float] | None
-) -> None:
-    length = 10.0 * math.radians(abs(phi))
-    duration = 2.0 * math.sqrt(length / 100.0) if length < 25.0 else length / 50.0 + 0.5
-    x, y = end or (10.0 * math.cos(math.radians(phi)), 10.0 * math.sin(math.radians(phi)))
-    axes = pc.close(1, 0)  # axis 1 is x
-    for name, center in (("mca", (0.0, 0.0)), ("mcr", (-10.0, 0.0))):
-        pcap.mla(axes, pcap.LMP(ac=1e5, vl=1e4, dtm=dtm(0.0, 10.0)))
-        pc.scans_until_rest()
-        getattr(pcap, name)(axes, pcap.CMP(ac=100.0, vl=50.0, phi=phi, dtca1=center[0], dtca2=center[1]))
-        assert pc.scans_until_rest() == scans(duration)
-        assert (pc.rp(1), pc.rp(0)) == (near(x, abs=1e-9), near(y, abs=1e-9))
-    getattr(pcap, name)(axes, pcap.CMP(ac=100.0, vl=50.0, tvl=5.0, phi=phi, dtca1=5.0))
-    pc.scans_until_rest()
-    assert math.hypot(pc.dv(0), pc.dv(1)) == near(5.0)
-
-
 @pytest.mark.covers("apci.mca", "apci.mcr")
 def test_a_circle_needs_two_axes_and_a_radius(pc: Pc) -> None:
     axes = pc.close(0, 1)
@@ -286,78 +267,11 @@ def test_a_circle_needs_two_axes_and_a_radius(pc: Pc) -> None:
     pcap.mca(axes, pcap.CMP(ac=100.0, vl=50.0, phi=90.0))
     pc.run(0.1)
     assert pcap.rdErrorReg() == ErrorReg.errCenterPoint | ErrorReg.RadiusError
+    pcap.mca3d(axes, pcap.HMP3D(100.0, 50.0, 0.0, 90.0, 3.0, 4.0, 5.0, 0.0, 0.0, 1.0))  # needs three
+    pc.run(0.1)
+    assert at(pc) == (0.0,) * 4
     pcap.mcr(axes, pcap.CMP(ac=100.0, vl=50.0, phi=90.0, dtca1=5.0))
     assert (pcap.rdaxstb(0, 13), pcap.rdaxstb(1, 13)) == (0, 0)
-
-
-@pytest.mark.covers("apci.mha", "apci.HMP", "apci.HMP.phi", "apci.HMP.dtca1", "apci.HMP.dtca2")
-@pytest.mark.covers("apci.mhr", "apci.HMP.dtm", "apci.HMP.ac", "apci.HMP.vl", "apci.HMP.tvl")
-def test_a_helix_is_a_circle_with_lines(pc: Pc) -> None:
-    axes = pc.close(0, 1, 2)
-    for name, center, rise in (("mha", (0.0, 0.0), 15.0), ("mhr", (-10.0, 0.0), 15.0)):
-        pcap.mla(axes, pcap.LMP(ac=1e5, vl=1e4, dtm=dtm(10.0, 0.0, 0.0)))
-        pc.scans_until_rest()
-        hmp = pcap.HMP(
-            ac=100.0, vl=50.0, phi=90.0, dtca1=center[0], dtca2=center[1], dtm=dtm(99.0, 99.0, rise)
-        )
-        getattr(pcap, name)(axes, hmp)
-        pc.board.advance(LATENCY)
-        pc.run(0.3)
-        angle = math.atan2(pc.rp(1), pc.rp(0))
-        assert pc.rp(2) == near(rise * angle / math.radians(90.0))  # all in step
-        pc.scans_until_rest()
-        assert at(pc) == near((0.0, 10.0, 15.0, 0.0), abs=1e-9)
-    pcap.mhr(axes, pcap.HMP(ac=100.0, vl=50.0, tvl=5.0, phi=90.0, dtca2=-10.0, dtm=dtm(0.0, 0.0, 0.0)))
-    pc.scans_until_rest()
-    assert math.hypot(pc.dv(0), pc.dv(1)) == near(5.0)
-
-
-@pytest.mark.parametrize(("phi", "middle"), [(-1e-101, (0.0, -10.0)), (1e-101, None)])
-@pytest.mark.covers("apci.mha", "apci.HMP.phi", "apci.HMP.dtm", "apci.const.phithreshold")
-def test_a_helix_without_an_angle_ends_at_its_target_point(
-    pc: Pc, phi: float, middle: tuple[float, float] | None
-) -> None:
-    axes = pc.close(0, 1, 2)
-    pcap.mla(axes, pcap.LMP(ac=1e5, vl=1e4, dtm=dtm(10.0)))
-    pc.scans_until_rest()
-    pcap.mha(axes, pcap.HMP(ac=1e5, vl=10.0, phi=phi, dtm=dtm(0.0, 11.0, 6.0)))  # not on the circle
-    length = math.hypot(10.0 * math.radians(270.0 if middle else 90.0), 6.0)
-    pc.board.advance(LATENCY)
-    pc.run(length / 3.0 / 10.0)
-    if middle:  # a third of 270 degrees, clockwise
-        assert (pc.rp(0), pc.rp(1)) == near(middle, abs=0.05)
-    pc.scans_until_rest()
-    assert at(pc) == near((0.0, 10.0, 6.0, 0.0), abs=1e-9)
-
-
-@pytest.mark.covers("apci.mca3d", "apci.mcr3d", "apci.HMP3D", "apci.HMP3D.phi", "apci.HMP3D.dtm")
-@pytest.mark.covers(*(f"apci.HMP3D.{name}" for name in ("dtca1", "dtca2", "dtca3", "pn1", "pn2", "pn3")))
-@pytest.mark.covers("apci.HMP3D.ac", "apci.HMP3D.vl", "apci.HMP3D.tvl")
-def test_circles_in_space(pc: Pc) -> None:
-    axes = pc.close(0, 1, 2)
-    length = 10.0 * math.radians(90.0)
-    cases = [  # from (10, 0, 0), a quarter about the normal by the right hand
-        ("mca3d", (0.0, 0.0, 0.0), (0.0, 0.0, 2.0), 90.0, (0.0, 10.0, 0.0)),
-        ("mcr3d", (-10.0, 0.0, 0.0), (0.0, 0.0, 2.0), -90.0, (0.0, -10.0, 0.0)),
-        ("mca3d", (0.0, 0.0, 0.0), (0.0, 1.0, 0.0), 90.0, (0.0, 0.0, -10.0)),
-        ("mcr3d", (0.0, 0.0, 10.0), (0.0, 1.0, 0.0), 90.0, (0.0, 0.0, 0.0)),
-        ("mca3d", (10.0, 10.0, 0.0), (1.0, 0.0, 0.0), 90.0, (10.0, 10.0, -10.0)),
-    ]
-    for name, center, normal, phi, end in cases:
-        pcap.mla(axes, pcap.LMP(ac=1e5, vl=1e4, dtm=dtm(10.0)))
-        pc.scans_until_rest()
-        hmp3d = pcap.HMP3D(100.0, 50.0, 0.0, phi, *center, *normal, dtm=dtm(5.0, 5.0, 5.0))
-        getattr(pcap, name)(axes, hmp3d)
-        assert pc.scans_until_rest() == scans(2.0 * math.sqrt(length / 100.0))
-        expected = (10.0, 0.0, 10.0) if (name, phi) == ("mcr3d", 90.0) else end
-        if (name, phi) == ("mcr3d", 90.0):  # centre (10, 0, 10): from (10, 0, 0) about y
-            expected = (0.0, 0.0, 10.0)
-        assert at(pc)[:3] == near(expected, abs=1e-9)
-    pcap.mcr3d(axes, pcap.HMP3D(100.0, 50.0, 5.0, 90.0, 10.0, 0.0, 0.0, 0.0, 0.0, 1.0))
-    pc.scans_until_rest()
-    assert math.hypot(pc.dv(0), pc.dv(1)) == near(5.0)
-    pcap.mca3d(pcap.AS.of(0, 1), pcap.HMP3D(100.0, 50.0, 0.0, 90.0))
-    assert pcap.rdErrorReg() == 0
 
 
 @pytest.mark.parametrize(("unit", "name", "length_mm"), [(0, "mm", 1.0), (1, "inch", 25.4), (2, "m", 1000.0)])
@@ -438,46 +352,6 @@ def test_queued_lines_wait_for_ssms_and_follow_without_a_gap(pc: Pc) -> None:
     rest = pc.scans_until_rest()
     assert rest * SCAN_S + 1.28 == near(5.0, abs=4 * SCAN_S)  # twice 2.5 s
     assert at(pc)[:2] == (100.0, 100.0)
-
-
-def queued(pc: Pc, axes: pcap.AS) -> tuple[float, ...]:
-    """Let a queue run and return where it ends."""
-    pcap.ssms(axes)
-    pc.scans_until_rest()
-    return at(pc)[:3]
-
-
-@pytest.mark.covers("apci.smca", "apci.smcr")
-def test_queued_circles(pc: Pc) -> None:
-    axes = pc.close(0, 1)
-    pcap.smla(axes, pcap.LMP(ac=1e4, vl=100.0, dtm=dtm(10.0)))
-    pcap.smca(axes, pcap.CMP(ac=1e4, vl=100.0, phi=90.0))
-    assert pcap.rdMCiS(0) == pcap.rdMCiS(1) == 2
-    assert queued(pc, axes) == near((0.0, 10.0, 0.0), abs=1e-9)
-    pcap.smlr(axes, pcap.LMP(ac=1e4, vl=100.0, dtm=dtm(5.0)))
-    pcap.smcr(axes, pcap.CMP(ac=1e4, vl=100.0, phi=180.0, dtca1=-10.0))
-    assert queued(pc, axes) == near((-15.0, 10.0, 0.0), abs=1e-9)
-
-
-@pytest.mark.covers("apci.smha", "apci.smhr")
-def test_queued_helices(pc: Pc) -> None:
-    axes = pc.close(0, 1, 2)
-    pcap.smla(axes, pcap.LMP(ac=1e4, vl=100.0, dtm=dtm(10.0)))
-    pcap.smha(axes, pcap.HMP(ac=1e4, vl=100.0, phi=90.0, dtm=dtm(0.0, 0.0, 7.0)))
-    assert queued(pc, axes) == near((0.0, 10.0, 7.0), abs=1e-9)
-    pcap.smlr(axes, pcap.LMP(ac=1e4, vl=100.0, dtm=dtm(5.0)))
-    pcap.smhr(axes, pcap.HMP(ac=1e4, vl=100.0, phi=180.0, dtca1=-10.0, dtm=dtm(0.0, 0.0, 7.0)))
-    assert queued(pc, axes) == near((-15.0, 10.0, 14.0), abs=1e-9)
-
-
-@pytest.mark.covers("apci.smca3d", "apci.smcr3d")
-def test_queued_circles_in_space(pc: Pc) -> None:
-    axes = pc.close(0, 1, 2)
-    pcap.smla(axes, pcap.LMP(ac=1e4, vl=100.0, dtm=dtm(10.0)))
-    pcap.smca3d(axes, pcap.HMP3D(1e4, 100.0, 0.0, 90.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0))
-    assert queued(pc, axes) == near((0.0, 0.0, -10.0), abs=1e-9)
-    pcap.smcr3d(axes, pcap.HMP3D(1e4, 100.0, 0.0, 180.0, 0.0, 0.0, 10.0, 0.0, 1.0, 0.0))
-    assert queued(pc, axes) == near((0.0, 0.0, 10.0), abs=1e-9)
 
 
 @pytest.mark.covers("apci.sstps", "apci.sdels", "apci.ssms")

@@ -366,7 +366,6 @@ def test_a_circle_goes_round_a_centre_that_lies_on_no_axis(absolute: bool) -> No
     assert tuple(axis.rp for axis in rig.board.axes) == pytest.approx(end, abs=1e-9)
 
 
-@pytest.mark.covers("apci.wrgf")
 def test_another_gear_factor_changes_the_counts_of_a_unit() -> None:
     pc = Pc("[[axis]]\nslsp = 4000.0\ngf = 0.25\n")
     assert pc.board.axes[0].counts_per_unit == 1000.0

@@ -21,8 +21,6 @@ PATH: dict[tuple[str, int | None], float] = {
     "sap.comment",
     "sap.named_axis_args",
     "sap.mlr",
-    "sap.PU",
-    "sap.axis.effradius",
 )
 def test_the_pipe_example_as_printed() -> None:
     board = run_text(
@@ -37,7 +35,6 @@ def test_the_pipe_example_as_printed() -> None:
     assert board.tasks.rdcncts(0).errnum == 0
 
 
-@pytest.mark.covers("sap.qualifier_access", "sap.SysVarInt", "sap.axis.varint")
 def test_application_variables_as_printed() -> None:
     board = FakeBoard()
     board.system["sysvarint", 1] = 77
@@ -47,7 +44,6 @@ def test_application_variables_as_printed() -> None:
     assert (board.ci(0), board.ci(1)) == (77, -5)
 
 
-@pytest.mark.covers("sap.SysVarDbl", "sap.axis.vardbl")
 def test_double_application_variables_take_an_index() -> None:
     board = run_text(
         "SysVarDbl[4] := 1.25; A1.vardbl[2] := SysVarDbl[4] * 2; A2.vardbl[0] := A1.vardbl[1 + 1];"
@@ -96,19 +92,16 @@ def test_common_variables_are_a_thousand_each_and_the_same_for_tasks_and_pc() ->
 @pytest.mark.parametrize(
     ("name", "value"),
     [
-        pytest.param(name, value, marks=pytest.mark.covers(f"sap.{name}"))
-        for name, value in [
-            ("TU", 1),
-            ("TRAC", 1000.5),
-            ("TRVL", 20.5),
-            ("TRTVL", 0.25),
-            ("TROVR", 0.5),
-            ("TROVRST", 2.5),
-            ("IRQPC", 1),
-            ("LEDGN", 1),
-            ("LEDRD", 1),
-            ("LEDYL", 1),
-        ]
+        ("TU", 1),
+        ("TRAC", 1000.5),
+        ("TRVL", 20.5),
+        ("TRTVL", 0.25),
+        ("TROVR", 0.5),
+        ("TROVRST", 2.5),
+        ("IRQPC", 1),
+        ("LEDGN", 1),
+        ("LEDRD", 1),
+        ("LEDYL", 1),
     ],
 )
 def test_system_variables_are_shared_with_the_pc(name: str, value: float) -> None:
@@ -126,13 +119,7 @@ def test_system_variables_are_shared_with_the_pc(name: str, value: float) -> Non
         assert path[part] == 2.0
 
 
-@pytest.mark.parametrize(
-    "name",
-    [
-        pytest.param(name, marks=pytest.mark.covers(f"sap.axis.{name}"))
-        for name in ("jerkrel", "dpoffset", "dvoffset", "slsp")
-    ],
-)
+@pytest.mark.parametrize("name", ["jerkrel", "dpoffset", "dvoffset", "slsp"])
 def test_axis_qualifiers_are_read_and_written(name: str) -> None:
     board = FakeBoard()
     board.qualifiers[2, name, None] = 0.75
@@ -143,7 +130,6 @@ def test_axis_qualifiers_are_read_and_written(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["digi", "ifs"])
-@pytest.mark.covers("sap.axis.digi", "sap.axis.ifs")
 def test_status_words_are_read_bit_by_bit_and_cannot_be_written(name: str) -> None:
     board = FakeBoard()
     board.qualifiers[1, name, None] = 0b1001

@@ -8,40 +8,11 @@ import pytest
 
 from polycnc.controllers.apci import sap
 from polycnc.controllers.apci.board._axis_commands import cl
-from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
-from polycnc.controllers.apci.board._system_axis import AxisSetup
-from polycnc.controllers.apci.board._system_file import SystemFile
-from polycnc.controllers.apci.sap._board_host import BoardTasks
+from support.sap_on_board import Sap
 
 REFERENCED, LATCHED, RIGHT_SOFT_LIMIT = 1 << 17, 1 << 16, 1 << 6
 JOG = "A1.jac := 100; A1.jvl := 50; A1.jtvl := 0; "
-
-
-class Sap:
-    """A board with three axes whose task 0 runs programs; axis A1 has a right software limit at 5."""
-
-    def __init__(self) -> None:
-        limited = AxisSetup(name="A1", sll=-5.0, slr=5.0, soft_right="SMD")
-        self.board = Board(SystemFile(axis=(limited, AxisSetup(name="A2"), AxisSetup(name="A3"))))
-        self.board_tasks = BoardTasks(self.board)
-        self.tasks = self.board_tasks.tasks
-
-    def run(self, text: str, scans: int = 2000) -> None:
-        """Run a program to its end."""
-        self.board_tasks.load(sap.compile_program(text))
-        self.tasks.startcnct(0)
-        self.board.advance(scans)
-        assert self.tasks.error_text(0) == ""
-        assert self.tasks.rdcncts(0).running == 0
-
-    def cd(self, index: int) -> float:
-        """Return a common double."""
-        return float(self.board.state.cd[index])
-
-    def ci(self, index: int) -> int:
-        """Return a common integer."""
-        return int(self.board.state.ci[index])
 
 
 def test_every_register_of_the_tables_exists_on_the_board() -> None:

@@ -126,6 +126,12 @@ def test_a_wait_that_cannot_end_is_an_error(root: Root) -> None:
     assert root.error("N5 G1 X5 F6000\n10 WAIT(IC(4)=TRUE)") == "2: the program waits without end"
 
 
+def test_a_loop_that_cannot_end_is_an_error(root: Root, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.runner._execution._MOST_ROUNDS", 20)
+    assert root.error("N5 G1 X5 F6000\n10 A%=1\n20 GOTO 10") == "3: the program loops without end"
+    assert root.run("10 T%=CLOCK\n20 WHILE CLOCK<T%+15 DO\n30 #A%=1\n40 END").variables["#A%"] == 1
+
+
 # ---------------------------------------------------------------------- sub-programs and plain programs
 
 

@@ -322,3 +322,25 @@ def test_calls_from_several_threads_are_carried_out_one_by_one() -> None:
         pcap.detach()
     assert failed == []
     assert not board.pending or board.clock.cycles > 0
+
+
+LONG_NUMBERS = {
+    "label": ("fanuc", f"M98 P7\nM30\nO{DIGITS}\nM99\nO7\nM99\n"),
+    "skip level": ("din", f"/{DIGITS} G1 X3 F100\nM30\n"),
+    "goto": ("fanuc", f"GOTO {DIGITS}\nN{DIGITS} M30\n"),
+    "variable": ("fanuc", f"#{DIGITS}=1\nM30\n"),
+    "macro call": ("fanuc", f"G65 P{DIGITS}\nM30\n"),
+    "cpl label": ("bosch", f"10 GOTO N{DIGITS}\nN{DIGITS} X3\nM30\n"),
+    "cpl number": ("bosch", f"{DIGITS} A=1\nM30\n"),
+    "cpl variable": ("bosch", f"10 P{DIGITS}=1\n20 A=#P{DIGITS}\nG1 X{DIGITS}={DIGITS} F{DIGITS}\nM30\n"),
+}
+
+
+@pytest.mark.parametrize("case", LONG_NUMBERS)
+def test_numbers_of_five_thousand_digits_are_numbers_or_errors(case: str) -> None:
+    dialect, text = LONG_NUMBERS[case]
+    errors = runner.check(text, dialect=dialect)
+    result = runner.run(text, dialect=dialect, check=False)
+    assert all(error.position is not None for error in errors)
+    assert all(alarm.text for alarm in result.alarms)
+    assert errors or case not in ("goto", "variable", "macro call")

@@ -314,3 +314,17 @@ def test_a_card_may_take_factors_with_16_fraction_bits(command: str, bits: int) 
         for text, fraction in (("S16.32", 32), ("S16.16", 16)):
             card = ready_card(f'number_of_axes = 1\nscale_factor = "{text}"\n')
             assert _result(card, command, True, value, factor)[0] == value * factor >> fraction
+
+
+def test_before_the_first_result_of_a_cycle_there_is_neither_a_value_nor_a_carry() -> None:
+    card = ready_card()
+    kinds = ("IF_Carry", "IF_NotCarry", "IF_Zero", "IF_NotZero", "IF_Great")
+    install(
+        card,
+        *(
+            event("SET16", kind, constant=31 + k, target=address(f"user16b{k}"))
+            for k, kind in enumerate(kinds)
+        ),
+    )
+    card.advance(2)
+    assert [card.read(f"user16b{k}") for k in range(5)] == [0, 32, 33, 0, 0]

@@ -216,3 +216,13 @@ def test_any_value_but_0_starts_a_search_and_shows_as_a_flag() -> None:
     card.advance(2)
     assert card.read("gohome") == FLAG
     assert card.read("curvel") > 0
+
+
+def test_the_origin_that_is_passed_counts_in_the_scale_of_the_encoder() -> None:
+    card = ready_card(AXIS + "counts_per_pulse = 4.0\n")
+    set_now(card, ("encpfactor", 0.375), ("homepos", 230))
+    home(card)
+    run_home(card)
+    beyond = float(card.kernel.servo.actual[0]) - 5000
+    assert beyond > 40
+    assert card.read("encp") == pytest.approx(230 + 1.5 * beyond, abs=1.5)

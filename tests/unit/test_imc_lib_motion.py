@@ -95,6 +95,8 @@ def test_phasing_shifts_a_master_against_slaves_that_follow_its_mcsvel(
 HOMING = """
 ready = true
 [[axis]]
+[[axis]]
+[[axis]]
 origin = [5000, 5600]
 index = { first = 130, pitch = 400 }
 parameters = { highvel = 20.0, lowvel = 2.0, homepos = 0, homestpos = 77, indexNum = 2 }
@@ -103,17 +105,18 @@ parameters = { highvel = 20.0, lowvel = 2.0, homepos = 0, homestpos = 77, indexN
 
 
 def homed(name: str, *arguments: int, start: int = 0) -> tuple[int, int]:
-    """Home the axis; return where it has found the origin, as a machine position, and where it ends."""
+    """Home an axis that is not the first; return where the origin is, as a machine position, and where it ends."""
     program = Program(HOMING)
     if start:
-        program.ok(lib.IMC_MoveAbsolute, start, 0, IF)
-        program.rest(0)
-    program.ok(getattr(lib, name), *arguments, 0, IF)
-    program.rest(0)
-    assert (program.get("homed"), program.get("gohome")) == (-1, 0)
-    assert program.get("encp") == program.get("curpos")
-    end = program.get("curpos")
-    machine = round(program.card.state.axis[0]["machine"] / 65536)
+        program.ok(lib.IMC_MoveAbsolute, start, 2, IF)
+        program.rest(2)
+    program.ok(getattr(lib, name), *arguments, 2, IF)
+    program.rest(2)
+    assert (program.get("homed", 2), program.get("gohome", 2)) == (-1, 0)
+    assert program.get("encp", 2) == program.get("curpos", 2)
+    assert [program.get(word, axis) for word in ("homed", "curpos") for axis in (0, 1, 3)] == [0] * 6
+    end = program.get("curpos", 2)
+    machine = round(program.card.state.axis[2]["machine"] / 65536)
     lib.detach()
     return machine - end, end
 

@@ -54,6 +54,7 @@ def test_at_a_limit_switch_every_command_leads_away_from_it_only(way: int) -> No
     assert abs(here) > 1000
     for towards in (
         [("mcstgpos", here + 37 * way), ("mcsgo", FLAG)],
+        [("mcstgpos", here + way), ("mcsgo", FLAG)],
         [("mcsdist", 41 * way), ("mcsgo", FLAG)],
         [("mcstgvel", 7 * way)],
         [("homeseq", 0x11 if way > 0 else 0x31), ("highvel", 5), ("gohome", FLAG)],
@@ -112,12 +113,22 @@ def test_an_error_that_no_mask_names_changes_nothing() -> None:
 
 
 @pytest.mark.covers("imc.param.stopmode")
-def test_stopmode_names_the_errors_that_stop_at_once() -> None:
-    card = ready_card(LIMITS)
-    set_now(card, ("aioctr", 0x000F), ("stopmode", 1))
-    send(card, IFIFO, ("mcstgvel", 20))
-    card.advance(100)
-    assert 1000 <= card.read("curpos") <= 1020
+@pytest.mark.parametrize(("soft", "way", "bit"), [(0, 1, 1), (0, -1, 2), (1, 1, 4), (1, -1, 8)])
+def test_stopmode_names_the_errors_that_stop_at_once_and_all_others_brake(
+    soft: int, way: int, bit: int
+) -> None:
+    for mode, least, most in ((bit, 0, 20), (~bit, 180, 240)):  # 20 pulses/ms and 1 pulse/ms2: 200 to brake
+        card = ready_card(
+            "number_of_axes = 3\n[[axis]]\n[[axis]]\nlimit_positive = 500\nlimit_negative = -500\n"
+        )
+        set_now(card, ("aioctr", 0xC000 - 0x10000 if soft else 0x000F, 1), ("stopmode", mode, 1))
+        if soft:
+            set_now(card, ("psoftlim", 500, 1), ("nsoftlim", -500, 1))
+        send(card, IFIFO, ("mcstgvel", 20 * way, 1), ("mcstgvel", 3, 2))
+        card.advance(200)
+        assert card.read("error", 1) == bit
+        assert least <= card.read("curpos", 1) * way - 500 <= most
+        assert (card.read("curvel", 1), card.read("curvel", 2)) == (0, 3)
 
 
 @pytest.mark.covers("imc.param.exitfilt")
@@ -213,3 +224,13 @@ def test_run_set_to_0_stops_at_once_and_a_gear_is_left() -> None:
     set_now(card, ("run", 0, 1))
     card.advance(20)
     assert (card.read("curvel", 1), card.read("engear", 1), card.read("curvel", 0)) == (0, 0, 10)
+
+
+def test_a_card_that_is_switched_on_at_its_switches_shows_them() -> None:
+    card = ready_card(
+        "number_of_axes = 3\n[[axis]]\n[[axis]]\n"
+        "limit_positive = -0.5\nlimit_negative = -7.0\norigin = [-0.4, 0.6]\n"
+        '[[axis]]\nlimit_positive = 9.0\nlimit_negative = 0.25\norigin = [0.3, 2.0]\nlow_when_on = ["origin"]\n'
+    )
+    card.advance(1)
+    assert [card.read("aio", i) for i in range(3)] == [0, 1 + 4, 2 + 4]

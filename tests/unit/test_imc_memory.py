@@ -292,7 +292,6 @@ def test_settings_of_an_axis_that_the_simulation_does_not_use_are_kept_for_each_
 @pytest.mark.covers(
     "imc.param.waitfilt",
     "imc.param.waitequ",
-    "imc.param.giod",
     "imc.param.eventid",
     "imc.param.eventbase",
     "imc.param.out1",

@@ -420,3 +420,28 @@ def test_feedback_can_follow_the_command() -> None:
     move_absolute(card, 100)
     card.wait()
     assert (card.read("encp"), card.read("poserr"), card.kernel.servo.actual[0]) == (100, 0, 0)
+
+
+@pytest.mark.parametrize("name", ["mcsgo", "pcsgo", "mcstgvel", "pcstgvel"])
+def test_an_axis_that_has_just_been_told_to_move_shows_it_before_the_next_cycle(name: str) -> None:
+    card = ready_card()
+    system = name[:3]
+    set_now(card, (f"{system}tgpos", 500, 3), (name, FLAG if name.endswith("go") else 7, 3))
+    shown = ("mcsmoving", "pcsmoving", "profiling", "moving", "motion")
+    expected = [FLAG if word[:3] in (system, "pro", "mov", "mot") else 0 for word in shown]
+    assert [card.read(word, 3) for word in shown] == expected
+    assert [card.read(word, 2) for word in shown] == [0] * 5
+
+
+def test_the_origin_is_set_in_the_scale_of_the_encoder() -> None:
+    card = ready_card("number_of_axes = 3\n[[axis]]\n[[axis]]\n[[axis]]\ncounts_per_pulse = 4.0\n")
+    move_absolute(card, 700, 2)
+    card.wait()
+    set_now(card, ("encpfactor", 0.375, 2), ("homepos", 25, 2), ("sethome", FLAG, 2))
+    card.advance(1)
+    assert [card.read(name, 2) for name in ("curpos", "encp", "mcspos", "poserr")] == [25, 25, 25, 0]
+    card.advance(5)
+    assert [card.read(name, 2) for name in ("curpos", "encp", "encpvel")] == [25, 25, 0]
+    move_relative(card, 40, 2)
+    card.wait()
+    assert [card.read(name, 2) for name in ("curpos", "encp")] == [65, 25 + 60]

@@ -250,12 +250,15 @@ def test_general_inputs_read_0_when_closed_and_latch() -> None:
     assert (card.read("gin1"), card.read("gin1lat"), card.read("gin2lat")) == (-1, 0, 1)
 
 
-@pytest.mark.covers("imc.param.gio")
+@pytest.mark.covers("imc.param.gio", "imc.param.giod")
 def test_general_outputs_follow_their_registers() -> None:
     card = ready_card()
     send(card, IFIFO, ("gio", 0b101), ("giod", 0b10), ("gout3", -0x8000))
     card.advance(1)
     assert [number for number in range(1, 49) if card.output(number)] == [1, 3, 18, 48]
+    for number in (-1, 0, 49, 64):
+        with pytest.raises(UsageError, match=f"there is no output {number}"):
+            card.output(number)
 
 
 def test_a_segment_holds_its_own_queue_only() -> None:

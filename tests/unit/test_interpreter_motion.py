@@ -4,7 +4,18 @@ from __future__ import annotations
 
 import pytest
 
-from support.programs import AXIS, FIVE, LINEAR, ROTARY, accepted, machine_config, moves, notes, refusal
+from support.programs import (
+    AXIS,
+    FIVE,
+    LINEAR,
+    ROTARY,
+    SPINDLE,
+    accepted,
+    machine_config,
+    moves,
+    notes,
+    refusal,
+)
 
 
 def test_rapids_and_feed_moves_by_modal_motion() -> None:
@@ -180,7 +191,8 @@ def test_what_is_ignored_is_said_once() -> None:
 
 def test_a_plain_cam_program_says_nothing() -> None:
     program = "%\nO1000\nG21\nG0 G17 G40 G49 G80 G90 G54\nG0 X0 Y0 S1000 M3\nG1 Z-1 F100\nG28 Z0\nM30\n%\n"
-    assert notes(program) == []
+    homed = machine_config(LINEAR + "home_mm = 250\n", SPINDLE)
+    assert notes(program, config=homed) == []
 
 
 def test_messages_of_the_program() -> None:

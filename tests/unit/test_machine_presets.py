@@ -91,7 +91,7 @@ def test_a_wrong_name_lists_the_presets() -> None:
     assert not isinstance(caught.value, ConfigurationError)
     assert str(caught.value) == (
         "there is no machine 'mil5'\n"
-        "did you mean 'mill5'? presets: card6, lathe2, mill3, mill5; a machine file is named by its path, "
+        "did you mean 'mill5'? presets: card6, lathe2, mill3, mill5, vmc3; a machine file is named by its path, "
         "like ./mine.toml"
     )
     with pytest.raises(UsageError, match="there is no preset 'robot'\npresets: card6, lathe2, mill3, mill5"):

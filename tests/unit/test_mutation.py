@@ -31,6 +31,10 @@ def test_share():
     assert LARGEST == 7
     assert share(6.0, -4.0) == (2.0, False)
     assert share(7.0, 3.0)[1]
+
+
+def test_broken():
+    assert share(6.0, -4.0) == (2.5, False)
 """
 
 
@@ -55,8 +59,16 @@ def test_every_kind_of_change_is_made_and_nothing_else_is_touched() -> None:
         ("constant", 14, "3"),
         ("arguments", 14, "max(3, 5), 2"),
         ("constant", 14, "2"),
-        ("constant", 14, "4"),
+        ("constant", 14, "6"),
     ]
+
+
+def test_an_index_becomes_that_of_the_first() -> None:
+    source = b"def f(rows, i, name):\n    return rows[i] + rows[i, 2][name]\n"
+    found = [
+        each.applied(source).decode().splitlines()[1] for each in mutants_of(source) if each.kind == "index"
+    ]
+    assert found == ["    return rows[0] + rows[i, 2][name]", "    return rows[i] + rows[0, 2][name]"]
 
 
 def test_a_changed_module_still_is_one_and_differs_in_one_line() -> None:
@@ -95,6 +107,7 @@ def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> Non
     }
     with Session(repository) as session:
         reach = session.reach([module], tests)
+        assert reach.failed == ["tests/unit/test_thing.py::test_broken"]
         verdicts = {
             place: session.outcome(module, each, reach).verdict
             for each in mutants_of(MODULE)

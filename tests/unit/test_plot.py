@@ -38,6 +38,15 @@ def test_a_mill_has_plan_perspective_and_speed() -> None:
     assert figure.get_suptitle().startswith("<text>    on mill3    ")
 
 
+def test_start_and_end_are_marked_where_they_are_seen() -> None:
+    figure = polycnc.plot(polycnc.run("G1 X4 F600\nX40 Y17\nY31\nM30\n", trace=True))
+    ends = {line.get_label(): np.asarray(line.get_xydata())[0].tolist() for line in figure.axes[0].lines}
+    assert ends["start"] == pytest.approx([0.0, 0.0], abs=0.01)
+    assert ends["end"] == pytest.approx([40.0, 31.0])
+    far = polycnc.plot(polycnc.run("G0 X400 Y300\nG1 X410 F600\nY310\nG0 X0 Y0\nM30\n", trace=True))
+    assert {"start", "end"} & {line.get_label() for line in far.axes[0].lines} == set()
+
+
 def test_cuts_and_rapids_are_apart_and_far_rapids_leave_the_picture() -> None:
     plan = _figure(MILLING).axes[0]
     lines = _lines(plan)

@@ -11,7 +11,7 @@ from polycnc.cnc import ControlError, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import Signals
-from polycnc.machine import SnapshotError
+from polycnc.machine import Host, SnapshotError
 
 LINEAR = "vmax_mm_s = 500\namax_mm_s2 = 5000\n"
 ROTARY = 'kind = "rotary"\nvmax_deg_s = 100\namax_deg_s2 = 400\n'
@@ -361,3 +361,66 @@ def test_snapshots_are_taken_between_cpl_programs(example: Example) -> None:
     example.pnc.advance(5)
     with pytest.raises(SnapshotError):
         example.pnc.snapshot()
+
+
+# ---------------------------------------------------------------------- what another channel sees
+
+
+@pytest.mark.covers("cpl.nc.G95", "cpl.nc.M0_M1")
+def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> None:
+    example.start("N1 G95 F0.5 S1300 M3\nN2 G1 X4\nN3 M0\nN4 G1 X5")
+    read = "1 DIM R(3) : DIM W%(1)\n2 V=0 : #E%=MCODS(3,1,V,R,3) : #F=R(1)\n3 V=0 : #G%=MCODS(87,1,V,W%,1) : #W%=W%(1)"
+    example.pnc.advance(150)
+    found = example.run(read, channel=2)
+    assert (found["#E%"], found["#F"], found["#G%"], found["#W%"]) == (0, 650, 0, 0)
+    example.pnc.advance(1000)
+    assert example.pnc.run_state(1) is RunState.PROGRAM_STOP
+    found = example.run(read, channel=2)
+    assert (found["#F"], found["#W%"]) == (0, 16)
+    example.pnc.cycle_start()
+    example.pnc.advance(500)
+    assert example.pnc.axes["X"].setpoint == 5
+
+
+@pytest.mark.covers("cpl.err.SERCOS_LOCKED", "cpl.SCS.result.1", "cpl.SCSL.result.1", "cpl.err.SCS_ACCESS")
+def test_a_locked_service_channel_leaves_the_old_value(example: Example) -> None:
+    drives = example.pnc.system.drives
+    example.run("N1 G0 X3.5")
+    assert example.run('1 #P%=SCS(1,"S",47,#E%)')["#P%"] == 35000
+    drives.locked = True
+    example.run("N1 G0 X8")
+    found = example.run('1 #P%=SCS(1,"S",47,#E%) : SCSL(1,"S",187,"L",#F%) : #Q%=SCS(1,"S",51,#G%)')
+    assert [found[name] for name in ("#P%", "#E%", "#F%", "#Q%", "#G%")] == [
+        35000,
+        1,
+        1,
+        80000,
+        0,
+    ]  # 51 is cyclic
+    for statement in ('A%=SCS(1,"S",47)', 'SCSL(1,"S",187,"L")'):
+        example.start(f"1 {statement}")
+        example.pnc.advance(3)
+        run = example.pnc.control.channels[0].run
+        assert run is not None
+        assert run.error is not None
+        assert run.error.what == "SERCOS SERVICE CHANNEL IS LOCKED"
+        example.pnc.reset()
+        example.pnc.advance(1)
+    drives.locked = False
+    assert example.run('1 #P%=SCS(1,"S",47,#E%)')["#P%"] == 80000
+    assert not (example.folder / "L").exists()
+
+
+class Frozen:
+    """A wall clock that stands."""
+
+    def now_s(self) -> float:
+        return 0.0
+
+
+def test_a_host_lends_it_time(example: Example) -> None:
+    example.start("N1 G1 X2 F6000\n1 WAIT(,100)\n2 #A=MPOS(1)")
+    with Host(example.pnc, Frozen(), rate=0.0) as host:
+        host.call(lambda pnc: pnc.advance(400))
+        assert host.call(lambda pnc: pnc.run_state()) is RunState.COMPLETED
+    assert example.pnc.variables()["#A"] == 2

@@ -514,3 +514,10 @@ def test_one_axis_is_measured_in_passing_and_a_stop_is_reached(measuring: Cell) 
     found = measuring.values("N2 G375 Z-20 F900", "SD(9)", "PROBE(3)", "PPOS(3)", "CPOS(3)")
     assert found == pytest.approx([0, -12.345, -12.345, -12.345], abs=1e-5)
     assert measuring.values("N2 G375 Z-2 F900", "SD(9)", "CPOS(3)") == [1, -2]
+
+
+@pytest.mark.parametrize(
+    "word", ["G131", "G192 S500", "G292 S50", "G196 S180", "G328", "G352", "G354", "G510", "G511"]
+)
+def test_words_that_are_not_simulated_are_refused(cell: Cell, word: str) -> None:
+    assert word.split()[0] in cell.error(f"1 A=1\nN10 {word}")

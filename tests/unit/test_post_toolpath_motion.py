@@ -31,8 +31,9 @@ def test_a_point_is_a_move_with_the_feed_and_behind_rapid_one_without() -> None:
 
 
 def test_lengths_and_feeds_in_inch() -> None:
-    (_, words), *_ = moves_of("FEDRAT/254\nGOTO/25.4,50.8,-2.54\n", units="inch")
+    (_, words), *_ = moves_of("FROM/12.7,38.1,63.5\nFEDRAT/254\nGOTO/25.4,50.8,-2.54\n", units="inch")
     assert (words["X"], words["Y"], words["Z"], words["F"]) == pytest.approx((1.0, 2.0, -0.1, 10.0))
+    assert (words["STARTX"], words["STARTY"], words["STARTZ"]) == pytest.approx((0.5, 1.5, 2.5))
 
 
 def test_a_move_without_a_way_is_left_out() -> None:
@@ -337,3 +338,97 @@ def test_tilted_holes_are_drilled_along_the_tool() -> None:
     assert moves[1][1:] == pytest.approx((13.0, 0.0, 4.0))
     assert moves[2][1:] == pytest.approx((4.0, 0.0, -8.0))
     assert moves[3][1:] == pytest.approx((13.0, 0.0, 4.0))
+
+
+TILTED_HOLES = (
+    "FROM/20,-1,53,3,4,12\nFEDRAT/100\nCYCLE/{},DEPTH,26,MMPM,150,CLEAR,13,RETURN,39\n"
+    "GOTO/11,-13,17,3,4,12\nGOTO/37,29,28,3,4,12\nCYCLE/OFF\n"
+)
+
+
+@pytest.mark.parametrize("cycles", ["macros", "moves"])
+def test_holes_of_a_tilted_tool_lie_along_its_axis_and_it_rises_before_it_goes_to_a_higher_one(
+    cycles: str,
+) -> None:
+    # (3, 4, 12) / 13 is the tool axis: 13 above a hole is 3, 4, 12 away from it, 26 below -6, -8, -24.
+    moves = points_of(moves_of(TILTED_HOLES.format("DRILL"), cycles=cycles, rotary="vector"))
+    first: list[tuple[str, float, float, float]] = [("RAPID", 20, -1, 53)]  # where the tool is, to turn it
+    first += [("RAPID", 14, -9, 29), ("LINEAR", 5, -21, -7), ("RAPID", 20, -1, 53)]
+    # The tool stands 129 / 13 above the second point and goes up to 39 first: by 378 / 13 along its axis.
+    rise = [("RAPID", 20 + 1134 / 169, -1 + 1512 / 169, 53 + 4536 / 169)]
+    second = [("RAPID", 46, 41, 64), ("RAPID", 40, 33, 40), ("LINEAR", 31, 21, 4), ("RAPID", 46, 41, 64)]
+    whole = [*first, *rise, *second]
+    assert [macro for macro, *_ in moves] == [macro for macro, *_ in whole]
+    for (_, *found), (_, *expected) in zip(moves, whole, strict=True):
+        assert found == pytest.approx(expected)
+
+
+def test_a_deep_hole_of_a_tilted_tool_is_pecked_along_its_axis() -> None:
+    text = TILTED_HOLES.format("DEEP").replace("MMPM", "STEP,16.9,MMPM")
+    moves = points_of(moves_of(text, rotary="vector", reentry_mm=1.3))[1:9]
+    levels = [13, -3.9, 13, -2.6, -20.8, 13, -19.5, -26]  # along the axis, above the point at 11, -13, 17
+    expected = [(11 + 3 * level / 13, -13 + 4 * level / 13, 17 + 12 * level / 13) for level in levels]
+    assert [macro == "LINEAR" for macro, *_ in moves] == [False, True, False, False, True, False, False, True]
+    for (_, *found), place in zip(moves, expected, strict=True):
+        assert found == pytest.approx(place)
+
+
+def test_the_control_is_told_of_a_rise_between_holes_of_different_heights() -> None:
+    text = (
+        "FROM/5,6,30\nFEDRAT/100\nCYCLE/DRILL,DEPTH,7,MMPM,90,CLEAR,3,RETURN,9\nGOTO/11,13,4\nGOTO/29,17,21\n"
+    )
+    moves = points_of(moves_of(text))
+    assert moves == [
+        *(("RAPID", 11.0, 13.0, 30.0), ("RAPID", 11.0, 13.0, 13.0), ("CYCLE_DRILL", 11.0, 13.0, -3.0)),
+        *(("RAPID", 11.0, 13.0, 30.0), ("CYCLE_DRILL", 29.0, 17.0, 14.0)),
+    ]
+    as_moves = points_of(moves_of(text, cycles="moves"))
+    assert as_moves[3:] == [
+        *(("LINEAR", 11.0, 13.0, -3.0), ("RAPID", 11.0, 13.0, 13.0)),
+        *(("RAPID", 11.0, 13.0, 30.0), ("RAPID", 29.0, 17.0, 30.0), ("RAPID", 29.0, 17.0, 24.0)),
+        *(("LINEAR", 29.0, 17.0, 14.0), ("RAPID", 29.0, 17.0, 30.0)),
+    ]
+
+
+def test_a_cycle_that_leaves_to_one_level_goes_on_from_hole_to_hole() -> None:
+    moves = moves_of(HOLES.format("DRILL,DEPTH,12,CLEAR,2,RETURN,10"))
+    assert [(macro, words.get("HOLE")) for macro, words in moves[2:]] == [
+        ("CYCLE_DRILL", 1.0),
+        ("CYCLE_DRILL", 2.0),
+        ("CYCLE_OFF", None),
+    ]
+    # From a low start to the level of the cycle, then a cycle without one: the control needs it anew.
+    text = "FROM/3,4,5\nFEDRAT/90\nCYCLE/DRILL,DEPTH,7,CLEAR,2,RETURN,9\nGOTO/11,13,0\nCYCLE/DRILL,DEPTH,7,CLEAR,2\n"
+    found = [(macro, words.get("RETRACT")) for macro, words in moves_of(f"{text}GOTO/17,19,0\n")]
+    assert found == [
+        *(("RAPID", None), ("CYCLE_DRILL", 98.0), ("CYCLE_OFF", None)),
+        *(("CYCLE_DRILL", 99.0), ("CYCLE_OFF", None)),
+    ]
+
+
+def test_every_length_of_a_hole_is_in_the_unit_of_the_control() -> None:
+    text = "FROM/12.7,38.1,50.8\nCYCLE/DEEP,DEPTH,25.4,STEP,6.35,MMPM,381,CLEAR,2.54\nGOTO/63.5,76.2,10.16\n"
+    (macro, words), _ = moves_of(text, units="inch")
+    assert macro == "CYCLE_DEEP"
+    assert words == pytest.approx({
+        "X": 2.5, "Y": 3.0, "Z": -0.6, "STARTX": 0.5, "STARTY": 1.5, "STARTZ": 2.0, "SURFACE": 0.4, "R": 0.5,
+        "OUT": 0.5, "RETRACT": 99.0, "HOLE": 1.0, "P": 0.0, "Q": 0.25, "F": 15.0, "FEEDMODE": 94.0,
+    })  # fmt: skip
+    tapped = f"SPINDL/RPM,500,CLW\n{text.replace('DEEP', 'TAP').replace('STEP,6.35,MMPM,381', 'MMPR,1.27')}"
+    ((_, words), _) = moves_of(tapped, units="inch")
+    assert (words["PITCH"], words["F"], words["S"]) == pytest.approx((0.05, 25.0, 500.0))
+
+
+def test_holes_by_moves_have_the_feed_of_their_cycle_and_leave_the_other_alone() -> None:
+    text = "FROM/3,4,50\nSPINDL/RPM,500,CLW\nFEDRAT/170\nCYCLE/DRILL,DEPTH,7,MMPR,.3,CLEAR,2\nGOTO/11,13,0\nCYCLE/OFF\n"
+    moves = moves_of(f"{text}GOTO/17,19,5\n", cycles="moves")
+    feeds = [(words["Z"], words["F"], words["FEEDMODE"]) for macro, words in moves if macro == "LINEAR"]
+    assert feeds == [(-7.0, 0.3, 95.0), (5.0, 170.0, 94.0)]
+
+
+@pytest.mark.parametrize(("units", "scale"), [("mm", 1.0), ("inch", 25.4)])
+def test_an_arc_begins_where_the_tool_is_in_the_unit_of_the_control(units: str, scale: float) -> None:
+    text = "FROM/10,3,7\nFEDRAT/600\nCIRCLE/4,-5,7,0,0,1,10\nGOTO/-4,1,7\n"
+    (_, words), *_ = moves_of(text, units=units)
+    starts = [words[name] * scale for name in ("STARTX", "STARTY", "STARTZ", "X", "Y", "Z")]
+    assert starts == pytest.approx([10.0, 3.0, 7.0, -4.0, 1.0, 7.0])

@@ -8,13 +8,14 @@ from typing import Annotated
 
 import typer
 
-from polycnc.cli._run import DIALECT, MACHINE
+from polycnc.cli._run import DIALECT, MACHINE, ROOT
 
 
 def debug_command(
     program: Annotated[Path, typer.Argument(help="The part program.", metavar="PROGRAM")],
     machine: Annotated[str | None, MACHINE] = None,
     dialect: Annotated[str | None, DIALECT] = None,
+    root: Annotated[Path | None, ROOT] = None,
     rate: Annotated[
         float, typer.Option(help="Machine seconds that pass in a second.", min=0.001, max=1000.0, metavar="X")
     ] = 1.0,
@@ -31,7 +32,7 @@ def debug_command(
         raise UsageError(
             "the debugger needs textual", hint="Install it: pip install 'polycnc[debug]'."
         ) from None
-    debugger = runner.Debugger(runner.program_text(program), machine, dialect)
+    debugger = runner.Debugger(runner.program_text(program), machine, dialect, root=root)
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         raise UsageError(
             "the debugger needs a terminal to draw on and to read keys from",

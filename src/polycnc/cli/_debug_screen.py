@@ -25,6 +25,7 @@ from polycnc.runner import Debugger, Place
 
 _TICK_S = 0.05
 _OVERRIDE_STEP = 0.1
+_LONGEST_VALUE = 40
 _EXECUTED = Style(bgcolor="dark_green", color="white", bold=True)
 _NEXT = Style(bgcolor="grey30")
 _CURSOR = Style(underline=True)
@@ -137,6 +138,7 @@ class DebugScreen(App[None]):
                 yield Static(id="state")
                 yield Static(id="positions")
                 yield Static(id="words")
+                yield Static(id="variables")
                 yield Static(id="alarms")
         yield Static(id="remark", markup=False)
         yield Footer()
@@ -213,6 +215,7 @@ class DebugScreen(App[None]):
         self.query_one("#state", Static).update(_state(status))
         self.query_one("#positions", Static).update(_positions(status))
         self.query_one("#words", Static).update(_words(status))
+        self.query_one("#variables", Static).update(_variables(debugger.variables()))
         self.query_one("#alarms", Static).update(_alarms(status))
 
 
@@ -255,6 +258,17 @@ def _words(status: Status) -> Text:
     others += [] if modal.d is None else [f"D{modal.d}"]
     others += [f"M{code}" for code in modal.m]
     return Text(" ".join(sorted(modal.g.values())) + "\n" + " ".join(others))
+
+
+def _variables(variables: dict[str, object]) -> Text:
+    """Show variables one a line, NUL as the language calls it."""
+    lines = [f"{name} = {'NUL' if value is None else _short(value)}" for name, value in variables.items()]
+    return Text("\n".join(lines))
+
+
+def _short(value: object) -> str:
+    shown = f"{value:g}" if isinstance(value, float) else str(value)
+    return shown if len(shown) <= _LONGEST_VALUE else f"{shown[: _LONGEST_VALUE - 1]}…"
 
 
 def _alarms(status: Status) -> Text:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from polycnc.cli._output import say
+from polycnc.units import whole
 
 if TYPE_CHECKING:
     from polycnc.servers.focas import Fault, FocasServer, Keeper, Profile
@@ -172,4 +173,4 @@ def _numbered(content: bytes) -> tuple[int, bytes]:
     """Return the number of a program and its text from the O word on; one without a number becomes O1."""
     text = content.replace(b"\r\n", b"\n").strip().removeprefix(b"%").lstrip().partition(b"\n%")[0] + b"\n"
     found = _NUMBER.match(text)
-    return (int(found[1]), text) if found else (1, b"O1\n" + text)
+    return (whole(found[1]), text) if found else (1, b"O1\n" + text)

@@ -20,6 +20,7 @@ from polycnc.cnc._control_checks import (
     check_over,
     check_ready,
     check_referenced,
+    share_axes,
     text_to_begin,
     wrong_mode,
 )
@@ -171,18 +172,8 @@ class Control:
             channel.change_config(self._live, self.dialect)
 
     def share_axes(self, shares: Sequence[tuple[str, ...]]) -> None:
-        """Share the axes out anew, one tuple for each channel; an axis in none of them is moved by hand only.
-
-        Raises:
-            ControlError: A channel whose axes change executes a program.
-        """
-        pairs = zip(self.channels, shares, strict=True)
-        changing = [(channel, axes) for channel, axes in pairs if set(axes) != set(channel.axes)]
-        for channel, _ in changing:
-            check_over(channel)
-            channel.check_rest()
-        for channel, axes in changing:
-            channel.share(axes)
+        """Share the axes out anew, one tuple a channel; refused while one executes a program that is to change."""
+        share_axes(self.channels, shares)
         self.alarms.owners = {axis: n for n, axes in enumerate(shares) for axis in axes}
 
     def change_dialect(self, dialect: Dialect) -> None:

@@ -92,3 +92,18 @@ def wrong_mode(mode: Mode, what: str, *modes: Mode) -> ControlError:
     """Return the refusal of a command that `mode` does not have."""
     names = " or ".join(modes)
     return ControlError(Refusal.MODE, f"not in {mode}: {what} only in {names}", hint=f"Select {names}.")
+
+
+def share_axes(channels: Sequence[ControlChannel], shares: Sequence[tuple[str, ...]]) -> None:
+    """Give channels their axes anew.
+
+    Raises:
+        ControlError: A channel whose axes change executes a program; nothing has changed.
+    """
+    pairs = zip(channels, shares, strict=True)
+    changing = [(channel, axes) for channel, axes in pairs if set(axes) != set(channel.axes)]
+    for channel, _ in changing:
+        check_over(channel)
+        channel.check_rest()
+    for channel, axes in changing:
+        channel.share(axes)

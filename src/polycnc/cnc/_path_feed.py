@@ -13,6 +13,7 @@ from polycnc.cnc._stops import Stopper, boundaries
 from polycnc.kernel import (
     HELD,
     NO_LIMIT,
+    READY,
     RUNNING,
     earliest_limit,
     free_slots,
@@ -38,6 +39,7 @@ class FeedSnapshot(NamedTuple):
     met_at: int | None
     low: Floats
     high: Floats
+    left: int = _NEVER
 
 
 class PathFeed:
@@ -57,6 +59,7 @@ class PathFeed:
         self._ahead = blocks_ahead
         self._ends: deque[int] = deque()  # segment counts at which the prepared blocks end
         self._seen = 0  # boundaries before this count have been looked at
+        self._left = _NEVER  # the count at which the path stood when it went on
         self._met_at: int | None = None  # the count at which a condition has become true
         state = machine.state
         self.row = state.paths.row[channel.path]
@@ -225,6 +228,7 @@ class PathFeed:
     def go_on(self) -> None:
         """Go on from a stop."""
         self._met_at = None
+        self._left = int(self.row["head"])
         self.look_again()
 
     def look_again(self) -> None:
@@ -244,6 +248,11 @@ class PathFeed:
             self._set_limit(max(self._met_at, self._earliest()))
         if row["limit"] != NO_LIMIT or self.stopper.idle or head >= tail:
             return
+        if row["state"] == READY and head != self._left:
+            tag = self.tags(head, head + 1)[0]  # nothing lay before it when it came
+            if tag != row["tag"] and self.stopper.stops_before(tag):
+                self._set_limit(head)
+                return
         first = max(head, self._seen)
         begin = max(first - 1, head)
         tags = self.tags(begin, tail)
@@ -272,16 +281,19 @@ class PathFeed:
 
     def snapshot(self) -> FeedSnapshot:
         """Return what is known of the path besides its queue, to go back to."""
-        return FeedSnapshot(tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy())
+        return FeedSnapshot(
+            tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy(), self._left
+        )
 
     def restore(self, saved: FeedSnapshot) -> None:
         """Go back to a snapshot."""
         self._ends = deque(saved.ends)
-        self._seen, self._met_at = saved.seen, saved.met_at
+        self._seen, self._met_at, self._left = saved.seen, saved.met_at, saved.left
         self.low[:], self.high[:] = saved.low, saved.high
 
     def clear(self) -> None:
         """Forget what was prepared; the queue has been dropped."""
         self._ends.clear()
+        self._left = _NEVER
         self._seen = 0
         self._met_at = None

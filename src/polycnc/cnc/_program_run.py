@@ -60,6 +60,7 @@ _STANDING = {
 }
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
+_MOST_MARKS = 1000
 
 
 class ProgramRun:
@@ -668,7 +669,9 @@ class ProgramRun:
 
     def _stand_at_marks(self) -> bool:
         """Carry out the blocks without segments that come next; return whether the program stops behind one."""
-        while (tag := self.feed.take_mark()) is not None:
+        for _ in range(_MOST_MARKS):  # a loop may have no other blocks
+            if (tag := self.feed.take_mark()) is None:
+                break
             self._met = int(self._row["head"]), tag
             following = self.feed.next_tag()
             if following is None:

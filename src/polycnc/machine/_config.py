@@ -19,6 +19,7 @@ from polycnc.machine._config_axis import AnyAxis, NotNegative, Position, Rate, S
 from polycnc.machine._config_probe import SurfaceConfig, surface_problems
 from polycnc.machine._toml import StrictModel, problem
 from polycnc.machine._toml_locator import KeyPath
+from polycnc.units import whole
 
 EPOCH = datetime(2000, 1, 1)
 WORK_OFFSET = re.compile(r"G[12]?5[4-9]")
@@ -35,7 +36,7 @@ def _number_key(value: object) -> object:
             raise problem(
                 f"'{value}' is not a number", hint="write the number of the tool, for example [tools.12]"
             )
-        return int(value)
+        return whole(value)
     return value
 
 
@@ -185,7 +186,7 @@ class IoConfig(StrictModel):
                     hint='write it like "I3", "O5", "IW2" or "OW1"',
                     at=("points", name),
                 )
-            if int(found[2]) >= sizes[found[1]]:
+            if whole(found[2]) >= sizes[found[1]]:
                 raise problem(
                     f"'{address}' does not exist: there are {sizes[found[1]]} of this sort",
                     hint="numbers start at 0; raise the size in [io] or use a lower number",

@@ -287,6 +287,15 @@ class RotaryAxis(AxisConfig):
     reference_switch_deg: float | None = Field(default=None, description=_TEXT["reference_switch"])
     index_pulse_deg: float | None = Field(default=None, description=_TEXT["index_pulse"])
     backlash_deg: NotNegative = Field(default=0.0, description=_TEXT["backlash"])
+    carries: Literal["nothing", "part"] = Field(
+        default="nothing",
+        description='"part": the axis is a table that turns the part; views then show the path on the part too. '
+        "A turns about X, B about Y, C about Z; of several tables the first stands on the machine.",
+    )
+    center_mm: tuple[Position, Position, Position] = Field(
+        default=(0.0, 0.0, 0.0),
+        description="A point of the line that a table turns about: X, Y, Z of the machine.",
+    )
     servo: RotaryServo = Field(default=RotaryServo(), description="Position loop, see `[axis.servo]`.")
 
     @model_validator(mode="after")

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from polycnc.errors import UsageError
 from polycnc.kernel import entry
 from polycnc.machine._config import IO_ADDRESS, IoConfig
+from polycnc.units import whole
 
 Row: TypeAlias = npt.NDArray[np.uint8] | npt.NDArray[np.int32]
 
@@ -116,13 +117,13 @@ class IoImage:
 
     def _place(self, point: str) -> tuple[Row, int]:
         found = IO_ADDRESS.fullmatch(self._points.get(point, point))
-        if found is None or int(found[2]) >= self._rows[found[1]].size:
+        if found is None or whole(found[2]) >= self._rows[found[1]].size:
             sizes = ", ".join(
                 f"{sort}0 to {sort}{row.size - 1}" for sort, row in self._rows.items() if row.size
             )
             names = f"; names: {', '.join(self._points)}" if self._points else ""
             raise UsageError(f"there is no I/O point '{point}'", hint=f"points: {sizes}{names}")
-        return self._rows[found[1]], int(found[2])
+        return self._rows[found[1]], whole(found[2])
 
 
 def _bits(count: int) -> IoBits:

@@ -158,6 +158,7 @@ def write_file(connection: sqlite3.Connection, target: Path) -> None:
     _refuse_unclosed(target)
     try:
         with complete_or_absent(target, durable=True) as part, closing(_connect(part)) as copy:
+            copy.execute("PRAGMA journal_mode = OFF")  # nobody sees the file before it is whole
             connection.backup(copy)
             # A copy of a WAL file says it is one; a snapshot shall be a single plain file.
             copy.execute("PRAGMA journal_mode = DELETE")

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from polycnc.cnc import Breakpoint, Control, ControlData, ControlEvent, Status, Step
+from polycnc.cnc import Breakpoint, Control, ControlData, ControlEvent, RunState, Status, Step
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText, dialect_for
+from polycnc.runner._program_control import root_of, statements_for
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,17 +37,34 @@ class Debugger:
         dialect: str | Dialect | None = None,
         *,
         optional_stop: bool = True,
+        root: str | Path | None = None,
     ) -> None:
         self.program = program
-        self.control = Control(
-            load_machine(machine),
-            dialect=dialect_for(program.name, dialect),
-            data=ControlData(count_parts=False),
+        chosen = dialect_for(program.name, dialect)
+        self._root = root_of(program, root)
+        self._statements = statements_for(chosen, program, load_machine(machine), self._root)
+        self.control = (
+            Control(load_machine(machine), dialect=chosen, data=ControlData(count_parts=False))
+            if self._statements is None
+            else self._statements.control
         )
+        self._step = Step.RUN
+        self._depth = 0
+        if self._statements is not None:
+            self._statements.stand_at(self._stands)
         self.control.set_switches(optional_stop=optional_stop)
         self.control.select_program(program)
         self._breakpoints: set[Place] = set()
         self._texts = {program.name: program}
+
+    def _stands(self, file: str, line: int, depth: int) -> bool:
+        """Tell whether the program is to stop before a statement: by a breakpoint, or by a step."""
+        channel = self.control.channels[0]
+        if channel.run is not None and channel.run.channel.state.compensation.active:
+            return False  # a stop would change the path
+        if Place(file, line) in self._breakpoints or self._step is Step.INTO:
+            return True
+        return self._step is not Step.RUN and depth < self._depth + (self._step is Step.OVER)
 
     # ------------------------------------------------------------------ what it shows
 
@@ -74,7 +92,8 @@ class Debugger:
     @property
     def next(self) -> Place | None:
         """The block that a start would go on with, where the program stands between two blocks; else None."""
-        block = self.control.channels[0].next_block
+        channel = self.control.channels[0]
+        block = None if channel.run_state is RunState.COMPLETED else channel.next_block
         return None if block is None else Place(block.program, block.line)
 
     def text(self, program: str) -> ProgramText:
@@ -84,8 +103,13 @@ class Debugger:
             UsageError: It cannot be read any more.
         """
         if program not in self._texts:
-            self._texts[program] = ProgramText.from_path(program)
+            beside = self._root / program
+            self._texts[program] = ProgramText.from_path(beside if beside.is_file() else program)
         return self._texts[program]
+
+    def variables(self) -> dict[str, object]:
+        """Return the variables of a program with statements, those of the sub-program that runs first; none else."""
+        return {} if self._statements is None else self._statements.variables()
 
     # ------------------------------------------------------------------ commands
 
@@ -111,6 +135,9 @@ class Debugger:
         if self.running:
             return
         begins = not self.control.channels[0].interrupted
+        self._step = step
+        if self._statements is not None:
+            self._depth = self._statements.depth
         self.control.cycle_start(step=step)
         if begins and step is Step.RUN and self.next in self._breakpoints:
             self.control.feed_hold()  # nothing has moved yet

@@ -22,6 +22,7 @@ _STEP_CYCLES = 1 << 16
 _MOVING_CYCLES = 1 << 8  # what a program asks of the control is seen this often
 _PATIENCE_S = 1.0  # nothing changes the inputs of a run: what does not hold then never will
 _GROWTH = 50  # a wait for an input is looked at ever more rarely
+_MOST_ROUNDS = 10_000  # so often a loop without blocks is asked to go on, a cycle each time
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,7 @@ def run_to_end(
 def _run_with(
     control: ProgramControl, run: ProgramRun, *, every_cycle: bool, progress: Progress | None = None
 ) -> None:
-    idle = 0
+    idle, rounds, blocks = 0, 0, -1
     patience = run.machine.clock.cycles_for(_PATIENCE_S)
     while run.active:
         if every_cycle:
@@ -79,6 +80,11 @@ def _run_with(
         if progress is not None:
             progress(run.channel.progress)
         wakes_s = control.wakes_in_s()
+        stands = run.active and run.at_rest and wakes_s is None and run.channel.blocks == blocks
+        rounds, blocks = rounds + 1 if stands else 0, run.channel.blocks
+        if rounds > _MOST_ROUNDS and (endless := control.stuck(loops=True)) is not None:
+            run.channel.close()
+            raise endless
         if wakes_s is None or not run.active or not run.at_rest:
             idle = 0
             continue

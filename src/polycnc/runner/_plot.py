@@ -29,6 +29,7 @@ _MOST_ROWS = 200_000
 _MOST_MARKS = 5_000
 _CUT = "#1f5fa8"
 _RAPID = "#d08a2b"
+_END = "#1b2228"
 _MARGIN = 0.15  # of the larger side of the cuts: how much of the rapids around them is drawn
 _CALM = 2.0  # rapids that are faster than so many times the fastest cut leave the picture of the speed
 _SIZE_INCH = (12.0, 9.0)
@@ -209,6 +210,24 @@ def _draw_path(axes: Any, trace: Trace, points: Floats) -> None:
     for rapid, pieces in parts.items():
         if pieces:
             axes.plot(*np.concatenate(pieces).T, **styles[rapid])
+    _draw_ends(axes, points)
+
+
+def _draw_ends(axes: Any, points: Floats) -> None:
+    """Mark where the path begins and where it ends, if that is in the picture."""
+    for place, marker, label in ((points[:1], ">", "start"), (points[-1:], "X", "end")):
+        if not np.isnan(place).any():
+            axes.plot(
+                *place.T,
+                linestyle="none",
+                marker=marker,
+                markersize=7,
+                color=_END,
+                markeredgecolor="white",
+                markeredgewidth=0.6,
+                label=label,
+                zorder=5,
+            )
 
 
 def _plan(axes: Axes, trace: Trace, view: _View) -> None:
@@ -238,7 +257,7 @@ def _plan(axes: Axes, trace: Trace, view: _View) -> None:
     axes.autoscale_view()
     axes.set_title("Plan view" if len(view.columns) > 2 else "Path", loc="left")
     axes.grid(alpha=0.3)
-    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=3, frameon=False, fontsize="small")
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=5, frameon=False, fontsize="small")
 
 
 def _perspective(axes: Any, trace: Trace, view: _View) -> None:

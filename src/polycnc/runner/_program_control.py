@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Protocol
 
-from polycnc.cnc import ProgramRun
+from polycnc.cnc import Control, ProgramRun
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Language, ProgramText
@@ -49,8 +49,8 @@ class ProgramControl(Protocol):
     def wakes_in_s(self) -> float | None:
         """Return when the WAIT of the program ends at the latest (s from now, may be inf), None if it is in none."""
 
-    def stuck(self) -> ProgramError | None:
-        """Return the error of a program that waits for what will not come."""
+    def stuck(self, *, loops: bool = False) -> ProgramError | None:
+        """Return the error of a program that waits for what will not come, or `loops` for ever."""
 
     def finish(self) -> None:
         """End everything that does not outlive a program, and keep what does."""
@@ -118,6 +118,37 @@ def _cpl(program: ProgramText, machine: Machine, surroundings: Surroundings) -> 
         keys=surroundings.keys,
         skip_levels=surroundings.skip_levels,
     )
+
+
+class Statements(Protocol):
+    """A control whose programs hold statements, under a debugger."""
+
+    @property
+    def control(self) -> Control:
+        """The control."""
+
+    @property
+    def depth(self) -> int:
+        """How deep the program that runs is nested; 0 is the main program."""
+
+    def stand_at(self, stands: Callable[[str, int, int], bool]) -> None:
+        """Let preparation wait before lines that `stands` names: file, line, depth of nesting."""
+
+    def variables(self) -> dict[str, object]:
+        """Return the variables that the program sees now."""
+
+
+def statements_for(
+    dialect: Dialect, program: ProgramText, machine: MachineConfig, root: Path
+) -> Statements | None:
+    """Return the control for a debugger of a program with statements, None if it holds NC blocks only."""
+    from polycnc.nc.cpl import holds_cpl
+
+    if dialect.language != "cpl" or not holds_cpl(program.content):
+        return None
+    from polycnc.controllers.bosch import DebuggedPnc
+
+    return DebuggedPnc(root, machine)
 
 
 _CONTROLS: dict[str, Callable[[ProgramText, Machine, Surroundings], ProgramControl | None]] = {"cpl": _cpl}

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from polycnc.cnc import ToolTime
 from polycnc.errors import AlarmError, PolycncError, ProgramError, UsageError
+from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import Execution
 from polycnc.runner._operations import Operation
@@ -131,6 +132,7 @@ class RunResult:
     tool_times: dict[int, ToolTime]
     events: list[RunEvent] = field(repr=False)
     source: ProgramText | None = field(default=None, repr=False, compare=False)
+    config: MachineConfig | None = field(default=None, repr=False, compare=False)
     trace: Trace | None = field(default=None, repr=False)
     variables: dict[str, object] = field(default_factory=dict, repr=False)
     """Variables of a program's language by name, after the run: permanent and global ones."""
@@ -156,7 +158,19 @@ class RunResult:
             ),
             *((f"T{each.tool} {each.name}", time_text(each.time_s), "") for each in self.operations),
         ]
-        return html_table(str(self), ("", "", ""), rows)
+        return html_table(str(self), ("", "", ""), rows) + self._picture()
+
+    def _picture(self) -> str:
+        """Return a small picture of the path, where there is a trace of it."""
+        if self.trace is None or self.trace.execution is None or self.config is None:
+            return ""
+        from polycnc.runner.batches import svg, thumbnail
+        from polycnc.runner.view import TrackCollector
+
+        collector = TrackCollector(self.trace.units, most=2_000)
+        collector.add_trace(self.trace, self.trace.execution)
+        paths = thumbnail(collector.track(self.trace.execution), self.config)
+        return "" if paths is None else svg(paths, 240)
 
     @property
     def ok(self) -> bool:

@@ -354,5 +354,6 @@ def _result(
         operations=operations.operations(machine.time_s, execution.path_times),
         events=events,
         source=execution.program,
+        config=config,
         trace=collector.trace() if collector else None,
     )

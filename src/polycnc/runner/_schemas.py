@@ -99,6 +99,18 @@ def _result() -> Schema:
             "extents_mm": _EXTENTS,
             "alarms": _list(_ALARM),
             "tool_times": _TOOL_TIMES,
+            "operations": _list(
+                _object(
+                    {
+                        "name": _TEXT,
+                        "line": _LINE,
+                        "tool": _COUNT,
+                        "time_s": _time("All of it"),
+                        "cutting_time_s": _time("Cutting"),
+                        "rapid_time_s": _time("Positioning"),
+                    }
+                )
+            ),
             "messages": _list(_object({"text": _TEXT, "line": _LINE, "count": _COUNT})),
             "events": _list(_object({"time_s": _time("When"), "line": _LINE, "word": _TEXT})),
             "variables": {"type": "object", "description": "Variables of the program's language, by name."},
@@ -118,7 +130,16 @@ def _check() -> Schema:
             "column": _LINE,
         }
     )
-    return _object({"errors": _COUNT, "programs": _map(_list(error), "The errors of each program.")})
+    place = {"file": _TEXT, "line": _LINE, "column": _LINE}
+    remark = _object({"text": _TEXT, "code": _TEXT, "count": _COUNT, **place})
+    return _object(
+        {
+            "errors": _COUNT,
+            "programs": _map(_list(error), "The errors of each program."),
+            "remarks": _map(_list(remark), "What is no error and seldom meant, for each program."),
+            "unreadable": _map(_object({"text": _TEXT, "hint": _TEXT}), "Files that could not be read."),
+        }
+    )
 
 
 def _comparison() -> Schema:

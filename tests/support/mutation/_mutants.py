@@ -94,12 +94,16 @@ class _Finder:
             case ast.Constant(value=bool(value)):
                 yield self._mutant("constant", node, str(not value).encode())
             case ast.Constant(value=int() | float() as value):
-                step = (
-                    1 if self._place(node)[0] % 2 else -1
-                )  # one of the two, by place, so that a run is short
+                # One of the two, by place, so that a run is short; -1 for 0 would be the last place, often the same.
+                step = 1 if value == 0 or self._place(node)[0] % 2 else -1
                 yield self._mutant("constant", node, repr(value + step).encode())
             case ast.If(test=test) | ast.While(test=test) | ast.IfExp(test=test) if not _is_equality(test):
                 yield self._mutant("condition", test, b"not (" + self._text(test) + b")")
+            case (
+                ast.Subscript(slice=ast.Name(id=name) as at)
+                | ast.Subscript(slice=ast.Tuple(elts=[ast.Name(id=name) as at, *_]))
+            ) if len(name) == 1:
+                yield self._mutant("index", at, b"0")  # what happens to the first alone
             case ast.Return(value=ast.Tuple(elts=[first, second, *_])):
                 yield from self._swapped("return", first, second)
             case ast.Call(args=[*_, first, second]) if not _is_symmetrical(node):

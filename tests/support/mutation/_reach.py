@@ -15,14 +15,21 @@ FOLDERS = (
 
 @dataclass(frozen=True)
 class Reach:
-    """The time of each test in seconds and, for each file, the tests that ran each line."""
+    """The time of each test in seconds and, for each file, the tests that ran each line, with "" for imports.
+
+    `failed` are tests that fail although nothing is changed; they are left out everywhere.
+    """
 
     times_s: dict[str, float]
     tests: dict[str, dict[int, list[str]]]
+    failed: list[str]
 
     def of(self, file: str, lines: range) -> list[str]:
         """Return the tests that ran one of a file's lines, the quickest first."""
-        found = {test for line in lines for test in self.tests.get(file, {}).get(line, ())}
+        seen = self.tests.get(file, {})
+        found = {test for line in lines for test in seen.get(line, ()) if test}
+        if not found and any(line in seen for line in lines):  # an import ran it: the module's tests may tell
+            found = {test for tests in seen.values() for test in tests if test} or set(self.times_s)
         return sorted(found, key=lambda test: (self.times_s.get(test, 0.0), test))
 
 

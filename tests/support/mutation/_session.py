@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 import json
 import os
 import shutil
@@ -29,7 +28,7 @@ COPIED = (
     "pyproject.toml",
     "mkdocs.yml",
 )
-PYTEST = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:benchmark"]
+PYTEST = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:benchmark"]
 REACH_LIMIT_S = 3600.0
 
 
@@ -77,8 +76,10 @@ class Session:
     def reach(self, modules: Sequence[Path], tests: Sequence[Path]) -> Reach:
         """Run the test files once, interpreted, and return which tests run which lines.
 
+        Tests that fail by that, such as those of compiled code alone, cannot tell anything and are left out.
+
         Raises:
-            RuntimeError: The tests fail before anything is changed.
+            RuntimeError: The tests cannot be run.
         """
         watched = {str(self.copy / module.relative_to(self._root)): module for module in modules}
         answer = self._asked(
@@ -88,14 +89,18 @@ class Session:
             trace=list(watched),
             limit_s=REACH_LIMIT_S,
         )
-        if answer["status"] != 0:
+        if answer["status"] not in (0, 1):
             said = self._output.read_text(encoding="utf-8", errors="replace").splitlines()
-            raise RuntimeError("\n".join(["the tests fail as they are", *said[-20:]]))
+            raise RuntimeError("\n".join(["the tests cannot be run", *said[-20:]]))
+        failed = set(answer["failed"])
         lines = {
-            str(watched[file]): {int(line): tests for line, tests in seen.items()}
+            str(watched[file]): {
+                int(line): [each for each in tests if each not in failed] for line, tests in seen.items()
+            }
             for file, seen in answer["lines"].items()
         }
-        return Reach(answer["times_s"], lines)
+        times_s = {test: time_s for test, time_s in answer["times_s"].items() if test not in failed}
+        return Reach(times_s, lines, sorted(failed))
 
     def source(self, module: Path) -> bytes:
         """Return a module's text as it was when the copy was made."""
@@ -105,12 +110,6 @@ class Session:
         """Return what the tests that reach a mutant say to it."""
         place = self.copy / module.relative_to(self._root)
         tests = reach.of(str(module), mutant.lines)
-        if not tests and not _inside_function(
-            place, mutant
-        ):  # it ran at import: ask the module's tests, or else all
-            tests = reach.of(str(module), range(1, 1 << 20)) or sorted(
-                reach.times_s, key=reach.times_s.__getitem__
-            )
         if not tests:
             return Outcome("unreached", 0)
         source = place.read_bytes()
@@ -118,7 +117,11 @@ class Session:
         try:
             answer = self._asked(
                 self._mutated,
-                arguments=[*PYTEST, *sorted({str(self.copy / test.partition("::")[0]) for test in tests})],
+                arguments=[
+                    *PYTEST,
+                    "-x",
+                    *sorted({str(self.copy / test.partition("::")[0]) for test in tests}),
+                ],
                 only=tests,
                 trace=[],
                 limit_s=15.0 + 4 * sum(reach.times_s.get(test, 0.0) for test in tests),
@@ -160,14 +163,3 @@ class Session:
         worker.stdin.flush()
         answer: dict[str, Any] = json.loads(worker.stdout.readline())
         return answer
-
-
-def _inside_function(module: Path, mutant: Mutant) -> bool:
-    """Tell whether a change lies in the body of a function, which only a call runs."""
-    functions = (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)
-    return any(
-        isinstance(node, functions)
-        and node.lineno <= mutant.lines[0]
-        and mutant.lines[-1] <= (node.end_lineno or 0)
-        for node in ast.walk(ast.parse(module.read_bytes()))
-    )

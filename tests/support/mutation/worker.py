@@ -1,8 +1,8 @@
 """Runs tests in forked children of a process that has the heavy imports behind it; one request a line, as JSON.
 
 A request has `output` (the file for what pytest says), `arguments` for pytest, `only` (the tests to run, in that order,
-or null), `trace` (the files whose lines are watched) and `limit_s`; an answer has `status`, the tests' `times_s` and,
-for each traced file, its `lines`.
+or null), `trace` (the files whose lines are watched) and `limit_s`; an answer has `status`, the tests' `times_s`, those
+that `failed` and, for each traced file, its `lines`.
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ class Choice:
     def __init__(self, only: list[str] | None) -> None:
         self.only = only
         self.times_s: dict[str, float] = {}
+        self.failed: set[str] = set()
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
@@ -43,6 +44,8 @@ class Choice:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.times_s[report.nodeid] = self.times_s.get(report.nodeid, 0.0) + report.duration
+        if report.failed:
+            self.failed.add(report.nodeid)
 
 
 class Watch:
@@ -50,7 +53,8 @@ class Watch:
 
     def __init__(self, files: list[str]) -> None:
         self.lines: dict[str, dict[int, set[str]]] = {file: {} for file in files}
-        self.test = ""
+        self.test = ""  # imports belong to no test
+        sys.settrace(self.enter)
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Any:
@@ -60,7 +64,7 @@ class Watch:
         try:
             return (yield)
         finally:
-            sys.settrace(None)
+            self.test = ""
             threading.settrace(None)
 
     def enter(self, frame: FrameType, event: str, argument: object) -> Any:
@@ -85,13 +89,23 @@ def run(request: dict[str, Any], answer: int) -> None:
     )
     for stream, to in ((0, nothing), (1, said), (2, said)):
         os.dup2(to, stream)
-    choice, watch = Choice(request["only"]), Watch(request["trace"])
-    status = pytest.main(request["arguments"], plugins=[choice, watch] if request["trace"] else [choice])
+    choice = Choice(request["only"])
+    watches = [Watch(request["trace"])] if request["trace"] else []
+    status = pytest.main(request["arguments"], plugins=[choice, *watches])
+    sys.settrace(None)
     lines = {
-        file: {line: sorted(tests) for line, tests in seen.items()} for file, seen in watch.lines.items()
+        file: {line: sorted(tests) for line, tests in seen.items()}
+        for watch in watches
+        for file, seen in watch.lines.items()
     }
     with os.fdopen(answer, "w") as pipe:
-        json.dump({"status": int(status), "times_s": choice.times_s, "lines": lines}, pipe)
+        found = {
+            "status": int(status),
+            "times_s": choice.times_s,
+            "failed": sorted(choice.failed),
+            "lines": lines,
+        }
+        json.dump(found, pipe)
 
 
 def answered(request: dict[str, Any]) -> str:
@@ -118,7 +132,7 @@ def answered(request: dict[str, Any]) -> str:
     if text:
         return text
     in_time = time.monotonic() - begun < request["limit_s"]
-    return json.dumps({"status": "crash" if in_time else TIMEOUT, "times_s": {}, "lines": {}})
+    return json.dumps({"status": "crash" if in_time else TIMEOUT, "times_s": {}, "failed": [], "lines": {}})
 
 
 def end(child: int) -> None:

@@ -153,12 +153,15 @@ class ChannelHost:
         deadline = source.wait_ends_ms
         return float("inf") if deadline is None else max(deadline / 1000.0 - self._clock.now_s, 0.0)
 
-    def stuck(self) -> ProgramError | None:
-        """Return the error of a program that waits for what will not come."""
+    def stuck(self, *, loops: bool = False) -> ProgramError | None:
+        """Return the error of a program that waits for what will not come, or `loops` for ever."""
         if not self.language.running:
             return None
         hint = "give WAIT a duration, or the control the keys that the program asks for"
-        return self.language.running[-1].execution.error_here("the program waits without end", hint)
+        what = "the program waits without end"
+        if loops:
+            what, hint = "the program loops without end", "let the loop end, or put a block or a WAIT into it"
+        return self.language.running[-1].execution.error_here(what, hint)
 
     def finish(self) -> None:
         """End everything that does not outlive a program, and keep the permanent variables.

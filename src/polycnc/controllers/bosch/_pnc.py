@@ -54,6 +54,7 @@ class Pnc:
     the names of each channel's axes, one channel with all of them if there are none; `numbers` are the physical indices
     of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
     the control that programs ask by MCODS and MCOPS, this one if None. `script` says how the PLC answers functions.
+    With `stepping` programs are linked so that a debugger can stop at each of their lines.
     """
 
     def __init__(
@@ -67,6 +68,7 @@ class Pnc:
         server: NcsServer | None = None,
         script: Script | None = None,
         servo: bool = False,
+        stepping: bool = False,
     ) -> None:
         machine = load_machine(config)
         shares = [tuple(each) for each in channels] or [machine.axis_names]
@@ -94,7 +96,12 @@ class Pnc:
         self._modes: dict[int, BoschMode] = {}
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
-                self.system, number, keys=keys if number == 1 else (), server=self.server, in_device=True
+                self.system,
+                number,
+                keys=keys if number == 1 else (),
+                server=self.server,
+                in_device=True,
+                stepping=stepping,
             )
             hosts.append(host)
             channel.language = host.language

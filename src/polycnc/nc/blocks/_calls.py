@@ -13,6 +13,7 @@ from polycnc.nc._block_records import Call
 from polycnc.nc._block_source import BlockSource
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.text._program import ProgramText
+from polycnc.units import whole
 
 Library: TypeAlias = Callable[[int], ProgramText | None]
 """Where sub-programs come from that are in no file beside the main program: a program by its number, or None."""
@@ -213,7 +214,7 @@ def _labels(text: ProgramText) -> dict[int, Place]:
     """Return where the programs of a file begin, by number; the first of a number counts."""
     found: dict[int, Place] = {}
     for match in _LABEL.finditer(text.content):
-        number = int(match[1])
+        number = whole(match[1])
         if number not in found:
             position = text.position(match.start())
             found[number] = Place(text, match.start(), position.line)

@@ -14,6 +14,9 @@ from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
+_STATEMENT = re.compile(r"[ \t]*[0-9.@#](?![0-9]*[ \t]*WAIT)")
+
+_STATEMENTS = 256  # so many, then time passes: a loop may hold no block
 
 
 class _Called(NamedTuple):
@@ -36,6 +39,8 @@ class CplLanguage:
         self.linker = Linker(host.program, stepping=stepping)
         self.running: list[CplSource] = []
         """The sources under way, that of the main program first."""
+        self.at_line: Callable[[str, int], bool] | None = None
+        """What tells a debugger's wish to stand before a line, of programs linked for stepping."""
         self._host = host
         self._skip_levels = skip_levels
 
@@ -60,6 +65,10 @@ class CplLanguage:
         self.running.append(source)
         return source
 
+    def stands(self, file: str, line: int) -> bool:
+        """Tell whether preparation waits before a line for the path to come there, so that it can be stopped at."""
+        return self.at_line is not None and self.at_line(file, line)
+
     def ended(self) -> None:
         """Take note that the last program under way has been left."""
 
@@ -80,6 +89,7 @@ class CplSource:
         self._text = text
         self._language = language
         self._starts = [0, *(found.end() for found in _LINE_END.finditer(text.content)), len(text.content)]
+        self._statements = 0  # that were handed over, of a program linked for stepping
         self._waiting: _Wait | None = None
         self._answer: object = None
 
@@ -121,7 +131,12 @@ class CplSource:
                         self._waiting = _Wait(wait, self._language.milliseconds)
                     return Drain(wait.line)
                 case Step() as step:
-                    return Statement(step.line)
+                    if not _STATEMENT.match(self.execution.program.source.line(step.line)):
+                        continue  # an NC block, or a WAIT: these are stopped at by themselves
+                    if self._language.stands(self.execution.program.file, step.line):
+                        return Drain(step.line)  # nothing is reckoned before the path has come here
+                    self._statements += 1
+                    return Statement(step.line) if self._statements % _STATEMENTS else Pause.PAUSE
                 case _:
                     return Pause.PAUSE
 

@@ -7,6 +7,7 @@ import re
 from polycnc.language import Flaw
 from polycnc.nc.cpl._reader import Reader
 from polycnc.nc.cpl._syntax import Expression, NcBlock, NcLine, NcWord, SubCall, Wait
+from polycnc.units import whole
 
 _HEAD = re.compile(r"[ \t]*(?:/[ \t]*([1-9]?)[ \t]*)?(?:[Nn][ \t]*([0-9]+)[ \t]*)?")
 _WAIT = re.compile(r"WAIT[ \t]*(\()?", re.IGNORECASE)
@@ -125,7 +126,7 @@ class _Words:
             if address in "NP":
                 hint = "block numbers and sub-programs are checked before the program starts"
                 raise Flaw(at, f"the address {address} takes no expression", hint)
-            return NcWord(at, address, self._bracket(found.end()), int(found[2]) if found[2] else None)
+            return NcWord(at, address, self._bracket(found.end()), whole(found[2]) if found[2] else None)
         found = _WORD.match(text, at, self._end)
         if found is None:
             raise Flaw(at, f"'{text[at]}' begins no word", "a word is a letter with a number or [expression]")
@@ -133,7 +134,7 @@ class _Words:
         value = float(f"{found[3]}{found[4]}")
         if value - value:
             raise Flaw(at, "the number is too large")
-        return NcWord(at, found[1].upper(), value, int(found[2]) if found[2] else None)
+        return NcWord(at, found[1].upper(), value, whole(found[2]) if found[2] else None)
 
     def _bracket(self, at: int) -> Expression:
         reader = _inside(self._text, at, self._end)

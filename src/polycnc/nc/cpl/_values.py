@@ -295,7 +295,9 @@ class Values:
             if operator not in ("=", "<>"):
                 raise Flaw(at, "NUL is only compared by = and <>")
             value = right if left.kind == "N" else left
-            test = "is" if operator == "=" else "is not"
+            names = value.leaf and value.python.text[0] not in "'\""
+            tests = ("is", "is not") if names else ("==", "!=")  # Python warns of a constant with `is`
+            test = tests[operator != "="]
             return Typed(Python(f"{value.python.within(5)} {test} None", 4), "B")
         numbers = left.kind in NUMERIC and right.kind in NUMERIC
         if not numbers and left.kind != right.kind and "X" not in (left.kind, right.kind):

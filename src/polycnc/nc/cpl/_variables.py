@@ -6,6 +6,7 @@ import re
 from typing import Literal, NamedTuple, TypeAlias
 
 from polycnc.language import Flaw, Token
+from polycnc.units import whole
 
 Kind: TypeAlias = Literal["I", "R", "D", "B", "S", "X", "N"]
 """Types of values: INTEGER, REAL, DOUBLE, BOOLEAN, string, known only while the program runs, NUL."""
@@ -51,7 +52,7 @@ def variable(token: Token) -> Variable:
     if word[0] == "@":
         return _permanent(token, base, kind)
     if found := _PARAMETER.fullmatch(base):
-        return Variable(f"P{int(found[1])}{MARKS.get(kind, '')}", "parameter", kind)
+        return Variable(f"P{whole(found[1])}{MARKS.get(kind, '')}", "parameter", kind)
     name = base[:_SIGNIFICANT] + MARKS.get(kind, "")
     return Variable(name, "global" if word[0] == "#" else "local", kind)
 

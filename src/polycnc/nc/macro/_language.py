@@ -666,7 +666,8 @@ def _meaning(error: Exception) -> tuple[str, str, str]:
 
 
 def _error(text: ProgramText, flaw: Flaw) -> ProgramError:
-    return ProgramError(flaw.what, code=flaw.code, position=text.position(flaw.at), hint=flaw.hint)
+    hint = flaw.hint or "A block holds words like X12.5 or X#1, or a statement; remarks stand in a comment."
+    return ProgramError(flaw.what, code=flaw.code, position=text.position(flaw.at), hint=hint)
 
 
 def _program_number(text: str, offset: int) -> int:

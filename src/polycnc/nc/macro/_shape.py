@@ -10,6 +10,7 @@ from polycnc.language import Flaw
 from polycnc.nc.macro._calls import MacroCalls
 from polycnc.nc.macro._reader import LineReader
 from polycnc.nc.macro._syntax import End, Goto, If, Line, Number, Part, Span, While
+from polycnc.units import whole
 
 _B = r"[ \t]*"
 _ANYWHERE = r"[#\[\]=]|\b(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN)|\b(?:DO|END)[ \t]*[0-9]"
@@ -267,7 +268,7 @@ def _labels(text: str, part: Part) -> Iterator[tuple[int, int]]:
         return
     found = _LABEL.match(text, part.offset, part.end)
     if found:
-        yield int(found[1]), part.offset
+        yield whole(found[1]), part.offset
 
 
 def _cut(text: str, parts: list[Part], start: int) -> Iterator[Part]:
@@ -288,7 +289,7 @@ def _split(text: str, parts: list[Part], wanted: set[int] | None) -> Iterator[Pa
             continue
         at, line = part.offset, part.line
         for found in _LABEL.finditer(text, part.offset, part.end):
-            if found.start() == at or (wanted is not None and int(found[1]) not in wanted):
+            if found.start() == at or (wanted is not None and whole(found[1]) not in wanted):
                 continue
             yield Span(line, at, found.start())
             line += len(_NEWLINE.findall(text, at, found.start()))

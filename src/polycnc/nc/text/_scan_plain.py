@@ -15,6 +15,7 @@ from functools import lru_cache
 from polycnc.errors import ProgramError
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import BLANK_BYTES, COMMENT, LABEL, MESSAGE, PERCENT, PLAIN, STATEMENT
+from polycnc.units import whole
 
 _B = f"[{re.escape(BLANK_BYTES.decode('ascii'))}]*+"  # blanks; '+' gives nothing back
 _NUMBER = rf"([+-]?){_B}([0-9]++\.?[0-9]*+|\.[0-9]++)"
@@ -161,7 +162,7 @@ class _LineReader:
             self.place = len(self.line)
         elif char == "/" and self.skip_level == 0 and self._may_skip():
             match = _matched(_SKIP, self.line, self.place)
-            self.skip_level = int(match["level"] or 1)
+            self.skip_level = whole(match["level"] or "1")
             self.place = match.end()
         elif char == ":" and at_start:
             self._read_label()
@@ -176,7 +177,7 @@ class _LineReader:
             if match := pattern.match(self.line, self.place):
                 letter, index, sign, digits = match.groups()
                 digits = _ALL_BLANKS.sub("", digits)
-                self._add(letter.upper(), sign, digits, int(index) if index else None)
+                self._add(letter.upper(), sign, digits, whole(index) if index else None)
                 self.place = match.end()
                 return
         if _ASSIGNMENT.match(self.line, self.place):

@@ -10,6 +10,7 @@ from typing import Literal, TypeAlias
 from polycnc.language import Flaw
 from polycnc.post.macros._expression import FUNCTIONS, Expression, read_value
 from polycnc.post.macros._symbols import LINE_TEXTS
+from polycnc.units import whole
 
 SPECIAL = "!$@&<>"
 """Characters that stand for themselves only within double quotes."""
@@ -126,7 +127,7 @@ def _ordered(line: str, at: int) -> tuple[Element, int]:
             "a text in single quotes ends with a comma and its place in the order",
             "write it like '/,-200'; a text without an order needs no quotes, or double quotes",
         )
-    return Text(at, found[1], int(found[2])), end + 1
+    return Text(at, found[1], whole(found[2])), end + 1
 
 
 def _code(line: str, at: int) -> tuple[Element, int]:

@@ -62,7 +62,7 @@ class NumberFormat:
 
     def text(self, value: float) -> str:
         """Return a finite number as the format writes it."""
-        scope: dict[str, object] = {"value": value, "plain": plain}
+        scope: dict[str, object] = {"__builtins__": {}, "value": value, "plain": plain}
         exec("\n".join(self.steps("value", "result")), scope)
         return str(scope["result"])
 

@@ -35,6 +35,16 @@ def thumbnail(track: Track, machine: MachineConfig) -> tuple[str, str] | None:
     return _path(placed, cuts), _path(placed, ~cuts)
 
 
+def svg(paths: tuple[str, str], width_px: int) -> str:
+    """Return a picture of cuts and rapids as an SVG element."""
+    cuts, rapids = paths
+    return (
+        f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{width_px}" role="img" aria-label="path">'
+        f'<path d="{rapids}" fill="none" stroke="#8a949d" stroke-width="0.4" stroke-dasharray="2 1.5"/>'
+        f'<path d="{cuts}" fill="none" stroke="#0072b2" stroke-width="0.8"/></svg>'
+    )
+
+
 def _thinned(points: Floats, cuts: Flags) -> tuple[Floats, Flags]:
     """Leave out the points that nobody would see, for as long as there are many."""
     tolerance = 0.2

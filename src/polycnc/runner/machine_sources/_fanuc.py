@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from polycnc.errors import ConfigurationError, SourcePosition
 from polycnc.runner.machine_sources._facts import AxisFacts, Entry, Facts, LeftOut
+from polycnc.units import whole
 
 CONTROL = "a FANUC parameter list"
 LINE = re.compile(r"\s*N0*(\d{1,5})(?:Q\d+)?((?:[AST]\d+)?[PMI][-+.\d].*)")
@@ -99,7 +100,7 @@ def _parameters(text: str, file: str) -> dict[int, _Parameter]:
     for number, line in enumerate(text.splitlines(), 1):
         if not (match := LINE.match(line)):
             continue
-        values = listed.setdefault(int(match[1]), _Parameter({})).values
+        values = listed.setdefault(whole(match[1]), _Parameter({})).values
         for value in VALUE.finditer(match[2]):
             position = SourcePosition(file, number, match.start(2) + value.start(3) + 1, line)
             values[int(value[2]) if value[2] else 0] = Entry(f"parameter {match[1]}", value[3], position)

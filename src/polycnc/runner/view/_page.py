@@ -17,6 +17,8 @@ from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import KINDS, ExecutedBlock
 from polycnc.runner._result import RunResult, counted, time_text
+from polycnc.runner.view._motion import DERIVATIVES
+from polycnc.runner.view._part_frame import tables_of, with_part_frame
 from polycnc.runner.view._track import Track
 
 _MOST_LINES = 250_000  # of a listing; of longer programs only the lines that the path shows are listed
@@ -61,6 +63,11 @@ def page(
         UsageError: plotly is not installed.
     """
     library = plotly_source()
+    machine = result.config
+    framed = machine is not None and [axis.name for axis in machine.axes] == [name for name, _ in axes]
+    if machine is not None and framed and beside is None and tables_of(machine):
+        track = with_part_frame(track, machine)
+    on_part = track.position.shape[1] - len(axes)
     listing = _Listing(result, track, texts)
     columns: dict[str, npt.NDArray[Any]] = {
         "t_s": track.t_s,
@@ -74,6 +81,10 @@ def page(
         "block_kind": np.array([KINDS.index(block.kind) for block in track.blocks], np.uint8),
         "line": np.array(listing.lines, np.int32),
     }
+    motion = track.motion
+    if motion.low.shape[2] == len(axes):
+        columns["motion_low"] = np.ascontiguousarray(motion.low.transpose(1, 2, 0), dtype=np.float32)
+        columns["motion_high"] = np.ascontiguousarray(motion.high.transpose(1, 2, 0), dtype=np.float32)
     if beside is not None:
         columns["other_t_s"] = beside.track.t_s
         columns["other_position"] = np.ascontiguousarray(beside.track.position.T, dtype=np.float32)
@@ -85,7 +96,22 @@ def page(
         "ok": result.ok,
         "time_s": result.time_s,
         "summary": f"{time_text(result.time_s)} · {counted(result.blocks, 'block')} · {result.path_mm:,.0f} mm",
-        "axes": [{"name": name, "unit": unit} for name, unit in axes],
+        "axes": [
+            *({"name": name, "unit": unit} for name, unit in axes),
+            *({"name": f"{name} on part", "unit": "mm", "part": True} for name in "XYZ"[:on_part]),
+        ],
+        "operations": [
+            {
+                "name": each.name,
+                "tool": each.tool,
+                "time_s": each.time_s,
+                "cutting_s": each.cutting_s,
+                "row": listing.row_of(each.line),
+            }
+            for each in result.operations
+        ],
+        "derivatives": DERIVATIVES,
+        "stretch_s": motion.stretch_s,
         "kinds": KINDS,
         "tools": [
             {"tool": tool, "cutting_s": each.cutting_s, "rapid_s": each.rapid_s}
@@ -155,6 +181,10 @@ class _Listing:
     def rows_of(self, blocks: tuple[ExecutedBlock, ...]) -> npt.NDArray[np.int32]:
         """Return the row of each block, -1 for one that is not listed."""
         return np.array([self._row.get((block.program, block.line), -1) for block in blocks], np.int32)
+
+    def row_of(self, line: int) -> int:
+        """Return the row of a line of the main program, -1 where it is not listed."""
+        return self._row.get((self._main, line), -1)
 
     def remarks(self, result: RunResult) -> list[dict[str, Any]]:
         """Return alarms and remarks with the rows that they are about, -1 where there is none."""

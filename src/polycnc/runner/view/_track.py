@@ -12,6 +12,7 @@ from polycnc.kernel import FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import KINDS, ExecutedBlock, Execution, ExecutionCollector
 from polycnc.runner._result import Trace
+from polycnc.runner.view._motion import Motion, MotionCollector
 from polycnc.runner.view._thin import Floats, kept_rows
 
 MOST_POINTS = 100_000
@@ -36,6 +37,7 @@ class Track:
     blocks: tuple[ExecutedBlock, ...]
     tolerance_mm: float
     thinned: bool  # executions are left out too
+    motion: Motion
 
 
 class TrackCollector:
@@ -52,12 +54,14 @@ class TrackCollector:
         self._last: Floats | None = None
         self._rows = 0
         self._executions = ExecutionCollector()
+        self._motion = MotionCollector(self._axes)
 
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
         if len(rows):
             style = _styles(self._executions.table.blocks, self._executions.add(tags, records))
             axes = rows[:, LEADING : LEADING + self._axes]
+            self._motion.add(rows[:, TIME_S], axes)
             self._take(np.column_stack((rows[:, TIME_S], rows[:, IS_RAPID], style, axes, rows[:, FEED_MM_S])))
 
     def add_trace(self, trace: Trace, execution: Execution) -> None:
@@ -67,6 +71,7 @@ class TrackCollector:
         for first in range(0, len(trace), _PIECE):
             part = slice(first, first + _PIECE)
             columns = (trace.t_s, trace.rapid, style, trace.setpoint, trace.feed_mm_s)
+            self._motion.add(trace.t_s[part], trace.setpoint[part])
             self._take(np.column_stack([column[part] for column in columns]))
 
     def execution(self) -> Execution:
@@ -95,6 +100,7 @@ class TrackCollector:
             blocks=execution.blocks,
             tolerance_mm=self._missed * _TOLERANCE["mm"],
             thinned=thinned,
+            motion=self._motion.motion(),
         )
 
     def _take(self, piece: Floats) -> None:

@@ -38,7 +38,9 @@
   };
 
   // ---------------------------------------------------------------- which axes are x, y and z of the picture
-  const linear = about.axes.flatMap((axis, i) => (axis.unit === "mm" ? [i] : []));
+  const hasPart = about.axes.some((axis) => axis.part);
+  const inPart = hasPart && window.name === "polycnc part"; // kept while the page is loaded again
+  const linear = about.axes.flatMap((axis, i) => (axis.unit === "mm" && Boolean(axis.part) === inPart ? [i] : []));
   const drawn = linear.length ? linear : about.axes.map((_, i) => i);
   const lathe = linear.length === 2 && linear.map((i) => about.axes[i].name).join("") === "XZ";
   const [ix, iy, iz] = lathe ? [linear[1], undefined, linear[0]] : drawn;
@@ -217,8 +219,10 @@
     const block = { type: "scatter3d", mode: "lines", x: [], y: [], z: [], line: { width: 9, color: css("--accent") }, hoverinfo: "skip" };
     const mark = { type: "scatter3d", mode: "markers", x: [], y: [], z: [], hoverinfo: "skip", marker: { size: 9, color: css("--accent"), line: { width: 2, color: css("--paper") } } };
     const beside = { ...mark, marker: { size: 8, symbol: "circle-open", color: css("--other"), line: { width: 3 } } };
-    return Plotly.react("tool", [mark, block, corners, ...(other ? [beside] : [])], { ...frame(), scene }, { displayModeBar: false, responsive: true });
+    const line = { ...block, mode: "lines+markers", line: { width: 5, color: css("--ink") }, marker: { size: 5, color: css("--ink") } };
+    return Plotly.react("tool", [mark, block, corners, ...(other ? [beside] : []), line], { ...frame(), scene }, { displayModeBar: false, responsive: true });
   }
+  const ruler = other ? 4 : 3; // its place among the lines of the tool's picture
   let following = false;
   function follow(event) { // the tool's picture lies over that of the path and turns with it
     for (const key of ["camera", "aspectratio"]) if (event[`scene.${key}`]) held[key] = event[`scene.${key}`];
@@ -236,6 +240,21 @@
   // ---------------------------------------------------------------- the chart under it
   const charts = [{ name: "speed", unit: "mm/min", of: (k) => data.feed[k] }];
   about.axes.forEach((axis, i) => charts.push({ name: `axis ${axis.name}`, unit: axis.unit, of: (k) => position(k, i) }));
+  const moving = about.axes.filter((axis) => !axis.part), stretches = data.motion_low ? data.motion_low.length / moving.length / about.derivatives.length : 0;
+  if (stretches) moving.forEach((axis, i) => about.derivatives.forEach((name, d) => {
+    charts.push({ name: `${name} ${axis.name}`, unit: `${axis.unit}/s${["", "²", "³"][d]}`, at: (d * moving.length + i) * stretches });
+  }));
+  function stretchPoints(first, from_s, to_s) { // lowest and highest of each stretch; of many together where there are too many
+    const begin = Math.max(Math.floor(from_s / about.stretch_s), 0), end = Math.min(Math.ceil(to_s / about.stretch_s), stretches);
+    const x = [], y = [], step = Math.max(Math.ceil((end - begin) / (CHART_POINTS / 2)), 1);
+    for (let k = begin; k < end; k += step) {
+      let low = Infinity, high = -Infinity;
+      for (let j = k; j < Math.min(k + step, end); j++) { low = Math.min(low, data.motion_low[first + j]); high = Math.max(high, data.motion_high[first + j]); }
+      const t = (k + 0.5) * about.stretch_s;
+      x.push(t, t); y.push(low, high);
+    }
+    return { x, y };
+  }
   const CHART_POINTS = 4000;
   function chartPoints(of, left_out, from_s, to_s) { // the lowest and highest of each of many pieces, where there are too many
     const first = Math.max(after(data.t_s, from_s) - 1, 0), last = Math.min(after(data.t_s, to_s) + 1, points);
@@ -260,7 +279,7 @@
     const speed = chart.name === "speed", calm = topRapid > 2 * topFeed && cuts.x.length > 0;
     const height = speed && calm ? { range: [0, 1.15 * topFeed] } : { rangemode: speed ? "tozero" : "normal" };
     const faster = { text: `rapids, to ${topRapid.toFixed(0)}, are left out`, showarrow: false, xref: "paper", yref: "paper", x: 1, y: 1, xanchor: "right", yanchor: "top", bgcolor: css("--panel"), font: { color: css("--soft"), size: 11 } };
-    return Plotly.react("chart", [{ type: "scatter", mode: "lines", ...chartPoints(chart.of, speed && calm ? (k) => data.rapid[k] : () => false, ...window_s), line: { color: paletteColour(0), width: 1.5 }, hovertemplate: "%{x:.3f} s: %{y:.3f}<extra></extra>" }], {
+    return Plotly.react("chart", [{ type: "scatter", mode: "lines", ...(chart.of ? chartPoints(chart.of, speed && calm ? (k) => data.rapid[k] : () => false, ...window_s) : stretchPoints(chart.at, ...window_s)), line: { color: paletteColour(0), width: 1.5 }, hovertemplate: "%{x:.3f} s: %{y:.3f}<extra></extra>" }], {
       ...frame(), margin: { l: 64, r: 8, t: 8, b: 34 }, plot_bgcolor: "rgba(0,0,0,0)", hovermode: "x", dragmode: "zoom",
       xaxis: { ...axis, title: { text: "time [s]", standoff: 4 }, range: [...window_s], minallowed: 0, maxallowed: end_s || 1 },
       yaxis: { ...axis, title: { text: chart.unit }, fixedrange: true, ...height, tickformat: ",~g" }, shapes: cursor(now), annotations: speed && calm ? [faster] : [],
@@ -405,7 +424,36 @@
       for (const text of [clockText(each.cutting_s), clockText(each.rapid_s), `${(100 * share).toFixed(1)} %`]) row.insertCell().textContent = text;
     });
     element("tools").hidden = !about.tools.length;
+    const jobs = element("operations").tBodies[0];
+    jobs.replaceChildren();
+    about.operations.forEach((each) => {
+      const row = jobs.insertRow(), name = Object.assign(document.createElement("button"), { type: "button", textContent: each.name || `T${each.tool}` });
+      name.onclick = () => { if (each.row >= 0) { light(each.row); listing.scrollTop = each.row * ROW_PX; } };
+      row.insertCell().append(name);
+      for (const time of [each.cutting_s, each.time_s]) row.insertCell().textContent = clockText(time);
+    });
+    element("operations").hidden = about.operations.length < 2;
   }
+  let measured = null; // null: clicks go to moments; else the places clicked
+  function measure(place) {
+    measured.push(place);
+    if (measured.length < 2) { say("Now the other place."); return; }
+    const [from, to] = measured, off = from.map((v, i) => to[i] - v);
+    const names = [ix, iy, iz].map((i) => (i === undefined ? "" : about.axes[i].name));
+    const parts = off.flatMap((d, i) => (names[i] ? [`${names[i]} ${d.toFixed(3)}`] : []));
+    say(`Distance ${Math.hypot(...off).toFixed(3)} mm (${parts.join(", ")})`);
+    Plotly.restyle("tool", { x: [[from[0], to[0]]], y: [[from[1], to[1]]], z: [[from[2], to[2]]] }, [ruler]);
+    measured = [];
+  }
+  element("measure").onclick = () => {
+    measured = measured ? null : [];
+    element("measure").setAttribute("aria-pressed", String(Boolean(measured)));
+    say(measured ? "Click two places on the path." : "");
+    if (!measured) Plotly.restyle("tool", { x: [[]], y: [[]], z: [[]] }, [ruler]);
+  };
+  element("frames").hidden = !hasPart;
+  element("frame").value = inPart ? "part" : "machine";
+  element("frame").onchange = () => { window.name = element("frame").value === "part" ? "polycnc part" : ""; location.reload(); };
   for (const each of about.remarks) {
     const button = Object.assign(document.createElement("button"), { type: "button", className: each.kind });
     button.textContent = `${each.kind === "alarm" ? "▲ alarm" : "● remark"}${each.line ? `, line ${each.line}` : ""}: ${each.text}`;
@@ -454,7 +502,8 @@
   element("path").on("plotly_relayout", follow);
   element("path").on("plotly_click", ({ points: [hit] }) => {
     const part = [cuts, rapids][hit.curveNumber];
-    if (part) goTo(part.time[hit.pointNumber]);
+    if (measured) measure([hit.x, hit.y, hit.z]);
+    else if (part) goTo(part.time[hit.pointNumber]);
   });
   element("chart").on("plotly_click", ({ points: [hit] }) => goTo(hit.x));
   element("chart").on("plotly_relayout", (event) => {

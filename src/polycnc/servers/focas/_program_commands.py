@@ -18,6 +18,7 @@ from polycnc.servers.focas._command import (
     data_of,
     longs,
 )
+from polycnc.units import whole
 
 _NO_SUCH_PROGRAM = 1
 
@@ -135,7 +136,7 @@ def _number(path: str) -> int:
     found = _FILE.fullmatch(name)
     if found is None:
         raise RefusedError(DATA)
-    return int(found[1])
+    return whole(found[1])
 
 
 def _in_folder(view: View, path: str) -> list[str | ProgramEntry]:

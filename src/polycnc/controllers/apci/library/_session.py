@@ -18,6 +18,7 @@ from polycnc.controllers.apci.board._environment import InterruptLine, Messages,
 from polycnc.controllers.apci.board._records import AS, TSRP
 from polycnc.controllers.apci.core._registers import Axst
 from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END
+from polycnc.controllers.apci.pc._board_memory import BoardMemory
 from polycnc.controllers.apci.pc._boot import Application
 from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.controllers.apci.pc._slots import REVISION, Pc, Slot, revision_numbers
@@ -25,7 +26,7 @@ from polycnc.controllers.apci.sap import CncFileError, read_cnc
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.library import Refused
 from polycnc.controllers.library import Session as AnySession
-from polycnc.machine import Poll, Polling, Way
+from polycnc.machine import Poll, Polling, Store, Way
 
 UNKNOWN_ERROR = 1
 """Ruling: what functions with the usual status return for an axis or a number that cannot be."""
@@ -66,6 +67,8 @@ class Session(AnySession):
 
     def __init__(self) -> None:
         super().__init__()
+        self._memory: Store | None = None
+        self._owns_memory = False
         self.attach()
 
     def attach(
@@ -78,6 +81,7 @@ class Session(AnySession):
         revision: str = REVISION,
         driver_installed: bool = True,
         show: Show = _log.warning,
+        memory: str | Path | Store | None = None,
     ) -> tuple[Slot, ...]:
         """Put boards into the PC, numbered from 0, and load the library anew; return the boards' slots.
 
@@ -88,15 +92,27 @@ class Session(AnySession):
         next end of a profile or interrupt but at most 1000 scans, `None` nothing, so that only `Board.advance` does;
         with `Elapsed` every call lets the time pass that has passed for the program. `folder` and `path` are the
         program's current directory and search path, `revision` is that of the operating system, `show` gets the message
-        boxes.
+        boxes. `memory` is the file of what outlasts switching off, or an open store: the EEPROM's programming cycles,
+        environment strings written, and the programs loaded into the tasks, which are there again after every boot.
 
         Booting makes a new `Board`, which `board` returns.
+
+        Raises:
+            StoreError: The memory file cannot be used.
         """
+        with self.lock:
+            self._close_memory()
+            store = Store(memory) if isinstance(memory, str | Path) else memory
+            self._memory, self._owns_memory = store, isinstance(memory, str | Path)
         pc = Pc(driver_installed=driver_installed)
         lines: dict[InstalledBoard, InterruptLine] = {}
-        for each in boards:
+        for number, each in enumerate(boards):
             installed = each if isinstance(each, InstalledBoard) else _in_slot(each)
-            slot = pc.attach(installed, revision=revision, environment=installed.board.config.environment)
+            kept = None if store is None else BoardMemory(store, number)
+            installed.memory = kept
+            slot = pc.attach(
+                installed, revision=revision, environment=installed.board.config.environment, memory=kept
+            )
             lines[installed] = line = InterruptLine()
             if booted:
                 slot.running = slot.sysfile_loaded = True
@@ -105,7 +121,7 @@ class Session(AnySession):
             connect = partial(_connect, installed, line)
             connect(installed.board)
             installed.on_new_board.append(connect)
-            installed.load_cnc = _load_cnc
+            installed.load_cnc = partial(_load_cnc, kept)
         with self.lock:
             self.application = Application(pc, folder, path)
             self.messages = Messages(show)
@@ -116,6 +132,11 @@ class Session(AnySession):
     def detach(self) -> None:
         """Take all boards out of the PC."""
         self.attach()
+
+    def _close_memory(self) -> None:
+        if self._memory is not None and self._owns_memory:
+            self._memory.close()
+        self._memory = None
 
     def board(self) -> Board:
         """Return the selected board for Python: its time, terminals and simulated machine.
@@ -266,16 +287,21 @@ def _connect(installed: InstalledBoard, line: InterruptLine, board: Board) -> No
     board.interrupts.append(partial(line.raise_interrupt, INTERRUPT_LINES))
     if board.tasks is None:
         BoardTasks(board)
+    for task, content in ({} if installed.memory is None else installed.memory.programs).items():
+        if _load_cnc(None, board, content) != TransferCode.DONE:
+            _log.warning("the program of task %s in the memory file is damaged: the task has none", task)
 
 
-def _load_cnc(board: Board, content: bytes) -> TransferCode:
-    """Load a CNC file into the task that it names."""
+def _load_cnc(memory: BoardMemory | None, board: Board, content: bytes) -> TransferCode:
+    """Load a CNC file into the task that it names, and keep it."""
     try:
         program = read_cnc(content)
     except CncFileError as error:
         return TransferCode(error.code)
     if isinstance(board.tasks, BoardTasks):
         board.tasks.load(program)
+    if memory is not None:
+        memory.keep_program(program.task, content)
     return TransferCode.DONE
 
 

@@ -9,6 +9,7 @@ from polycnc.controllers.apci.board._codes import TransferCode
 from polycnc.controllers.apci.board._environment import InterfaceStatus
 from polycnc.controllers.apci.board._spool_commands import free_bytes
 from polycnc.controllers.apci.board._system_file import SystemFile
+from polycnc.controllers.apci.pc._board_memory import BoardMemory
 
 _IN_RECORD = (
     *("kp", "ki", "kd", "kpl", "kfca", "kfcv", "jac", "jvl", "jovr", "hac", "hvl", "sdec"),
@@ -29,13 +30,26 @@ class InstalledBoard:
         self.interface = InterfaceStatus()
         self.on_new_board: list[Callable[[Board], None]] = []
         self.load_cnc: Callable[[Board, bytes], TransferCode] | None = None
+        self.memory: BoardMemory | None = None
+        self._eprom_cycles = 0
         self.take(Board(hardware, record_scans=record_scans))
-        self.eprom_cycles = 0
 
     def take(self, board: Board) -> None:
         """Let `board` be the one in the slot."""
         self.board = board
         board.variables.interface = self.interface
+
+    @property
+    def eprom_cycles(self) -> int:
+        """How often the EEPROM of the board has been programmed."""
+        return self._eprom_cycles if self.memory is None else self.memory.programming_cycles
+
+    @eprom_cycles.setter
+    def eprom_cycles(self, count: int) -> None:
+        if self.memory is None:
+            self._eprom_cycles = count
+        else:
+            self.memory.programming_cycles = count
 
     @property
     def is_described(self) -> bool:

@@ -10,6 +10,7 @@ from typing import Protocol
 from polycnc.controllers.apci.board._codes import BootCode, InitCode, TransferCode
 from polycnc.controllers.apci.board._environment import EnvironmentStrings
 from polycnc.controllers.apci.board._system_file import SystemFile
+from polycnc.controllers.apci.pc._board_memory import BoardMemory
 from polycnc.controllers.library import Code
 from polycnc.errors import UsageError
 
@@ -75,6 +76,7 @@ class Slot:
     sysfile_loaded: bool = False
     has_defaults: bool = False  # nobody has said what the board is: its system file is an empty one
     boots: int = 0
+    memory: BoardMemory | None = None  # where the environment strings outlast switching off
     _faults: set[Code] = field(default_factory=set)
 
     def inject(self, fault: Code) -> None:
@@ -105,6 +107,8 @@ class Slot:
                 f"'{name}' cannot be written: the board is booted", hint="write it before BootFile"
             )
         self.environment.write(name, value)
+        if self.memory is not None:
+            self.memory.write_environment(name, value)
 
     def stop(self) -> None:
         """Stop the operating system, as an exception on the board does; only BootFile starts it again."""
@@ -128,13 +132,15 @@ class Pc:
         *,
         revision: str = REVISION,
         environment: Mapping[str, str] | None = None,
+        memory: BoardMemory | None = None,
     ) -> Slot:
-        """Put a board into the next slot and return the slot.
+        """Put a board into the next slot and return the slot; what `memory` holds goes before `environment`.
 
         Raises:
             UsageError: An environment string is longer than getEnvStr can give back.
         """
-        self.slots.append(Slot(board, revision, EnvironmentStrings(environment or {})))
+        strings = {**(environment or {}), **(memory.environment if memory is not None else {})}
+        self.slots.append(Slot(board, revision, EnvironmentStrings(strings), memory=memory))
         return self.slots[-1]
 
 

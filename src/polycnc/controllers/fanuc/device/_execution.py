@@ -10,6 +10,7 @@ from polycnc.cnc import ControlError, Refusal, RunState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._programs import number_of
 from polycnc.nc import BlockRecord
+from polycnc.units import whole
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
@@ -78,7 +79,7 @@ class Execution:
         lines = self._lines(0 if mdi else number)
         for text in reversed(lines[:line]):
             if found := _SEQUENCE.match(text):
-                return int(found[1])
+                return whole(found[1])
         return 0
 
     def _lines(self, number: int) -> list[bytes]:
@@ -144,7 +145,7 @@ class Execution:
             return False
         for line, text in enumerate(self._lines(self._power_mate.selected)):
             found = _SEQUENCE.match(text)
-            if found and int(found[1]) == sequence:
+            if found and whole(found[1]) == sequence:
                 self._power_mate.set_cursor(line)
                 return True
         return False

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from polycnc.cnc import MemoryData, ProgramEdit, ProgramMemory, RunState
+from polycnc.units import whole
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
@@ -34,7 +35,7 @@ def name_of(number: int) -> str:
 def number_of(name: str | None) -> int:
     """Return the number of a program by its name, 0 for another text, as that of MDI."""
     found = None if name is None else _NAME.match(name)
-    return 0 if found is None else int(found[1])
+    return 0 if found is None else whole(found[1])
 
 
 def comment_of(content: bytes) -> str:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from polycnc.cnc import ControlError, Refusal
 from polycnc.controllers.fanuc.device._programs import FIRST, LAST, name_of
+from polycnc.units import whole
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
@@ -85,9 +86,9 @@ def program_number(block: bytes) -> int:
         TransferError: It is none.
     """
     found = _NUMBER.match(block)
-    if found is None or not FIRST <= int(found[1]) <= LAST:
+    if found is None or not FIRST <= whole(found[1]) <= LAST:
         raise TransferError(Fault.NUMBER)
-    return int(found[1])
+    return whole(found[1])
 
 
 @dataclass(slots=True)

@@ -1,0 +1,102 @@
+"""The errors and warnings of CPL by the manual's texts, each where it comes up (Manual 003, chapters 5 to 8)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from support.cpl_runs import Root
+
+LONG = '1 DIM A$(1024) : FOR I%=1 TO {} : MID$(A$,I%,1)="X" : NEXT I%\n'
+RANDOM = '1 OPENW(2,"P3",1000,10)\n2 PRN#(2,"A")\n3 CLOSE(2)\n'
+ERRORS = [
+    ("INVALID_PARAMETER", '1 DIM A$(5) : A$="ABC"\n2 #B$=MID$(A$,0)', "2: INVALID PARAMETER"),
+    ("INVALID_PARAMETER", '1 OPENW(1,"P1")\n2 A%=FILEPOS(1,4)', "2: INVALID PARAMETER"),
+    ("INVALID_PARAMETER", '1 DIM A$(5) : A$="ABC"\n2 A%=INSTR("B",A$,1025)', "2: INVALID PARAMETER"),
+    ("INVALID_LOGICAL_NUMBER", '1 OPENW(10,"P1")', "1: INVALID LOGICAL NUMBER"),
+    ("INVALID_LOGICAL_NUMBER", '1 OPENR(0,"P1")', "1: INVALID LOGICAL NUMBER"),
+    ("INVALID_FILE_NUMBER", "1 A%=FILEPOS(3)", "1: INVALID FILE NUMBER"),
+    ("INVALID_FILE_NUMBER", "1 SEEK(3,1)", "1: INVALID FILE NUMBER"),
+    ("INVALID_FILE_NUMBER", "1 A%=FILESIZE(0)", "1: INVALID FILE NUMBER"),
+    ("ILLEGAL_FILE_SIZE", '1 OPENW(2,"P2",129)', "1: ILLEGAL FILE SIZE"),
+    ("INVALID_COMPONENT_LENGTH", '1 OPENW(2,"P3",1000,0)', "1: INVALID COMPONENT LENGTH"),
+    ("INVALID_COMPONENT_LENGTH", '1 OPENW(2,"P3",1000,1025)', "1: INVALID COMPONENT LENGTH"),
+    ("INVALID_COMPONENT_LENGTH", RANDOM + '4 OPENR(2,"P3",11)', "4: INVALID COMPONENT LENGTH"),
+    ("INVALID_COMPONENT", RANDOM.replace("3 CLOSE(2)", "3 SEEK(2,3)"), "3: INVALID COMPONENT"),
+    ("INVALID_FILE_NAME", '1 ERASE("A123456789012345678901234567890")', "1: INVALID FILE NAME"),
+    (
+        "BLOCK_EXCEEDS_1024",
+        LONG.format(1024) + '2 OPENW(1,"P6")\n3 PRN#(1,A$,"Y")',
+        "3: BLOCK EXCEEDS 1024 BYTES",
+    ),
+    (
+        "INVALID_INTEGER_VALUE",
+        '1 OPENW(1,"P8") : PRN#(1,"99999999999")\n2 CLOSE(1)\n3 OPENR(1,"P8")\n4 INP#(1,I%)',
+        "4: INVALID INTEGER VALUE",
+    ),
+    (
+        "INVALID_FLOAT_VALUE",
+        '1 OPENW(1,"P9")\n2 FOR I%=1 TO 45 : PRN#(1,"9";) : NEXT I%\n3 CLOSE(1)\n4 OPENR(1,"P9")\n5 INP#(1,R)',
+        "5: INVALID FLOAT VALUE",
+    ),
+    ("INVALID_LINE_COLUMN", '1 DSP(47,1,"A")', "1: Invalid line or column number in CPL command"),
+    ("INVALID_LINE_COLUMN", '1 DSP(1,80,"A")', "1: Invalid line or column number in CPL command"),
+    ("MAX_STRING_LENGTH", LONG.format(78) + "2 DSP(1,1,A$)", "2: maximum string length exceeded"),
+    ("FORMAT_NOT_PERMITTED", '1 DSP(1,1,"##",12345)', "1: format not permitted"),
+]
+
+
+@pytest.mark.covers(*sorted({f"cpl.err.{name}" for name, _, _ in ERRORS}))
+@pytest.mark.parametrize(("name", "program", "error"), ERRORS)
+def test_errors_have_the_texts_of_the_manual_and_stop_the_program(
+    tmp_path: Path, name: str, program: str, error: str
+) -> None:
+    root = Root(tmp_path)
+    assert root.error(f"{program}\n99 @1=5\n") == error
+    assert root.run("1 #A=@1").variables["#A"] is None
+
+
+@pytest.mark.covers("cpl.err.PRN_FORMAT_INCORRECT", "cpl.err.BMP_NOT_EXISTING", "cpl.err.ERASE_WARNING")
+@pytest.mark.parametrize(
+    ("statement", "message"),
+    [
+        ('OPENW(1,"P7") : PRN#(1,"##",12345)', "PRN FORMAT INCORRECT: ##"),
+        ('BMP(1,1,"none")', "cplbmp\\none.bmp is not existing"),
+        ('#A%=ERASE("none")', "none was not erased: it does not exist"),
+    ],
+)
+def test_warnings_are_told_and_the_program_goes_on(tmp_path: Path, statement: str, message: str) -> None:
+    root = Root(tmp_path)
+    result = root.run(f"1 {statement}\n2 #B%=7")
+    assert [each.text for each in result.messages] == [f"MSG: {message}"]
+    assert result.variables["#B%"] == 7
+    if "PRN#" in statement:
+        assert root.read("P7") == b"**\n\x03\n"
+
+
+REMOVED = {
+    "TD_TDR": ("A=TD(1,1)", "A=TDR(1,1)"), "FIX_FIXB_FIXE": ("FIX(1)", "FIXB(1)", "FIXE(1)"), "MIC": ("A=MIC(1)",),
+    "CLX": ("CLX",), "TXT$": ("A$=TXT$(1)",),
+}  # fmt: skip
+
+
+@pytest.mark.covers(*(f"cpl.removed.{name}" for name in REMOVED))
+@pytest.mark.parametrize("statement", [each for row in REMOVED.values() for each in row])
+def test_commands_of_older_controls_are_errors_before_the_program_starts(
+    tmp_path: Path, statement: str
+) -> None:
+    root = Root(tmp_path)
+    assert root.error(f"1 @1%=5\n2 {statement}").startswith("2: ")
+    assert root.run("1 #A%=@1%").variables["#A%"] is None
+
+
+@pytest.mark.covers("cpl.removed.OPENR_TTY", "cpl.removed.OPENW_TTY", "cpl.removed.IC", "cpl.changed.IC")
+def test_the_serial_interface_is_a_file_like_any_other_and_signals_have_groups(tmp_path: Path) -> None:
+    root = Root(tmp_path)
+    root.run(
+        '1 OPENW(1,"TTY") : PRN#(1,"X") : CLOSE(1) : OPENR(1,"TTY") : DIM A$(3) : INP#(1,A$)\n2 DIM #A$(3) : #A$=A$'
+    )
+    assert root.read("TTY") == b"X\n\x03\n"
+    assert root.error("1 A?=IC(5,10)") == "1: INVALID PARAMETER"
+    assert root.error("1 A?=IC(5,1,65)") == "1: INVALID PARAMETER"
