@@ -1,20 +1,31 @@
-"""Time the macros of a control file: blocks of a tool path written into memory, and into a file."""
+"""Time posting: the macros of a control file alone, tool paths from file to file, and the memory of their proof."""
 
 from __future__ import annotations
 
 import math
+import sys
 import tempfile
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from _measure import Figure, at_least, median_s
+from _measure import Figure, at_least, at_most, median_s, run_process
 from _report import run_script
 from polycnc.post import CONTROLS, ControlFile, load_control, parse_control, program_file, shipped_text
+from polycnc.runner import post_file
 
 BLOCKS = 200_000
 RUNS = 5
 BUDGET = 100_000
+POINTS = 100_000
+MILLION = 1_000_000
+MEMORY_MB = 450
+_PROVE = """
+import sys
+from polycnc.runner import post_file
+
+post_file(sys.argv[1], "fanuc-mill", sys.argv[2], verify=True)
+"""
 
 Words = dict[str, float]
 
@@ -60,9 +71,36 @@ def figures(quick: bool) -> list[Figure]:
     with tempfile.TemporaryDirectory() as folder:
         seconds = median_s(partial(into_file, load_control("fanuc-mill"), path, Path(folder) / "a.nc"), RUNS)
     found.append(at_least("fanuc-mill, into a file", blocks / seconds, "blocks/s", BUDGET))
+    with tempfile.TemporaryDirectory() as folder:
+        found += from_file_to_file(Path(folder), POINTS // 5 if quick else POINTS)
     seconds = median_s(partial(load_anew, "fanuc-mill"), RUNS)
     found.append(Figure("fanuc-mill, read and compile", 1000.0 * seconds, "ms"))
     return found
+
+
+def write_points(points: int, file: Path) -> None:
+    """Write a tool path of points along a helix, close together, as APT words."""
+    lines = ["LOADTL/1", "SPINDL/RPM,5000,CLW", "FEDRAT/6000,MMPM", "RAPID", "GOTO/5,0,0"]
+    lines += [
+        f"GOTO/{5.0 * math.cos(0.01 * n):.4f},{5.0 * math.sin(0.01 * n):.4f},{-0.00001 * n:.4f}"
+        for n in range(1, points + 1)
+    ]
+    file.write_text("\n".join([*lines, "FINI\n"]))
+
+
+def from_file_to_file(folder: Path, points: int) -> list[Figure]:
+    """Time a tool path from its file to that of the program, and see what its proof needs for each point."""
+    few, many, program = folder / "few.cl", folder / "many.cl", folder / "a.tap"
+    write_points(points // 2, few)
+    write_points(points, many)
+    seconds = median_s(partial(post_file, many, "fanuc-mill", program), RUNS)
+    small, large = (run_process([sys.executable, "-c", _PROVE, path, program]) for path in (few, many))
+    each_mb = (large.peak_mb - small.peak_mb) / (points - points // 2)
+    whole = small.peak_mb + each_mb * (MILLION - points // 2)
+    return [
+        at_least("fanuc-mill, from file to file", points / seconds, "points/s", BUDGET),
+        at_most("--verify of a million points, by the slope", whole, "MB", MEMORY_MB),
+    ]
 
 
 def load_anew(name: str) -> ControlFile:

@@ -91,8 +91,10 @@ class Places:
 
     def __init__(self) -> None:
         self.folder = Path(tempfile.mkdtemp(prefix="polycnc-fuzz-"))
+        self._back = Path.cwd()
 
     def __enter__(self) -> Path:
+        self._back = Path.cwd()
         for path in self.folder.iterdir():
             if path.is_dir():
                 shutil.rmtree(path)
@@ -101,7 +103,7 @@ class Places:
         return self.folder
 
     def __exit__(self, *_: object) -> None:
-        os.chdir("/")
+        os.chdir(self._back)
 
     def write(self, name: str, content: str | bytes) -> Path:
         """Write a file; text that no file can hold is replaced."""

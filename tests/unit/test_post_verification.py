@@ -63,8 +63,9 @@ def test_distance_from_a_helix() -> None:
     assert distance(steep, 0.99 * math.sqrt(50.0), 0.99 * math.sqrt(50.0), 150.0) == pytest.approx(0.1)
     across = 300.0 / math.hypot(300.0, 5.0 * math.pi)
     assert distance(steep, 10.0, 0.01, 0.0) == pytest.approx(0.01 * across, rel=1e-5)
-    lengths = helix.lengths()
-    assert lengths == pytest.approx([math.hypot(60.0 * math.pi, 6.0)])
+    feed_mm, rapid_mm = helix.length_mm()
+    assert feed_mm == pytest.approx(math.hypot(60.0 * math.pi, 6.0))
+    assert rapid_mm == 0.0
 
 
 def test_witnesses_lie_on_their_moves() -> None:

@@ -208,6 +208,14 @@ class BlockRecords:
         """Return the modal words of a state of preparation."""
         return self._words(_Context(text, (), modal, None), 0)
 
+    def lasting_words(self, tag: int) -> ModalWords | None:
+        """Return the modal words with a block, but motion, distance and feed as its run of plain blocks began.
+
+        It reads no text, whatever the length of the run; None for a tag that is no reference.
+        """
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        return None if context is None else self.words(context.text, context.modal)
+
     def depth(self, tag: int) -> int:
         """Return how many calls led to the block of a tag."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable
 
 import numpy as np
@@ -10,10 +11,12 @@ import numpy.typing as npt
 from polycnc.post import Sweep
 
 Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
+Indices = npt.NDArray[np.int64] | npt.NDArray[np.int32]
 
 _TWO_PI = 2.0 * np.pi
 _NEWTON_STEPS = 6
+_AT_ONCE = 1 << 16
+_ARC_NUMBERS = 7  # centre, normal, angle
 _WITNESSES = 8  # points of an arc that a program must pass
 
 
@@ -26,23 +29,36 @@ class Moves:
     """
 
     def __init__(self, sweeps: Iterable[Sweep], records: int, with_axes: bool = False) -> None:
-        rows = []
-        owner = []
-        axes: list[tuple[float, float, float]] = []
+        points, axes, bends = array("d"), array("d"), array("d")
+        numbers, slots = array("i"), array("i")
+        flags = bytearray()
         for move in sweeps:
-            if with_axes:
-                axes.append(move.axis)
             start = move.start if move.start is not None else move.end
-            owner.append((move.record, move.line, move.rapid, move.start is not None))
-            rows.append((*start, *move.end, *move.center, *move.normal, move.angle))
-        table = np.array(rows, dtype=np.float64).reshape(len(rows), 13)
-        owners = np.array(owner, dtype=np.int64).reshape(len(rows), 4)
+            points.extend(start)
+            points.extend(move.end)
+            numbers.append(move.record)
+            numbers.append(move.line)
+            flags.append(move.rapid)
+            flags.append(move.start is not None)
+            if with_axes:
+                axes.extend(move.axis)
+            if move.angle > 0.0:
+                slots.append(len(bends) // _ARC_NUMBERS)
+                bends.extend((*move.center, *move.normal, move.angle))
+            else:
+                slots.append(-1)
+        count = len(slots)
+        table = np.frombuffer(points, np.float64).reshape(count, 6)
+        owners = np.frombuffer(numbers, np.int32).reshape(count, 2)
+        marks = np.frombuffer(flags, np.bool_).reshape(count, 2)
         self.record, self.line = owners[:, 0], owners[:, 1]
-        self.rapid, self.known = owners[:, 2] != 0, owners[:, 3] != 0
+        self.rapid, self.known = marks[:, 0], marks[:, 1]
         self.start, self.end = table[:, 0:3], table[:, 3:6]
-        self.center, self.normal, self.angle = table[:, 6:9], table[:, 9:12], table[:, 12]
-        self.first = np.searchsorted(self.record, np.arange(records + 1))
-        self.axis = np.array(axes, dtype=np.float64).reshape(len(axes), 3)
+        self._slot = np.frombuffer(slots, np.int32)
+        arcs = np.frombuffer(bends, np.float64).reshape(-1, _ARC_NUMBERS)
+        self._center, self._normal, self._angle = arcs[:, 0:3], arcs[:, 3:6], arcs[:, 6]
+        self.first = np.searchsorted(self.record, np.arange(records + 1, dtype=np.int32)).astype(np.int32)
+        self.axis = np.frombuffer(axes, np.float64).reshape(-1, 3)
         self.only_rapid = np.ones(records, np.bool_)
         self.only_feed = np.zeros(records, np.bool_)
         used = np.flatnonzero(self.first[1:] > self.first[:-1])
@@ -58,37 +74,50 @@ class Moves:
         axes[moving] = self.axis[self.first[1:][moving] - 1]
         return axes, moving
 
-    def lengths(self) -> Floats:
-        """Return the length of each move."""
-        way = self.end - self.start
-        straight = np.sqrt((way * way).sum(axis=1))
-        out = _across(self.start - self.center, self.normal)
-        rise = (way * self.normal).sum(axis=1)
-        arc = np.hypot(self.angle * np.sqrt((out * out).sum(axis=1)), rise)
-        lengths: Floats = np.where(self.angle > 0.0, arc, straight)
-        return lengths
+    def length_mm(self) -> tuple[float, float]:
+        """Return how far the moves with feed go, and the rapids."""
+        feed = rapid = 0.0
+        for begin in range(0, len(self._slot), _AT_ONCE):
+            piece = slice(begin, begin + _AT_ONCE)
+            way = self.end[piece] - self.start[piece]
+            lengths = _norm(way)
+            bent = np.flatnonzero(self._slot[piece] >= 0)
+            arcs = self._slot[piece][bent]
+            normal = self._normal[arcs]
+            out = _across(self.start[piece][bent] - self._center[arcs], normal)
+            rise = (way[bent] * normal).sum(axis=1)
+            lengths[bent] = np.hypot(self._angle[arcs] * _norm(out), rise)
+            feed += float(lengths[~self.rapid[piece]].sum())
+            rapid += float(lengths[self.rapid[piece]].sum())
+        return feed, rapid
 
     def distances(self, points: Floats, moves: Indices) -> Floats:
         """Return how far each point lies from the move of the same place in `moves`."""
         found = to_segments(points, self.start[moves], self.end[moves])
-        bent = np.flatnonzero(self.angle[moves] > 0.0)
+        bent = np.flatnonzero(self._slot[moves] >= 0)
         if len(bent):
             found[bent] = self._to_arcs(points[bent], moves[bent])
         return found
 
     def _to_arcs(self, points: Floats, moves: Indices) -> Floats:
-        start, end, normal = self.start[moves], self.end[moves], self.normal[moves]
-        angle = self.angle[moves]
-        out = _across(start - self.center[moves], normal)
+        slots = self._slot[moves]
+        start, end, normal, center = (
+            self.start[moves],
+            self.end[moves],
+            self._normal[slots],
+            self._center[slots],
+        )
+        angle = self._angle[slots]
+        out = _across(start - center, normal)
         size = np.sqrt((out * out).sum(axis=1))
         side = np.cross(normal, out)
-        away = points - self.center[moves]
+        away = points - center
         flat = _across(away, normal)
         radius = np.sqrt((flat * flat).sum(axis=1))
         turned = np.arctan2((flat * side).sum(axis=1), (flat * out).sum(axis=1)) % _TWO_PI
         rise = ((end - start) * normal).sum(axis=1)
         height = ((points - start) * normal).sum(axis=1)
-        end_size = _norm(_across(end - self.center[moves], normal))
+        end_size = _norm(_across(end - center, normal))
         slope = rise / angle
         with np.errstate(divide="ignore", invalid="ignore"):
             by_height = np.where(np.abs(rise) > 1e-9, height / slope, turned)
@@ -114,22 +143,26 @@ class Moves:
 
     def witnesses(self) -> tuple[Indices, Floats]:
         """Return points that a program must pass, with their move: ends, and points along arcs."""
-        owner = [np.arange(len(self.angle))]
+        every = np.arange(len(self._slot), dtype=np.int32)
+        bent = np.flatnonzero(self._slot >= 0)
+        if not len(bent):
+            return every, self.end
+        owner: list[npt.NDArray[np.int32]] = [every]
         points = [self.end]
-        bent = np.flatnonzero(self.angle > 0.0)
-        out = _across(self.start[bent] - self.center[bent], self.normal[bent])
-        side = np.cross(self.normal[bent], out)
+        normal = self._normal
+        out = _across(self.start[bent] - self._center, normal)
+        side = np.cross(normal, out)
         foot = self.start[bent] - out
-        rise = ((self.end[bent] - self.start[bent]) * self.normal[bent]).sum(axis=1)[:, None]
-        last = _norm(_across(self.end[bent] - self.center[bent], self.normal[bent]))
+        rise = ((self.end[bent] - self.start[bent]) * normal).sum(axis=1)[:, None]
+        last = _norm(_across(self.end[bent] - self._center, normal))
         grow = (last / np.maximum(_norm(out), 1e-12))[:, None] - 1.0
         for number in range(1, _WITNESSES):
             part = number / _WITNESSES
-            angle = (self.angle[bent] * part)[:, None]
+            angle = (self._angle * part)[:, None]
             bow = (np.cos(angle) * out + np.sin(angle) * side) * (1.0 + part * grow)
-            owner.append(bent)
-            points.append(foot + bow + part * rise * self.normal[bent])
-        owners = np.concatenate(owner)
+            owner.append(bent.astype(np.int32))
+            points.append(foot + bow + part * rise * normal)
+        owners: npt.NDArray[np.int32] = np.concatenate(owner)
         order = np.argsort(owners, kind="stable")
         return owners[order], np.concatenate(points)[order]
 

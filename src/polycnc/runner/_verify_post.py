@@ -149,11 +149,11 @@ def verify_post(
     sweeps = (sweep._replace(record=int(carried[sweep.record])) for sweep in sweep_tool_path(tool_path))
     frame = PartFrame(parameters or Parameters())
     moves = Moves(_judged(sweeps, tangency), len(block_map.line), bool(frame.axes))
+    path_feed_mm, path_rapid_mm = moves.length_mm()
     result = run(program, config, read, check=False)
     comparison = _Comparison(moves, block_map, carried, config, read, frame)
     if result.ok:
         _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress)
-    lengths = moves.lengths()
     tool_axis_deg, tool_axis_line = comparison.tool_axis() if result.ok else (0.0, 0)
     return PostVerification(
         tolerance_mm=tolerance_mm,
@@ -161,8 +161,8 @@ def verify_post(
         missed=comparison.missed() if result.ok else Deviation(),
         detour_mm=comparison.detour_mm,
         rapid_cuts=int(comparison.rapid_cut.sum()),
-        path_feed_mm=float(lengths[~moves.rapid].sum()),
-        path_rapid_mm=float(lengths[moves.rapid].sum()),
+        path_feed_mm=path_feed_mm,
+        path_rapid_mm=path_rapid_mm,
         smooth_arcs=tangency.smooth,
         kinked_arcs=tangency.kinked,
         arc_remark=tangency.text() if tangency.mostly_kinked else "",
@@ -280,9 +280,9 @@ class _TipFrame:
         begins = np.flatnonzero(np.concatenate(([True], contexts[1:] != contexts[:-1])))
         found = np.empty((len(begins), len(self._columns)))
         for place, begin in enumerate(begins.tolist()):
-            block = records.block(int(tags[begin]))
-            if block is not None:
-                self._last = self._shift(block.modal)
+            words = records.lasting_words(int(tags[begin]))
+            if words is not None:
+                self._last = self._shift(words)
             found[place] = self._last
         return np.repeat(found, np.diff(np.append(begins, len(tags))), axis=0)
 
@@ -313,23 +313,25 @@ class _Comparison:
         self.off_path = Deviation()
         self.detour_mm = 0.0
         self._moves = moves
-        self._last_block = np.array(block_map.last_block, dtype=np.int64)
-        self._lines = np.array(block_map.line, dtype=np.int64)
+        self._last_block = np.frombuffer(block_map.last_block, np.intc)
+        self._lines = np.frombuffer(block_map.line, np.intc)
         records = len(self._lines)
         self.rapid_cut = np.zeros(records, np.bool_)
         self._columns = [config.axis_names.index(name) if name in config.axis_names else -1 for name in _AXES]
         self._owner, self._witness = moves.witnesses()
-        owners = moves.record[self._owner] if len(self._owner) else np.zeros(0, np.int64)
-        self._first_witness = np.searchsorted(owners, np.arange(records + 1))
+        owners = moves.record[self._owner]
+        self._first_witness = np.searchsorted(owners, np.arange(records + 1, dtype=np.int32)).astype(np.int32)
         self._best = np.full(len(self._owner), np.inf)
-        self._at_block = np.zeros(len(self._owner), np.int64)
+        self._at_block = np.zeros(len(self._owner), np.int32)
         names = dict(zip(config.axis_names, config.start_positions, strict=True))
         self._here = np.array([[names.get(name, 0.0) for name in _AXES]])
         self._frame = _TipFrame(config, dialect, frame.letters)
         self._part = frame
         self._angle_columns = angle_columns(frame, config.axis_names)
         self._angles = np.array([[names.get(name, 0.0) for name in frame.letters]], dtype=np.float64)
-        self._tool_mm = np.array(block_map.tool_mm if len(block_map.tool_mm) else [0.0] * records)
+        self._tool_mm = np.zeros(records) if frame.axes else np.zeros(0)
+        if len(block_map.tool_mm):
+            self._tool_mm = np.array(block_map.tool_mm)
         self._wanted_axes: Floats = np.zeros((0, 3))
         self._moving = np.zeros(0, np.bool_)
         if frame.axes:
@@ -346,7 +348,8 @@ class _Comparison:
             if column >= 0:
                 points[:, place] = rows[:, LEADING + column]
         blocks = rows[:, BLOCK].astype(np.int64)
-        records = self._carried[np.minimum(np.searchsorted(self._last_block, blocks), len(self._lines) - 1)]
+        found = np.searchsorted(self._last_block, blocks.astype(np.intc))
+        records = self._carried[np.minimum(found, len(self._lines) - 1)]
         before = np.concatenate((self._here, points[:-1]))
         before_records = np.concatenate(([self._record], records[:-1]))
         shifts = self._frame.shifts(tags, blocks_of)

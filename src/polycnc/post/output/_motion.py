@@ -42,11 +42,44 @@ class Motion:
         self._kinematics = Kinematics(five_axis) if five_axis is not None else None
         self.angles: Angles = (0.0, 0.0)
         self.tool_length_mm: float | None = None
+        self._has_start = any(output.control.names(word) for word in ("STARTX", "STARTY", "STARTZ"))
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
 
     def set_feed(self, record: Feed) -> None:
         """Take the feed of later moves."""
         self.feed, self.per_revolution = record.value, record.per_revolution
+
+    def feed_to(self, line: int, start: Vector, end: Vector, axis: Vector) -> None:
+        """Move straight to a point with the feed: most of a long tool path, so on a short way where it is plain."""
+        if (
+            self._must_write
+            or self._first
+            or self._kinematics is not None
+            or self._rotary
+            or axis is not self.axis
+            or self.position != start
+            or self.feed is None
+            or not self._needs["LINEAR"]
+        ):
+            self.move(Straight(line, start, end, axis, False))
+            return
+        length = math.dist(start, end)
+        self.tangency.feed(start, end, length)
+        if start == end:
+            return
+        scale = self._scale
+        words: dict[str, float | str] = {
+            "X": end[0] * scale,
+            "Y": end[1] * scale,
+            "Z": end[2] * scale,
+            "F": self.feed * scale,
+            "FEEDMODE": 95.0 if self.per_revolution else 94.0,
+        }
+        if self._has_start:
+            words["STARTX"], words["STARTY"], words["STARTZ"] = (value * scale for value in start)
+        self.position = end
+        self.feed_mm += length
+        self._call("LINEAR", words)
 
     def travelled(self, steps: Iterable[Step], end: Vector) -> None:
         """Take the position behind a hole that a macro drilled, and the lengths of its steps."""

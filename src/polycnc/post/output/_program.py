@@ -71,8 +71,8 @@ class BlockMap:
     `tool_mm` is the length of the tool at each record, if a head of the control file turns it; otherwise it is empty.
     """
 
-    last_block: array[int] = field(default_factory=lambda: array("q"))
-    line: array[int] = field(default_factory=lambda: array("q"))
+    last_block: array[int] = field(default_factory=lambda: array("i"))
+    line: array[int] = field(default_factory=lambda: array("i"))
     tool_mm: array[float] = field(default_factory=lambda: array("d"))
 
     def add(self, last_block: int, line: int) -> None:
@@ -383,6 +383,14 @@ class _Driver:
     def _goto(self, record: Goto) -> None:
         if not self._in_path:
             self._begin_path()
+        elif record.axis is None and not self._resumes:
+            _, x, y, z, _ = record
+            end = x, y, z
+            start = self.course.plain(end)
+            if start is not None:
+                self.drilling.close()
+                self.motion.feed_to(record.line, start, end, self.course.axis)
+                return
         self._move(record)
 
     def _move(self, record: Any) -> None:

@@ -138,6 +138,14 @@ class Course:
                 pass
         return None
 
+    def plain(self, end: Vector) -> Vector | None:
+        """Go straight with the feed, and return from where; None, going nowhere, where it is not as plain as that."""
+        start = self.here
+        if start is None or self.cycle is not None or self._rapid or self._changed:
+            return None
+        self.here = end
+        return start
+
     def _begin(self, cycle: Cycle) -> None:
         self.cycle = self._last = cycle
         self._initial = self.here

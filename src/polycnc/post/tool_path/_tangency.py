@@ -25,9 +25,18 @@ class Tangency:
         self.first_kink = 0
         """The line of the first arc that turns back, 0 if none does."""
         self._way: Vector | None = None
+        self._segment: tuple[Vector, Vector] | None = None
+        """The last move, if its direction is not in `_way` yet: only an arc behind it asks for it."""
         self._leaves: Vector | None = None
         self._vote = 0
         self._line = 0
+
+    def feed(self, start: Vector, end: Vector, length: float) -> None:
+        """Take a straight feed move of a length in mm."""
+        if self._leaves is not None or self._vote:
+            self.straight(start, end, True)
+        elif length > _SHORT_MM:
+            self._segment = (start, end)
 
     def straight(self, start: Vector | None, end: Vector, feed: bool) -> None:
         """Take a straight move."""
@@ -38,11 +47,15 @@ class Tangency:
             self._vote += _vote(way, self._leaves)
         self.settle()
         self._way = way
+        self._segment = None
 
     def arc(self, line: int, start: Vector, end: Vector, center: Vector, normal: Vector) -> None:
         """Take an arc that turns about `normal` by the right-hand rule."""
         self.settle()
         self._line = line
+        if self._segment is not None:
+            self._way = _direction(*self._segment)
+            self._segment = None
         if self._way is not None and (sets_out := _tangent(start, center, normal)) is not None:
             self._vote += _vote(self._way, sets_out)
         self._way = None
