@@ -305,3 +305,20 @@ def test_two_handles_and_two_controls_do_not_share_variables() -> None:
     assert macro(other, 500) == (0, -1)
     assert fwlib.cnc_wrmacro(handle, 500, 10, 2**31 - 1, 0) == EW.EW_DATA
     assert (first.macros.get(500), second.macros.get(500)) == (5.0, None)
+
+
+def test_calls_without_a_block_leave_the_control_its_turn() -> None:
+    control = PowerMate()
+    control.programs.register(1, "O0001\nG65P9001L9999\nM30\n")
+    control.programs.register(9001, "O9001\nG65P9002L9999\nM99\n")
+    control.programs.register(9002, "O9002\n#500=#500+1\nM99\n")
+    control.macros.set(500, 0.0)
+    control.select_program(1)
+    control.cycle_start()
+    assert control.advance(2) == 2
+    counted = control.macros.get(500)
+    assert counted is not None
+    assert 1000 < counted < 200_000
+    control.reset()
+    control.advance(2)
+    assert control.macros.get(500) == counted

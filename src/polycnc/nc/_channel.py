@@ -61,6 +61,7 @@ ORDINARY_BLOCKS = 2000
 _CHUNK_BLOCKS = 1 << 14
 _JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are short, and jumps many
 _MOST_ERRORS = 1000
+_MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
 _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
 
@@ -182,6 +183,7 @@ class Channel:
         if isinstance(language, BoundLanguage):
             language.attach(self)
         self._begun = False
+        self._turns = 0  # of a language, since it gave a block
         self._seeking = False
 
     @property
@@ -452,6 +454,10 @@ class Channel:
             if item is Pause.PAUSE:
                 return False
             self._source_item(item)
+            self._turns = 0 if isinstance(item, WordsBlock | TextSpan | Drain) else self._turns + 1
+            if self._turns >= _MOST_TURNS:
+                self._turns = 0
+                return False
         except ProgramError as error:
             self._note(error)
         return True
