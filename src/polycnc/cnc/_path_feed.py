@@ -240,6 +240,10 @@ class PathFeed:
             self.prepare()
         self._find_stop()
 
+    def let_pass(self) -> None:
+        """Let the block that comes next begin, whatever the stopper says."""
+        self._left = int(self.row["head"])
+
     def _find_stop(self) -> None:
         """Let the path rest at the first boundary where the stopper wants that and where it still can."""
         row = self.row

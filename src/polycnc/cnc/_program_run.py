@@ -736,6 +736,7 @@ class ProgramRun:
         self.overrides.suppress_feed(now.override)
         if now.single_block is not was.single_block and self._single_block:
             self.stopper.step = self._step_of_switch
+            self.feed.let_pass()
             self.feed.look_again()
         if self._held_back and not now.hold:
             self._held_back = False
