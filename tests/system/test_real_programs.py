@@ -77,8 +77,9 @@ def test_program_with_a_word_left_out(data_nc: Path, tmp_path: Path) -> None:
     report = _run(data_nc / "full-circle-without-xyz.gcode", tmp_path, status=1)
     (alarm,) = report["alarms"]
     assert (alarm["line"], alarm["text"]) == (11, "an arc needs a centre or a radius")
-    # One full circle of radius 1.1 about (-2, -0.35), and nothing after it.
-    assert report["cutting_path_mm"] == pytest.approx(0.5 + 0.25 + 2.0 * math.pi * 1.1, rel=1e-9)
+    # Two full circles of radius 1.1 with the ways in and out between them, and nothing after the second.
+    ways = 0.5 + 0.25 + 0.25 + 0.7 + 0.7 + 0.25
+    assert report["cutting_path_mm"] == pytest.approx(ways + 2.0 * 2.0 * math.pi * 1.1, rel=1e-9)
 
 
 def test_pocket_prefix(data_nc: Path, tmp_path: Path) -> None:

@@ -339,7 +339,8 @@ class Dialect(StrictModel):
         """Return what the compiled kernel needs of the dialect."""
         g_action = np.zeros(G_CODES, np.int16)
         for tenths, action in self._by_code.items():
-            g_action[tenths] = action
+            if not (self.notes_codes and action is Action.FEED_PER_MINUTE):  # only ordinary blocks are noted
+                g_action[tenths] = action
         return DialectTables(g_action, self.increment)
 
     def set_initial_state(self, modal: Modal) -> None:
