@@ -32,6 +32,7 @@ else:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
+RENAMES_OPEN_FILES = os.name != "nt"
 _TOKEN_BYTES = 8
 _ATTEMPTS = 16
 _BESIDE = r"\.before|-journal|-wal|-shm"  # what writers make beside the file that they write
@@ -158,13 +159,20 @@ def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = F
             _synchronize(partial)
         with suppress(OSError):
             os.chmod(partial, stat.S_IMODE(target.stat().st_mode))
+        if not RENAMES_OPEN_FILES:
+            os.close(descriptor)
+            descriptor = -1
         partial.replace(target)
         if durable:
             _synchronize(target.parent)
     finally:
+        if descriptor >= 0 and not RENAMES_OPEN_FILES:  # nor removes them
+            os.close(descriptor)
+            descriptor = -1
         with suppress(OSError):
             partial.unlink(missing_ok=True)
-        os.close(descriptor)
+        if descriptor >= 0:
+            os.close(descriptor)
 
 
 def _copied(path: Path) -> Iterator[Path]:

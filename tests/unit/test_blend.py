@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 import polycnc
-from polycnc.kernel import RAPID, STOP, KernelState, append_line, make_state, prepare_path
+from polycnc.kernel import RAPID, STOP, KernelState, add_line, append_line, make_state, prepare_path
 from polycnc.kernel._segments import CIRCLE3D, LINE
 from polycnc.machine import MachineConfig, load_machine
 
@@ -110,3 +110,17 @@ def test_a_rounded_path_is_faster_and_stays_within_tolerance_and_limits() -> Non
     worst = max(distance_to(points, point) for point in rounded.trace.setpoint[::5])
     assert 0.005 < worst <= 0.02 + 1e-9
     assert tuple(rounded.trace.setpoint[-1]) == tuple(points[-1])
+
+
+def test_a_cut_counts_for_the_line_that_it_was_taken_from_alone() -> None:
+    """Lines that were appended without a tolerance are cut nowhere; half of the last of them is there for an arc."""
+    state = queue_of([LEAD, (0.0, 0.0, 0.0), (0.0, 7.0, 0.0)], tolerance=5.0)
+    cut = 7.0 / 2.0
+    assert state.seg.start[3] == pytest.approx([0.0, cut, 0.0], abs=1e-12)
+    state.paths.row["tolerance_mm"] = 0.0
+    columns = (state.seg.row, state.seg.start, state.seg.end, state.paths.row, state.paths.queued)
+    assert add_line(*columns, 0, state.limits.feed_axis, np.array([1.3, 7.0, 0.0]), 50.0, 0, 7)
+    state.paths.row["tolerance_mm"] = 5.0
+    append_line(state.seg, state.paths, 0, state.limits, np.array([1.3, 20.0, 0.0]), 50.0, 0, 8)
+    assert kinds(state) == [LINE, LINE, CIRCLE3D, LINE, LINE, CIRCLE3D, LINE]
+    assert state.seg.end[4] == pytest.approx([1.3 / 2.0, 7.0, 0.0], abs=1e-12)

@@ -10,7 +10,7 @@ from functools import partial
 
 import pytest
 
-from polycnc.machine import Clock, Host, HostError, Snapshot
+from polycnc.machine import Clock, Host, HostError, Snapshot, SnapshotError
 from support.time_sources import FakeWall
 
 THREADS = 8
@@ -63,7 +63,7 @@ class Account:
         return Snapshot.take("an account", "", self.clock.cycles, ())
 
     def restore(self, snapshot: Snapshot) -> None:
-        raise NotImplementedError
+        raise SnapshotError("an account does not go back", hint="Open another one.")
 
 
 @pytest.fixture

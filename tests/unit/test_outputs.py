@@ -203,3 +203,32 @@ def test_a_damaged_trace_is_refused(name: str, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=name.replace(".", r"\.")) as refused:
         read_trace(tmp_path / name)
     assert refused.value.hint
+
+
+def test_where_open_files_cannot_be_renamed_the_file_is_closed_first(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As on Windows, where a rename or a removal of an open file is refused."""
+    closed: list[int] = []
+    renamed: list[int] = []
+    close, replace = os.close, Path.replace
+
+    def noted_close(descriptor: int) -> None:
+        closed.append(descriptor)
+        close(descriptor)
+
+    def noted_replace(self: Path, target: Path) -> Path:
+        renamed.append(len(closed))
+        return replace(self, target)
+
+    monkeypatch.setattr(outputs, "RENAMES_OPEN_FILES", False)
+    monkeypatch.setattr(os, "close", noted_close)
+    monkeypatch.setattr(Path, "replace", noted_replace)
+    with outputs.complete_or_absent(tmp_path / "part.txt") as partial:
+        partial.write_text("content")
+    assert (tmp_path / "part.txt").read_text() == "content"
+    assert (len(closed), renamed) == (1, [1])
+    with pytest.raises(ZeroDivisionError), outputs.complete_or_absent(tmp_path / "part.txt") as partial:
+        raise ZeroDivisionError
+    assert len(closed) == 2
+    assert [path.name for path in tmp_path.iterdir()] == ["part.txt"]

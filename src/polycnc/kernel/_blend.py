@@ -14,6 +14,7 @@ import numpy as np
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._jit import compiled
+from polycnc.kernel._limits import CENTRIPETAL_SHARE
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import (
     CIRCLE3D,
@@ -30,11 +31,11 @@ from polycnc.kernel._segments import (
 SMALLEST_TURN = 1e-6  # rad; a smaller corner is passed as it is
 LARGEST_TURN = math.radians(175.0)  # a reversal has no room for an arc
 SMALLEST_ARC = 1e-6  # mm
-TURNING_SHARE = 0.75  # of an axis' acceleration turns the path on an arc, see `_limits`
 FREE_SHARE = 0.25  # of the shorter line is the tolerance where none is set
 
 # Columns of the scratch `paths.blend`.
-_BEFORE, _AFTER, _START, _CENTER, _NORMAL, _CUT = 0, 3, 6, 9, 12, 15  # cut: of the start of the last line, mm
+_BEFORE, _AFTER, _START, _CENTER, _NORMAL = 0, 3, 6, 9, 12
+_CUT, _CUT_LINE = 15, 16  # what the last arc took of the line behind it, mm, and which line that is
 
 
 @compiled
@@ -48,8 +49,7 @@ def blend_corner(
     """
     row = paths.row[g]
     work = paths.blend[g]
-    cut_before = work[_CUT]
-    work[_CUT] = 0.0
+    cut_before = work[_CUT] if work[_CUT_LINE] == row["tail"] - 1 else 0.0
     tolerance = row["tolerance_mm"]
     if tolerance <= 0.0 or row["tail"] <= row["prepared"]:  # what has been planned cannot be shortened
         return False
@@ -82,7 +82,7 @@ def blend_corner(
         line, limits, (p, q, r), work, cut, radius, turn, speed_mm_s
     ):
         return False
-    work[_CUT] = cut
+    work[_CUT], work[_CUT_LINE] = cut, row["tail"] + 1
     return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, speed_mm_s, tag)
 
 
@@ -109,7 +109,7 @@ def _saves_time(
             after_mm_s, accel_after = min(after_mm_s, speed / w), min(accel_after, allowed / w)
         if u > 0.0 or w > 0.0:
             accel = min(accel, allowed)
-    turning = min(before_mm_s, after_mm_s, math.sqrt(TURNING_SHARE * accel * radius_mm))
+    turning = min(before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
     stopping = _stop_s(cut_mm, before_mm_s, accel_before) + _stop_s(cut_mm, after_mm_s, accel_after)
     rounding = radius_mm * turn_rad / turning
     rounding += (before_mm_s - turning) ** 2 / (2.0 * accel_before * before_mm_s)

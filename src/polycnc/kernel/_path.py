@@ -24,7 +24,7 @@ HELD = 3  # at rest within a segment, until released
 NO_LIMIT = 1 << 62
 
 EXACT_PATH = -1.0  # a tolerance: corners are stops, and the path goes on where there is none
-BLEND_COLUMNS = 16  # see `_blend`
+BLEND_COLUMNS = 17  # see `_blend`
 
 # Columns of `totals`.
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from polycnc.errors import ConfigurationError, SourcePosition
 from polycnc.runner.machine_sources._facts import AxisFacts, Entry, Facts, LeftOut
-from polycnc.units import whole
+from polycnc.units import MM_PER_INCH, whole
 
 CONTROL = "a FANUC parameter list"
 LINE = re.compile(r"\s*N0*(\d{1,5})(?:Q\d+)?((?:[AST]\d+)?[PMI][-+.\d].*)")
@@ -23,7 +23,6 @@ LOOK_AHEAD_RATE, LOOK_AHEAD_TIME_MS, LOOK_AHEAD_MM_S2 = 1770, 1771, 1660
 CORNER_STEP, TOP_RPM = 1783, 3741
 OFFSETS = {1221 + index: f"G{54 + index}" for index in range(6)}
 INCREMENT_MM, COARSE_MM, FINE_MM = 0.001, 0.01, 0.0001
-MM_PER_INCH = 25.4
 NO_LIMIT_MM = 99999.0  # and beyond: the control does not watch it
 LEFT_OUT = {
     1006: "axes A, B and C turn, the others do not",

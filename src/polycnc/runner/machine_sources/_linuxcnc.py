@@ -15,9 +15,9 @@ from polycnc.runner.machine_sources._facts import (
     others,
 )
 from polycnc.runner.machine_sources._ini import read_sections, sections_of
+from polycnc.units import MM_PER_INCH
 
 CONTROL = "a LinuxCNC configuration"
-MM_PER_INCH = 25.4
 INCH = ("inch", "imperial", "in")
 TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)", re.IGNORECASE)
 LEFT_OUT = {
