@@ -265,6 +265,23 @@ def test_the_feed_override_is_suppressed_and_acts_again() -> None:
     assert between == pytest.approx(full + (half - full) * 2 / 3, abs=30)
 
 
+@pytest.mark.parametrize("stops", ["G61", "G9"])
+def test_exact_stops_are_suppressed_and_act_again(stops: str) -> None:
+    def took(text: str) -> int:
+        run, _ = made(text)
+        run.advance(1_000_000)
+        assert run.state is RunState.COMPLETED
+        return run.machine.clock.cycles
+
+    rest, inner = ("", stops) if stops == "G9" else (stops, "")
+    moves = f"{{}}\n{rest}\nG1 X5 F600\n{inner} X13\n{{}}\n{inner} X17\nX24\nM30\n"
+    through, stopping = took(moves.replace("G61", "").replace("G9", "").format("", "")), took(moves.format("", ""))
+    assert stopping > through + 3
+    assert took(moves.format("#3004=4", "")) == through
+    rested = took(moves.format("#3004=4", "#3004=4"))  # each write waits until the axes rest
+    assert rested < took(moves.format("#3004=4", "#3004=0")) <= stopping
+
+
 def test_a_reset_lets_everything_act_again() -> None:
     control, _ = attached()
     registered(control, O1="\n#3004=3\nG1X5.F600\nM30\n", O2="\nG1X50.F600\nM30\n")

@@ -24,7 +24,8 @@ MOTION, PLANE, AXIS_P, AXIS_Q, AXIS_R, WORD_P, WORD_Q, ABSOLUTE, ARC_ABSOLUTE, F
 EXACT_STOP, RAPID_STOP, INCH = 10, 11, 12
 ORDINARY = 13  # something is active that only the ordinary path knows
 EXACT_PATH = 14  # the path rests in corners, and goes on where there are none
-WHOLE_COLUMNS = 15
+STOPS_SUPPRESSED = 15  # exact stops do not act, whatever was programmed
+WHOLE_COLUMNS = 16
 
 # Columns of `real`.
 FEED, ARC_TOLERANCE, ARC_RELATIVE = 0, 1, 2

@@ -49,6 +49,7 @@ from polycnc.nc.blocks._modal import (
     PLANE,
     PLANE_LETTERS,
     RAPID_STOP,
+    STOPS_SUPPRESSED,
     length_scale,
     short_way,
 )
@@ -317,7 +318,8 @@ class MotionBuilder:
     @property
     def exact_stop(self) -> bool:
         """Whether the present block comes to rest at its end."""
-        return bool(self.state.modal.whole[EXACT_STOP]) or self.exact_stop_block
+        whole = self.state.modal.whole
+        return not whole[STOPS_SUPPRESSED] and (bool(whole[EXACT_STOP]) or self.exact_stop_block)
 
     def place(self) -> Word | None:
         """Return the word that best shows what the block wants to move."""

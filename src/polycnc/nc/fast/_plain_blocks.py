@@ -56,6 +56,7 @@ from polycnc.nc.blocks._modal import (
     ORDINARY,
     RAPID_STOP,
     SLOWEST_AXIS,
+    STOPS_SUPPRESSED,
     WORD_P,
     WORD_Q,
     Floats,
@@ -227,7 +228,8 @@ def _run(
             ):
                 return block, NOT_PLAIN
             flags = RAPID if motion == MOTION_RAPID else 0
-            if whole[EXACT_STOP] != 0 or (motion == MOTION_RAPID and whole[RAPID_STOP] != 0):
+            stops = whole[EXACT_STOP] != 0 and whole[STOPS_SUPPRESSED] == 0
+            if stops or (motion == MOTION_RAPID and whole[RAPID_STOP] != 0):
                 flags |= STOP
             speed = math.inf if motion == MOTION_RAPID else feed / 60.0
             if (

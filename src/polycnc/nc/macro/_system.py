@@ -14,6 +14,7 @@ from polycnc.nc.blocks._modal import (
     INCH,
     MOTION,
     PLANE,
+    STOPS_SUPPRESSED,
 )
 from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
 from polycnc.nc.macro._variables import MacroError, Value, no_variable
@@ -142,7 +143,7 @@ class SystemVariables:
             raise no_variable(number)
 
     def _suppress(self, number: int, value: float) -> None:
-        """Let single block, answers (#3003), feed hold and override (#3004) act or not; exact stops stay."""
+        """Let single block, answers (#3003), feed hold, override and exact stops (#3004) act or not."""
         if value not in range(8 if number == _FEED_CONTROL else 4):
             raise MacroError(f"#{number} cannot be {value:g}", "It takes the sum of 1, 2 and 4.", "PS0119")
         self._stored[number] = value
@@ -153,6 +154,8 @@ class SystemVariables:
             if number == _SINGLE_BLOCK
             else was._replace(hold=first, override=second)
         )
+        if number == _FEED_CONTROL:
+            self.channel.state.modal.whole[STOPS_SUPPRESSED] = int(value) >> 2
 
     # ------------------------------------------------------------------ where a number leads
 
