@@ -363,7 +363,8 @@ def test_haas_numbers_without_a_point_count_increments() -> None:
     program = "G1 X1500 Y2. F250.\nX3. F500\n"
     assert moves(program, dialect="haas") == ["line X1.5 Y2 F250", "line X3 F0.5"]
     assert notes(program, dialect="haas") == [
-        "F without a decimal point counts 0.001 mm in dialect 'haas': F500 is 0.5"
+        "lengths without a decimal point count 0.001 in dialect 'haas'",
+        "F without a decimal point counts 0.001 mm in dialect 'haas': F500 is 0.5",
     ]
 
 

@@ -275,7 +275,10 @@ def test_exact_stops_are_suppressed_and_act_again(stops: str) -> None:
 
     rest, inner = ("", stops) if stops == "G9" else (stops, "")
     moves = f"{{}}\n{rest}\nG1 X5 F600\n{inner} X13\n{{}}\n{inner} X17\nX24\nM30\n"
-    through, stopping = took(moves.replace("G61", "").replace("G9", "").format("", "")), took(moves.format("", ""))
+    through, stopping = (
+        took(moves.replace("G61", "").replace("G9", "").format("", "")),
+        took(moves.format("", "")),
+    )
     assert stopping > through + 3
     assert took(moves.format("#3004=4", "")) == through
     rested = took(moves.format("#3004=4", "#3004=4"))  # each write waits until the axes rest

@@ -77,7 +77,11 @@ class Modes:
         modal = self.state.modal
         if g := words.g.get(Group.UNITS):
             set_inch(modal, g.action is Action.INCH)
-        words.increment = self.dialect.increment * (_INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0)
+        if self.dialect.increment:
+            words.increment = self.dialect.increment * (
+                _INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0
+            )
+            self._tell_of_increments(words)
         g = words.g.get(Group.PLANE)
         if g is None or _PLANES[g.action] == modal.whole[PLANE]:
             return
@@ -90,6 +94,14 @@ class Modes:
                 "the plane changes while a drilling cycle is active", "Cancel it with G80 first.", g.word
             )
         set_plane(modal, _PLANES[g.action])
+
+    def _tell_of_increments(self, words: BlockWords) -> None:
+        """Say once that positions without a decimal point are small: who forgets the point loses the part."""
+        found = (words.by_letter.get(letter) for letter in (*self.state.axis_names, *"IJKR"))
+        if any(word is not None and word.value and not word.point for word in found):
+            self.messages.add(
+                f"lengths without a decimal point count {words.increment:g} in dialect '{self.dialect.name}'"
+            )
 
     def set_feed(self, words: BlockWords) -> None:
         """Carry out the feed mode and F.
