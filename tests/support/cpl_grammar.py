@@ -19,22 +19,23 @@ program: LINE body
 body: _seps? (unit (_seps unit)*)? _seps?
 unit: MARK+ | MARK* statement
 statement: assign | cond | case | for | while | repeat
-assign: (IVAR | RVAR | DVAR) "=" number | BVAR "=" truth | SVAR "=" text | (IVAR | RVAR | DVAR | BVAR | SVAR) "=" "NUL"
+assign: (IVAR | RVAR | DVAR) "=" number | BVAR "=" truth | SVAR "=" text | (IVAR | RVAR | DVAR | BVAR | SVAR) "=" _nul
 cond: "IF" truth "THEN" body ("ELSE" body)? "ENDIF"
 case: "CASE" number "OF" (_sep | MARK)* branch* ("OTHERWISE" body)? "ENDCASE"
 branch: "LABEL" constant ("," constant)* body
 constant: "-"? INT
-for: "FOR" counter "=" (number | "NUL") ("STEP" number)? "TO" number passes "NEXT" counter?
+for: "FOR" counter "=" (number | _nul) ("STEP" number)? "TO" number passes "NEXT" counter?
 passes: _seps? | _seps unit (_seps unit)* _seps?
 counter: IVAR | RVAR | DVAR
 while: "WHILE" truth ("DO" body | _NEWLINE body) "END"
 repeat: "REPEAT" body "UNTIL" truth
+_nul: "NUL" | "(" _nul ")"
 _seps: _sep+
 _sep: _COLON | _NEWLINE
 
 truth: orhood | number relation number -> compared | text relation text -> compared
      | truth equality orhood -> compared
-     | (number | text | truth) equality "NUL" -> with_nul | "NUL" equality (number | text | orhood | "NUL") -> nul_with
+     | (number | text | truth) equality _nul -> with_nul | _nul equality (number | text | orhood | _nul) -> nul_with
 orhood: andhood | orhood (OR | XOR) andhood -> joined
 andhood: denial | andhood AND denial -> joined
 denial: "NOT" denial -> denied | "(" truth ")" | TRUE | FALSE | BVAR
@@ -91,10 +92,10 @@ class Reading:
     def takes(self, text: str) -> bool:
         """Tell whether the grammar derives a program."""
         try:
-            self._lark.parse(text, start="program")
+            tree = self._lark.parse(text, start="program")
         except LarkError:
             return False
-        return True
+        return all(len(_counters(each)) == 1 for each in tree.find_data("for"))
 
     def value(
         self, text: str, variables: dict[str, Any], *, truth: bool = False, double: bool = False
@@ -102,6 +103,13 @@ class Reading:
         """Return what an expression is worth; ArithmeticError or TypeError where it has no value."""
         tree = self._lark.parse(f"({text})", start="truth" if truth else "number")
         return _Evaluator(variables, np.float64 if double else np.float32).of(tree)
+
+
+def _counters(loop: Tree[Token]) -> set[str]:
+    """Return the variables that a FOR and its NEXT name: what a grammar does not compare."""
+    return {
+        str(each.children[0]) for each in loop.children if isinstance(each, Tree) and each.data == "counter"
+    }
 
 
 class _Evaluator:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from polycnc.cnc import ProgramRun
+from polycnc.controllers.bosch._called_codes import DRILLING, called_codes
 from polycnc.controllers.bosch._memory import plain_variable
 from polycnc.controllers.bosch._services import Services
 from polycnc.controllers.bosch._system import BoschSystem
@@ -16,15 +17,17 @@ from polycnc.controllers.bosch.ncs import Coupling, Mmc, NcsServer
 from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
 from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
-from polycnc.nc import ProgramText
+from polycnc.nc import ProgramText, load_dialect
 from polycnc.nc.cpl import (
     OMITTED,
+    CodeCalls,
     CplLanguage,
     CplSource,
     Fault,
     Linker,
     PermanentMemory,
     holds_cpl,
+    is_marked_typ2,
     text_of,
     undeclared,
 )
@@ -59,10 +62,15 @@ class ChannelHost:
         self.number = number
         self.directory = system.directory
         self.kept = system.kept
-        self.language = _Language(self, skip_levels=frozenset(skip_levels), stepping=stepping)
+        codes = called_codes(system, load_dialect("bosch"), lambda: system.axes.names_in(number))
+        self.language = _Language(self, codes, skip_levels=frozenset(skip_levels), stepping=stepping)
         self.files = FileCommands(self.directory, self._say, self._running_files)
         self.dialog = Dialog(
-            Keyboard(keys), lambda: self.files.left_justified, self._bitmap, lambda text: self._say(text)
+            Keyboard(keys),
+            lambda: self.files.left_justified,
+            self._bitmap,
+            lambda text: self._say(text),
+            few_keys=self._is_typ2,
         )
         self.coupling = Coupling(server or NcsServer(Services(system)), system.shown.image, number)
         self._clock = system.clock
@@ -106,15 +114,12 @@ class ChannelHost:
         return _words(text_of(value) or "")
 
     def program(self, address: str, name: str) -> tuple[str, str] | None:
-        """Return file and text of a sub-program in the root."""
-        for file in _file_names(address, name):
-            try:
-                text = self.directory.text(file)
-            except Fault:
-                continue
-            if text is not None:
-                return file, text
-        return None
+        """Return file and text of a sub-program on the search path."""
+        if address not in ("G", "M"):
+            return self.system.program_of(name)
+        code = f"{address}{name}"
+        drilling = self.system.program_of(DRILLING[code]) if code in DRILLING else None
+        return drilling or self.system.program(code)
 
     # ------------------------------------------------------------------ for who runs it
 
@@ -127,6 +132,7 @@ class ChannelHost:
         """Take the run whose channel this control is."""
         self.system.runs[self.number] = run
         self.system.machine = run.machine
+        self.system.links.start_up()
 
     @property
     def config(self) -> MachineConfig:
@@ -135,11 +141,11 @@ class ChannelHost:
 
     def has_statements(self, program: ProgramText) -> bool:
         """Tell whether a program holds CPL."""
-        return holds_cpl(program.content)
+        return holds_cpl(program.content, self.language.codes.alone())
 
     def check(self, program: ProgramText) -> list[ProgramError]:
         """Link a program with its sub-programs without running it; return everything that is wrong."""
-        linker = Linker(self.program)
+        linker = Linker(self.program, codes=self.language.codes)
         _, errors = linker.link(_decoded(program.content), program.name)
         for each in linker.programs():
             errors += undeclared(each, self.permanent)
@@ -214,9 +220,17 @@ class ChannelHost:
         name = axes.logical_name(self.number, found)
         return _AxisWord(name[0], int(name[1:]) if name[1:] else None, float(position))
 
+    def note(self, remark: str) -> None:
+        """Put a remark of the control beside what the program says."""
+        self._attached().channel.messages.note(remark, 0)
+
     def _say(self, text: str) -> None:
         line = self.language.running[-1].execution.statement_line if self.language.running else 0
         self._attached().channel.messages.note(f"MSG: {text}", line)
+
+    def _is_typ2(self) -> bool:
+        running = self.language.running
+        return bool(running) and is_marked_typ2(running[-1].execution.program.source.text)
 
     def _bitmap(self, name: str) -> Image | None:
         folder = self.directory.root / "cplbmp"
@@ -240,8 +254,12 @@ class _AxisWord(NamedTuple):
 class _Language(CplLanguage):
     """CPL on a control whose declarations of permanent variables are right."""
 
-    def __init__(self, host: ChannelHost, *, skip_levels: frozenset[int], stepping: bool) -> None:
-        super().__init__(host, skip_levels=skip_levels, stepping=stepping)
+    def __init__(
+        self, host: ChannelHost, codes: CodeCalls, *, skip_levels: frozenset[int], stepping: bool
+    ) -> None:
+        super().__init__(
+            host, skip_levels=skip_levels, stepping=stepping, tables=host.system.links, codes=codes
+        )
         self._host_of = host
         self.used = False
         """Whether a program with CPL has begun."""
@@ -249,7 +267,11 @@ class _Language(CplLanguage):
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
         if self._host_of.system.errors_of_files:
             raise self._host_of.system.errors_of_files[0]
-        source = super().source(text, offset, line, arguments)
+        try:
+            source = super().source(text, offset, line, arguments)
+        finally:
+            for remark in self._host_of.system.links.take_remarks():
+                self._host_of.note(remark)
         self.used = self.used or source is not None
         return source
 
@@ -263,13 +285,6 @@ def _missing(name: str) -> Callable[..., Any]:
         raise Fault(f"the control has no {name}", "this function is not simulated")
 
     return refuse
-
-
-def _file_names(address: str, name: str) -> tuple[str, ...]:
-    """Return the files that a call may mean: G22 lies in G22, P999 in P999 or 999."""
-    if address in ("G", "M"):
-        return (f"{address}{name}",)
-    return (f"P{name}", name) if name[:1].isdigit() else (name,)
 
 
 def _words(text: str) -> tuple[tuple[str, int | None, float], ...]:

@@ -11,6 +11,8 @@ from polycnc.nc.cpl import CharacterField, Field, PermanentMemory
 
 STORE = "cpl.store"
 DECLARATIONS = ("wmhperm.dat", "anwperm.dat")
+FEPROMS = ("usrfep", "fep")
+"""Where the control looks for its own files behind its root: the folders of the user FEPROM and of the FEPROM."""
 _AREA = "cpl.permanent"
 
 
@@ -23,10 +25,8 @@ class KeptVariables:
     def __init__(self, directory: Directory, store: Store | None = None) -> None:
         self._path = directory.root / STORE
         self.memory = PermanentMemory()
-        texts = ((name, directory.text(name)) for name in DECLARATIONS)
-        self.errors: list[ProgramError] = self.memory.declare(
-            [(name, text) for name, text in texts if text is not None]
-        )
+        found = (first_of(directory, name) for name in DECLARATIONS)
+        self.errors: list[ProgramError] = self.memory.declare([each for each in found if each is not None])
         self._kept = self._read(store)
 
     def changed(self) -> dict[str, object]:
@@ -62,6 +62,15 @@ class KeptVariables:
         for name, kept in store.area(_AREA, dict).items():
             if name in self.memory:
                 self.memory[str(name)] = _filled(self.memory[str(name)], kept["value"])
+
+
+def first_of(directory: Directory, name: str) -> tuple[str, str] | None:
+    """Return path and text of a file of the control, the first of root, user FEPROM and FEPROM; None without one."""
+    for path in (name, *(f"{folder}/{name}" for folder in FEPROMS)):
+        text = directory.text(path)
+        if text is not None:
+            return path, text
+    return None
 
 
 def plain_variable(value: object) -> object:

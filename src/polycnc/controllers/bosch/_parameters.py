@@ -16,6 +16,7 @@ BASIC_SETTING = -1
 LANGUAGE = 601000010
 FIRST_MODULE, MODULES = 206000100, 206000110
 TABLE_UNIT = 902000010
+SEARCH_PATH, LINK_FOLDER = 308000001, 308000004
 PROBING_AXES = 100300012
 LANGUAGE_GB = 44
 _ENDLESS = 1e9
@@ -48,8 +49,8 @@ def parameters(config: MachineConfig, axes: SystemAxes) -> dict[tuple[int, int],
         ],
         (FIRST_MODULE, BASIC_SETTING): [0],
         (MODULES, BASIC_SETTING): [0],
-        (308000001, BASIC_SETTING): ["/"],
-        (308000004, BASIC_SETTING): ["/"],
+        (SEARCH_PATH, BASIC_SETTING): ["/"],
+        (LINK_FOLDER, BASIC_SETTING): ["/"],
         (308000005, BASIC_SETTING): [1],
         (308000006, BASIC_SETTING): [""],
         (308000007, BASIC_SETTING): ["cpldlg05.dlg"],

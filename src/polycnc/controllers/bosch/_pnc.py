@@ -109,6 +109,7 @@ class Pnc:
             channel.names = axes.names_in(number)
             channel.asks_often = True
         self.hosts = tuple(hosts)
+        self.system.links.start_up()
 
     # ------------------------------------------------------------------ the device
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 
@@ -12,9 +13,20 @@ from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_data import ChannelData
 from polycnc.controllers.bosch._kept_tables import KeptTables
+from polycnc.controllers.bosch._link_files import LinkFiles
 from polycnc.controllers.bosch._live_tables import LiveOffsets, LiveTools, fill_from_machine
 from polycnc.controllers.bosch._memory import STORE, KeptVariables
-from polycnc.controllers.bosch._parameters import FILE, FIRST_MODULE, LANGUAGE, MODULES, TABLE_UNIT, macoda
+from polycnc.controllers.bosch._parameters import (
+    BASIC_SETTING,
+    FILE,
+    FIRST_MODULE,
+    LANGUAGE,
+    LINK_FOLDER,
+    MODULES,
+    SEARCH_PATH,
+    TABLE_UNIT,
+    macoda,
+)
 from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch._shown import Shown
 from polycnc.controllers.bosch._table_files import TableFiles
@@ -40,6 +52,7 @@ from polycnc.controllers.bosch.system import (
 from polycnc.errors import ProgramError
 from polycnc.machine import Clock, Machine, MachineConfig, Store
 from polycnc.nc import Channel
+from polycnc.nc.cpl import Fault
 
 _SPINDLES = 8
 _SECTORS, _PLACES = 9, 999
@@ -81,6 +94,7 @@ class BoschSystem:
         text = self.directory.text(FILE)
         self._macoda = {number: macoda(config, self.axes, number, text) for number in self.axes.channels}
         self.errors_of_files: list[ProgramError] = [*self.kept.errors, *next(iter(self._macoda.values()))[1]]
+        self.links = LinkFiles(self.directory, str(self.parameter(LINK_FOLDER)), self.search_path)
         self.interface = Interface(len(self.axes.channels), 64, _SPINDLES, pnc=False)
         self.errors = ErrorList(len(self.axes.channels))
         self.plc = self._new_plc()
@@ -148,7 +162,32 @@ class BoschSystem:
 
     def parameter(self, number: int) -> object:
         """Return the first value of a MACODA parameter."""
-        return next(iter(self._macoda.values()))[0].mca(number, 0)
+        return self.parameters(number)[0]
+
+    def parameters(self, number: int) -> Sequence[object]:
+        """Return all values of a MACODA parameter."""
+        channel, (found, _) = next(iter(self._macoda.items()))
+        return found.parameters.get((number, channel)) or found.parameters[number, BASIC_SETTING]
+
+    @property
+    def search_path(self) -> tuple[str, ...]:
+        """The folders of the root that programs are searched for in, without / at their ends."""
+        return tuple(str(each).strip("/") for each in self.parameters(SEARCH_PATH))
+
+    def program_of(self, name: str) -> tuple[str, str] | None:
+        """Return file and text of a program by its name or number: 999 lies in P999 or 999."""
+        names = (f"P{name}", name) if name[:1].isdigit() else (name,)
+        return next((found for each in names if (found := self.program(each))), None)
+
+    def program(self, name: str) -> tuple[str, str] | None:
+        """Return file and text of a program: a name without a folder is searched for along the search path."""
+        for folder in ("",) if "/" in name else self.search_path:
+            file = f"{folder}/{name}" if folder else name
+            with suppress(Fault):
+                text = self.directory.text(file)
+                if text is not None:
+                    return file, text
+        return None
 
     def the_machine(self) -> Machine:
         """Return the machine."""

@@ -1,6 +1,7 @@
 """CPL: the language inside part programs, and what it needs of the control that runs it (Manual 003)."""
 
 from polycnc.nc.cpl._blocks import CplLanguage, CplSource
+from polycnc.nc.cpl._code_calls import CodeCalls
 from polycnc.nc.cpl._faults import Fault, Text
 from polycnc.nc.cpl._fields import Field
 from polycnc.nc.cpl._formats import default_format, groups, number_in
@@ -19,6 +20,8 @@ from polycnc.nc.cpl._host import (
     SubProgram,
     Waiting,
 )
+from polycnc.nc.cpl._link_table import LinkTable, LinkTables, read_table, written_table
+from polycnc.nc.cpl._nc_lines import is_marked_typ2
 from polycnc.nc.cpl._permanent import PermanentMemory
 from polycnc.nc.cpl._program import Linker, Program, compile_program, holds_cpl
 from polycnc.nc.cpl._run import Execution, Run, undeclared
@@ -31,6 +34,7 @@ __all__ = [
     "BlockWord",
     "Box",
     "CharacterField",
+    "CodeCalls",
     "CplLanguage",
     "CplSource",
     "Event",
@@ -40,6 +44,8 @@ __all__ = [
     "Host",
     "Item",
     "Lines",
+    "LinkTable",
+    "LinkTables",
     "Linker",
     "NcValues",
     "PermanentMemory",
@@ -54,7 +60,10 @@ __all__ = [
     "default_format",
     "groups",
     "holds_cpl",
+    "is_marked_typ2",
     "number_in",
+    "read_table",
     "text_of",
     "undeclared",
+    "written_table",
 ]

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
+from polycnc.errors import ProgramError
 from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, Statement, TextSpan, WordsBlock
+from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, CodeWord
 from polycnc.nc.cpl._host import Host, Lines, NcValues, Step, SubProgram, Waiting
+from polycnc.nc.cpl._link_table import LinkTables
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
 from polycnc.nc.cpl._run import Arguments, Execution
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan_plain import Word
+from polycnc.nc.text._scan_plain import Word, scan_block
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
 _STATEMENT = re.compile(r"[ \t]*[0-9.@#](?![0-9]*[ \t]*WAIT)")
@@ -20,23 +23,34 @@ _STATEMENTS = 256  # so many, then time passes: a loop may hold no block
 
 
 class _Called(NamedTuple):
-    """What a call hands to the source of its sub-program."""
+    """What a call hands to the source of its sub-program; `modal`: its moves are followed by no call."""
 
     program: Program
     arguments: Arguments
+    modal: bool = False
 
 
 class CplLanguage:
     """Run CPL programs in a channel; one object is one run, whose global variables it holds in `globals`.
 
-    Blocks of a level in `skip_levels` are left out.
+    Blocks of a level in `skip_levels` are left out. What linking finds out is kept in `tables`;
+    `codes` are those that call programs.
     """
 
     def __init__(
-        self, host: Host, *, skip_levels: frozenset[int] = frozenset(), stepping: bool = False
+        self,
+        host: Host,
+        *,
+        skip_levels: frozenset[int] = frozenset(),
+        stepping: bool = False,
+        tables: LinkTables | None = None,
+        codes: CodeCalls = NO_CODES,
     ) -> None:
         self.globals: dict[str, Any] = {}
-        self.linker = Linker(host.program, stepping=stepping)
+        self.codes = codes
+        self.modal: SubProgram | None = None
+        """The call that is made behind every move."""
+        self.linker = Linker(host.program, stepping=stepping, tables=tables, codes=codes)
         self.running: list[CplSource] = []
         """The sources under way, that of the main program first."""
         self.at_line: Callable[[str, int], bool] | None = None
@@ -51,17 +65,24 @@ class CplLanguage:
             ProgramError: It, or a sub-program of it, is wrong; this is the link step.
         """
         called = arguments if isinstance(arguments, _Called) else None
-        if offset or (called is None and not holds_cpl(text.content)):
+        if called is None and not self.running:
+            self.linker.look_again()
+        if offset or (called is None and not holds_cpl(text.content, self.linker.alone)):
             return None
         if called is None:
             if not self.running:
                 self.globals.clear()
+                self.modal = None
             main, errors = self.linker.link(_decoded(text.content), text.name)
             if main is None:
                 raise errors[0]
             called = _Called(main, Arguments())
-        execution = Execution(called.program, self.linker, self._host, self.globals, called.arguments)
-        source = CplSource(text, execution, self)
+        try:
+            execution = Execution(called.program, self.linker, self._host, self.globals, called.arguments)
+        except ProgramError:
+            self.linker.refuse(called.program)
+            raise
+        source = CplSource(text, execution, self, modal=called.modal)
         self.running.append(source)
         return source
 
@@ -84,8 +105,13 @@ class CplLanguage:
 class CplSource:
     """The blocks of one CPL program."""
 
-    def __init__(self, text: ProgramText, execution: Execution, language: CplLanguage) -> None:
+    def __init__(
+        self, text: ProgramText, execution: Execution, language: CplLanguage, *, modal: bool = False
+    ) -> None:
         self.execution = execution
+        self.is_modal = modal
+        """Whether its moves are followed by no modal call: it is that call."""
+        self._items: Iterator[SourceItem] = iter(())
         self._text = text
         self._language = language
         self._starts = [0, *(found.end() for found in _LINE_END.finditer(text.content)), len(text.content)]
@@ -110,6 +136,8 @@ class CplSource:
             ProgramError: A statement cannot be executed.
         """
         while True:
+            if (item := next(self._items, None)) is not None:
+                return item
             if self._waiting is not None:
                 self._answer = self._waiting.answer()
                 if self._answer is None:
@@ -120,12 +148,19 @@ class CplSource:
                 case None:
                     return None
                 case Lines(first=first, last=last):
-                    return TextSpan(self._starts[first - 1], first, self._starts[last])
+                    if self._language.modal is None or self._in_modal:
+                        return self._span(first, last)
+                    self._items = self._lines(first, last)
                 case NcValues() as block:
                     if not self._language.skips(block.skip):
+                        words = [CodeWord(each.address, each.extension, each.value) for each in block.words]
+                        self._items = self._calls_behind(words)
                         return self._words(block)
                 case SubProgram() as call:
-                    return self._call(call)
+                    modal = f"{call.address}{call.name}" in self._language.codes.modal
+                    if modal and not self._in_modal:
+                        self._language.modal = call
+                    return self._call(call, modal=modal)
                 case Waiting() as wait:
                     if wait.condition is not None or wait.duration_ms is not None:
                         self._waiting = _Wait(wait, self._language.milliseconds)
@@ -152,6 +187,39 @@ class CplSource:
             if not self._language.running:
                 self._language.ended()
 
+    @property
+    def _in_modal(self) -> bool:
+        return any(source.is_modal for source in self._language.running)
+
+    def _span(self, first: int, last: int) -> TextSpan:
+        return TextSpan(self._starts[first - 1], first, self._starts[last])
+
+    def _lines(self, first: int, last: int) -> Iterator[SourceItem]:
+        """Give plain blocks one by one, each with the call behind its move, as long as there is one."""
+        for line in range(first, last + 1):
+            if self._language.modal is None:
+                yield self._span(line, last)
+                return
+            yield self._span(line, line)
+            try:
+                block = scan_block(self._text, self._starts[line - 1], line, self._language.codes.rules)
+            except ProgramError:
+                continue  # the channel says so
+            if not (block.skip_level and self._language.skips(block.skip_level)):
+                yield from self._calls_behind(
+                    [CodeWord(word.letter, word.index, word.value) for word in block.words]
+                )
+
+    def _calls_behind(self, words: list[CodeWord]) -> Iterator[SourceItem]:
+        """Give the modal call behind a block that moves, or end it."""
+        language = self._language
+        if language.modal is None or self._in_modal:
+            return
+        if language.codes.cancels_modal(words):
+            language.modal = None
+        elif language.codes.moves(words):
+            yield self._call(language.modal, modal=True)
+
     def _words(self, block: NcValues) -> WordsBlock:
         begin, end = self._starts[block.line - 1 : block.line + 1]
         line = _decoded(self._text.content[begin:end])
@@ -161,12 +229,12 @@ class CplSource:
             words.append(Word(word.address, word.value, place, True, word.extension))
         return WordsBlock(tuple(words), block.line, begin, block.message)
 
-    def _call(self, call: SubProgram) -> CallProgram:
+    def _call(self, call: SubProgram, *, modal: bool = False) -> CallProgram:
         running = [source.execution.program for source in self._language.running]
         program = self.execution.called(call, running)
         text = ProgramText.from_text(program.source.text, program.file)
         arguments = Arguments(call.arguments, self.execution.linked)
-        called = _Called(program, arguments)
+        called = _Called(program, arguments, modal)
         return CallProgram(text, call.line, self._starts[call.line - 1], arguments=called)
 
 

@@ -16,17 +16,24 @@ _MESSAGE = re.compile(r"\([ \t]*MSG[ \t]*,(.*)\)[ \t]*\Z", re.IGNORECASE)
 _BLANKS = re.compile(r"[ \t]*")
 _CALL_NAME = re.compile(r"[Pp][ \t]*([A-Za-z_][^\s\[\](),:;]*)[ \t]*")
 _CALL_NUMBER = re.compile(r"([GgMmPp])[ \t]*([0-9]+)(?=\[)")
+_CALL_ALONE = re.compile(r"([GgMmPp])[ \t]*([0-9]+)[ \t]*(?:\([^)\n]*\)[ \t]*)*\r?\Z")
 _ADDRESS = re.compile(r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*(?=\[)")
 _WORD = re.compile(
     r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*([+-]?)[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)(?![0-9]*\])"
 )
 _BRACKET = re.compile(r'\[(?:[^\]"]|"[^"]*")*\]')
 _DIN = re.compile(r"[ \t]*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*DIN[ \t]*\)", re.IGNORECASE)
+_TYP2 = re.compile(r"\s*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*TYP2[ \t]*\)", re.IGNORECASE)
 
 
 def is_marked_din(line: str) -> bool:
     """Tell whether a program's first line takes it out of linking."""
     return _DIN.match(line) is not None
+
+
+def is_marked_typ2(text: str) -> bool:
+    """Tell whether a program says by its first instruction that its dialogs are those of older controls."""
+    return _TYP2.match(text) is not None
 
 
 def sequence_number(text: str) -> str:
@@ -35,8 +42,10 @@ def sequence_number(text: str) -> str:
     return f"N{found[2].lstrip('0') or '0'}" if found and found[2] else ""
 
 
-def read_nc_line(text: str, begin: int, end: int, line: int) -> NcLine | NcBlock | SubCall | Wait:
-    """Return the NC block at `text[begin:end]`.
+def read_nc_line(
+    text: str, begin: int, end: int, line: int, alone: frozenset[str] = frozenset()
+) -> NcLine | NcBlock | SubCall | Wait:
+    """Return the NC block at `text[begin:end]`; the codes of `alone` call programs without brackets.
 
     Raises:
         Flaw: The CPL in it is wrong.
@@ -53,11 +62,18 @@ def read_nc_line(text: str, begin: int, end: int, line: int) -> NcLine | NcBlock
     if named or numbered:
         return _sub_call(text, at, end, line, named, numbered)
     if not has_bracket(text[at:end]):
+        if (code := _CALL_ALONE.match(text[at:end])) and _is_call(code, alone):
+            return SubCall(at, line, code[1].upper(), code[2].lstrip("0") or "0")
         return NcLine(begin, line, line)
     words, message = _Words(text, at, end).read()
     level = int(head[1] or 1) if head and "/" in head[0] else 0
     number = int(head[2][-9:]) if head and head[2] else None
     return NcBlock(at, line, number, level, tuple(words), message)
+
+
+def _is_call(code: re.Match[str], alone: frozenset[str]) -> bool:
+    letter = code[1].upper()
+    return letter == "P" or f"{letter}{code[2].lstrip('0') or '0'}" in alone
 
 
 def has_bracket(text: str) -> bool:

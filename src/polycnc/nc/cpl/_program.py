@@ -8,7 +8,9 @@ from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
 from polycnc.language import Flaw, Source, Traced
+from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, pattern_of
 from polycnc.nc.cpl._compile import Compiler
+from polycnc.nc.cpl._link_table import LinkedCall, LinkTable, LinkTables, NoTables, text_digest
 from polycnc.nc.cpl._nc_lines import is_marked_din
 from polycnc.nc.cpl._program_reader import read_program
 from polycnc.nc.cpl._shape import every, target_flaws
@@ -18,7 +20,8 @@ from polycnc.nc.cpl._variables import Variable
 NESTING = 7
 """How deep sub-programs may be nested (Manual 003, 2.1)."""
 Find = Callable[[str, str], "tuple[str, str] | None"]
-_CPL = re.compile(rb"(?mi)^[ \t]*[0-9]|\[|^[ \t]*(?:N[ \t]*[0-9]+)?[ \t]*(?:WAIT|P[ \t]*[A-Z_]|\([ \t]*DIN)")
+_CALL = rb"P[ \t]*(?:[A-Z_]|[0-9]+[ \t]*(?:\(.*)?\r?$)"
+_CPL = re.compile(rb"(?mi)^[ \t]*[0-9]|\[|^[ \t]*(?:N[ \t]*[0-9]+)?[ \t]*(?:WAIT|%b|\([ \t]*DIN)" % _CALL)
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class Program:
 
     source: Source
     traced: Traced[int]
-    calls: tuple[SubCall, ...]
+    calls: tuple[LinkedCall, ...]
     variables: dict[Variable, int]
     marked_din: bool
     is_plain: bool
@@ -39,47 +42,79 @@ class Program:
         return self.source.file
 
 
-def holds_cpl(content: bytes) -> bool:
-    """Tell whether a program needs this language: NC blocks alone do not."""
-    return _CPL.search(content) is not None
+def holds_cpl(content: bytes, alone: frozenset[str] = frozenset()) -> bool:
+    """Tell whether a program needs this language: NC blocks do not, but for those of codes that call programs."""
+    calls = pattern_of(alone)
+    return _CPL.search(content) is not None or (calls is not None and calls.search(content) is not None)
 
 
 def compile_program(
-    text: str, file: str, *, stepping: bool = False
+    text: str, file: str, *, stepping: bool = False, alone: frozenset[str] = frozenset()
 ) -> tuple[Program | None, list[ProgramError]]:
-    """Return one program compiled, without looking at its sub-programs, and all that is wrong with it."""
-    source = Source(text.replace("\r\n", "\n").replace("\r", "\n"), file)
-    statements, flaws = read_program(source)
+    """Return one program compiled, without looking at its sub-programs, and all that is wrong with it.
+
+    The codes of `alone` ("G322") call programs where they stand alone in a block.
+    """
+    source = _source(text, file)
+    statements, flaws = read_program(source, alone)
     flaws += target_flaws(statements)
     compiler = Compiler(source, stepping=stepping)
     traced = compiler.compile(statements, f"<cpl {file}>") if not flaws else None
     flaws += compiler.flaws
     if traced is None:
         return None, [source.error(flaw) for flaw in sorted(flaws, key=lambda flaw: flaw.at)]
-    calls = tuple(each for each in every(statements) if isinstance(each, SubCall))
+    calls = tuple(
+        LinkedCall(each.at, each.line, each.address, each.name, each.unlinked)
+        for each in every(statements)
+        if isinstance(each, SubCall)
+    )
     plain = all(isinstance(each, NcLine) for each in statements)
     return Program(source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text), []
 
 
 class Linker:
-    """Compile programs and those that they call, each once as long as its text stays; `find` returns file and text."""
+    """Compile programs and those that they call, each once as long as its text stays; `find` returns file and text.
 
-    def __init__(self, find: Find, *, stepping: bool = False) -> None:
+    `tables` keep what was found out about sub-programs: one whose text is still the linked one is not linked again.
+    `codes` say which G and M codes call programs where they stand alone.
+    """
+
+    def __init__(
+        self,
+        find: Find,
+        *,
+        stepping: bool = False,
+        tables: LinkTables | None = None,
+        codes: CodeCalls = NO_CODES,
+    ) -> None:
         self._find = find
+        self._codes = codes
+        self.alone: frozenset[str] = frozenset()
+        """The codes that call programs where they stand alone, as they were when `look_again` was called."""
         self._stepping = stepping
+        self._tables = tables or NoTables()
         self._faulty: set[str] = set()
         self._programs: dict[str, Program] = {}
         self._files: dict[tuple[str, str], tuple[str, str] | None] = {}
+        self._checked: dict[tuple[str, int], bool] = {}
+        self.look_again()
 
     def link(self, text: str, file: str) -> tuple[Program | None, list[ProgramError]]:
         """Return a main program with its sub-programs checked, and all that is wrong with any of them."""
         errors: list[ProgramError] = []
         self._files.clear()
         self._faulty.clear()
+        self._checked.clear()
         main = self._compiled(text, file, errors)
         if main is not None and not main.marked_din:
-            self._check_calls(main, (main,), errors)
+            self._check(file, text, main.calls, (), errors)
         return (None if errors else main), errors
+
+    def look_again(self) -> None:
+        """Ask the control anew which codes call programs: one may have been written since."""
+        if (alone := self._codes.alone()) != self.alone:
+            self.alone = alone
+            self._programs.clear()
 
     def sub_program(self, address: str, name: str) -> Program | None:
         """Return a sub-program that is called, compiled now if it was not linked; None if there is none.
@@ -95,6 +130,10 @@ class Linker:
         if errors:
             raise errors[0]
         return program
+
+    def refuse(self, program: Program) -> None:
+        """Forget that a program was linked: the control refuses it."""
+        self._tables.drop(program.file)
 
     def programs(self) -> Iterable[Program]:
         """Return all programs compiled so far."""
@@ -120,37 +159,64 @@ class Linker:
             return None
         known = self._programs.get(file)
         if known is None or known.text != text:
-            program, found = compile_program(text, file, stepping=self._stepping)
+            program, found = compile_program(text, file, stepping=self._stepping, alone=self.alone)
             errors += found
             if program is None:
                 self._faulty.add(file)
+                self._tables.drop(file)
                 return None
             self._programs[file] = program
         return self._programs[file]
 
-    def _check_calls(self, program: Program, stack: tuple[Program, ...], errors: list[ProgramError]) -> None:
-        for call in program.calls:
-            flaw = self._call_flaw(call, stack, errors)
+    def _check(
+        self,
+        file: str,
+        text: str,
+        calls: tuple[LinkedCall, ...],
+        stack: tuple[str, ...],
+        errors: list[ProgramError],
+    ) -> bool:
+        """Check the calls of a program that others led to; what is right as a whole leaves a table."""
+        key = (file, len(stack))
+        if key in self._checked:
+            return self._checked[key]
+        right = True
+        for call in calls:
+            flaw, inner = self._call_flaw(call, (*stack, file), errors)
+            right = right and inner and flaw is None
             if flaw is not None:
-                error = program.source.error(flaw)
+                error = _source(text, file).error(flaw)
                 if str(error) not in map(str, errors):
                     errors.append(error)
+        self._checked[key] = right
+        if not right:
+            self._tables.drop(file)
+        elif file not in self._programs or not self._programs[file].is_plain:
+            self._tables.keep(file, LinkTable(text_digest(text), calls))
+        return right
 
     def _call_flaw(
-        self, call: SubCall, stack: tuple[Program, ...], errors: list[ProgramError]
-    ) -> Flaw | None:
+        self, call: LinkedCall, stack: tuple[str, ...], errors: list[ProgramError]
+    ) -> tuple[Flaw | None, bool]:
+        """Return what is wrong with a call, and whether what it calls is right."""
         found = self._found(call.address, call.name)
         shown = f"{call.address}{call.name}" if call.address in ("G", "M") else call.name
         if found is None:
-            return Flaw(call.at, f"there is no sub-program {shown}", "write it into a file of this name")
-        if any(program.file == found[0] for program in stack):
-            return Flaw(call.at, f"{shown} calls itself", "recursive calls are not possible")
+            hint = "write it into a file of this name"
+            return Flaw(call.at, f"there is no sub-program {shown}", hint), False
+        file, text = found
+        if file in stack:
+            return Flaw(call.at, f"{shown} calls itself", "recursive calls are not possible"), False
         if len(stack) > NESTING:
-            return Flaw(call.at, f"sub-programs are nested more than {NESTING} deep")
-        if call.unlinked or is_marked_din(found[1].split("\n", 1)[0]):
-            return None
-        before = len(errors)
-        program = self._compiled(found[1], found[0], errors)
-        if program is not None and len(errors) == before:
-            self._check_calls(program, (*stack, program), errors)
-        return None
+            return Flaw(call.at, f"sub-programs are nested more than {NESTING} deep"), False
+        if call.unlinked or is_marked_din(text.split("\n", 1)[0]):
+            return None, True
+        table = self._tables.find(file)
+        if table is not None and table.digest == text_digest(text) and file not in self._programs:
+            return None, self._check(file, text, table.calls, stack, errors)
+        program = self._compiled(text, file, errors)
+        return None, program is not None and self._check(file, text, program.calls, stack, errors)
+
+
+def _source(text: str, file: str) -> Source:
+    return Source(text.replace("\r\n", "\n").replace("\r", "\n"), file)

@@ -46,9 +46,12 @@ _LARGEST = (1 << 31) - 1
 Structure = If | For | While | Repeat | Case
 
 
-def read_program(source: Source) -> tuple[list[Statement], list[Flaw]]:
-    """Return the statements of a program, and all that is wrong with its lines."""
-    reader = _ProgramReader(source)
+def read_program(source: Source, alone: frozenset[str] = frozenset()) -> tuple[list[Statement], list[Flaw]]:
+    """Return the statements of a program, and all that is wrong with its lines.
+
+    The codes of `alone` call programs where they stand alone in a block.
+    """
+    reader = _ProgramReader(source, alone)
     for line in range(1, source.line_count + 1):
         begin = source.begin(line)
         reader.line(line, begin, begin + len(source.line(line)))
@@ -61,7 +64,8 @@ def read_program(source: Source) -> tuple[list[Statement], list[Flaw]]:
 
 
 class _ProgramReader:
-    def __init__(self, source: Source) -> None:
+    def __init__(self, source: Source, alone: frozenset[str]) -> None:
+        self._alone = alone
         self.top: list[Statement] = []
         self.open: list[Structure] = []
         self.flaws: list[Flaw] = []
@@ -106,7 +110,7 @@ class _ProgramReader:
             self._body.append(Target(at, name))
 
     def _nc(self, begin: int, end: int, number: int) -> None:
-        statement = read_nc_line(self._text, begin, end, number)
+        statement = read_nc_line(self._text, begin, end, number, self._alone)
         before = self._body[-1] if self._body else None
         if isinstance(statement, NcLine) and isinstance(before, NcLine) and before.last == number - 1:
             self._body[-1] = replace(before, last=number)

@@ -1,7 +1,7 @@
 """The files of a CPL program on a real directory, the root of the control (Manual 003, chapter 6)."""
 
 from polycnc.controllers.bosch.files._commands import FileCommands
-from polycnc.controllers.bosch.files._directory import Directory
+from polycnc.controllers.bosch.files._directory import Directory, is_file
 from polycnc.controllers.bosch.files._print import Output, as_output
 
-__all__ = ["Directory", "FileCommands", "Output", "as_output"]
+__all__ = ["Directory", "FileCommands", "Output", "as_output", "is_file"]

@@ -33,6 +33,7 @@ from polycnc.nc.cpl import (
     text_of,
 )
 
+OLD_SOFTKEYS = 5
 _LONGEST_TEXT = 77
 _LONGEST_BITMAP = 70
 _TABLES = {1: 1, 7: 2, 10: 3}
@@ -43,7 +44,7 @@ class Dialog:
     """The dialog of one program: its window, and the keys that are pressed.
 
     `left` tells whether numbers are put out left-justified, `bitmap` returns the picture of a name, `say` takes
-    messages.
+    messages, `few_keys` tells whether the program is one of older controls, whose panels have 5 softkeys.
     """
 
     def __init__(
@@ -52,7 +53,9 @@ class Dialog:
         left: Callable[[], bool] = lambda: False,
         bitmap: Callable[[str], Image | None] = lambda name: None,
         say: Callable[[str], None] = lambda text: None,
+        few_keys: Callable[[], bool] = lambda: False,
     ) -> None:
+        self._few_keys = few_keys
         self.surface = Surface()
         self.in_front = True
         self._keyboard = keyboard
@@ -182,11 +185,12 @@ class Dialog:
 
     def _sfk(self, variable: object, *texts: object) -> int:
         shown = [(text_of(text) or "") if text is not OMITTED else "" for text in texts]
-        shown += [""] * (SOFTKEYS - len(shown))
+        keys = OLD_SOFTKEYS if self._few_keys() else SOFTKEYS
+        shown = [*shown[:keys], *[""] * (SOFTKEYS - min(len(shown), keys))]
         self.surface.softkeys = tuple(shown)
         while (key := self._keyboard.wait()) != KEYS["LEVEL_RETURN"]:
             number_of_key = key - KEYS["SOFTKEY1"] + 1
-            if not 1 <= number_of_key <= SOFTKEYS:
+            if not 1 <= number_of_key <= keys:
                 continue
             if isinstance(variable, CharacterField):
                 variable.assign(shown[number_of_key - 1])
