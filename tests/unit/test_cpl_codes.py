@@ -60,7 +60,10 @@ def test_a_code_alone_makes_a_program_one_with_calls() -> None:
     assert not holds_cpl(b"N1 X1\nP999 X3\nG4 P2\n")
 
 
-HOLE = b"1 IF #N%=NUL THEN #N%=0 : DIM #P(9) ENDIF\n2 #N%=#N%+1 : #P(#N%)=CPOS(1) : #Q=P1\nN3 G91 G0 Z-2\nN4 Z2\nN5 G90\n"
+HOLE = (
+    b"1 IF #N%=NUL THEN #N%=0 : DIM #P(9) ENDIF\n"
+    b"2 #N%=#N%+1 : #P(#N%)=CPOS(1) : #Q=P1\nN3 G91 G0 Z-2\nN4 Z2\nN5 G90\n"
+)
 
 
 @pytest.mark.covers("cpl.nc.G81_G86", "cpl.sub.modal")
