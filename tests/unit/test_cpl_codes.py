@@ -6,8 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from polycnc.nc import ProgramText
 from polycnc.nc.cpl import holds_cpl
+from polycnc.runner import check
 from support.cpl_runs import Root
+from support.programs import MILL
 
 COUNT = b"1 IF #N%=NUL THEN #N%=0 ENDIF\n2 #N%=#N%+1 : #S=P1\n"
 
@@ -142,4 +145,6 @@ def test_declarations_are_looked_for_in_root_and_feproms(root: Root) -> None:
     alarms = root.run("1 A=1", check=False).alarms
     assert [(alarm.file, alarm.line) for alarm in alarms] == [("usrfep/wmhperm.dat", 2)]
     root.write("usrfep/wmhperm.dat", b"DEF CHAR @A(1024) ;\nDEF DOUBLE @B(13000) ;\n")
-    assert [alarm.code for alarm in root.run("1 A=1", check=False).alarms] == ["1869"]
+    assert [message.text for message in root.run("1 A=1").messages] == ["MSG: @B! not installed. Memory full"]
+    errors = check(ProgramText.from_text("1 A=1", "main.npg"), MILL, "bosch", root=root.folder)
+    assert [error.code for error in errors] == ["1869"]

@@ -133,7 +133,7 @@ def test_commanded_positions_of_axes(example: Example) -> None:
         channel=2,
     )
     assert [found[f"#{name}"] for name in "ABCDEF"] == [150, 160, 110, -7, -7, -7]
-    assert example.refuses('MPOS("X",1,2)') == ""
+    assert example.refuses('MPOS("X",1,2)') == "1971"
     assert example.refuses("MPOS(7,0)") == "1938"
 
 

@@ -11,7 +11,8 @@ PHYSICAL, OWN = 0, 1
 INVALID_PARAMETER = "INVALID PARAMETER"
 AXIS_INDEX = Text(INVALID_PARAMETER, "1938")
 AXIS_OF_ANOTHER = Text(INVALID_PARAMETER, "1970")
-"""Axis index error, and axis belongs to another channel, by the manual's numbers."""
+AXIS_OF_CHANNEL = Text(INVALID_PARAMETER, "1971")
+"""Axis index error, axis belongs to another channel, axis of a channel that is named, by the manual's numbers."""
 
 
 @dataclass
@@ -106,7 +107,7 @@ class SystemAxes:
             if found is not None and kind != PHYSICAL:
                 return found
             if channel is not OMITTED:
-                raise Fault(INVALID_PARAMETER, f"channel {number} has no axis {name}")
+                raise Fault(AXIS_OF_CHANNEL, f"channel {number} has no axis {name}")
             return self.physical(axis)
         if kind == PHYSICAL:
             if channel is not OMITTED:

@@ -15,6 +15,7 @@ from polycnc.controllers.bosch._system import BoschSystem
 from polycnc.controllers.bosch.files import FileCommands
 from polycnc.controllers.bosch.ncs import Coupling, Mmc, NcsServer
 from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
+from polycnc.controllers.bosch.system import Category
 from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText, load_dialect
@@ -64,12 +65,12 @@ class ChannelHost:
         self.kept = system.kept
         codes = called_codes(system, load_dialect("bosch"), lambda: system.axes.names_in(number))
         self.language = _Language(self, codes, skip_levels=frozenset(skip_levels), stepping=stepping)
-        self.files = FileCommands(self.directory, self._say, self._running_files)
+        self.files = FileCommands(self.directory, self._say, self._running_files, warn=self._warn)
         self.dialog = Dialog(
             Keyboard(keys),
             lambda: self.files.left_justified,
             self._bitmap,
-            lambda text: self._say(text),
+            self._warn,
             few_keys=self._is_typ2,
         )
         self.coupling = Coupling(server or NcsServer(Services(system)), system.shown.image, number)
@@ -133,6 +134,8 @@ class ChannelHost:
         self.system.runs[self.number] = run
         self.system.machine = run.machine
         self.system.links.start_up()
+        for each in self.system.not_installed:
+            run.channel.messages.note(f"MSG: {each.what}", 0)
 
     @property
     def config(self) -> MachineConfig:
@@ -149,7 +152,7 @@ class ChannelHost:
         _, errors = linker.link(_decoded(program.content), program.name)
         for each in linker.programs():
             errors += undeclared(each, self.permanent)
-        return [*self.system.errors_of_files, *errors]
+        return [*self.system.errors_of_files, *self.system.not_installed, *errors]
 
     def wakes_in_s(self) -> float | None:
         """Return when the WAIT of the program ends at the latest (s from now), None if it is in none."""
@@ -179,6 +182,7 @@ class ChannelHost:
             self.files.close_all()
         except Fault as fault:
             self._say(f"{fault.what}: {fault.hint}")
+        self.files.block = None
         self.dialog.finish()
         self.coupling.release()
         self.system.note_errors()
@@ -227,6 +231,11 @@ class ChannelHost:
     def _say(self, text: str) -> None:
         line = self.language.running[-1].execution.statement_line if self.language.running else 0
         self._attached().channel.messages.note(f"MSG: {text}", line)
+
+    def _warn(self, text: str) -> None:
+        """Put out a warning, and note it for GETERR."""
+        self._say(text)
+        self.system.note_error(self.number, "", Category.RUNTIME_WARNING, text)
 
     def _is_typ2(self) -> bool:
         running = self.language.running

@@ -22,11 +22,15 @@ from polycnc.cnc import (
 )
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_host import ChannelHost
-from polycnc.controllers.bosch._memory import STORE
+from polycnc.controllers.bosch._dialogs import AREAS, dialog_for
+from polycnc.controllers.bosch._memory import STORE, first_of
+from polycnc.controllers.bosch._parameters import DIALOG_CALLS, DIALOG_CHANNEL, DIALOG_PROGRAMS
 from polycnc.controllers.bosch._services import Services
 from polycnc.controllers.bosch._system import BoschSystem
+from polycnc.controllers.bosch.files import SelectedBlock
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.controllers.bosch.ncs import NcsServer
+from polycnc.controllers.bosch.system import Tab
 from polycnc.machine import Clock, MachineConfig, Snapshot, load_machine
 from polycnc.nc import ProgramText, load_dialect
 from polycnc.nc.cpl import Fault
@@ -110,6 +114,9 @@ class Pnc:
             channel.asks_often = True
         self.hosts = tuple(hosts)
         self.system.links.start_up()
+        places = ((area, first_of(self.system.directory, name)) for area, name in AREAS.items())
+        self._dialogs = {area: found for area, found in places if found is not None}
+        self._dialog_channel = int(str(self.system.parameter(DIALOG_CHANNEL)))
 
     # ------------------------------------------------------------------ the device
 
@@ -178,6 +185,7 @@ class Pnc:
         if text is None:
             raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
         self._control.select_program(ProgramText.from_text(text, name), channel=self._path(channel))
+        self.system.reset_signal(channel, False)
 
     def cycle_start(self, *, channel: int = 1) -> None:
         """Begin what is selected, or go on.
@@ -186,6 +194,37 @@ class Pnc:
             ControlError: See `Control.cycle_start`.
         """
         self._control.cycle_start(channel=self._path(channel))
+        self.system.reset_signal(channel, False)
+
+    @property
+    def dialogs(self) -> tuple[str, ...]:
+        """The areas of the operator interface that had a dialog program at power-up (`AREAS`)."""
+        return tuple(self._dialogs)
+
+    def call_dialog(self, area: str) -> None:
+        """Start the dialog program of an area, as its softkey does, in the channel for dialogs.
+
+        Raises:
+            ControlError: The area had none at power-up, or the channel executes a program.
+        """
+        if area not in self._dialogs:
+            hint = f"Dialog programs are {', '.join(AREAS.values())}, read at power-up."
+            raise ControlError(Refusal.NOT_FOUND, f"{area} has no dialog program", hint=hint)
+        self._start_dialog(self._dialogs[area], None)
+
+    def edit_block(self, text: str) -> SelectedBlock:
+        """Start the dialog program for an NC block of the editor; what it makes of it is in what is returned.
+
+        Raises:
+            ControlError: There is no such program, or the channel executes one.
+        """
+        name = dialog_for(text, self.system.parameters(DIALOG_CALLS), self.system.parameters(DIALOG_PROGRAMS))
+        found = first_of(self.system.directory, name)
+        if found is None:
+            raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
+        block = SelectedBlock(text)
+        self._start_dialog(found, block)
+        return block
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Hold the feed of a channel, or of all.
@@ -200,6 +239,7 @@ class Pnc:
         self._control.reset(channel=None if channel is None else self._path(channel))
         for number in self.system.axes.channels if channel is None else (channel,):
             self.system.forget_errors(number)
+            self.system.reset_signal(number, True)
             self.hosts[number - 1].coupling.release()
 
     def transfer_axis(self, axis: str, channel: int | None) -> None:
@@ -243,6 +283,15 @@ class Pnc:
         """Return what a channel is doing."""
         return self._control.channels[self._path(channel)].run_state
 
+    def is_ready(self, channel: int = 1) -> bool:
+        """Tell whether a channel is ready to start (NC ready, NC-O 16.0)."""
+        return self.system.shown.renew().channels[channel].is_ready
+
+    def information(self, tab: Tab) -> list[tuple[str, ...]]:
+        """Return a list of the information window: number, channel, date, time, ms and description of each entry."""
+        self.system.note_errors()
+        return [each.columns for each in self.system.errors.shown(tab)]
+
     def variables(self, channel: int = 1) -> dict[str, object]:
         """Return permanent variables and a channel's global ones, by name."""
         return self.hosts[channel - 1].variables()
@@ -260,6 +309,7 @@ class Pnc:
     def select_text(self, channel: int, text: str) -> None:
         """Select blocks put in by hand."""
         self._control.set_mdi(text, channel=self._path(channel))
+        self.system.reset_signal(channel, False)
 
     def start(self, channel: int) -> None:
         """Start, or go on."""
@@ -289,6 +339,14 @@ class Pnc:
         self.select_mode(mode, channel=channel)
 
     # ------------------------------------------------------------------ within
+
+    def _start_dialog(self, program: tuple[str, str], block: SelectedBlock | None) -> None:
+        channel = self._dialog_channel
+        self._control.select_program(
+            ProgramText.from_text(program[1], program[0]), channel=self._path(channel)
+        )
+        self.hosts[channel - 1].files.block = block
+        self.cycle_start(channel=channel)
 
     def _path(self, channel: int) -> int:
         return channel - 1

@@ -18,6 +18,7 @@ from polycnc.controllers.bosch.ncs import (
     Sav,
     Selection,
 )
+from polycnc.controllers.bosch.system import MODE_BY_PLC
 
 LONGEST_PATH = 100
 LONGEST_BLOCK = 511
@@ -140,7 +141,8 @@ class Services:
         shown = self._channel(channel)
         if mode not in MODES:
             raise NcsError(NcsCode.UNKNOWN_SYNTAX)
-        if shown.sav in (Sav.ACTIVE, Sav.READY):
+        group, bit = MODE_BY_PLC
+        if shown.sav in (Sav.ACTIVE, Sav.READY) or self._system.interface.bit(group, channel, bit):
             raise NcsError(NcsCode.MODE_FIXED)
         self._may(NcsCode.MODE_FIXED).set_channel_mode(channel, Mode(mode))
 

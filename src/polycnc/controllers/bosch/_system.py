@@ -33,6 +33,8 @@ from polycnc.controllers.bosch._table_files import TableFiles
 from polycnc.controllers.bosch.files import Directory
 from polycnc.controllers.bosch.ncs import Clients, Mode
 from polycnc.controllers.bosch.system import (
+    ALL_CHANNELS,
+    RESET_EXECUTED,
     Category,
     Column,
     Drives,
@@ -49,11 +51,13 @@ from polycnc.controllers.bosch.system import (
     date_text,
     time_text,
 )
-from polycnc.errors import ProgramError
 from polycnc.machine import Clock, Machine, MachineConfig, Store
 from polycnc.nc import Channel
 from polycnc.nc.cpl import Fault
 
+_NUMBERS = {"following_error": 1856}
+_CATEGORIES = {1970: Category.UNKNOWN}  # the example of GETERR does not count it among part program errors
+_MEMORY_FULL = "1869"
 _SPINDLES = 8
 _SECTORS, _PLACES = 9, 999
 _PLC_BYTES, _PLC_MODULES, _MODULE_BYTES, _COUNTERS = 256, 256, 512, 256
@@ -93,10 +97,15 @@ class BoschSystem:
         self.kept = KeptVariables(self.directory, store)
         text = self.directory.text(FILE)
         self._macoda = {number: macoda(config, self.axes, number, text) for number in self.axes.channels}
-        self.errors_of_files: list[ProgramError] = [*self.kept.errors, *next(iter(self._macoda.values()))[1]]
+        errors = [*self.kept.errors, *next(iter(self._macoda.values()))[1]]
+        self.errors_of_files = [each for each in errors if each.code != _MEMORY_FULL]
+        self.not_installed = [each for each in errors if each.code == _MEMORY_FULL]
+        """Declared variables for which there is no memory: programs run without them."""
         self.links = LinkFiles(self.directory, str(self.parameter(LINK_FOLDER)), self.search_path)
         self.interface = Interface(len(self.axes.channels), 64, _SPINDLES, pnc=False)
         self.errors = ErrorList(len(self.axes.channels))
+        for each in self.not_installed:
+            self.note_error(ALL_CHANNELS, each.code, Category.MINOR_SYSTEM, each.what)
         self.plc = self._new_plc()
         self.tool_data = ToolDatabase(dict.fromkeys(range(1, _SECTORS + 1), _PLACES))
         files = TableFiles(self.directory)
@@ -196,9 +205,15 @@ class BoschSystem:
 
     # ------------------------------------------------------------------ errors and memory
 
-    def note_error(self, channel: int, code: str, category: Category) -> None:
+    def note_error(self, channel: int, code: str, category: Category, text: str = "") -> None:
         """Put an error into what GETERR reads; one without a number of its own is 0."""
-        self.errors.add(int(code) if code.isdigit() else 0, channel, category)
+        number = int(code) if code.isdigit() else _NUMBERS.get(code, 0)
+        self.errors.add(number, channel, _CATEGORIES.get(number, category), text, self.clock.now)
+
+    def reset_signal(self, channel: int, value: bool) -> None:
+        """Set the signal of a channel that says that its reset was executed."""
+        group, bit = RESET_EXECUTED
+        self.interface.set_bit(group, channel, bit, value)
 
     def note_errors(self) -> None:
         """Note what has gone wrong in the channels since."""
@@ -206,13 +221,13 @@ class BoschSystem:
             run = self.run_of(number)
             if run is None:
                 continue
-            found = [(each.code, Category.PART_PROGRAM) for each in run.channel.errors]
+            found = [(each.code, Category.PART_PROGRAM, each.what) for each in run.channel.errors]
             if run.alarm is not None:
-                found.append((run.alarm.code, Category.CONTROL_OR_DRIVE))
+                found.append((run.alarm.code, Category.CONTROL_OR_DRIVE, run.alarm.text))
             known = self._noted.get(number)
             count = known[1] if known is not None and known[0] is run.channel else 0
-            for code, category in found[count:]:
-                self.note_error(number, code, category)
+            for code, category, text in found[count:]:
+                self.note_error(number, code, category, text)
             self._noted[number] = run.channel, len(found)
 
     def forget_errors(self, channel: int) -> None:

@@ -376,6 +376,11 @@ class Values:
 
     def _joined(self, tree: Chain[Leaf], depth: int) -> str:
         def text(part: Expression) -> str:
+            bare = part
+            while isinstance(bare, Parentheses):
+                bare = bare.inner
+            if isinstance(bare, Word):
+                raise Flaw(bare.at, "+ does not take NUL")
             stored = self.stored(part, depth)
             return stored if self.makes_text(part) else f"text_of({stored})"
 

@@ -3,5 +3,6 @@
 from polycnc.controllers.bosch.files._commands import FileCommands
 from polycnc.controllers.bosch.files._directory import Directory, is_file
 from polycnc.controllers.bosch.files._print import Output, as_output
+from polycnc.controllers.bosch.files._selected_block import CALL, SelectedBlock
 
-__all__ = ["Directory", "FileCommands", "Output", "as_output", "is_file"]
+__all__ = ["CALL", "Directory", "FileCommands", "Output", "SelectedBlock", "as_output", "is_file"]

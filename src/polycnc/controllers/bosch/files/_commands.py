@@ -9,8 +9,9 @@ from pathlib import Path
 from polycnc.controllers.bosch.files._directory import LONGEST_NAME, Directory, is_file
 from polycnc.controllers.bosch.files._handle import Handle
 from polycnc.controllers.bosch.files._print import as_output
+from polycnc.controllers.bosch.files._selected_block import NO_BLOCK, SelectedBlock
 from polycnc.controllers.bosch.files._stored import LONGEST_RECORD, StoredFile
-from polycnc.nc.cpl import OMITTED, Box, CharacterField, Fault, text_of
+from polycnc.nc.cpl import OMITTED, CharacterField, Fault, text_of
 
 NUMBERS = range(1, 10)
 _SMALLEST = 130
@@ -21,15 +22,24 @@ _INVALID_NUMBER = "INVALID LOGICAL NUMBER"
 class FileCommands:
     """The files that a program has open, and what it can do with files.
 
-    `say` puts a text out as a message, `active` holds the paths of the programs that run.
+    `say` puts a text out as a message, `warn` a warning (a message, if absent), `active` holds the paths of the
+    programs that run.
     """
 
     def __init__(
-        self, directory: Directory, say: Callable[[str], None], active: Callable[[], Container[Path]]
+        self,
+        directory: Directory,
+        say: Callable[[str], None],
+        active: Callable[[], Container[Path]],
+        *,
+        warn: Callable[[str], None] | None = None,
     ) -> None:
+        self._warn = warn or say
         self._directory = directory
         self._say = say
         self._active = active
+        self.block: SelectedBlock | None = None
+        """The block that is selected in the editor: number 0 means it, and without one the messages."""
         self._open: dict[int, Handle] = {}
         self._left = False
         self.functions: Mapping[str, Callable[..., object]] = {
@@ -121,9 +131,12 @@ class FileCommands:
     def _print(self, number: object, *items: object, open: bool = False) -> int:
         output = as_output(items, left=self._left)
         if output.misfits:
-            self._say(f"PRN FORMAT INCORRECT: {', '.join(output.misfits)}")
+            self._warn(f"PRN FORMAT INCORRECT: {', '.join(output.misfits)}")
         if number == 0 and not isinstance(number, bool):
-            self._say(output.text)
+            if self.block is None:
+                self._say(output.text)
+            else:
+                self.block.text = output.text
             return 0
         handle = self._handle(_logical(number, _INVALID_NUMBER), _INVALID_NUMBER)
         if not handle.writing:
@@ -133,9 +146,7 @@ class FileCommands:
 
     def _input(self, number: object, *variables: object, open: bool = False) -> int:
         if number == 0 and not isinstance(number, bool):
-            for variable in variables:  # no block is selected in an editor: there are no parameters
-                if isinstance(variable, Box) and variable.kind != "S":
-                    variable.value = None
+            (self.block or NO_BLOCK).read(*variables)
             return 0
         self._reading(number, _INVALID_NUMBER).take(variables, stays_open=open)
         return 0
@@ -192,7 +203,7 @@ class FileCommands:
                 return 0
             except OSError:
                 code, why = 2, "it is erase-protected"
-        self._say(f"{text} was not erased: {why}")
+        self._warn(f"{text} was not erased: {why}")
         return code
 
     def _access(self, name: object) -> int:

@@ -255,6 +255,11 @@ class Channel:
     coordinates: list[Coordinate] = field(default_factory=list)
 
     @property
+    def is_ready(self) -> bool:
+        """Whether a start would begin or go on (NC ready, NC-O 16.0)."""
+        return self.sav in (Sav.READY, Sav.AT_START)
+
+    @property
     def in_order(self) -> list[Coordinate]:
         """Return the working range coordinates, behind them the pseudo coordinates."""
         return sorted(self.coordinates, key=lambda coordinate: not coordinate.working_range)

@@ -1,8 +1,8 @@
 """System functions of CPL: interface signals, PLC data, errors, tool data, time."""
 
 from polycnc.controllers.bosch.system._drives import Drives, Ident, Parameter
-from polycnc.controllers.bosch.system._error_list import ALL_CHANNELS, Category, ErrorList, PresentError
-from polycnc.controllers.bosch.system._interface import Interface, Signals
+from polycnc.controllers.bosch.system._error_list import ALL_CHANNELS, Category, ErrorList, PresentError, Tab
+from polycnc.controllers.bosch.system._interface import MODE_BY_PLC, RESET_EXECUTED, Interface, Signals
 from polycnc.controllers.bosch.system._plc_data import PlcData, PlcRange
 from polycnc.controllers.bosch.system._programmed import LastFunctions, Macoda, ProgrammedShifts
 from polycnc.controllers.bosch.system._shift_tables import DATABASE as DATABASE_SHIFTS
@@ -17,6 +17,8 @@ __all__ = [
     "ALL_CHANNELS",
     "DATABASE_SHIFTS",
     "DATABASE_TOOLS",
+    "MODE_BY_PLC",
+    "RESET_EXECUTED",
     "SD_GROUPS",
     "SHIFT_CODES",
     "Area",
@@ -38,6 +40,7 @@ __all__ = [
     "ShiftTable",
     "Signals",
     "SystemData",
+    "Tab",
     "ToolCompensations",
     "ToolDatabase",
     "ToolTable",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
+from datetime import datetime
+from enum import Enum, IntEnum
 from typing import NamedTuple
 
 from polycnc.controllers.bosch.system._arguments import INVALID_PARAMETER
@@ -28,12 +29,36 @@ class Category(IntEnum):
     MSD_MESSAGE = 10
 
 
+class Tab(Enum):
+    """The lists of the information window, and the categories that each shows."""
+
+    ERRORS = frozenset(Category) - {Category.RUNTIME_WARNING, Category.MSD_WARNING, Category.MSD_MESSAGE}
+    WARNINGS = frozenset((Category.RUNTIME_WARNING, Category.MSD_WARNING))
+    MESSAGES = frozenset((Category.MSD_MESSAGE,))
+
+
 class PresentError(NamedTuple):
-    """An error: its number, its channel (-1: all), its category."""
+    """An error: its number, its channel (-1: all), its category, what it says, and when it came."""
 
     number: int
     channel: int
     category: Category
+    text: str = ""
+    at: datetime | None = None
+
+    @property
+    def record(self) -> tuple[int, int, int]:
+        """Return what GETERR tells of it: number, channel, category."""
+        return self.number, self.channel, int(self.category)
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Return what the information window shows of it: number, channel, date, time, ms, description."""
+        date, time, ms = ("", "", "")
+        if self.at is not None:
+            date, time = f"{self.at:%d.%m.%y}", f"{self.at:%H:%M:%S}"
+            ms = f"({self.at.microsecond // 1000:03})"
+        return str(self.number), str(self.channel), date, time, ms, self.text
 
 
 class ErrorList:
@@ -43,9 +68,20 @@ class ErrorList:
         self.channels = channels
         self.errors: list[PresentError] = []
 
-    def add(self, number: int, channel: int, category: Category = Category.UNKNOWN) -> None:
+    def add(
+        self,
+        number: int,
+        channel: int,
+        category: Category = Category.UNKNOWN,
+        text: str = "",
+        at: datetime | None = None,
+    ) -> None:
         """Note an error."""
-        self.errors.append(PresentError(number, channel, category))
+        self.errors.append(PresentError(number, channel, category, text, at))
+
+    def shown(self, tab: Tab) -> list[PresentError]:
+        """Return what a list of the information window holds."""
+        return [each for each in self.errors if each.category in tab.value]
 
     def clear(self, channel: int = ALL_CHANNELS) -> None:
         """Forget the errors of a channel, or all."""
@@ -77,6 +113,7 @@ class ErrorList:
         ]
         for row in range(1, errors.sizes[0] + 1):
             shown = row <= min(len(found), int(wanted))
-            for column in range(_ELEMENTS):
-                errors[row, column + 1] = int(found[row - 1][column]) if shown else 0
+            record = found[row - 1].record if shown else (0,) * _ELEMENTS
+            for column, value in enumerate(record, 1):
+                errors[row, column] = value
         return len(found)

@@ -23,6 +23,10 @@ class Signals(IntEnum):
     FAST_OUTPUTS = 9
 
 
+MODE_BY_PLC = (Signals.CHANNEL_INPUTS, 24)
+"""NC-I 3.0: the PLC sets the operation mode."""
+RESET_EXECUTED = (Signals.CHANNEL_OUTPUTS, 2)
+"""IF 0.2: a control reset was executed."""
 _SIZES = (112, 112, 112, 96, 64, 64, 32, 32, 8, 6)
 _FAST_OUTPUTS_OF_PNC = 8
 _WRITABLE = range(80, 96)
