@@ -58,6 +58,7 @@ def value(expression: str, before: str = "") -> float | None:
         ("ATAN[1]", 45.0),
         ("ATAN[1]/[-1]", 135.0),
         ("ATAN[-1]/[-1]", 225.0),
+        ("ATAN[-3,4]", 360.0 - math.degrees(math.atan(0.75))),
         ("ATAN[6]/2", math.degrees(math.atan(6.0)) / 2.0),
         ("SQRT[2.25]", 1.5),
         ("ABS[-7.5]", 7.5),
@@ -128,6 +129,20 @@ def test_loops_and_jumps() -> None:
 def test_a_goto_finds_the_next_block_of_a_number_before_the_first() -> None:
     _, variables = run("N5 #100=#100+1\nIF [#100 GT 3] GOTO 6\nGOTO 5\nN6 #101=8\nGOTO 7\nN7 M30\n")
     assert (variables.get(100), variables.get(101)) == (4.0, 8.0)
+
+
+def test_a_statement_may_stand_right_behind_its_block_number() -> None:
+    made, variables = run(
+        "N10GOTO20\n#100=1\nN20DO1\n#101=#101+1\nIF[#101 GE 3]GOTO30\nN25END1\nN30WHILE[#102 LT 4]DO2\n"
+        "#102=#102+2\nN35END2\nM30\n"
+    )
+    assert made.error is None
+    assert [variables.get(n) for n in (100, 101, 102)] == [None, 3.0, 4.0]
+
+
+def test_a_sign_before_a_calculated_word_keeps_or_turns_it() -> None:
+    made, _ = run("#1=7.5\n#2=3\nG0 X+#1 Y-#2 Z+[#1-#2]\nX+#9\nM30\n")
+    assert made.position == pytest.approx({"X": 7.5, "Y": -3.0, "Z": 4.5}, abs=1e-9)
 
 
 def test_blocks_between_statements_are_run_with_calculated_words() -> None:
@@ -299,3 +314,13 @@ def test_a_wrong_program_is_refused_with_the_error_in_its_first_line(path: Path)
     at = made.error.position
     assert f"{at.line}:{at.column} {made.error.code} {made.error.what}" == expected
     assert made.error.hint
+
+
+def test_program_and_block_number_are_those_of_the_program_that_runs() -> None:
+    made, variables = run(
+        "O1234\nN5 G0X2\nG0Y3\n#100=#4114\nN20 #101=#4114\n#102=#4114\nG65 P57\n#106=#4114\n#107=#4115\n"
+        "N40 IF[1 EQ 1] THEN #103=#4114\nN45 WHILE[#1 LT 2]DO1\n#104=#4314\nN50 #1=#1+1\nEND1\nM30\n"
+        "O57\nN7 X1\n(N9 is no block)\n#105=#4114\n#108=#4115\nM99\n"
+    )
+    assert made.error is None, str(made.error)
+    assert [variables.get(n) for n in range(100, 109)] == [5, 5, 20, 40, 45, 7, 7, 1234, 57]

@@ -14,7 +14,7 @@ from polycnc.language import Chain, Emitter, Flaw, Python, Traced, Unary, infix,
 from polycnc.nc._block_source import Drain, TextSpan
 from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS, power
 from polycnc.nc.macro._reader import COMPARISONS, argument_numbers
-from polycnc.nc.macro._shape import Label, Region, Shape
+from polycnc.nc.macro._shape import Label, Region, Shape, last_label
 from polycnc.nc.macro._syntax import (
     Address,
     Assignment,
@@ -119,6 +119,7 @@ class _Value:
 
 @dataclass
 class _Compiler:
+    text: str
     shape: Shape
     numbers: Numbers
     increment: float
@@ -233,6 +234,7 @@ class _Compiler:
         self.escapes.append(set())
         with out.block(start):
             self.turn()
+            self.passed(region.label)
             out.put(*before)
             if condition is not None:
                 out.put(f"if {condition.text}: break")
@@ -251,9 +253,13 @@ class _Compiler:
             with self.out.block("else:"):
                 self.out.put(f"yield from H.span({index})")
                 self.after_call(region)
+            self.passed(last_label(self.text, part))
         else:
             self.line = part
             self.begin(part.line)
+            assigns = all(isinstance(each, Assignment) for each in part.statements)
+            if not assigns:
+                self.passed(part.label)
             try:
                 if part.skip:
                     with self.out.block(f"if not H.skips({part.skip}):"):
@@ -264,6 +270,13 @@ class _Compiler:
                         self.statement(statement, region)
             except Flaw as flaw:
                 self.flaws.append(flaw)
+            if assigns:  # what it reads is that of the blocks before
+                self.passed(part.label)
+
+    def passed(self, label: int | None) -> None:
+        """Emit that a block number was passed (#4114)."""
+        if label is not None:
+            self.out.put(f"V.sequence_number = {label}")
 
     def begin(self, line: int) -> None:
         self.before = []
@@ -540,6 +553,8 @@ class _Compiler:
                 if operand.truth:
                     raise _no_value(tree.at)
                 if operand.vacant and self.in_address:
+                    if tree.operator == "+":
+                        return operand
                     return _Value(Python(f"negative({operand.python.text})"), vacant=True)
                 return _Value(prefix(tree.operator, operand.number()))
             case Chain():
@@ -610,10 +625,10 @@ class _Compiler:
 
 
 def compile_program(
-    shape: Shape, numbers: Numbers, increment: float, name: str
+    text: str, shape: Shape, numbers: Numbers, increment: float, name: str
 ) -> tuple[Code | None, list[Flaw]]:
     """Return a program compiled, or all that is wrong with it."""
-    compiler = _Compiler(shape, numbers, increment)
+    compiler = _Compiler(text, shape, numbers, increment)
     try:
         code = compiler.compile(name)
     except Flaw as flaw:

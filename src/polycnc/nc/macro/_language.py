@@ -216,7 +216,7 @@ class MacroLanguage:
             made, flaws = shape(whole, parts, returns=returns, start=start)
             if not flaws:
                 increment = self.channel.dialect.increment
-                code, flaws = compile_program(made, self, increment, name)
+                code, flaws = compile_program(whole, made, self, increment, name)
         errors = [_error(text, flaw) for flaw in flaws]
         return _Compiled(text, code, errors, name, _program_number(whole, offset))
 
@@ -270,6 +270,7 @@ class MacroSource:
         if arguments is not None and arguments.values is not None:
             language.variables.enter(arguments.values)
             language.note_level()
+        self._outer_number, language.system.program_number = language.system.program_number, compiled.number
         self._inch = 1.0
         nothing: tuple[SourceItem, ...] = ()
         self._generator: Generator[Any, None, None] = (item for item in nothing)
@@ -309,6 +310,7 @@ class MacroSource:
         self._closed = True
         self._generator.close()
         language = self._language
+        language.system.program_number = self._outer_number
         if self._has_level:
             language.variables.leave()
         if self._by_code:
@@ -325,7 +327,6 @@ class MacroSource:
         variables, system = language.variables, language.system
         common, ranges = variables.common, variables.ranges
         local = variables.local
-        system.program_number = self._compiled.number
 
         def get(number: int) -> Value:
             if 0 <= number <= LOCALS:
@@ -349,6 +350,7 @@ class MacroSource:
             "PAUSE": Pause.PAUSE,
             "RETURN": EndSource.RETURN,
             "S": code.spans,
+            "V": system,
             "T": code.texts,
             "get": get,
             "put": put,

@@ -590,14 +590,13 @@ class _Statements:
     def _function(self) -> Function:
         tokens = self._tokens
         name = tokens.step()
-        (argument,) = self._list(1)
-        if name.word == "ATAN":
-            if tokens.token.word == "/" and self._bracket_follows():
-                tokens.step()
-                return Function(name.at, "ATAN2", (argument, self._bracket()))
-            if tokens.token.word == ",":
-                raise Flaw(tokens.token.at, "ATAN with a comma", "Write ATAN[...]/[...].", code=_FORMAT)
-        return Function(name.at, name.word, (argument,))
+        if name.word != "ATAN":
+            return Function(name.at, name.word, self._list(1))
+        arguments = self._list(1, 2)
+        if len(arguments) == 1 and tokens.token.word == "/" and self._bracket_follows():
+            tokens.step()
+            arguments = (*arguments, self._bracket())
+        return Function(name.at, "ATAN" if len(arguments) == 1 else "ATAN2", arguments)
 
     def _bracket_follows(self) -> bool:
         return self._text[self._tokens.next_at : self._end].lstrip(" \t").startswith("[")
@@ -605,7 +604,7 @@ class _Statements:
     def _bracket(self) -> Expression:
         return self._list(1)[0]
 
-    def _list(self, count: int) -> tuple[Expression, ...]:
+    def _list(self, count: int, most: int = 0) -> tuple[Expression, ...]:
         tokens = self._tokens
         token = tokens.token
         if token.word != "[":
@@ -620,11 +619,11 @@ class _Statements:
         self._brackets += 1
         tokens.step()
         found = [self._expression()]
-        while len(found) < count and tokens.token.word == ",":
+        while len(found) < max(count, most) and tokens.token.word == ",":
             tokens.step()
             found.append(self._expression())
         if tokens.token.word != "]" or len(found) < count:
-            missing = "']'" if len(found) == count else "','"
+            missing = "']'" if len(found) >= count else "','"
             raise Flaw(
                 tokens.token.at,
                 f"{missing} is missing before {tokens.token}",

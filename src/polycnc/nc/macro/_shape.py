@@ -13,7 +13,7 @@ from polycnc.nc.macro._syntax import End, Goto, If, Line, Number, Part, Span, Wh
 from polycnc.units import whole
 
 _B = r"[ \t]*"
-_ANYWHERE = r"[#\[\]=]|\b(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN)|\b(?:DO|END)[ \t]*[0-9]"
+_ANYWHERE = r"[#\[\]=]|(?<![A-Z])(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN|(?:DO|END)[ \t]*[0-9])"
 _MACRO_CODES = rf"G{_B}0*6[567](?![0-9])|M{_B}0*9[67](?![0-9.])"
 _RETURN_TO = rf"M{_B}0*99(?![0-9.])[^\r\n]*P|P[^\r\n]*M{_B}0*99(?![0-9.])"
 _RETURNS = ("M99", "M099", "M0099", "M 99", "M 099", "M\t99")
@@ -22,6 +22,7 @@ _NEWLINE = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r"\([^)\r\n]*\)")
 _LABEL = re.compile(r"(?:\A|(?<=[\r\n]))[ \t]*(?:/[1-9]?[ \t]*)?N[ \t]*0*([0-9]+)", re.IGNORECASE)
 _NEXT_PROGRAM = re.compile(r"[\r\n][ \t]*(?:%|[Oo:][ \t]*[0-9])")
+_NEAR_END = 4096
 _HEAD = re.compile(r"(?:[ \t]*(?:%[^\r\n]*|\([^)\r\n]*\)[ \t]*)?(?:\r\n|\r|\n))*")
 _NUMBER_LINE = re.compile(r"[ \t]*[Oo:][ \t]*[0-9]+[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:\r\n|\r|\n|\Z)")
 
@@ -97,6 +98,7 @@ class Region:
     outer: Region | None
     head: While | None = None
     line: int = 0
+    label: int | None = None
     parts: list[Part | Region] = field(default_factory=list)
     targets: dict[int, int] = field(default_factory=dict)
     """The place of each target: index in `parts` -> number of the piece that begins there."""
@@ -193,6 +195,7 @@ def shape(
             begin = here, len(here.parts)
         for number, offset in _labels(text, part):
             labels.setdefault(number, []).append(Label(offset, here, len(here.parts)))
+        own_label = part.label if isinstance(part, Line) else None
         first = part.statements[0] if isinstance(part, Line) and part.statements else None
         if isinstance(first, While):
             if any(each.head is not None and each.head.loop == first.loop for each in stack):
@@ -204,7 +207,7 @@ def shape(
                         code="PS0124",
                     )
                 )
-            inner = Region(len(regions), here, first, part.line)
+            inner = Region(len(regions), here, first, part.line, own_label)
             regions.append(inner)
             here.parts.append(inner)
             stack.append(inner)
@@ -269,6 +272,17 @@ def _labels(text: str, part: Part) -> Iterator[tuple[int, int]]:
     found = _LABEL.match(text, part.offset, part.end)
     if found:
         yield whole(found[1]), part.offset
+
+
+def last_label(text: str, part: Span) -> int | None:
+    """Return the last block number in a stretch of plain text; it is mostly near its end."""
+    for begin in (max(part.offset, part.end - _NEAR_END), part.offset):
+        last = None
+        for found in _LABEL.finditer(text, begin, part.end):
+            last = found
+        if last is not None:
+            return whole(last[1])
+    return None
 
 
 def _cut(text: str, parts: list[Part], start: int) -> Iterator[Part]:

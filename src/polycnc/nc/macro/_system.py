@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from datetime import datetime
 
+from polycnc.machine import Clock
 from polycnc.nc._channel import Channel
 from polycnc.nc.blocks._modal import (
     ABSOLUTE,
@@ -39,7 +40,7 @@ _CYCLES = {
     "cycle_back_bore": 87.0, "cycle_bore_manual": 88.0, "cycle_bore_dwell": 89.0,
 }  # fmt: skip
 _MODAL_NUMBERS = frozenset(
-    {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 22, 107, 109, 111, 113, 115, 119, 120, 130}
+    {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 22, 107, 109, 111, 113, 114, 115, 119, 120, 130}
 )
 
 
@@ -57,18 +58,25 @@ class SystemVariables:
         self._timers: dict[int, tuple[float, float]] = {}
         self.modal_call = False
         self.program_number = 0
+        self.sequence_number = 0
 
     def attach(self, channel: Channel) -> None:
         """Work for a channel; nothing is suppressed."""
         self._channel = channel
         for number in _SUPPRESSING:
             self._stored.pop(number, None)
+        self.program_number = self.sequence_number = 0
 
     @property
     def channel(self) -> Channel:
         """The channel."""
         assert self._channel is not None
         return self._channel
+
+    @property
+    def machine_clock(self) -> Clock:
+        """The clock that timers, date and time follow."""
+        return self.channel.machine.clock
 
     def has(self, number: int) -> bool:
         """Tell whether there is a variable."""
@@ -129,7 +137,7 @@ class SystemVariables:
         elif number in _STORED:
             self._stored[number] = new
         elif number in (_TIMER_MS, _TIMER_H):
-            self._timers[number] = (self.channel.machine.time_s, new)
+            self._timers[number] = (self.machine_clock.now_s, new)
         elif (tool := self._tool(number)) is not None:
             inch = 25.4 if self.channel.state.modal.whole[INCH] else 1.0
             self.channel.state.tables.set_tool(tool[0], **{tool[1]: new * inch})
@@ -204,12 +212,11 @@ class SystemVariables:
         return length_mm / 25.4 if self.channel.state.modal.whole[INCH] else length_mm
 
     def _time(self, number: int) -> float:
-        now_s = self.channel.machine.time_s
         if number in (_TIMER_MS, _TIMER_H):
             begun_s, value = self._timers.get(number, (0.0, 0.0))
             unit_s = 0.001 if number == _TIMER_MS else 3600.0
-            return value + (now_s - begun_s) / unit_s
-        now = self._clock() if self._clock else self.channel.machine.clock.now
+            return value + (self.machine_clock.now_s - begun_s) / unit_s
+        now = self._clock() if self._clock else self.machine_clock.now
         if number == _DATE:
             return float(now.year * 10_000 + now.month * 100 + now.day)
         return float(now.hour * 10_000 + now.minute * 100 + now.second)
@@ -285,6 +292,8 @@ class SystemVariables:
                 return float(state.length_tool)
             case 113:
                 return float(state.m_codes[-1]) if state.m_codes else 0.0
+            case 114:
+                return float(self.sequence_number)
             case 115:
                 return float(self.program_number)
             case 119:
