@@ -3,7 +3,7 @@
 from polycnc.controllers.fanuc.data._diagnosis import DIAGNOSIS, Diagnosis
 from polycnc.controllers.fanuc.data._parameter_rows import Attribute, Kind, ParameterRow, parameter_rows
 from polycnc.controllers.fanuc.device import _pmc_memory as pmc
-from polycnc.controllers.fanuc.device._alarms import AlarmBit, bit_of, shown
+from polycnc.controllers.fanuc.device._alarms import AlarmBit, bit_of, is_macro_alarm, shown
 from polycnc.controllers.fanuc.device._modal_data import ADDRESSES as MODAL_ADDRESSES
 from polycnc.controllers.fanuc.device._modal_data import CODES as MODAL_CODES
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
@@ -33,6 +33,7 @@ __all__ = [
     "Transfer",
     "TransferError",
     "bit_of",
+    "is_macro_alarm",
     "parameter_rows",
     "pmc",
     "read_state",

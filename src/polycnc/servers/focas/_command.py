@@ -111,3 +111,15 @@ def data_of(request: Request, size: int) -> bytes:
 def pieces(data: bytes, size: int = VALUE8_SIZE) -> list[bytes]:
     """Cut data into pieces of one size."""
     return [data[at : at + size] for at in range(0, len(data), size)]
+
+
+_EXTERNAL, _FIRST_EXTRA, _MOST_EXTRA = "EXT", 7, 300
+
+
+def offset_name(number: int) -> str:
+    """Return the name of a work offset: external, G54 to G59, then the extra ones."""
+    if not 0 <= number < _FIRST_EXTRA + _MOST_EXTRA:
+        raise RefusedError(NUMBER)
+    if number == 0:
+        return _EXTERNAL
+    return f"G{53 + number}" if number < _FIRST_EXTRA else f"G54.P{number - _FIRST_EXTRA + 1}"

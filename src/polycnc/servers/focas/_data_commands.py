@@ -23,11 +23,13 @@ from polycnc.servers.focas._command import (
     data_of,
     longs,
     numbers,
+    offset_name,
     one_number,
     padded,
     pieces,
     shorts,
 )
+from polycnc.servers.focas._system_variables import system_variable
 
 # ---------------------------------------------------------------------- macro variables
 
@@ -44,6 +46,15 @@ def _macro(view: View, number: int) -> float | None:
         raise RefusedError(NUMBER) from None
 
 
+def _readable_macro(view: View, number: int) -> float | None:
+    if number in _LOCALS or number in view.control.macros or not view.profile.system_variables:
+        return _macro(view, number)
+    try:
+        return system_variable(view, number)
+    except KeyError:
+        raise RefusedError(NUMBER) from None
+
+
 def _value(number: float | None) -> Value8:
     """Return a number with as many decimals as it needs, for a client that shows what it gets."""
     made = Value8.of(number, _DECIMALS)
@@ -55,7 +66,7 @@ def _value(number: float | None) -> Value8:
 
 def read_macros(view: View, request: Request) -> bytes:
     """Return macro variables; a vacant one is marked."""
-    return b"".join(bytes(_value(_macro(view, number))) for number in numbers(request))
+    return b"".join(bytes(_value(_readable_macro(view, number))) for number in numbers(request))
 
 
 def _set_macros(view: View, values: dict[int, float | None]) -> bytes:
@@ -84,7 +95,7 @@ def read_doubles(view: View, request: Request) -> bytes:
     first, count = request.arguments[:2]
     if not 0 < count <= MOST_NUMBERS:
         raise RefusedError(NUMBER)
-    values = [_macro(view, number) for number in range(first, first + count)]
+    values = [_readable_macro(view, number) for number in range(first, first + count)]
     return struct.pack(f">{count}d", *(math.nan if value is None else value for value in values))
 
 
@@ -256,21 +267,9 @@ def tool_offset_range(view: View, request: Request) -> bytes:
     return shorts(0, view.control.tool_offsets.count, 0, 0)
 
 
-_EXTERNAL, _FIRST_EXTRA, _MOST_EXTRA = "EXT", 7, 300
-
-
-def _offset_name(number: int) -> str:
-    """Return the name of a work offset: external, G54 to G59, then the extra ones."""
-    if not 0 <= number < _FIRST_EXTRA + _MOST_EXTRA:
-        raise RefusedError(NUMBER)
-    if number == 0:
-        return _EXTERNAL
-    return f"G{53 + number}" if number < _FIRST_EXTRA else f"G54.P{number - _FIRST_EXTRA + 1}"
-
-
 def read_work_offset(view: View, request: Request) -> bytes:
     """Return a work offset of one axis or all."""
-    control, name, asked = view.control, _offset_name(one_number(request)), request.arguments[2]
+    control, name, asked = view.control, offset_name(one_number(request)), request.arguments[2]
     values = control.control.offsets.get(name, {})
     made = []
     for axis in axes_of(view, asked):
@@ -281,7 +280,7 @@ def read_work_offset(view: View, request: Request) -> bytes:
 
 def write_work_offset(view: View, request: Request) -> bytes:
     """Set a work offset of one axis, or of all."""
-    control, name, asked = view.control, _offset_name(one_number(request)), request.arguments[2]
+    control, name, asked = view.control, offset_name(one_number(request)), request.arguments[2]
     axes = axes_of(view, asked)
     data = pieces(data_of(request, VALUE8_SIZE * len(axes)))
     values = {}

@@ -26,6 +26,8 @@ class Profile(StrictModel):
     """Parameters in eight bytes under their new command codes, else in four under the old ones."""
     old_states: bool
     """States in the numbers of the function library's manual, else in those of later series."""
+    system_variables: bool = True
+    """System variables of macros are read like other ones; the library's manual knows local and common ones."""
     refused: tuple[int, ...] = ()
     """Command codes that this series does not know."""
     most_sessions: int = 5

@@ -5,12 +5,14 @@ from __future__ import annotations
 import struct
 from datetime import datetime
 
+from polycnc.cnc import PROGRAM_MESSAGE, Alarm
 from polycnc.controllers.fanuc import (
     MODAL_ADDRESSES,
     MODAL_CODES,
     PANEL_SIGNALS,
     AlarmBit,
     bit_of,
+    is_macro_alarm,
     read_state,
     shown,
 )
@@ -76,15 +78,25 @@ _TYPES = (  # alarm groups by the type numbers of later series
 )
 
 
-def _type_of(bits: AlarmBit) -> int:
+_MACRO_ALARM = 8
+
+
+def _type_of(view: View, alarm: Alarm) -> int:
+    """Return the type of an alarm; only new series have one for those of macros (#3000)."""
+    if view.profile.wide_values and is_macro_alarm(alarm):
+        return _MACRO_ALARM
+    bits = bit_of(alarm.number)
     return next(number for group, number in _TYPES if bits & group)
 
 
 def alarm_bits(view: View, request: Request) -> bytes:
     """Return the groups of the alarms that are on."""
-    bits = view.control.alarm_bits
-    later = sum(1 << number for group, number in _TYPES if bits & group)
-    return struct.pack(">I", int(bits) if view.profile.old_states else later)
+    if view.profile.old_states:
+        return struct.pack(">I", int(view.control.alarm_bits))
+    later = 0
+    for alarm in shown(view.status.alarms):
+        later |= 1 << _type_of(view, alarm)
+    return struct.pack(">I", later)
 
 
 _ALARM_HEAD = 16
@@ -98,7 +110,7 @@ def alarms(view: View, request: Request) -> bytes:
     rows = []
     names = [view.control.axis_name(axis) for axis in range(1, view.control.axes + 1)]
     for alarm in shown(view.status.alarms):
-        number = _type_of(bit_of(alarm.number))
+        number = _type_of(view, alarm)
         if kind in (ALL, number):
             axis = names.index(alarm.axis) + 1 if alarm.axis in names else 0
             words = text(alarm.text, size if mode else 0)
@@ -108,19 +120,20 @@ def alarms(view: View, request: Request) -> bytes:
 
 
 _MESSAGE_SIZE = 268
-_OPERATOR, _MOST_TYPE = 0, 4
+_OPERATOR, _MACRO_STOP = 0, 4
 
 
 def messages(view: View, request: Request) -> bytes:
-    """Return the messages to the operator; other types than these this control has not got, so they are empty."""
-    if not 0 <= request.arguments[0] <= _MOST_TYPE:
+    """Return messages: those from outside (0), those of stops in macros (4); there are no others, so they are empty."""
+    kind = request.arguments[0]
+    if not 0 <= kind <= _MACRO_STOP:
         raise RefusedError(ATTRIBUTE)
     if not view.control.has_option("external_message"):
         raise RefusedError(NO_OPTION)
-    found = view.status.messages if request.arguments[0] == _OPERATOR else ()
     made = [
-        longs(each.number, _OPERATOR, len(text(each.text, 256).rstrip(b"\0"))) + text(each.text, 256)
-        for each in found
+        longs(each.number, kind, len(text(each.text, 256).rstrip(b"\0"))) + text(each.text, 256)
+        for each in view.status.messages
+        if kind == (_MACRO_STOP if each.number == PROGRAM_MESSAGE else _OPERATOR)
     ]
     return b"".join(made[: view.profile.most_body // _MESSAGE_SIZE])
 
@@ -198,26 +211,28 @@ def servo_meter(view: View, request: Request) -> bytes:
     return padded(made, view)
 
 
-_MOST_RPM, _MOTOR_RPM, _LOAD_METER = 1, 5, 4
+_RAW_LOAD, _MOST_RPM, _LOAD_METER, _MOTOR_RPM = 0, 1, 4, 5
 
 
 def spindle(view: View, request: Request) -> bytes:
-    """Return the highest speed of the spindle, or its speed now; a load is not simulated.
+    """Return the load of the spindle in percent, its highest speed, or its speed now.
 
-    An old series answers the load meter with the code that makes the library ask otherwise.
+    The load follows the speed, as that of the servo motors does. An old series answers the load meter with the code
+    that makes the library ask otherwise.
     """
     kind, asked = request.arguments[:2]
     if asked not in (ALL, 1):
         raise RefusedError(ATTRIBUTE)
-    if kind == _MOST_RPM:
-        rpm = view.control.machine.config.spindle.max_rpm
-    elif kind == _MOTOR_RPM:
-        rpm = abs(view.status.spindle.actual_rpm)
+    most = view.control.machine.config.spindle.max_rpm
+    rpm = abs(view.status.spindle.actual_rpm)
+    if kind in (_RAW_LOAD, _LOAD_METER) and view.profile.wide_values:
+        value = 100.0 * rpm / most
+    elif kind in (_MOST_RPM, _MOTOR_RPM):
+        value = most if kind == _MOST_RPM else rpm
     else:
-        old = kind == _LOAD_METER and not view.profile.wide_values
-        raise RefusedError(ATTRIBUTE if old else NOT_THERE)
-    value = bytes(Value8.of(rpm, 0))
-    return value + bytes(Value8(0)) * (view.profile.most_spindles - 1) if asked == ALL else value
+        raise RefusedError(ATTRIBUTE if kind == _LOAD_METER else NOT_THERE)
+    one = bytes(Value8.of(value, 0))
+    return one + bytes(Value8(0)) * (view.profile.most_spindles - 1) if asked == ALL else one
 
 
 _AXES, _OFFSET, _MACRO, _ZERO, _CUT = range(5)
@@ -264,19 +279,24 @@ def modal_code(view: View, request: Request) -> bytes:
         raise RefusedError(NUMBER)
     if block not in _BLOCKS:
         raise RefusedError(ATTRIBUTE)
-    control = view.control
-    if group in MODAL_CODES:
-        value, _ = control.modal_data.block(block).g[group]
-        code = next(name for name, number in MODAL_CODES[group].items() if number == value)
-    else:
-        executed = control.execution.block
-        word = executed.modal.g.get(_GROUPS[group]) if executed and not block and group in _GROUPS else None
-        if word is None or not word.removeprefix("G").replace(".", "", 1).isdigit():
-            raise RefusedError(NOT_THERE)
-        code = word.removeprefix("G")
+    code = code_of(view, group, block)
+    if code is None:
+        raise RefusedError(NOT_THERE)
     whole, _, tenth = code.partition(".")
     number = int(whole + tenth)
     return shorts(group, 0, 0, number, 0, _WITH_DECIMAL if tenth else 0)
+
+
+def code_of(view: View, group: int, block: int = 0) -> str | None:
+    """Return the G code of a group that holds with a block, like 54.1; None where it is not known."""
+    control = view.control
+    if group in MODAL_CODES:
+        value, _ = control.modal_data.block(block).g[group]
+        return next(name for name, number in MODAL_CODES[group].items() if number == value)
+    executed = control.execution.block
+    word = executed.modal.g.get(_GROUPS[group]) if executed and not block and group in _GROUPS else None
+    code = "" if word is None else word.removeprefix("G")
+    return code if code.replace(".", "", 1).isdigit() else None
 
 
 _COMMANDS = "DEFHLMNOST"

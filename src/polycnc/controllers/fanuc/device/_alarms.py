@@ -118,6 +118,11 @@ def bit_of(number: int) -> AlarmBit:
     return _SINGLE.get(number) or _of(number)[0]
 
 
+def is_macro_alarm(alarm: Alarm) -> bool:
+    """Tell whether a program raised an alarm itself (#3000)."""
+    return alarm.name.startswith(_MACRO_ALARM)
+
+
 def alarm_bits(alarms: Iterable[Alarm]) -> AlarmBit:
     """Return the groups of the alarms that are on."""
     bits = AlarmBit(0)

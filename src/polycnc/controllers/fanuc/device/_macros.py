@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from polycnc.cnc import Timer
 from polycnc.controllers.fanuc.data._macro_variables import SharedMacros
+from polycnc.machine import Clock
 from polycnc.nc.macro import MacroCalls, MacroError, MacroLanguage, MacroVariables, SystemVariables, Value
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ _TOOL_PROGRAM = 9000
 _INPUTS, _INPUT_WORD, _INPUT_BYTES = range(1000, 1016), 1032, (54, 55)
 _OUTPUTS, _OUTPUT_WORD, OUTPUT_BYTES = range(1100, 1116), 1132, (54, 55)
 _HOURS, _SETTINGS, _PARTS, _PARTS_REQUIRED = 3002, 3005, 3901, 3902
+_AT_REST = frozenset({3001, 3002, 3003, 3004, 3005, 3011, 3012, 3901, 3902})
 _ALL_BITS = 0xFFFF
 _OFFSET_BASES = (2000, 10_000)
 _FIRST_FEW = 200
@@ -69,6 +71,19 @@ class Macros:
         block = channel.executed if channel.active or channel.interrupted else None
         return self.language.locals_of(() if block is None else block.stack)[number]
 
+    def at_rest(self, number: int) -> Value:
+        """Return a system variable that has a value without a program: timers, counters, signals, tool offsets.
+
+        Raises:
+            KeyError: It is none of them.
+        """
+        system = self.language.system
+        if number in _AT_REST or PowerMateVariables.is_signal(number):
+            return system.read(number)
+        if _of_offset_memory(number) and system.has(number):
+            return system.read(number)
+        raise KeyError(number)
+
     def switched_on(self) -> None:
         """Begin with the power: what does not outlast it is vacant, timers count from 0."""
         self._variables.clear_common()
@@ -110,15 +125,20 @@ class PowerMateVariables(SystemVariables):
         self._power_mate = power_mate
         self._macros = macros
 
+    @property
+    def machine_clock(self) -> Clock:
+        """The clock of the control, before its first program too."""
+        return self._power_mate.clock
+
     def has(self, number: int) -> bool:
         """Tell whether there is a variable."""
-        if self._of_offset_memory(number):
+        if _of_offset_memory(number):
             return self._offset_number(number) is not None
-        return self._is_signal(number) or super().has(number)
+        return self.is_signal(number) or super().has(number)
 
     def waits(self, number: int) -> bool:
         """Tell whether reading or writing waits until all blocks before have been executed."""
-        return self._is_signal(number) or number == _SETTINGS or super().waits(number)
+        return self.is_signal(number) or number == _SETTINGS or super().waits(number)
 
     def read(self, number: int) -> Value:
         """Return a variable.
@@ -179,13 +199,14 @@ class PowerMateVariables(SystemVariables):
             if abs(counts) > offsets.limit:
                 raise _wrong(number, new, "tool offsets in their range")
             offsets.set_all({offset: counts})
-        elif self._is_signal(number):
+        elif self.is_signal(number):
             raise MacroError(f"#{number} can only be read", "Write another variable.", "PS0116")
         else:
             super().write(number, value)
 
     @staticmethod
-    def _is_signal(number: int) -> bool:
+    def is_signal(number: int) -> bool:
+        """Tell whether a variable is one of the signals between macros and the PMC."""
         return number in _INPUTS or number in _OUTPUTS or number in (_INPUT_WORD, _OUTPUT_WORD)
 
     def _inputs(self) -> int:
@@ -199,10 +220,6 @@ class PowerMateVariables(SystemVariables):
             if before != after:
                 self._power_mate.history.note_signal("F", address, before, after)
 
-    @staticmethod
-    def _of_offset_memory(number: int) -> bool:
-        return 2001 <= number <= 2400 or 10_001 <= number <= 13_999
-
     def _offset_number(self, number: int) -> int | None:
         """Return the number of the tool offset that is a variable: #2001 to #2200, or #10001 on."""
         for base in _OFFSET_BASES:
@@ -210,6 +227,10 @@ class PowerMateVariables(SystemVariables):
             if 1 <= offset <= self._power_mate.tool_offsets.count and (base != 2000 or offset <= _FIRST_FEW):
                 return offset
         return None
+
+
+def _of_offset_memory(number: int) -> bool:
+    return 2001 <= number <= 2400 or 10_001 <= number <= 13_999
 
 
 def _whole(number: int, value: float, most: int) -> int:

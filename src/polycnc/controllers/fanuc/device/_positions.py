@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 from polycnc.cnc import AxisFigures, AxisStatus, Status
 from polycnc.controllers.fanuc.data._increment import Scale, scale
-from polycnc.nc import Group, ModalWords
+from polycnc.nc import Group
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
@@ -124,11 +124,16 @@ class Positions:
         control = self._power_mate.control
         block = control.channels[0].executed
         if block is not None:
-            length = self._length(block.modal)
-            return {_LENGTH_AXIS: length} if length else {}
+            return {_LENGTH_AXIS: self.tool_length_mm} if self.tool_length_mm else {}
         return {name: -value for name, value in control.offsets.get(_START_OFFSET, {}).items()}
 
-    def _length(self, modal: ModalWords) -> float:
+    @property
+    def tool_length_mm(self) -> float:
+        """The tool length compensation of the executed block, along its axis."""
+        block = self._power_mate.control.channels[0].executed
+        if block is None:
+            return 0.0
+        modal = block.modal
         sign = {"G43": 1.0, "G44": -1.0}.get(modal.g.get(Group.LENGTH_COMPENSATION, ""))
         if sign is None:
             return 0.0

@@ -1,0 +1,142 @@
+"""What clients of later series ask a served control for beside the library's manual, against figures made by hand."""
+
+from __future__ import annotations
+
+import struct
+
+import pytest
+
+from polycnc.controllers.fanuc import PowerMate
+from polycnc.servers.focas import (
+    FocasControl,
+    Frame,
+    FrameReader,
+    FrameType,
+    Reply,
+    Request,
+    Session,
+    Value8,
+    load_profile,
+    read_replies,
+    write_requests,
+)
+from support.focas_scenes import ALL, open_session, r
+
+LATER = ("16i", "0i-d", "31i")
+
+
+def served(profile: str, program: str) -> tuple[PowerMate, Session]:
+    """Return a control that has begun a program, and a session of it."""
+    control = PowerMate(3)
+    control.programs.register(77, program)
+    control.select_program(77)
+    session, _ = open_session(FocasControl(control, load_profile(profile)))
+    return control, session
+
+
+def ask(session: Session, *requests: Request) -> list[Reply]:
+    (answer,) = FrameReader().feed(
+        session.receive(bytes(Frame(FrameType.COMMANDS, write_requests(requests))))
+    )
+    return [reply for _, reply in read_replies(answer.body)]
+
+
+def macros(session: Session, *numbers: int) -> list[float | None]:
+    """Return variables, -1 for those that there are not."""
+    found = ask(session, *(r(0x15, number, number) for number in numbers))
+    return [Value8.from_wire(each.payload).number if each.status == 0 else -each.status for each in found]
+
+
+PROGRAM = """O0077
+N12 G90 G55 G1 X12.5 Y-3.25 F300 S400 M3 T7
+#3901=19
+#1102=1
+N13 G43 H2 Z-4.5
+N14 G91 G2 X100. I50.
+M30
+"""
+
+
+@pytest.mark.parametrize("profile", LATER)
+def test_system_variables_are_those_of_the_block_that_is_executed(profile: str) -> None:
+    control, session = served(profile, PROGRAM)
+    control.control.offsets.set("G55", {"X": 2.5})
+    control.control.offsets.set("EXT", {"Y": 0.125})
+    control.control.offsets.set("G54.P2", {"Z": -7.75})
+    control.tool_offsets.set_all({2: 1500})
+    assert macros(session, 4001, 4003, 4014, 4016, 4120, 5041, 5221) == [0, 90, 54, 69, 0, 0, 0]
+    control.cycle_start()
+    control.advance(9000)
+    assert control.execution.sequence == 14
+    assert macros(session, 4001, 4002, 4003, 4006, 4008, 4014) == [2, 17, 91, 21, 43, 55]
+    assert macros(session, 4109, 4111, 4113, 4114, 4115, 4119, 4120) == [300, 2, 3, 14, 77, 400, 7]
+    machine = control.status().axes
+    found = macros(session, 5001, 5021, 5041, 5042, 5043, 5083, 5003)
+    assert found == pytest.approx(
+        [
+            112.5,
+            machine["X"].machine,
+            machine["X"].machine - 2.5,
+            machine["Y"].machine - 0.125,
+            -4.5 + 1.5,
+            1.5,
+            -4.5,
+        ],
+        abs=0.0011,
+    )
+    assert macros(session, 5202, 5241, 7023, 10002, 1102, 3901, 3001) == [0.125, 2.5, -7.75, 1.5, 1, 19, 9000]
+    assert macros(session, 3011, 3012) == [20000101, 9]
+    assert macros(session, 9000, 5004, 4130, 13002, 5244) == [-3] * 5
+
+
+def test_the_library_of_the_manual_reads_no_system_variables() -> None:
+    _, session = served("power-mate", PROGRAM)
+    assert macros(session, 3901, 4001, 5041, 5221, 10002) == [-3] * 5
+
+
+def test_system_variables_as_doubles() -> None:
+    control, session = served("31i", PROGRAM)
+    control.control.parts.set(made=19, required=40)
+    (found,) = ask(session, r(0xA7, 3901, 2))
+    assert struct.unpack(">2d", found.payload) == (19.0, 40.0)
+
+
+@pytest.mark.parametrize("profile", ["power-mate", *LATER])
+def test_a_stop_in_a_macro_is_a_message_of_its_own_type(profile: str) -> None:
+    control, session = served(profile, "O0077\nG1X2.F3000\n#3006=5(CHECK TOOL)\nM30\n")
+    control.operator_message(2001, "OIL LOW")
+    control.cycle_start()
+    control.advance(4000)
+    outside, stop, other = ask(session, r(0x34, 0), r(0x34, 4), r(0x34, 1))
+    assert struct.unpack_from(">3i", outside.payload) == (2001, 0, 7)
+    assert struct.unpack_from(">3i", stop.payload) == (3006, 4, 10)
+    assert [len(each.payload) for each in (outside, stop, other)] == [268, 268, 0]
+    assert stop.payload[12:23] == b"CHECK TOOL\0"
+
+
+@pytest.mark.parametrize(("profile", "kind"), [("power-mate", 3), ("16i", 3), ("0i-d", 8), ("31i", 8)])
+def test_the_alarm_of_a_macro_has_the_type_of_its_series(profile: str, kind: int) -> None:
+    control, session = served(profile, "O0077\nG1X2.F3000\n#3000=12(TOOL BROKEN)\nM30\n")
+    control.cycle_start()
+    control.advance(4000)
+    every, own, others, bits = ask(
+        session, r(0x23, ALL, 10, 2, 64), r(0x23, kind, 10, 1, 32), r(0x23, 11 - kind, 10, 1, 32), r(0x1A)
+    )
+    assert struct.unpack_from(">4i", every.payload) == (3012, kind, 0, 11)
+    assert (len(every.payload), len(own.payload), len(others.payload)) == (80, 48, 0)
+    assert bits.payload == (1 << kind).to_bytes(4, "big")
+    control.raise_alarm(417, axis=2)
+    (both,) = ask(session, r(0x1A))
+    assert both.payload == (1 << kind | 1 << 6).to_bytes(4, "big")
+
+
+@pytest.mark.parametrize("profile", ["0i-d", "31i"])
+def test_the_load_of_the_spindle_follows_its_speed(profile: str) -> None:
+    control, session = served(profile, "O0077\nS1500M3\nG4X60.\nM30\n")
+    control.cycle_start()
+    control.advance(4000)
+    meter, raw, most = ask(session, r(0x40, 4, ALL), r(0x40, 0, 1), r(0x40, 1, 1))
+    loads = [Value8.from_wire(meter.payload[at : at + 8]).number for at in range(0, 64, 8)]
+    assert loads == [25.0, *[0.0] * 7]
+    assert Value8.from_wire(raw.payload).number == 25.0
+    assert Value8.from_wire(most.payload).number == 6000.0
