@@ -19,7 +19,7 @@ RUNS = 5
 BUDGET = 100_000
 POINTS = 100_000
 MILLION = 1_000_000
-MEMORY_MB = 450
+MEMORY_MB = 330
 _PROVE = """
 import sys
 from polycnc.runner import post_file

@@ -72,6 +72,7 @@ def test_witnesses_lie_on_their_moves() -> None:
     sweeps = list(sweep_tool_path(parse_tool_path(ROUND)))
     moves = Moves(sweeps, 8)
     owner, points = moves.witnesses()
+    assert owner is not None
     assert np.bincount(owner).tolist() == [1, 8, 1]
     assert moves.distances(points, owner) == pytest.approx(np.zeros(10), abs=1e-12)
 

@@ -9,7 +9,7 @@ from polycnc.post.output._program import BlockMap, PostSummary, post_program
 from polycnc.post.output._writing import program_file
 from polycnc.post.tool_path._cl_reading import ArcAxis
 from polycnc.post.tool_path._source import Remark
-from polycnc.post.tool_path._sweep import Sweep, sweep_tool_path
+from polycnc.post.tool_path._sweep import Sweep, Ways, sweep_in_runs, sweep_tool_path
 from polycnc.post.tool_path._tangency import Tangency
 from polycnc.post.tool_path._tool_path import ToolPath, open_tool_path, parse_tool_path
 
@@ -27,6 +27,7 @@ __all__ = [
     "Sweep",
     "Tangency",
     "ToolPath",
+    "Ways",
     "control_file_reference",
     "load_control",
     "open_tool_path",
@@ -35,5 +36,6 @@ __all__ = [
     "post_program",
     "program_file",
     "shipped_text",
+    "sweep_in_runs",
     "sweep_tool_path",
 ]

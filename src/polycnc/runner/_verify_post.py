@@ -11,6 +11,7 @@ compensate the length of its tool deviates by that length.
 
 from __future__ import annotations
 
+import gc
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -30,7 +31,16 @@ from polycnc.machine import (
     load_machine,
 )
 from polycnc.nc import BlockRecords, Dialect, Group, ModalWords, ProgramText, dialect_for
-from polycnc.post import BlockMap, Parameters, Sweep, Tangency, ToolPath, sweep_tool_path
+from polycnc.post import (
+    BlockMap,
+    Parameters,
+    Sweep,
+    Tangency,
+    ToolPath,
+    Ways,
+    sweep_in_runs,
+    sweep_tool_path,
+)
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
 from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
@@ -43,7 +53,7 @@ TOOL_AXIS_TOLERANCE_DEG = 0.01
 _SAMPLING = 0.1  # part of the tolerance that the distance of the machine's positions may cost
 _AXES = "XYZ"
 _LEVER_MM = 300.0  # no point of a part is much further from the rotary axes that swing it
-_RECORD_CYCLES = 1 << 14
+_RECORD_CYCLES = 1 << 13
 _CONTEXT_SHIFT = 32
 
 
@@ -146,11 +156,20 @@ def verify_post(
     read = dialect_for(program.name, dialect)
     tangency = Tangency()
     carried = _carried(program, block_map, read)
-    sweeps = (sweep._replace(record=int(carried[sweep.record])) for sweep in sweep_tool_path(tool_path))
+    sweeps: Iterator[Sweep | Ways] = sweep_in_runs(tool_path.runs())
+    if carried is not None:
+        owners = carried
+        sweeps = (sweep._replace(record=int(owners[sweep.record])) for sweep in sweep_tool_path(tool_path))
     frame = PartFrame(parameters or Parameters())
-    moves = Moves(_judged(sweeps, tangency), len(block_map.line), bool(frame.axes))
+    moves = Moves(
+        _judged(sweeps, tangency),
+        len(block_map.line),
+        bool(frame.axes),
+        None if carried is not None else np.frombuffer(block_map.line, np.intc),
+    )
     path_feed_mm, path_rapid_mm = moves.length_mm()
     result = run(program, config, read, check=False)
+    gc.collect()  # the machine of that run, before there is another one
     comparison = _Comparison(moves, block_map, carried, config, read, frame)
     if result.ok:
         _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress)
@@ -173,15 +192,15 @@ def verify_post(
     )
 
 
-def _carried(program: ProgramText, block_map: BlockMap, dialect: Dialect) -> Indices:
-    """Return the record whose blocks do what each record asks for.
+def _carried(program: ProgramText, block_map: BlockMap, dialect: Dialect) -> Indices | None:
+    """Return the record whose blocks do what each record asks for, None if it is always the record itself.
 
     It is the record itself, unless its last block only computes: then its moves come from a block behind, maybe one
     in a loop that moves for many records. They and all that lie between are compared as one.
     """
-    records = np.arange(len(block_map.line), dtype=np.int64)
     if dialect.language != "cpl":
-        return records
+        return None
+    records = np.arange(len(block_map.line), dtype=np.int32)
     lines = program.content.split(b"\n")
     for record in range(len(records) - 2, -1, -1):
         last = block_map.last_block[record]
@@ -191,10 +210,13 @@ def _carried(program: ProgramText, block_map: BlockMap, dialect: Dialect) -> Ind
     return records
 
 
-def _judged(sweeps: Iterator[Sweep], tangency: Tangency) -> Iterator[Sweep]:
+def _judged(sweeps: Iterator[Sweep | Ways], tangency: Tangency) -> Iterator[Sweep | Ways]:
     """Yield the sweeps, and let `tangency` see them."""
     for sweep in sweeps:
-        if sweep.angle > 0.0 and sweep.start is not None:
+        if isinstance(sweep, Ways):
+            ways = np.diff(sweep.ends, axis=0, prepend=np.array([sweep.start]))
+            tangency.run(sweep.start, sweep.ends, np.sqrt((ways * ways).sum(axis=1)))
+        elif sweep.angle > 0.0 and sweep.start is not None:
             tangency.arc(sweep.line, sweep.start, sweep.end, sweep.center, sweep.normal)
         else:
             tangency.straight(sweep.start, sweep.end, not sweep.rapid)
@@ -297,6 +319,31 @@ class _TipFrame:
         return tool.length_mm + tool.wear_length_mm
 
 
+class _Standing:
+    """Where the machine stood behind records, as far as the next record is another one than the one behind."""
+
+    def __init__(self) -> None:
+        self._records: list[Indices] = []
+        self._points: list[Floats] = []
+
+    def note(self, records: Indices, points: Floats) -> None:
+        """Take rows of a recording: their records, and where the machine is behind them."""
+        steps = np.diff(records)
+        last = np.append(np.flatnonzero((steps != 0) & (steps != 1)), len(records) - 1)
+        self._records.append(records[last].astype(np.int32))
+        self._points.append(points[last])
+
+    def behind(self, records: Indices, begin: Floats) -> Floats:
+        """Return where the machine stood behind records, at first at `begin`."""
+        if not self._records:
+            return np.repeat(begin, len(records), axis=0)
+        known, points = np.concatenate(self._records), np.concatenate(self._points)
+        order = np.argsort(known, kind="stable")
+        known, points = known[order], points[order]
+        places = np.searchsorted(known, records, side="right") - 1
+        return np.where((places >= 0)[:, None], points[np.maximum(places, 0)], begin)
+
+
 class _Comparison:
     """Compare rows of a run with the moves of the tool path, as they come."""
 
@@ -304,7 +351,7 @@ class _Comparison:
         self,
         moves: Moves,
         block_map: BlockMap,
-        carried: Indices,
+        carried: Indices | None,
         config: MachineConfig,
         dialect: Dialect,
         frame: PartFrame,
@@ -319,10 +366,13 @@ class _Comparison:
         self.rapid_cut = np.zeros(records, np.bool_)
         self._columns = [config.axis_names.index(name) if name in config.axis_names else -1 for name in _AXES]
         self._owner, self._witness = moves.witnesses()
-        owners = moves.record[self._owner]
-        self._first_witness = np.searchsorted(owners, np.arange(records + 1, dtype=np.int32)).astype(np.int32)
-        self._best = np.full(len(self._owner), np.inf)
-        self._at_block = np.zeros(len(self._owner), np.int32)
+        self._first_witness = moves.first
+        if self._owner is not None:
+            owners = moves.record[self._owner]
+            every = np.arange(records + 1, dtype=np.int32)
+            self._first_witness = np.searchsorted(owners, every).astype(np.int32)
+        self._best = np.full(len(self._witness), np.inf)
+        self._at_block = np.zeros(len(self._witness), np.int32)
         names = dict(zip(config.axis_names, config.start_positions, strict=True))
         self._here = np.array([[names.get(name, 0.0) for name in _AXES]])
         self._frame = _TipFrame(config, dialect, frame.letters)
@@ -339,7 +389,7 @@ class _Comparison:
         self._tool_axes = ToolAxisCheck(frame, records)
         self._begin: Floats | None = None
         self._record = 0
-        self._reached = np.full((records, 3), np.nan)
+        self._standing = _Standing()
 
     def add(self, rows: Floats, tags: Indices, blocks_of: BlockRecords) -> None:
         """Take a piece of the record; `tags` refer to the blocks of its rows."""
@@ -349,7 +399,9 @@ class _Comparison:
                 points[:, place] = rows[:, LEADING + column]
         blocks = rows[:, BLOCK].astype(np.int64)
         found = np.searchsorted(self._last_block, blocks.astype(np.intc))
-        records = self._carried[np.minimum(found, len(self._lines) - 1)]
+        records = np.minimum(found, len(self._lines) - 1)
+        if self._carried is not None:
+            records = self._carried[records]
         before = np.concatenate((self._here, points[:-1]))
         before_records = np.concatenate(([self._record], records[:-1]))
         shifts = self._frame.shifts(tags, blocks_of)
@@ -359,8 +411,8 @@ class _Comparison:
             points, before = self._on_part(rows, points, before, shifts[:, 3:], records)
         if self._begin is None:
             self._begin = before[:1]
-        self._reached[records] = points
         moved = (points != before).any(axis=1) | (records != before_records)
+        self._standing.note(records, points)
         points, before, blocks = points[moved], before[moved], blocks[moved]
         rapid = rows[moved, IS_RAPID] != 0.0
         records, before_records = records[moved], before_records[moved]
@@ -396,7 +448,7 @@ class _Comparison:
         self._visit_by_standing()
         worst = int(np.argmax(self._best))
         x, y, z = self._witness[worst].tolist()
-        line = int(self._moves.line[self._owner[worst]])
+        line = self._moves.line(worst if self._owner is None else int(self._owner[worst]))
         return Deviation(float(self._best[worst]), int(self._at_block[worst]), line, (x, y, z))
 
     def _compare_points(
@@ -439,10 +491,8 @@ class _Comparison:
         still = np.flatnonzero(~np.isfinite(self._best))
         if not len(still):
             return
-        known = ~np.isnan(self._reached[:, 0])
-        last = np.maximum.accumulate(np.where(known, np.arange(len(known)), -1))
-        records = last[self._moves.record[self._owner[still]]]
         begin = np.zeros((1, 3)) if self._begin is None else self._begin
-        standing = np.where((records >= 0)[:, None], self._reached[records], begin)
+        moves = still if self._owner is None else self._owner[still]
+        standing = self._standing.behind(self._moves.record[moves], begin)
         ways = self._witness[still] - standing
         self._best[still] = np.sqrt((ways * ways).sum(axis=1))

@@ -26,7 +26,7 @@ from polycnc.nc.macro._compile import Code, compile_program, names
 from polycnc.nc.macro._functions import asin, atan2, rounded
 from polycnc.nc.macro._output import OutputDevice
 from polycnc.nc.macro._reader import LARGEST_LABEL, LineReader
-from polycnc.nc.macro._shape import RETURNS_TO, extent, parse, shape, special
+from polycnc.nc.macro._shape import RETURNS_TO, Special, extent, parse, shape, special
 from polycnc.nc.macro._system import SystemVariables
 from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, MacroVariables, Value, checked
 from polycnc.nc.text._program import ProgramText
@@ -46,6 +46,7 @@ _INCH_INCREMENT = 0.1
 _G_INCREMENT = 0.1
 _NOT_A_MOVE = (4.0, 10.0, 28.0, 29.0, 30.0, 52.0, 65.0, 66.0, 67.0, 68.0, 50.0, 51.0, 92.0, 50.1, 51.1)
 _PLAIN_CALLS = MacroCalls()
+_PIECE_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +108,7 @@ class MacroLanguage:
         self._compiled: dict[tuple[int, int, bool], _Compiled | None] = {}
         self._returns: dict[int, bool] = {}
         self._latin: dict[int, tuple[ProgramText, str, bytes]] = {}
+        self._without: dict[tuple[int, bool], ProgramText] = {}
         self.turns = 0
         self._levels: dict[tuple[Call, ...], list[Value]] = {}
         self._pause_jumps = pause_jumps
@@ -123,6 +125,7 @@ class MacroLanguage:
         self.codes_off = 0
         self._compiled.clear()
         self._latin.clear()
+        self._without.clear()
         self._returns.clear()
 
     def interrupt(self) -> None:
@@ -194,7 +197,7 @@ class MacroLanguage:
     ) -> _Compiled | None:
         calls = _PLAIN_CALLS if plain else self.calls
         if id(text) not in self._latin:
-            if not force and not special(calls, restarts=self.main_repeats).may_hold(text.content.upper()):
+            if not force and self._is_plain(text, plain, special(calls, restarts=self.main_repeats)):
                 return None
             decoded, folded = text.content.decode("latin-1"), text.content.upper()
             self._latin[id(text)] = (text, decoded, folded)
@@ -219,6 +222,21 @@ class MacroLanguage:
                 code, flaws = compile_program(whole, made, self, increment, name)
         errors = [_error(text, flaw) for flaw in flaws]
         return _Compiled(text, code, errors, name, _program_number(whole, offset))
+
+    def _is_plain(self, text: ProgramText, plain: bool, wanted: Special) -> bool:
+        """Tell whether no line of a text is special; it is looked at in pieces, as most programs are long and plain."""
+        key = (id(text), plain)
+        if key in self._without:
+            return True
+        begin, size = 0, len(text.content)
+        while begin < size:
+            end = text.content.find(b"\n", begin + _PIECE_BYTES) + 1 or size
+            piece = text.content[begin:end]
+            if next(wanted.lines(piece.decode("latin-1"), piece.upper(), 0, len(piece)), None) is not None:
+                return False
+            begin = end
+        self._without[key] = text
+        return True
 
     # ------------------------------------------------------------------ what the compiler asks
 

@@ -34,10 +34,6 @@ class Special:
     pattern: re.Pattern[str]
     needles: tuple[bytes, ...]
 
-    def may_hold(self, folded: bytes) -> bool:
-        """Tell quickly whether a text in capitals may have such lines."""
-        return any(needle in folded for needle in self.needles)
-
     def lines(self, text: str, folded: bytes, begin: int, end: int) -> Iterator[tuple[int, int]]:
         """Yield begin and end of such lines; `folded` is the text in capitals."""
         places = dict.fromkeys(self.needles, -1)

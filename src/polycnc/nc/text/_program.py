@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -19,6 +20,7 @@ _UTF8_MARK = b"\xef\xbb\xbf"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 _NEWLINE = ord("\n")
 _RETURN = ord("\r")
+_PIECE_BYTES = 1 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,13 +120,18 @@ class ProgramText:
         return start, self.line_end(start)
 
     @cached_property
-    def _line_starts(self) -> npt.NDArray[np.int64]:
+    def _line_starts(self) -> npt.NDArray[np.signedinteger[Any]]:
         data = self.data
-        ends = data == _NEWLINE
-        returns = data == _RETURN
-        returns[:-1] &= ~ends[1:]  # the CR of a CR LF does not end the line by itself
-        starts = np.flatnonzero(ends | returns) + 1
-        return np.concatenate((np.zeros(1, dtype=np.int64), starts.astype(np.int64)))
+        kind = np.min_scalar_type(-len(data) - 1)
+        starts: list[npt.NDArray[np.signedinteger[Any]]] = [np.zeros(1, dtype=kind)]
+        for begin in range(0, len(data), _PIECE_BYTES):
+            piece = data[begin : begin + _PIECE_BYTES + 1]
+            ends = piece == _NEWLINE
+            returns = piece == _RETURN
+            returns[:-1] &= ~ends[1:]  # the CR of a CR LF does not end the line by itself
+            found = np.flatnonzero((ends | returns)[:_PIECE_BYTES]) + (begin + 1)
+            starts.append(found.astype(kind))
+        return np.concatenate(starts)
 
 
 def _decoded(line: bytes) -> str:

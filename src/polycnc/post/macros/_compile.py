@@ -29,8 +29,11 @@ from polycnc.post.macros._symbols import (
     VariableSymbol,
 )
 
+START_WORDS = ("STARTX", "STARTY", "STARTZ")
+"""The words that say where a move starts."""
+
 ARGUMENTS = ("values", "modes", "last", "texts", "number", "write")
-"""What the compiled builder of a macro takes; it returns the macro."""
+"""What the compiled builder of a macro takes; it returns the macro, and of LINEAR a loop of it, else None."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +59,13 @@ class Used:
     order: bool
     start: bool
     end: bool
+    start_point: bool
 
 
-def used_words(macros: Iterable[Sequence[Statement]]) -> Used:
-    """Return which reserved words are set anywhere."""
+def used_words(macros: Iterable[Sequence[Statement]], *, start_point: bool) -> Used:
+    """Return which reserved words are set anywhere; `start_point`: where a move starts is named anywhere."""
     names = {each.name for macro in macros for each in elements_of(macro) if isinstance(each, Assignment)}
-    return Used(OUTPUTORDER in names, STARTOFLINE in names, ENDOFLINE in names)
+    return Used(OUTPUTORDER in names, STARTOFLINE in names, ENDOFLINE in names, start_point)
 
 
 def compile_macro(
@@ -75,7 +79,9 @@ def compile_macro(
     with writer.out.block(f"def build({', '.join(ARGUMENTS)}):"):
         with writer.out.block("def macro():"):
             writer.statements(statements)
-        writer.out.put("return macro")
+        if name == "LINEAR" and not writer.flaws:
+            writer.along(statements)
+        writer.out.put(f"return macro, {'along' if name == 'LINEAR' else None}")
     if writer.flaws or not sound:
         return None, writer.flaws
     try:
@@ -94,6 +100,18 @@ class _Writer:
         self._style = style
         self._used = used
         self._temporaries = 0
+
+    def along(self, statements: Sequence[Statement]) -> None:
+        """Write the macro as a loop over rows of positions, with the same feed for all."""
+        names = ("X", "Y", "Z", *(START_WORDS if self._used.start_point else ()))
+        words = ", ".join(f"values[{name!r}]" for name in names)
+        with (
+            self.out.block("def along(rows, feed, mode):"),
+            self.out.block(f"for {words} in rows:"),
+        ):
+            self.out.put("values['F'], values['FEEDMODE'] = feed, mode")
+            self.statements(statements)
+            self.out.put("yield")
 
     def statements(self, statements: Sequence[Statement]) -> None:
         for statement in statements:

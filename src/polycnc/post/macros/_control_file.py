@@ -14,7 +14,7 @@ from polycnc.errors import ConfigurationError, SourcePosition, UsageError
 from polycnc.language import Flaw
 from polycnc.machine import KeyPath, Locator, parse_toml, validate
 from polycnc.nc import load_dialect
-from polycnc.post.macros._compile import Style, TracedMacro, compile_macro, used_words
+from polycnc.post.macros._compile import START_WORDS, Style, TracedMacro, compile_macro, used_words
 from polycnc.post.macros._control_parameters import CODECS, SECTIONS, ControlTables, Parameters
 from polycnc.post.macros._control_symbols import ControlFlaw, read_symbols
 from polycnc.post.macros._elements import Assignment, Text
@@ -57,11 +57,11 @@ class ControlFile:
 
     def uses(self, macro: str, word: str) -> bool:
         """Tell whether the text of a macro names a word."""
-        return re.search(rf"\b{word}\b", self._texts.get(macro, ""), re.IGNORECASE) is not None
+        return _are_named({macro: self._texts.get(macro, "")}, word)
 
     def names(self, word: str) -> bool:
         """Tell whether any macro names a word."""
-        return any(self.uses(macro, word) for macro in self._texts)
+        return _are_named(self._texts, word)
 
     def start(self, write: Write) -> MacroRun:
         """Return a run for one output program; every block goes to `write` as a line with a line feed."""
@@ -174,6 +174,12 @@ class _SectionLocator(Locator):
         return super().position(path)
 
 
+def _are_named(texts: Mapping[str, str], *words: str) -> bool:
+    """Tell whether any text names one of some words."""
+    pattern = re.compile(rf"\b({'|'.join(words)})\b", re.IGNORECASE)
+    return any(pattern.search(text) for text in texts.values())
+
+
 def _style(parameters: Parameters) -> Style:
     return Style(
         separator=parameters.separator,
@@ -190,7 +196,9 @@ def _compiled(
 ) -> dict[str, TracedMacro]:
     flaws: list[tuple[str, Flaw]] = []
     read = {name: read_macro(text) for name, text in texts.items()}
-    used = used_words(statements for statements, _ in read.values())
+    used = used_words(
+        (statements for statements, _ in read.values()), start_point=_are_named(texts, *START_WORDS)
+    )
     macros: dict[str, TracedMacro] = {}
     for name, (statements, unread) in read.items():
         compiled, unknown = compile_macro(name, statements, symbols, style, used, sound=not unread)

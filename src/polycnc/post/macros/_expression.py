@@ -47,8 +47,8 @@ _OPERATORS = Operators(
     prefix={"+": Prefix(3), "-": Prefix(3)},
 )
 _COMPARISONS = {
-    "==": ("abs((", ")-(", f"))<{EQUAL_WITHIN}"),
-    "!=": ("abs((", ")-(", f"))>={EQUAL_WITHIN}"),
+    "==": (f"-{EQUAL_WITHIN}<(", ")-(", f")<{EQUAL_WITHIN}"),
+    "!=": (f"not -{EQUAL_WITHIN}<(", ")-(", f")<{EQUAL_WITHIN}"),
     "<=": ("(", ")-(", f")<{EQUAL_WITHIN}"),
     ">=": ("(", ")-(", f")>-{EQUAL_WITHIN}"),
     "<": ("(", ")-(", f")<=-{EQUAL_WITHIN}"),

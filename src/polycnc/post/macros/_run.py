@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NoReturn
 
 from polycnc.errors import ProgramError, SourcePosition, UsageError
@@ -25,7 +25,17 @@ class MacroRun:
     Modes, last outputs, variables and the sequence number last from call to call, over all paths of the program.
     """
 
-    __slots__ = ("_known", "_last", "_locate", "_macros", "_symbols", "_texts", "_traced", "_values")
+    __slots__ = (
+        "_along",
+        "_known",
+        "_last",
+        "_locate",
+        "_macros",
+        "_symbols",
+        "_texts",
+        "_traced",
+        "_values",
+    )
 
     def __init__(
         self, macros: Mapping[str, TracedMacro], symbols: Symbols, style: Style, write: Write, locate: Locate
@@ -46,8 +56,11 @@ class MacroRun:
             write,
         )
         self._macros: dict[str, Callable[[], None] | None] = dict.fromkeys(MACROS)
+        self._along: dict[str, Callable[[Iterable[Sequence[float]], float, float], Iterator[None]]] = {}
         for name, traced in macros.items():
-            self._macros[name] = traced.load(_SCOPE)["build"](*state)
+            self._macros[name], along = traced.load(_SCOPE)["build"](*state)
+            if along is not None:
+                self._along[name] = along
 
     def call(self, macro: str, words: Mapping[str, Value] = _NOTHING) -> None:
         """Set the words given, then run a macro; each block goes to `write` with a line feed at its end.
@@ -74,6 +87,20 @@ class MacroRun:
             function()
         except (ArithmeticError, ValueError, TypeError) as error:
             self._explain(error, words)
+
+    def call_along(self, rows: Iterable[Sequence[float]], feed: float, mode: float) -> Iterator[None]:
+        """Run LINEAR once for each row, as `call` does with its numbers as X, Y, Z and STARTX, STARTY, STARTZ.
+
+        A row has all six if any macro names one of the latter, else three; F and FEEDMODE stay the same. Yields behind
+        each.
+
+        Raises:
+            ProgramError: The macro divides by zero, takes the root of a negative number, or the like.
+        """
+        try:
+            yield from self._along["LINEAR"](rows, feed, mode)
+        except (ArithmeticError, ValueError, TypeError) as error:
+            self._explain(error, _NOTHING)
 
     def keep(self, words: Mapping[str, Value]) -> None:
         """Set words for the macros that follow."""

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import math
+from array import array
 from collections.abc import Iterable
 
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.post.macros._compile import START_WORDS
 from polycnc.post.output._kinematics import Angles, Kinematics
 from polycnc.post.output._output import Output
 from polycnc.post.output._rotary import table_angles
@@ -42,16 +47,16 @@ class Motion:
         self._kinematics = Kinematics(five_axis) if five_axis is not None else None
         self.angles: Angles = (0.0, 0.0)
         self.tool_length_mm: float | None = None
-        self._has_start = any(output.control.names(word) for word in ("STARTX", "STARTY", "STARTZ"))
+        self._has_start = any(output.control.names(word) for word in START_WORDS)
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
 
     def set_feed(self, record: Feed) -> None:
         """Take the feed of later moves."""
         self.feed, self.per_revolution = record.value, record.per_revolution
 
-    def feed_to(self, line: int, start: Vector, end: Vector, axis: Vector) -> None:
-        """Move straight to a point with the feed: most of a long tool path, so on a short way where it is plain."""
-        if (
+    def is_plain(self, start: Vector | None, axis: Vector) -> bool:
+        """Tell whether a straight feed move from a point is no more than its end."""
+        return not (
             self._must_write
             or self._first
             or self._kinematics is not None
@@ -60,9 +65,35 @@ class Motion:
             or self.position != start
             or self.feed is None
             or not self._needs["LINEAR"]
-        ):
+        )
+
+    def feed_along(self, start: Vector, ends: npt.NDArray[np.float64], blocks: array[int] | None) -> None:
+        """Move straight with the feed to one point after the other, [points, 3], where that is plain.
+
+        `blocks` gets how many blocks there are behind each of them.
+        """
+        before = np.concatenate((np.array([start]), ends[:-1]))
+        ways = ends - before
+        lengths = np.sqrt((ways * ways).sum(axis=1))
+        self.tangency.run(start, ends, lengths)
+        self.feed_mm += float(lengths.sum())
+        moves = (ways != 0.0).any(axis=1)
+        rows = np.concatenate((ends, before), axis=1) if self._has_start else ends
+        feed, mode = self.feed_words(0)
+        first = self._output.blocks
+        behind = self._output.call_along(rows[moves] * self._scale, feed, mode, blocks is not None)
+        if blocks is not None:
+            counts = np.array([first, *behind], np.intc)
+            blocks.frombytes(counts[np.cumsum(moves)].tobytes())
+        x, y, z = ends[-1].tolist()
+        self.position = (x, y, z)
+
+    def feed_to(self, line: int, start: Vector, end: Vector, axis: Vector) -> None:
+        """Move straight to a point with the feed: most of a long tool path, so on a short way where it is plain."""
+        if not self.is_plain(start, axis):
             self.move(Straight(line, start, end, axis, False))
             return
+        assert self.feed is not None
         length = math.dist(start, end)
         self.tangency.feed(start, end, length)
         if start == end:

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping
+
+import numpy as np
+import numpy.typing as npt
 
 from polycnc.errors import ProgramError
 from polycnc.post.macros._control_file import ControlFile
@@ -38,6 +42,21 @@ class Output:
         self._written += len(self._lines)
         self._out("".join(self._lines))
         self._lines.clear()
+
+    def call_along(
+        self, rows: npt.NDArray[np.float64], feed: float, mode: float, counts: bool
+    ) -> Iterable[int]:
+        """Call LINEAR for each row of X, Y, Z, and of where the move starts if the control file wants that.
+
+        Returns:
+            With `counts` how many blocks there are behind each.
+        """
+        calls = self._run.call_along(zip(*rows.T.tolist(), strict=True), feed, mode)
+        if not counts:
+            deque(calls, maxlen=0)
+            return ()
+        before, lines = self._written, self._lines
+        return [before + len(lines) for _ in calls]
 
     def frame(self, macro: str, words: Words = _NOTHING) -> None:
         """Call a macro that a control file may leave out."""

@@ -32,6 +32,7 @@ from polycnc.post.tool_path._records import (
     Goto,
     Home,
     Path,
+    Points,
     Rapid,
     Retract,
     Spindle,
@@ -103,14 +104,22 @@ def post_program(
     handlers = driver.handlers()
     records = 0
     has_head = driver.motion.has_head
-    for record in tool_path:
-        records += 1
-        handlers[record.__class__](record)
-        if block_map is not None:
-            block_map.add(output.blocks, record.line)
-            if has_head:
-                block_map.tool_mm.append(driver.motion.tool_length_mm or 0.0)
-        if not records % _CHUNK_RECORDS:
+    flushed = 0
+    for record in tool_path.runs():
+        if isinstance(record, Points):
+            records += len(record.xyz)
+            driver.points(record, block_map)
+        else:
+            records += 1
+            handlers[record.__class__](record)
+            if block_map is not None:
+                block_map.add(output.blocks, record.line)
+        if has_head and block_map is not None:
+            block_map.tool_mm.extend(
+                [driver.motion.tool_length_mm or 0.0] * (records - len(block_map.tool_mm))
+            )
+        if records - flushed >= _CHUNK_RECORDS:
+            flushed = records
             output.flush()
             if progress is not None:
                 progress(tool_path.part_read)
@@ -379,6 +388,29 @@ class _Driver:
 
     def _note(self, record: Rapid | Axis) -> None:
         self._take(record)
+
+    def points(self, record: Points, block_map: BlockMap | None) -> None:
+        """Take many points at once, as far as nothing but their moves comes of them."""
+        line, xyz = record
+        for place, (x, y, z) in enumerate(xyz.tolist()):
+            course, motion = self.course, self.motion
+            if (
+                self._in_path
+                and not self._resumes
+                and course.is_plain
+                and course.here is not None
+                and motion.is_plain(course.here, course.axis)
+            ):
+                self.drilling.close()
+                if block_map is not None:
+                    block_map.line.extend(range(line + place, line + len(xyz)))
+                blocks = None if block_map is None else block_map.last_block
+                motion.feed_along(course.here, xyz[place:], blocks)
+                course.here = motion.position
+                return
+            self._goto(Goto(line + place, x, y, z))
+            if block_map is not None:
+                block_map.add(self.output.blocks, line + place)
 
     def _goto(self, record: Goto) -> None:
         if not self._in_path:

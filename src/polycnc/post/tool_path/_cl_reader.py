@@ -10,18 +10,26 @@ import math
 import re
 from collections.abc import Iterator
 
+import numpy as np
+import numpy.typing as npt
+
 from polycnc.errors import ProgramError
 from polycnc.post.tool_path._cl_reading import ArcAxis, Reading
 from polycnc.post.tool_path._cl_statement import Piece, Statement
 from polycnc.post.tool_path._cl_words import CLSF_WORDS, HANDLERS, HINTS, IGNORED, LEFT_OUT_MOTION, TEXTS
-from polycnc.post.tool_path._records import LARGEST_MM, Circle, End, Goto, Record, Word
+from polycnc.post.tool_path._records import LARGEST_MM, Circle, End, Goto, Points, Record, Word
 from polycnc.post.tool_path._source import Remarks, Source, decoded
 
 _CREO = re.compile(r"(->\s*)(?=(CUTTER|CSYS)\b)", re.IGNORECASE)
 
 
-def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Iterator[Record]:
-    """Yield the records of an APT tool path; what is left out goes to `remarks`.
+_NUMBER = rb"[ \t]*[-+]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)[ \t]*"
+_POINTS = re.compile(rb"(?:GOTO/" + rb",".join([_NUMBER] * 3) + rb"\n){8,}+")
+"""So many lines with plain points that it is worth while to take them together."""
+
+
+def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Iterator[Record | Points]:
+    """Yield the records of an APT tool path, many plain points together; what is left out goes to `remarks`.
 
     `arc_axis` says what the axes of arcs are for; "auto" by the kind of file.
 
@@ -31,7 +39,10 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
     """
     reading = Reading(remarks, arc_axis)
     pieces: list[Piece] = []
-    for number, raw in enumerate(source.lines(), 1):
+    for number, raw in _lines(source, reading, pieces):
+        if isinstance(raw, Points):
+            yield raw
+            continue
         if not pieces and not reading.resumes and (rest := _behind_goto(raw)):
             point = _point(reading, number, rest)
             if point is not None:
@@ -43,16 +54,48 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
         if part.strip() or pieces:
             pieces.append(Piece(number, text, part[:-1] if continued else part))
         if pieces and not continued:
-            for record in _statement(source, reading, pieces):
+            whole = pieces.copy()
+            pieces.clear()
+            for record in _statement(source, reading, whole):
                 if record.__class__ is End:
                     _check_recognised(source, reading)
                 yield record
-            pieces = []
     if pieces:
         yield from _statement(source, reading, pieces)
     if reading.circle is not None:
         raise reading.circle.statement.fail("an arc without an end point", "Write a GOTO behind it.")
     _check_recognised(source, reading)
+
+
+def _lines(source: Source, reading: Reading, pieces: list[Piece]) -> Iterator[tuple[int, bytes | Points]]:
+    """Yield the lines with their numbers, and many points at once where nothing before waits for the next one.
+
+    `pieces` is the statement that is not complete yet.
+    """
+    number = 1
+    for text in source.pieces():
+        at = look_from = 0
+        while at < len(text):
+            waits = pieces or reading.resumes or reading.circle is not None
+            if at >= look_from and not waits and (found := _POINTS.match(text, at)) is not None:
+                points = reading.points(number, _numbers(found[0]))
+                if points is not None:
+                    yield number, points
+                    number += len(points.xyz)
+                    at = found.end()
+                    continue
+                look_from = found.end()
+            end = text.find(b"\n", at) + 1 or len(text)
+            yield number, text[at:end]
+            number += 1
+            at = end
+
+
+def _numbers(text: bytes) -> npt.NDArray[np.float64]:
+    """Return the numbers of lines with points, [points, 3]."""
+    numbers = text.replace(b"GOTO/", b"").replace(b"\n", b",").split(b",")
+    numbers.pop()
+    return np.array(list(map(float, numbers))).reshape(-1, 3)
 
 
 def _check_recognised(source: Source, reading: Reading) -> None:

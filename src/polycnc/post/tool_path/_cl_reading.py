@@ -7,9 +7,22 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
+import numpy.typing as npt
+
 from polycnc.post.tool_path._arcs import off_circle, sweep_of
 from polycnc.post.tool_path._cl_statement import Statement
-from polycnc.post.tool_path._records import MOST_TURNS, Circle, Compensation, Goto, Record, Tool, Vector
+from polycnc.post.tool_path._records import (
+    LARGEST_MM,
+    MOST_TURNS,
+    Circle,
+    Compensation,
+    Goto,
+    Points,
+    Record,
+    Tool,
+    Vector,
+)
 from polycnc.post.tool_path._source import Remarks
 
 ArcAxis: TypeAlias = Literal["auto", "counterclockwise", "clockwise"]
@@ -103,6 +116,17 @@ class Reading:
             return self.arc(circle, (x, y, z))
         self.position = (x, y, z)
         return Goto(line, x, y, z, axis)
+
+    def points(self, line: int, xyz: npt.NDArray[np.float64]) -> Points | None:
+        """Return the moves to points; None if one is too far away."""
+        if self.scale != 1.0:
+            xyz = xyz * self.scale
+        if not np.abs(xyz).max() <= LARGEST_MM:
+            return None
+        self.moves += len(xyz)
+        x, y, z = xyz[-1].tolist()
+        self.position = (x, y, z)
+        return Points(line, xyz)
 
     def arc(self, circle: PendingCircle, end: Vector) -> Circle:
         """Return the arc to an end point.

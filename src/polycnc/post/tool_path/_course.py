@@ -141,10 +141,15 @@ class Course:
     def plain(self, end: Vector) -> Vector | None:
         """Go straight with the feed, and return from where; None, going nowhere, where it is not as plain as that."""
         start = self.here
-        if start is None or self.cycle is not None or self._rapid or self._changed:
+        if start is None or not self.is_plain:
             return None
         self.here = end
         return start
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the next point is a straight feed move from where the tool is."""
+        return self.here is not None and self.cycle is None and not self._rapid and not self._changed
 
     def _begin(self, cycle: Cycle) -> None:
         self.cycle = self._last = cycle

@@ -5,7 +5,11 @@ Each begins with `line`, where it stands in its file.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import Literal, NamedTuple, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
 
 Vector: TypeAlias = tuple[float, float, float]
 
@@ -102,6 +106,13 @@ class Goto(NamedTuple):
     y: float
     z: float
     axis: Vector | None = None
+
+
+class Points(NamedTuple):
+    """Many `Goto` without an axis, one on each line from `line` on: `xyz` has a row for each, [points, 3] in mm."""
+
+    line: int
+    xyz: npt.NDArray[np.float64]
 
 
 class Delta(NamedTuple):
@@ -228,3 +239,14 @@ Record: TypeAlias = (
     Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis | Circle
     | Cycle | CycleOff | Coolant | Compensation | Dwell | Stop | Word | End
 )  # fmt: skip
+
+
+def one_by_one(records: Iterable[Record | Points]) -> Iterator[Record]:
+    """Yield records, and for points each move by itself."""
+    for record in records:
+        if isinstance(record, Points):
+            line = record.line
+            for place, (x, y, z) in enumerate(record.xyz.tolist()):
+                yield Goto(line + place, x, y, z)
+        else:
+            yield record

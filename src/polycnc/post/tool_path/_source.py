@@ -9,6 +9,8 @@ from typing import BinaryIO
 
 from polycnc.errors import SourcePosition, UsageError
 
+_PIECE_BYTES = 1 << 16
+
 
 class Source:
     """The lines of a tool path, as bytes."""
@@ -41,13 +43,19 @@ class Source:
         """Return the source of a text."""
         return cls(name, text.encode())
 
+    def pieces(self) -> Iterator[bytes]:
+        """Yield the content in pieces of whole lines, each of which ends with a line feed, the last one maybe not."""
+        if isinstance(self._content, bytes):
+            yield _with_line_feeds(self._content)
+            return
+        with self._content.open("rb") as self._file:
+            while lines := self._file.readlines(_PIECE_BYTES):
+                yield _with_line_feeds(b"".join(lines))
+
     def lines(self) -> Iterator[bytes]:
         """Yield the lines, from the first."""
-        if isinstance(self._content, bytes):
-            yield from self._content.splitlines(keepends=True)
-        else:
-            with self._content.open("rb") as self._file:
-                yield from self._file
+        for piece in self.pieces():
+            yield from piece.splitlines(keepends=True)
 
     @property
     def part_read(self) -> float:
@@ -64,6 +72,11 @@ class Source:
         """Return the place of a line, at its first character that is no blank if no column is given."""
         text = next((decoded(raw) for at, raw in enumerate(self.lines(), 1) if at == number), "")
         return SourcePosition(self.name, number, column or len(text) - len(text.lstrip()) + 1, text)
+
+
+def _with_line_feeds(text: bytes) -> bytes:
+    """Return a text whose lines end with LF, where they ended with CR LF or CR."""
+    return text.replace(b"\r\n", b"\n").replace(b"\r", b"\n") if b"\r" in text else text
 
 
 def decoded(raw: bytes) -> str:

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+import numpy.typing as npt
+
 from polycnc.post.tool_path._arcs import across, cross, dot
 from polycnc.post.tool_path._records import Vector
 
@@ -37,6 +40,13 @@ class Tangency:
             self.straight(start, end, True)
         elif length > _SHORT_MM:
             self._segment = (start, end)
+
+    def run(self, start: Vector, ends: npt.NDArray[np.float64], lengths: npt.NDArray[np.float64]) -> None:
+        """Take straight feed moves, one behind the other, with their lengths in mm."""
+        long = np.flatnonzero(lengths > _SHORT_MM)
+        for place in sorted({*long[:1].tolist(), *long[-1:].tolist()}):
+            before = start if not place else _vector(ends[place - 1])
+            self.feed(before, _vector(ends[place]), float(lengths[place]))
 
     def straight(self, start: Vector | None, end: Vector, feed: bool) -> None:
         """Take a straight move."""
@@ -83,6 +93,11 @@ class Tangency:
             self.first_kink = self.first_kink or self._line
         self._vote = 0
         self._leaves = None
+
+
+def _vector(row: npt.NDArray[np.float64]) -> Vector:
+    x, y, z = row.tolist()
+    return x, y, z
 
 
 def _direction(start: Vector, end: Vector) -> Vector:

@@ -10,11 +10,11 @@ from polycnc.errors import SourcePosition
 from polycnc.post.tool_path._cl_reader import read_cl
 from polycnc.post.tool_path._cl_reading import ArcAxis
 from polycnc.post.tool_path._json_path import read_json
-from polycnc.post.tool_path._records import Record
+from polycnc.post.tool_path._records import Points, Record, one_by_one
 from polycnc.post.tool_path._source import Remarks, Source
 from polycnc.post.tool_path._turned import turned_from_xy
 
-_Reader = Callable[[Source, Remarks], Iterator[Record]]
+_Reader = Callable[[Source, Remarks], Iterator[Record | Points]]
 
 
 class ToolPath:
@@ -27,6 +27,10 @@ class ToolPath:
         self._read = read
 
     def __iter__(self) -> Iterator[Record]:
+        return one_by_one(self.runs())
+
+    def runs(self) -> Iterator[Record | Points]:
+        """Return the records, where many points lie behind each other together."""
         self.remarks = Remarks()
         return self._read(self._source, self.remarks)
 

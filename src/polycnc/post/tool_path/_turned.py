@@ -5,10 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from polycnc.errors import ProgramError
-from polycnc.post.tool_path._records import Circle, Delta, From, Goto, Home, Record, Retract, Vector
+from polycnc.post.tool_path._records import (
+    Circle,
+    Delta,
+    From,
+    Goto,
+    Home,
+    Points,
+    Record,
+    Retract,
+    Vector,
+)
 from polycnc.post.tool_path._source import Remarks, Source
 
-Reader = Callable[[Source, Remarks], Iterator[Record]]
+Reader = Callable[[Source, Remarks], Iterator[Record | Points]]
 
 
 def turned_from_xy(read: Reader) -> Reader:
@@ -20,17 +30,19 @@ def turned_from_xy(read: Reader) -> Reader:
         ProgramError: on reading, a retract to a level, which says nothing about a lathe.
     """
 
-    def turned(source: Source, remarks: Remarks) -> Iterator[Record]:
+    def turned(source: Source, remarks: Remarks) -> Iterator[Record | Points]:
         for record in read(source, remarks):
             yield _turned(record, source)
 
     return turned
 
 
-def _turned(record: Record, source: Source) -> Record:
+def _turned(record: Record | Points, source: Source) -> Record | Points:
     match record:
         case From() | Goto():
             return record._replace(x=record.y, y=record.z, z=record.x)
+        case Points():
+            return record._replace(xyz=record.xyz[:, [1, 2, 0]])
         case Delta():
             return record if record.along_axis else record._replace(x=record.y, y=record.z, z=record.x)
         case Circle():
