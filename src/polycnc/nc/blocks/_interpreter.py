@@ -401,6 +401,7 @@ class Interpreter:
             or self._turning.active
             or self.state.corner is not None
             or self.state.spline_way is not None
+            or self.state.placement.once != 0  # the next block takes it back
             or whole[FEED_MODE] != FEED_PER_MINUTE
             or self.state.frame.active
         )
