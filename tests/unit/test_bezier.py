@@ -43,16 +43,16 @@ class Cut:
         return self.spans[:, SPAN_LENGTH]
 
     def begin(self, number: int) -> Floats:
-        return np.zeros(2) if number == 0 else self.spans[number - 1, SPAN_END : SPAN_END + 2]
+        return np.zeros(2) if number == 0 else np.asarray(self.spans[number - 1, SPAN_END : SPAN_END + 2])
 
     def way(self, number: int) -> Floats:
-        return self.spans[number, SPAN_END : SPAN_END + 2] - self.begin(number)
+        return np.asarray(self.spans[number, SPAN_END : SPAN_END + 2] - self.begin(number))
 
     def point(self, number: int, part: float) -> Floats:
         way = self.way(number)
         if not self.spans[number, SPAN_CURVED]:
-            return self.begin(number) + part * way
-        return self.begin(number) + np.array(bezier_point(self.spans[number], way[0], way[1], part))
+            return np.asarray(self.begin(number) + part * way)
+        return self.begin(number) + np.asarray(bezier_point(self.spans[number], way[0], way[1], part))
 
     def tangent(self, number: int, at: float) -> Floats:
         way = self.way(number)
