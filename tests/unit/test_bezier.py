@@ -52,7 +52,9 @@ class Cut:
         way = self.way(number)
         if not self.spans[number, SPAN_CURVED]:
             return np.asarray(self.begin(number) + part * way)
-        return self.begin(number) + np.asarray(bezier_point(self.spans[number], way[0], way[1], part))
+        return np.asarray(
+            self.begin(number) + np.asarray(bezier_point(self.spans[number], way[0], way[1], part))
+        )
 
     def tangent(self, number: int, at: float) -> Floats:
         way = self.way(number)
