@@ -1,4 +1,4 @@
-"""Paths with circles in three axes and splines, and axes that ride along: limits, geometry, ends."""
+"""Paths with circles in three axes and Bezier curves, and axes that ride along: limits, geometry, ends."""
 
 from __future__ import annotations
 
@@ -7,23 +7,26 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.interpolate import CubicSpline
 
 from polycnc.kernel import (
+    MOST_SPANS,
     RAPID,
+    SPAN_CURVED,
+    SPAN_END,
+    SPAN_LENGTH,
+    SPAN_SIZE,
     KernelState,
     append_arc,
     append_circle3d,
     append_line,
     append_spline,
+    cut_bezier,
     give_to_path,
     make_state,
     skip,
     start_path,
 )
-from polycnc.kernel._segments import CIRCLE3D, SPLINE
-from polycnc.kernel._spline import Splines, make_splines
-from polycnc.kernel._spline_build import CUBIC_NATURAL, add_bezier, add_cubic
+from polycnc.kernel._segments import CIRCLE3D
 from support.random_paths import CYCLE_S, is_done, overload, prepare, run_recorded, stop_everywhere
 
 Floats = npt.NDArray[np.float64]
@@ -33,23 +36,36 @@ ROUNDING = 1.0 + 1e-6
 RECORDED = 1 << 16
 
 
-def curve_machine(rng: np.random.Generator, ride_along: bool) -> tuple[KernelState, Splines]:
-    """Return a machine with random limits and a store of splines; its last axis may ride along (rotary)."""
-    store = make_splines(AXES)
-    state = make_state(AXES, cycle_s=CYCLE_S, segments=4096, record_cycles=RECORDED, splines=store)
+def curve_machine(rng: np.random.Generator, ride_along: bool) -> KernelState:
+    """Return a machine with random limits; its last axis may ride along (rotary)."""
+    state = make_state(AXES, cycle_s=CYCLE_S, segments=4096, record_cycles=RECORDED)
     state.limits.speed[:] = rng.uniform(50.0, 600.0, AXES)
     state.limits.acceleration[:] = rng.uniform(300.0, 8000.0, AXES)
     if ride_along:
         state.limits.feed_axis[2] = 0
     state.paths.row[0]["jerkrel"] = rng.choice((0.0, 0.0, 0.5))
     give_to_path(state, 0)
-    return state, store
+    return state
 
 
-def append_random(
-    state: KernelState, store: Splines, rng: np.random.Generator, ride_along: bool, tag: int
-) -> bool:
-    """Append one line, arc, circle or spline."""
+def append_bezier(state: KernelState, control: Floats, axes: tuple[int, int], feed: float, tag: int) -> bool:
+    """Append a cubic with these ways from the path's end to its control points and its end."""
+    spans = np.zeros((MOST_SPANS, SPAN_SIZE))
+    count = cut_bezier(np.vstack([np.zeros(2), control]), spans)
+    start = state.paths.queued[0].copy()
+    for span in spans[: max(count, 0)]:
+        end = start.copy()
+        end[list(axes)] += span[SPAN_END : SPAN_END + 2]
+        length = span[SPAN_LENGTH]
+        if span[SPAN_CURVED]:
+            append_spline(state.seg, state.paths, 0, end, *axes, span, length, feed, 0, tag)
+        else:
+            append_line(state.seg, state.paths, 0, state.limits, end, feed, 0, tag)
+    return count > 0
+
+
+def append_random(state: KernelState, rng: np.random.Generator, ride_along: bool, tag: int) -> bool:
+    """Append one line, arc, circle or Bezier curve."""
     seg, paths, limits = state.seg, state.paths, state.limits
     place = paths.queued[0].copy()
     feed = float(rng.choice((5.0, 50.0, 500.0)))
@@ -70,24 +86,20 @@ def append_random(
         normal = rng.normal(size=3)
         sweep = float(rng.uniform(-400.0, 400.0))
         return append_circle3d(seg, paths, 0, 0, 1, 2, center, normal, sweep, feed, 0, tag)
-    points = place + np.vstack([np.zeros(AXES), np.cumsum(rng.normal(size=(6, AXES)) * size, axis=0)])
-    path_axes = limits.feed_axis
-    if kind == 2:
-        index = add_bezier(store, points, path_axes)
-    else:
-        knots = np.arange(len(points), dtype=np.float64)
-        index = add_cubic(store, knots, points, CUBIC_NATURAL, np.zeros((2, AXES)), path_axes)
-    assert index >= 0
-    return append_spline(seg, store, paths, 0, index, feed, 0, tag) > 0
+    control = rng.normal(size=(3, 2)) * size
+    if rng.integers(0, 4) == 0:
+        control[0] = 0.0  # it stands still at its start
+    axes = (0, 1) if ride_along or rng.integers(0, 2) else (2, 0)
+    return append_bezier(state, control, axes, feed, tag)
 
 
 @pytest.mark.parametrize("ride_along", [False, True])
 def test_every_axis_keeps_its_limits_and_the_end_is_exact(ride_along: bool) -> None:
     for seed in range(40):
         rng = np.random.default_rng(seed)
-        state, store = curve_machine(rng, ride_along)
+        state = curve_machine(rng, ride_along)
         for tag in range(1, 25):
-            assert append_random(state, store, rng, ride_along, tag), f"seed {seed}"
+            assert append_random(state, rng, ride_along, tag), f"seed {seed}"
         prepare(state)
         start_path(state.paths, 0)
         run_recorded(state)
@@ -105,9 +117,9 @@ def test_going_on_is_never_slower_than_stopping_at_every_block(ride_along: bool)
         cycles = []
         for stops in (False, True):
             rng = np.random.default_rng(seed)
-            state, store = curve_machine(rng, ride_along)
+            state = curve_machine(rng, ride_along)
             for tag in range(1, int(rng.integers(3, 40))):
-                assert append_random(state, store, rng, ride_along, tag), f"seed {seed}"
+                assert append_random(state, rng, ride_along, tag), f"seed {seed}"
             if stops:
                 stop_everywhere(state)
             prepare(state)
@@ -124,7 +136,7 @@ def recorded(state: KernelState, tag: int) -> Floats:
 
 
 def test_a_circle_in_space_keeps_its_radius_and_its_plane() -> None:
-    state, _ = curve_machine(np.random.default_rng(1), False)
+    state = curve_machine(np.random.default_rng(1), False)
     center, normal = np.array([3.0, -4.0, 12.0]), np.array([1.0, 2.0, -0.5])
     assert append_circle3d(state.seg, state.paths, 0, 0, 1, 2, center, normal, 270.0, 20.0, 0, 7)
     assert state.seg.row[0]["kind"] == CIRCLE3D
@@ -142,46 +154,8 @@ def test_a_circle_in_space_keeps_its_radius_and_its_plane() -> None:
 
 
 def test_a_circle_without_normal_or_radius_is_refused_and_nothing_appended() -> None:
-    state, _ = curve_machine(np.random.default_rng(1), False)
+    state = curve_machine(np.random.default_rng(1), False)
     for center, normal in (((1.0, 0.0, 0.0), (0.0, 0.0, 0.0)), ((0.0, 0.0, 5.0), (0.0, 0.0, 1.0))):
         arguments = (np.array(center), np.array(normal), 90.0, 20.0, 0, 1)
         assert not append_circle3d(state.seg, state.paths, 0, 0, 1, 2, *arguments)
     assert state.paths.row[0]["tail"] == 0
-
-
-def test_a_spline_runs_through_its_points_piece_by_piece() -> None:
-    state, store = curve_machine(np.random.default_rng(2), False)
-    knots = np.arange(5.0)
-    points = np.array(
-        [[0.0, 0.0, 0.0], [10.0, 5.0, 0.0], [20.0, -5.0, 3.0], [25.0, 0.0, 3.0], [40.0, 0.0, 0.0]]
-    )
-    index = add_cubic(store, knots, points, CUBIC_NATURAL, np.zeros((2, AXES)), state.limits.feed_axis)
-    assert append_spline(state.seg, store, state.paths, 0, index, 30.0, 0, 1) == 4
-    assert state.seg.row["kind"][:4].tolist() == [SPLINE] * 4
-    assert np.allclose(state.seg.end[:4], points[1:], rtol=0.0, atol=1e-12)
-    assert state.seg.row["length"][:4].sum() == pytest.approx(store.length[index], rel=1e-12)
-    prepare(state)
-    start_path(state.paths, 0)
-    run_recorded(state)
-    # No setpoint is beside the curve of scipy: the nearest of many points of it is as close as they are apart.
-    curve = CubicSpline(knots, points, bc_type="natural")
-    u = np.linspace(0.0, 4.0, 40001)
-    dense = curve(u)
-    for place in recorded(state, 1)[::97]:
-        nearest = int(np.argmin(np.sum((dense - place) ** 2, axis=1)))
-        direction = curve(u[nearest], 1)
-        off = place - dense[nearest]
-        off -= direction * np.dot(off, direction) / np.dot(direction, direction)
-        assert np.linalg.norm(off) < 1e-5
-
-
-def test_a_spline_that_begins_elsewhere_or_does_not_fit_is_refused() -> None:
-    state, store = curve_machine(np.random.default_rng(3), False)
-    axes = state.limits.feed_axis
-    elsewhere = add_bezier(store, np.arange(12.0).reshape(4, 3) + 1.0, axes)
-    assert append_spline(state.seg, store, state.paths, 0, elsewhere, 10.0, 0, 1) == 0
-    here = add_bezier(store, np.arange(12.0).reshape(4, 3) ** 1.5 - np.array([0.0, 1.0, 2.0**1.5]), axes)
-    state.paths.row[0]["tail"] = state.paths.row[0]["capacity"]  # a full queue
-    assert append_spline(state.seg, store, state.paths, 0, here, 10.0, 0, 1) == 0
-    state.paths.row[0]["tail"] = 0
-    assert append_spline(state.seg, store, state.paths, 0, here, 10.0, 0, 1) == 1

@@ -40,6 +40,8 @@ def assert_same(fast: Channel, ordinary: Channel) -> None:
 @settings(max_examples=70, suppress_health_check=[HealthCheck.too_slow])
 @given(program=programs)
 @example(program="G2 X10 I5\nG91 G3 X10 J-0 I5\nX1\n")
+@example(program="G1 F500\n X0 F100\nG92 X1 Y2\nG91 G2 X2 I1\n")
+@example(program="F500\nG5 X9 Y3 I2 J3 P1 Q-2\nX12\nX9 Y3\nG5 X0 P2 Q1\n")
 # Radius compensation fails at a contour outside the limits: where it stands then, every axis counts.
 @example(program="F500\nX290\nG42 D2\nG91 G2 X0 I0\nG90 X302\nG91 G2 X8 I4\n X0\n Y0\n")
 def test_shipped_dialects(dialect: str, program: str) -> None:

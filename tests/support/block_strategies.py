@@ -26,6 +26,13 @@ half_circles = st.builds(
     st.sampled_from("XY"),
 )
 radii = st.builds("{} X{} Y{} R{}".format, st.sampled_from(["G2", "G3", ""]), lengths, lengths, lengths)
+splines = st.builds(
+    "{} X{} Y{} {}".format,
+    st.sampled_from(["G5", "G5.1"]),
+    lengths,
+    lengths,
+    st.sampled_from(["I3 J4", "I3 J4 P-5 Q6", "P-2 Q7", "I0 J0 P1 Q0", "I5", "P1", "I9 J-30 P2 Q5 Z1"]),
+)
 _MODES = (
     *(
         "G17",
@@ -62,6 +69,6 @@ _MODES = (
     ),
 )
 modes = st.sampled_from(_MODES)
-blocks = st.one_of(straight, straight, straight, half_circles, circles, radii, modes)
+blocks = st.one_of(straight, straight, straight, half_circles, circles, radii, splines, modes)
 programs = st.lists(blocks, min_size=1, max_size=25).map(lambda lines: "G1 F500\n" + "\n".join(lines) + "\n")
 """Programs for a machine with the axes X Y Z A C."""

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from polycnc.kernel import ARC, LINE, RAPID, WAIT
-from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP_RAD, WAIT_EVENT, WAIT_S
+from polycnc.kernel._segments import CENTER_P, CENTER_Q, SPLINE, SWEEP_RAD, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine
 from polycnc.nc import Channel
 
@@ -83,7 +83,7 @@ def queued_steps(machine: Machine, channel: Channel) -> list[Step]:
         elif segment["flags"] & RAPID:
             steps.append(Traverse(end))
         else:
-            assert kind == LINE
+            assert kind in (LINE, SPLINE)
             steps.append(Feed(end, speed))
     return steps
 

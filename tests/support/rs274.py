@@ -172,6 +172,8 @@ class _Canon:
                 self.move(Feed(end, self.speed(end)))
             case "ARC_FEED":
                 self.arc(texts)
+            case "NURBS_FEED":  # its control points are not printed
+                self.at = (math.inf,) * self.axes
             case "DWELL":
                 self.steps.append(Dwell(float(texts[0])))
             case "CHANGE_TOOL":

@@ -15,7 +15,7 @@ from polycnc.kernel import give_to_path
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
 from polycnc.nc import Channel, Dialect, ProgramText, load_dialect
 from support import rs274
-from support.canonical import Step, first_difference, queued_steps
+from support.canonical import Feed, Step, first_difference, queued_steps
 from support.random_programs import AXES, Block, Program, random_program
 
 pytestmark = pytest.mark.skipif(rs274.COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
@@ -253,3 +253,82 @@ def test_what_both_do_differently(blocks: str, ruling: str, tmp_path: Path) -> N
     assert not theirs.error
     assert error is None
     assert first_difference(ours, rs274.canonical_steps(theirs, len(AXES), scale=1), 1e-3), ruling
+
+
+# ---------------------------------------------------------------------- splines, which rs274 does not print
+
+LINUXCNC = load_dialect("linuxcnc")
+CURVES = (
+    "G5 X11 Y1.5 I2.5 J6.25 P-3.5 Q-7.25\nG5 X23 P-3 Q-6",
+    "G91 G5 X11 I2 J6 P-3 Q-7\nG90 G5.1 Y-4 I1 J2",
+    "G20 G5.1 X1.5 Y2.25 I-.5 J.75",
+    "G92 X7 Y-3\nG5.1 X22 Y37 I20.5 J-80",
+    "G10 L2 P1 X3 Y-9\nG5 X5 I0 J0 P0 Q0",
+    "G90.1 G5 Y8 I3 J4 P5 Q6",
+    "G93 G5.1 X4 I5 J6 F2\nG94 F100",
+)
+"""Curves, and what is in force with them."""
+NO_CURVES = (
+    *("G5 X10 I2 P-2 Q-6", "G5 X10 J2 P-2 Q-6", "G5 X10 I2 J1 P-2", "G5 X10 I2 J1 Q-2", "G5 X10 I2 J1"),
+    *("G5 I2 J1 P2 Q3", "G5 X10 I2 J1 P2 Q3 Z1", "G5 X10 I2 J1 P2 Q3 B1", "G5 X10 I2 J1 P2 Q3 K1"),
+    *(
+        "G5 X10 I2 J1 P2 Q3 R1",
+        "G18 G5 X10 I2 J1 P2 Q3",
+        "G5 X10 I2 J1 P2 Q3 L2",
+        "G5",
+        "G1 G5 X1 I1 J1 P1 Q1",
+    ),
+    *("G5.1 X10", "G5.1 X10 I2", "G5.1 X10 J2", "G5.1 X10 I2 J3 C1", "G5.1 I3 J3", "G5.1 X10 I2 J3 P2"),
+    *("G5.1 X10 I2 J3 Q2", "G93 G5.1 X10 I2 J3", "G41 D1 G5.1 X10 I2 J3", "G53 G5.1 X10 I2 J3"),
+    *("G28 G5.1 X10 I2 J3", "G19 G5.1 Y1 J1 K1", "G5.1 X10 I2 J3\nX9 I2 J3", "G5 X1 I1 J1 P1 Q1\nX9 P1 Q1"),
+)
+"""Curves that both refuse."""
+
+
+def spline_program(blocks: str) -> str:
+    return "\n".join((*SETTLED, "G61 G1 X-2 Y5", blocks, "G91 G1 X1 Y2 Z3", "G90", "M2", ""))
+
+
+def ends(program: str) -> tuple[list[Step], ProgramError | None]:
+    """Return the straight moves that polycnc queues for a program."""
+    machine = Machine(CONFIG, segments=1 << 12)
+    channel = Channel(ProgramText.from_text(program), LINUXCNC, machine)
+    give_to_path(machine.state, channel.path)
+    channel.fill()
+    return [step for step in queued_steps(machine, channel) if isinstance(step, Feed)], channel.error
+
+
+@pytest.mark.parametrize("blocks", CURVES)
+def test_splines_end_in_the_same_place_with_the_same_modes(blocks: str, tmp_path: Path) -> None:
+    theirs = rs274.interpret(spline_program(blocks), tmp_path)
+    assert not theirs.error, theirs.error
+    curves = blocks.count("G5")
+    assert [name for name, _ in theirs.calls].count("NURBS_FEED") == curves
+    ours, error = ends(spline_program(blocks))
+    assert error is None
+    steps = rs274.canonical_steps(theirs, len(AXES), scale=1)
+    there, here = steps[-1], ours[-1]
+    assert isinstance(there, Feed)
+    assert isinstance(here, Feed)
+    assert np.allclose(here.end, there.end, rtol=0.0, atol=2e-3)
+    assert here.speed == pytest.approx(there.speed, rel=1e-3)
+
+
+@pytest.mark.parametrize("blocks", NO_CURVES)
+def test_both_refuse_the_same_splines(blocks: str, tmp_path: Path) -> None:
+    program = spline_program(blocks)
+    theirs = rs274.interpret(program, tmp_path)
+    _, error = ends(program)
+    assert theirs.block == blocks.splitlines()[-1]
+    assert error is not None
+    assert error.position is not None
+    assert error.position.line == len(SETTLED) + 1 + len(blocks.splitlines())
+
+
+def test_a_series_that_has_no_beginning_is_refused_as_the_manual_says(tmp_path: Path) -> None:
+    """The interpreter takes the way of whatever spline came before, or none at all."""
+    for blocks in ("G5 X9 P1 Q2", "G5 X9 I3 J4 P1 Q2\nG1 X4\nG5 X20 P1 Q2"):
+        assert not rs274.interpret(spline_program(blocks), tmp_path).error
+        error = ends(spline_program(blocks))[1]
+        assert error is not None
+        assert "first of a series" in str(error)

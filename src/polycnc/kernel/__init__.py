@@ -19,6 +19,7 @@ from polycnc.kernel._append import (
     append_wait,
 )
 from polycnc.kernel._axis_limits import AxisLimits, make_limits
+from polycnc.kernel._bezier import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
 from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SQUARE_CORNER
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
 from polycnc.kernel._jit import compiled, entry
@@ -113,6 +114,7 @@ __all__ = [
     "LIMIT_LOW",
     "LINE",
     "MAIN",
+    "MOST_SPANS",
     "NO_LIMIT",
     "OTHER_SOURCE",
     "PATH_EVENT",
@@ -135,6 +137,10 @@ __all__ = [
     "SHORT_OVERSHOOT",
     "SHORT_REDUCE_START",
     "SOFT_LIMIT",
+    "SPAN_CURVED",
+    "SPAN_END",
+    "SPAN_LENGTH",
+    "SPAN_SIZE",
     "STOP",
     "SWITCH_EDGE",
     "TIME_S",
@@ -158,6 +164,7 @@ __all__ = [
     "append_wait",
     "close_profile",
     "compiled",
+    "cut_bezier",
     "cycle",
     "drop_queue",
     "earliest_limit",

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import blend_corner
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._path import Paths, free_slots, slot, slot_of
+from polycnc.kernel._path import Paths, slot, slot_of
 from polycnc.kernel._segments import (
     CORNER_STOP,
     RAPID,
@@ -26,11 +26,8 @@ from polycnc.kernel._segments import (
     set_spline,
     set_wait,
 )
-from polycnc.kernel._spline import Splines, spline_next_cut
 
 Rows: TypeAlias = npt.NDArray[np.void]
-
-SAME_POINT = 1e-12  # how far a spline may begin from where the path ends
 
 
 @compiled
@@ -172,35 +169,23 @@ def append_circle3d(
 
 @entry
 def append_spline(
-    seg: Segments, splines: Splines, paths: Paths, g: int, index: int, speed_mm_s: float, flags: int, tag: int
-) -> int:
-    """Append spline `index` of the path's store, a segment per piece; return how many segments it took.
-
-    0 if it does not begin where the path ends, or needs more slots than are free. STOP is for its end.
-    """
-    for i in range(seg.end.shape[1]):
-        first = splines.vectors[index, 0, i]
-        if abs(first - paths.queued[g, i]) > SAME_POINT * max(1.0, abs(first)):
-            return 0
-    length = splines.length[index]
-    needed = 0
-    s = 0.0
-    while s < length:
-        s = spline_next_cut(splines, index, s)
-        needed += 1
-    if needed > free_slots(paths, g):
-        return 0
+    seg: Segments,
+    paths: Paths,
+    g: int,
+    end: Floats,
+    axis_p: int,
+    axis_q: int,
+    span: Floats,
+    length_mm: float,
+    speed_mm_s: float,
+    flags: int,
+    tag: int,
+) -> None:
+    """Append a span of a Bezier curve in two axes that count (see `_bezier`) to path `g`."""
+    k = slot(paths, g, paths.row[g]["tail"])
+    set_spline(seg, k, paths.queued[g], end, axis_p, axis_q, span, length_mm, speed_mm_s, flags, tag)
     _set_ends(seg.row, paths.row, g, flags)
-    count = 0
-    s = 0.0
-    while s < length:
-        k = slot(paths, g, paths.row[g]["tail"])
-        s = set_spline(seg, splines, k, index, s, paths.queued[g], speed_mm_s, flags & ~STOP, tag)
-        if s >= length:
-            seg.row[k]["flags"] = flags
-        _appended(seg.end, paths.row, paths.queued, g, k)
-        count += 1
-    return count
+    _appended(seg.end, paths.row, paths.queued, g, k)
 
 
 @entry

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 
+from polycnc.kernel._bezier import bezier_point, bezier_tangent
 from polycnc.kernel._circle3d import circle3d_point, circle3d_tangent
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._segments import (
@@ -18,33 +19,14 @@ from polycnc.kernel._segments import (
     RADIUS_END,
     RADIUS_START,
     SPLINE,
-    SPLINE_FROM,
-    SPLINE_INDEX,
     SWEEP_RAD,
     WAIT,
     WORK_POINT,
     Floats,
     Segments,
 )
-from polycnc.kernel._spline import Splines, spline_point, spline_tangent, spline_tangent_before
 
 HALF_PI = 0.5 * math.pi
-
-
-@compiled
-def _spline_point(splines: Splines | None, geo: Floats, s: float, out: Floats) -> None:
-    if splines is not None:  # known when it is compiled
-        spline_point(splines, int(geo[SPLINE_INDEX]), geo[SPLINE_FROM] + s, out)
-
-
-@compiled
-def _spline_tangent(splines: Splines | None, geo: Floats, length: float, at: float, out: Floats) -> None:
-    if splines is not None:
-        index, begin = int(geo[SPLINE_INDEX]), geo[SPLINE_FROM]
-        if at > 0.0:
-            spline_tangent_before(splines, index, begin + length, out)
-        else:
-            spline_tangent(splines, index, begin, out)
 
 
 @compiled
@@ -56,12 +38,14 @@ def segment_point(seg: Segments, k: int, s: float, out: Floats) -> None:
         for i in range(out.shape[0]):
             out[i] = seg.end[k, i]
         return
-    if kind == SPLINE:
-        _spline_point(seg.splines, seg.geo[k], s, out)
-        return
     fraction = s / row["length"]
     for i in range(out.shape[0]):
         out[i] = seg.start[k, i] + (seg.end[k, i] - seg.start[k, i]) * fraction
+    if kind == SPLINE:
+        p, q = seg.plane[k, 0], seg.plane[k, 1]
+        start_p, start_q = seg.start[k, p], seg.start[k, q]
+        way_p, way_q = bezier_point(seg.geo[k], seg.end[k, p] - start_p, seg.end[k, q] - start_q, fraction)
+        out[p], out[q] = start_p + way_p, start_q + way_q
     if kind in (ARC, CIRCLE3D):
         three = seg.geo[k, WORK_POINT:]
         if kind == ARC:
@@ -144,9 +128,6 @@ def segment_tangent(seg: Segments, k: int, at: float, out: Floats) -> None:
     row = seg.row[k]
     kind = row["kind"]
     length = row["length"]
-    if kind == SPLINE:
-        _spline_tangent(seg.splines, seg.geo[k], length, at, out)
-        return
     for i in range(out.shape[0]):
         out[i] = (seg.end[k, i] - seg.start[k, i]) / length
     if kind == ARC:
@@ -159,6 +140,10 @@ def segment_tangent(seg: Segments, k: int, at: float, out: Floats) -> None:
         stretch = (geo[RADIUS_END] - geo[RADIUS_START]) / (length * radius)
         out[p] = stretch * at_p - turn * at_q
         out[q] = stretch * at_q + turn * at_p
+    elif kind == SPLINE:
+        p, q = seg.plane[k, 0], seg.plane[k, 1]
+        way_p, way_q = seg.end[k, p] - seg.start[k, p], seg.end[k, q] - seg.start[k, q]
+        out[p], out[q] = bezier_tangent(seg.geo[k], way_p, way_q, at)
     elif kind == CIRCLE3D:
         three = seg.geo[k, WORK_POINT:]
         circle3d_tangent(seg.geo[k], at, three)

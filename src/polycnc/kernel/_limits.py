@@ -18,6 +18,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._bezier import BEND_BOUND, TANGENT_BOUND
 from polycnc.kernel._circle3d import circle3d_tangent_bound
 from polycnc.kernel._corner_rules import AS_AXES_ALLOW, corner_speed, turns
 from polycnc.kernel._geometry import is_curved, segment_tangent
@@ -33,8 +34,6 @@ from polycnc.kernel._segments import (
     RADIUS_START,
     RAPID,
     SPLINE,
-    SPLINE_FROM,
-    SPLINE_INDEX,
     STOP,
     SWEEP_RAD,
     WAIT,
@@ -42,7 +41,6 @@ from polycnc.kernel._segments import (
     Floats,
     Segments,
 )
-from polycnc.kernel._spline import Splines, spline_bounds_between
 
 CURVE_CORNER_SHARE = 0.05  # the same beside a curve, which needs the rest for itself
 CURVE_SHARE = 1.0 - CURVE_CORNER_SHARE
@@ -147,9 +145,6 @@ def _curve_bounds(seg: Segments, k: int, tangent: Floats, bend: Floats) -> None:
     """Write the greatest |dp/ds| and |d2p/ds2| of every axis over curve `k`."""
     row, geo = seg.row[k], seg.geo[k]
     kind = row["kind"]
-    if kind == SPLINE:
-        _spline_bounds(seg.splines, geo, row["length"], tangent, bend)
-        return
     for i in range(tangent.shape[0]):
         tangent[i] = abs(seg.end[k, i] - seg.start[k, i]) / row["length"]
         bend[i] = 0.0
@@ -162,21 +157,16 @@ def _curve_bounds(seg: Segments, k: int, tangent: Floats, bend: Floats) -> None:
         for j in range(2):
             tangent[seg.plane[k, j]] = spiral * turn * large
             bend[seg.plane[k, j]] = spiral * turn * turn * large
+    elif kind == SPLINE:
+        for j in range(2):
+            tangent[seg.plane[k, j]] = geo[TANGENT_BOUND + j]
+            bend[seg.plane[k, j]] = geo[BEND_BOUND + j]
     elif kind == CIRCLE3D:
         three = seg.geo[k, WORK_POINT:]
         circle3d_tangent_bound(geo, three)
         for j in range(3):
             tangent[seg.plane[k, j]] = three[j]
             bend[seg.plane[k, j]] = three[j] / geo[CIRCLE3D_RADIUS]
-
-
-@compiled
-def _spline_bounds(
-    splines: Splines | None, geo: Floats, length: float, tangent: Floats, bend: Floats
-) -> None:
-    if splines is not None:  # known when it is compiled
-        begin = geo[SPLINE_FROM]
-        spline_bounds_between(splines, int(geo[SPLINE_INDEX]), begin, begin + length, tangent, bend)
 
 
 @compiled

@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.kernel._bezier import BEZIER_SIZE
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._jit import allocating, compiled
-from polycnc.kernel._spline import Splines, spline_next_cut, spline_point
 
 LINE = 0
 ARC = 1  # circle in two axes; every other axis moves linearly with the angle (helix)
 CIRCLE3D = 2
-SPLINE = 3
+SPLINE = 3  # curve in two axes; no other axis moves
 WAIT = 4  # no motion: a dwell, or an event at a point of the path
 
 RAPID = 1  # flag: positioning at the axes' speed
@@ -30,14 +30,13 @@ STOP = 2  # flag: come to rest at the end (exact stop)
 CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on in the same direction
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
-GEO = 16
+GEO = BEZIER_SIZE
 # Geometry of an ARC.
 CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP_RAD = 0, 1, 2, 3, 4
 # Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point behind it.
 CIRCLE3D_RADIUS, CIRCLE3D_LENGTH = 10, 11
 WORK_POINT = 13
-# Geometry of a SPLINE (which one, and where on it the segment begins), a WAIT.
-SPLINE_INDEX, SPLINE_FROM = 0, 1
+# Geometry of a SPLINE is laid out in `_bezier`. Geometry of a WAIT.
 WAIT_S, WAIT_EVENT = 0, 1
 
 TINY = 1e-12
@@ -76,23 +75,18 @@ class Segments(NamedTuple):
     row: npt.NDArray[np.void]  # [S] of SEGMENT_ROW
     start: Floats  # [S, n]
     end: Floats  # [S, n]
-    plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC (first two) or a CIRCLE3D
+    plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC or a SPLINE (first two), or of a CIRCLE3D
     geo: Floats  # [S, GEO]
-    splines: Splines | None  # what spline segments refer to
 
 
-def make_segments(slots: int, axes: int, splines: Splines | None = None) -> Segments:
-    """Allocate `slots` empty segments of `axes` axes, splines among them if there is a store of them.
-
-    Without one the functions that go along a path are compiled without splines, which saves seconds.
-    """
+def make_segments(slots: int, axes: int) -> Segments:
+    """Allocate `slots` empty segments of `axes` axes."""
     return Segments(
         row=np.zeros(slots, SEGMENT_ROW),
         start=np.zeros((slots, axes)),
         end=np.zeros((slots, axes)),
         plane=np.zeros((slots, 3), np.int8),
         geo=np.zeros((slots, GEO)),
-        splines=splines,
     )
 
 
@@ -241,36 +235,27 @@ def set_circle3d(
     return True
 
 
-@allocating
+@compiled
 def set_spline(
     seg: Segments,
-    splines: Splines,
     k: int,
-    index: int,
-    begin_mm: float,
     start: Floats,
+    end: Floats,
+    axis_p: int,
+    axis_q: int,
+    span: Floats,
+    length_mm: float,
     speed_mm_s: float,
     flags: int,
     tag: int,
-) -> float:
-    """Fill slot `k` with the stretch of spline `index` from path length `begin_mm` on; return where it ends.
-
-    A stretch is one piece of the spline, so that every piece is as fast as its own curvature allows.
-    """
-    end = spline_next_cut(splines, index, begin_mm)
-    length = splines.length[index]
-    while end < length and (
-        end - begin_mm < TINY or length - end < TINY
-    ):  # too short for a segment of its own
-        end = spline_next_cut(splines, index, end)
-    point = np.empty(start.shape[0])
-    spline_point(splines, index, end, point)
-    set_common(seg, k, start, point, speed_mm_s, flags, tag)
+) -> None:
+    """Fill slot `k` with a span of a Bezier curve (see `_bezier`), by the row that `cut_bezier` wrote for it."""
+    set_common(seg, k, start, end, speed_mm_s, flags, tag)
     seg.row[k]["kind"] = SPLINE
-    seg.row[k]["length"] = end - begin_mm
-    seg.geo[k, SPLINE_INDEX] = index
-    seg.geo[k, SPLINE_FROM] = begin_mm
-    return float(end)
+    seg.row[k]["length"] = length_mm
+    seg.plane[k, 0], seg.plane[k, 1] = axis_p, axis_q
+    for j in range(BEZIER_SIZE):
+        seg.geo[k, j] = span[j]
 
 
 @compiled

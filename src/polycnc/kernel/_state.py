@@ -14,7 +14,6 @@ from polycnc.kernel._point_to_point import PointToPoint, make_point_to_point
 from polycnc.kernel._recorder import Recorder, make_recorder
 from polycnc.kernel._segments import Segments, make_segments
 from polycnc.kernel._servo import Servo, make_servo
-from polycnc.kernel._spline import Splines
 from polycnc.kernel._switches import Switches, make_switches
 
 Floats = npt.NDArray[np.float64]
@@ -74,12 +73,8 @@ def make_state(
     segments: int = 1 << 16,
     record_cycles: int = 0,
     record_actual: bool = False,
-    splines: Splines | None = None,
 ) -> KernelState:
-    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits.
-
-    `splines` is the store that spline segments refer to; without one there can be none.
-    """
+    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits."""
     clock = np.zeros(1, CLOCK_ROW)
     clock["dt"] = cycle_s
     clock["axis"] = -1
@@ -92,7 +87,7 @@ def make_state(
         acceleration=np.zeros(axes),
         ptp=make_point_to_point(axes),
         paths=make_paths(paths, segments, axes),
-        seg=make_segments(segments, axes, splines),
+        seg=make_segments(segments, axes),
         limits=make_limits(axes),
         servo=make_servo(axes),
         plant=make_plant(axes),

@@ -38,7 +38,9 @@ from polycnc.nc.blocks._modal import (
     MOTION,
     MOTION_ARC_CCW,
     MOTION_ARC_CW,
+    MOTION_CUBIC,
     MOTION_LINEAR,
+    MOTION_QUADRATIC,
     MOTION_RAPID,
     PLANE,
     PLANE_XY,
@@ -64,7 +66,10 @@ _MOTIONS = {
     Action.ARC_CW: MOTION_ARC_CW,
     Action.ARC_CCW: MOTION_ARC_CCW,
 }
-_MOTION_ACTIONS = {motion: action for action, motion in _MOTIONS.items()}
+_MOTION_ACTIONS = {motion: action for action, motion in _MOTIONS.items()} | {
+    MOTION_CUBIC: Action.CUBIC_SPLINE,
+    MOTION_QUADRATIC: Action.QUADRATIC_SPLINE,
+}
 _PLANES = {PLANE_XY: Action.PLANE_XY, PLANE_ZX: Action.PLANE_ZX, PLANE_YZ: Action.PLANE_YZ}
 _FEED_MODES = {
     FEED_PER_MINUTE: Action.FEED_PER_MINUTE,
@@ -227,7 +232,7 @@ class BlockRecords:
         return 0 if context is None else context.modal.tool
 
     def motion(self, tag: int) -> Action | None:
-        """Return what the block of a tag moves by: the drilling cycle that is on, or the latest of G0 to G3."""
+        """Return what the block of a tag moves by: the drilling cycle that is on, or the latest motion word."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         if context is None:
             return None

@@ -9,8 +9,15 @@ import numpy.typing as npt
 
 from polycnc.nc import LINE_MASK, Action, BlockRecords, ProgramText
 
-_MOTIONS = {Action.RAPID: "rapid", Action.LINEAR: "line", Action.ARC_CW: "arc", Action.ARC_CCW: "arc"}
-KINDS = ("rapid", "line", "arc", "cycle", "other")
+_MOTIONS = {
+    Action.RAPID: "rapid",
+    Action.LINEAR: "line",
+    Action.ARC_CW: "arc",
+    Action.ARC_CCW: "arc",
+    Action.CUBIC_SPLINE: "spline",
+    Action.QUADRATIC_SPLINE: "spline",
+}
+KINDS = ("rapid", "line", "arc", "spline", "cycle", "other")
 
 
 @dataclass(frozen=True, slots=True)

@@ -39,6 +39,8 @@ class Action(IntEnum):
     LINEAR = auto()
     ARC_CW = auto()
     ARC_CCW = auto()
+    CUBIC_SPLINE = auto()
+    QUADRATIC_SPLINE = auto()
     MOTION_OFF = auto()
     THREAD = auto()
     TURN_CYCLE = auto()
@@ -147,6 +149,8 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.LINEAR,
         Action.ARC_CW,
         Action.ARC_CCW,
+        Action.CUBIC_SPLINE,
+        Action.QUADRATIC_SPLINE,
         Action.MOTION_OFF,
         Action.THREAD,
         Action.TURN_CYCLE,

@@ -71,6 +71,7 @@ class Plain(NamedTuple):
     turning: Turning
     tip: TipShift
     corner: Corner | None
+    spline_way: tuple[float, float] | None
 
 
 class ModalSnapshot(NamedTuple):
@@ -117,6 +118,7 @@ class ChannelState:
     those of the last block that had any. `tables` are the tools and work offsets, `frame` how programmed
     positions are turned, scaled and mirrored, `placement` where they lie besides, `skip_position` where the
     last skip move ended (machine coordinates), `probe` the last probing.
+    `spline_way` leads from the end of a cubic spline to its last control point turned about, until anything else moves.
     With `rigid_tap` a tapping cycle turns the spindle itself. `turning` is what turning cycles keep, `tip` where
     the tip of a turning tool lies.
     """
@@ -141,6 +143,7 @@ class ChannelState:
         self.turning = Turning()
         self.tip = TipShift()
         self.corner: Corner | None = None  # a straight move that waits for the next one
+        self.spline_way: tuple[float, float] | None = None
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -188,6 +191,7 @@ class ChannelState:
             self.turning,
             self.tip,
             self.corner,
+            self.spline_way,
         )
 
     def snapshot(self) -> ModalSnapshot:

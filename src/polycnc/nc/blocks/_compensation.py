@@ -14,7 +14,7 @@ from enum import Enum, IntEnum
 from typing import Literal
 
 from polycnc.errors import ConfigurationError, ProgramError
-from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Wait
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
 from polycnc.nc.blocks._offset_geometry import (
     COLLAPSED_MM,
     XY,
@@ -65,6 +65,7 @@ _REFUSALS = {
         "the compensated move would run backwards: the tool is too large for this part of the contour",
         "Use a smaller tool, or leave out moves that are shorter than the tool needs at inside corners.",
     ),
+    "spline": ("a spline with radius compensation", _CANCEL_FIRST),
     "stopped_inside": (
         "preparation stopped at an inside corner, so the tool has already cut into the next move",
         "Move the word that stops preparation away from this corner.",
@@ -129,7 +130,7 @@ class RadiusCompensation:
         self._meet_cosine = self._shallow_cosine if outer == "arc" else 0.0
         self._plane = (0, 1, 2)
         self._offset = 0.0
-        self._hold: list[QueueItem] = []
+        self._hold: list[Move | Wait] = []
         self.reset()
 
     @property
@@ -209,6 +210,8 @@ class RadiusCompensation:
         """
         if self._mode is _Mode.OFF:
             return [item]
+        if isinstance(item, Spline):
+            raise _refusal("spline", item.line)
         leg = self._leg_of(item)
         if leg is None or isinstance(item, Wait):
             if self._pending:
@@ -223,7 +226,7 @@ class RadiusCompensation:
             return [item]
         return self._follow(item, leg)
 
-    def _leg_of(self, item: QueueItem) -> Leg | None:
+    def _leg_of(self, item: Move | Wait) -> Leg | None:
         if isinstance(item, Wait):
             return None
         i, j, _ = self._plane
@@ -365,7 +368,7 @@ class RadiusCompensation:
         first, last = self._point(item.start, start), self._point(item.end, end)
         return replace(item, start=first, end=last, sweep_rad=sweep)
 
-    def _placed(self, item: QueueItem, at: XY) -> QueueItem:
+    def _placed(self, item: Move | Wait, at: XY) -> QueueItem:
         """Return an item without plane motion at a compensated place."""
         return item if isinstance(item, Wait) else self._line(item, at, at)
 

@@ -8,7 +8,6 @@ or end.
 
 from __future__ import annotations
 
-import dataclasses
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
@@ -23,6 +22,13 @@ from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
 from polycnc.nc.blocks._calls import Place
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._contours import (
+    ContourTrouble,
+    contour_blocks,
+    holds_cycle,
+    numbered_block,
+    without_compensation,
+)
 from polycnc.nc.blocks._corners import Corner, CornerError, joined
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
 from polycnc.nc.blocks._frames import Frames
@@ -45,16 +51,17 @@ from polycnc.nc.blocks._modal import (
 )
 from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Arc, Line, Move, QueueItem, Stop, Wait
+from polycnc.nc.blocks._moves import Arc, Line, Move, QueueItem, Spline, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
 from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
+from polycnc.nc.blocks._splines import SPLINES, SplineBlocks
 from polycnc.nc.blocks._turning_blocks import TurningBlocks
 from polycnc.nc.blocks._words import BlockWords, GWord, code_text, sort_words
 from polycnc.nc.text._not_words import slip, statements
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
-from polycnc.nc.text._scan_plain import Block, Word, scan_block
+from polycnc.nc.text._scan_plain import Block, Word
 
 _MOTIONS = {
     Action.RAPID: MOTION_RAPID,
@@ -77,8 +84,6 @@ _LANGUAGES = (
     "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
     "or post the program without them."
 )
-_COMPENSATION = (Action.COMP_LEFT, Action.COMP_RIGHT, Action.COMP_OFF)
-MOST_CONTOUR_BLOCKS = 10_000
 _NUMBERS = "NO:"  # block and program numbers
 _AXIS_LETTERS = "XYZABCUVW"
 # What the words belong to that need a function beside them.
@@ -137,10 +142,6 @@ def _moves_only(g: GWord) -> tuple[str, str]:
     return f"a contour of G{g.code} with a call, a cycle, a stop or an end", "Let it hold moves only."
 
 
-def _is_numbered(block: Block, number: int) -> bool:
-    return any(word.letter == "N" and word.value == number for word in block.words)
-
-
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
@@ -182,6 +183,7 @@ class Interpreter:
         self._placing = Placing(state, self._motion, self.fail)
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
         self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
+        self._splines = SplineBlocks(state, self._motion, self.fail)
         self._behind: Place | None = None  # where the program goes on, behind a contour that a cycle has cut
         self._capturing = False
         self._holds: Corner | None = None  # the corner that the present block asks for
@@ -335,7 +337,12 @@ class Interpreter:
         self._note_position(items)
         if self.dialect.notes_codes:
             self._note_codes(words)
+        whole = self.state.modal.whole
+        in_force = whole[MOTION]
+        if self._is_spline(words):
+            whole[MOTION] = SPLINES[words.g[Group.MOTION].action]  # for the record of this block
         tagged = self._tagged(items, line, words_stand=bool(block.words))
+        whole[MOTION] = in_force
         return outcome, self._compensated(tagged, change_compensation)
 
     def _tagged(self, items: list[QueueItem], line: int, *, words_stand: bool = True) -> list[QueueItem]:
@@ -393,6 +400,8 @@ class Interpreter:
             or self._cycles.active
             or self._turning.active
             or self.state.corner is not None
+            or self.state.spline_way is not None
+            or self.state.placement.once != 0  # the next block takes it back
             or whole[FEED_MODE] != FEED_PER_MINUTE
             or self.state.frame.active
         )
@@ -444,11 +453,12 @@ class Interpreter:
         is_straight = motion.action in (Action.RAPID, Action.LINEAR)
         if non_modal and (
             non_modal.action is Action.SET_POSITION
+            or motion.action in SPLINES
             or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
         ):
             self._exclude(f"G{non_modal.code}", f"G{motion.code}", "both use the axis words", motion.word)
         cancel = g.get(Group.CYCLE_CANCEL)
-        if cancel and motion.action not in _MOTIONS:
+        if cancel and motion.action not in _MOTIONS.keys() | SPLINES.keys():
             self._exclude(f"G{cancel.code}", f"G{motion.code}", "one ends what the other begins", motion.word)
 
     def _exclude(self, first: str, second: str, why: str, word: Word) -> None:
@@ -462,7 +472,7 @@ class Interpreter:
         if Group.CYCLE_CANCEL in words.g:
             self._cycles.cancel()
         g = words.g.get(Group.MOTION)
-        if g is not None:
+        if g is not None and g.action not in SPLINES:
             if g.action in _MOTIONS:
                 self._cycles.cancel()
                 self._turning.cancel()
@@ -475,6 +485,11 @@ class Interpreter:
                 self._turning.cancel()
                 self._cycles.begin(g)
         return int(whole[MOTION])
+
+    @staticmethod
+    def _is_spline(words: BlockWords) -> bool:
+        g = words.g.get(Group.MOTION)
+        return g is not None and g.action in SPLINES
 
     def _move(self, words: BlockWords, line: int) -> list[QueueItem]:
         motion = self._motion_in_force(words)
@@ -499,6 +514,8 @@ class Interpreter:
                 self._placing.carry_out(g, words)
                 return []
             return list(self._non_modal.carry_out(g, motion, line))
+        if self._is_spline(words):
+            return list(self._splines.moves(words.g[Group.MOTION], line))
         if self._cycles.active:
             return self._cycles.expand(words, line)
         if self._turning.active:
@@ -520,6 +537,8 @@ class Interpreter:
     def _moved(self, words: BlockWords, line: int, *, functions: bool) -> list[QueueItem]:
         """Return the block's moves, with the move before it that waits for its corner."""
         moves = self._move(words, line)
+        if moves and not self._is_spline(words):
+            self.state.spline_way = None
         if not self.dialect.corner_words:
             return moves
         if functions and self.state.corner is not None:
@@ -607,7 +626,7 @@ class Interpreter:
             moves = [
                 item
                 for block in blocks
-                for item in self._of_contour(self._without_compensation(block), g)
+                for item in self._of_contour(without_compensation(block, self.dialect), g)
                 if isinstance(item, (Line, Arc))
             ]
             self._refuse_open_corner(g)
@@ -630,62 +649,31 @@ class Interpreter:
         self._block = block
         try:
             outcome, items = self._execute(block)
-            if outcome is not _NEXT:
+            if outcome is not _NEXT or any(isinstance(item, Spline) for item in items):
                 raise self.fail(*_moves_only(g), None)
         finally:
             self._block, self._motion.words, self._motion.exact_stop_block = outer, words, stops
         self._note_position(items)
         return items
 
-    def _holds_cycle(self, block: Block) -> bool:
-        """Tell whether a block of a contour holds a cycle itself."""
-        actions = {self.dialect.g_action(word.value) for word in block.words if word.letter == "G"}
-        return not actions.isdisjoint(turning_blocks.CONTOUR | turning_blocks.CYCLES)
-
-    def _without_compensation(self, block: Block) -> Block:
-        words = tuple(
-            word
-            for word in block.words
-            if word.letter != "G" or self.dialect.g_action(word.value) not in _COMPENSATION
-        )
-        return dataclasses.replace(block, words=words)
-
     def _contour(self, first: int, last: int, g: GWord) -> list[Block]:
         """Return the blocks from number `first` to `last`; where they follow here, the program goes on behind."""
         assert self._block is not None
         text, here = self._text, self._block.end
-        following = self._numbered(first, here, len(text))
-        found = following or self._numbered(first, 0, here)
-        if found is None:
-            raise self.fail(f"there is no block N{first}", "P names the first block of the contour.", g.word)
-        blocks = [found]
-        while not _is_numbered(blocks[-1], last):
-            block = blocks[-1]
-            if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
-                raise self.fail(
-                    f"there is no block N{last} behind N{first}",
-                    "Q names the last block of the contour.",
-                    g.word,
-                )
-            blocks.append(scan_block(text, block.end, block.line + 1, self._rules))
+        begin = numbered_block(text, first, here, len(text), self._rules)
+        blocks = contour_blocks(
+            text, begin or numbered_block(text, first, 0, here, self._rules), (first, last), self._rules
+        )
+        if isinstance(blocks, ContourTrouble):
+            raise self.fail(*blocks, g.word)
         if any(block.flags & STATEMENT for block in blocks):
             raise self.fail(
                 f"a contour of G{g.code} with statements is not supported yet", "Write plain words.", g.word
             )
-        if any(self._holds_cycle(block) for block in blocks):
+        if any(holds_cycle(block, self.dialect) for block in blocks):
             raise self.fail(*_moves_only(g), g.word)
-        self._behind = Place(text, blocks[-1].end, blocks[-1].line + 1) if following else None
+        self._behind = Place(text, blocks[-1].end, blocks[-1].line + 1) if begin else None
         return [block for block in blocks if block.words]
-
-    def _numbered(self, number: int, begin: int, end: int) -> Block | None:
-        """Return the first block with a sequence number that begins between two offsets."""
-        pattern = re.compile(rb"^[ \t]*/?[ \t]*[Nn][ \t]*0*%d(?![0-9])" % number, re.MULTILINE)
-        match = pattern.search(self._text.content, begin, end)
-        if match is None:
-            return None
-        offset = match.start()
-        line = self._text.content.count(b"\n", 0, offset) + 1
-        return scan_block(self._text, offset, line, self._rules)
 
     def _left_axis(self, words: BlockWords) -> Word | None:
         return next((word for letter, word in words.unused() if letter in self.state.axis_names), None)
@@ -696,7 +684,7 @@ class Interpreter:
             self.state.modal.position[:] = self.state.corner.move.end
             return
         for item in reversed(items):
-            if isinstance(item, (Line, Arc)):
+            if not isinstance(item, Wait):
                 self.state.modal.position[:] = item.end
                 return
 

@@ -39,6 +39,8 @@ MOTION_RAPID = 0
 MOTION_LINEAR = 1
 MOTION_ARC_CW = 2
 MOTION_ARC_CCW = 3
+MOTION_CUBIC = 4  # a spline is gone along by its own block only: these are never in force behind it
+MOTION_QUADRATIC = 5
 
 # Values of PLANE.
 PLANE_XY = 0

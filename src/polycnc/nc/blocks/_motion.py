@@ -53,7 +53,7 @@ from polycnc.nc.blocks._modal import (
     length_scale,
     short_way,
 )
-from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Wait
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import SECONDS_PER_MINUTE
@@ -263,7 +263,7 @@ class MotionBuilder:
         if isinstance(item, Wait):
             return item.duration_s
         ways = [abs(b - a) for a, b in zip(item.start, item.end, strict=True)]
-        length = math.hypot(*ways)
+        length = item.length_mm if isinstance(item, Spline) else math.hypot(*ways)
         if isinstance(item, Arc):
             p, q = item.plane[:2]
             radius = math.hypot(item.start[p] - item.center[0], item.start[q] - item.center[1])

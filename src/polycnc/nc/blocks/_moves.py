@@ -76,6 +76,31 @@ class Arc:
 
 
 @dataclass(frozen=True, slots=True)
+class Spline:
+    """Move on a part of a Bezier curve in two axes, `plane`; no other axis moves.
+
+    `span` is the row that the kernel's `cut_bezier` wrote for the part, `length_mm` its path length.
+    """
+
+    start: Point
+    end: Point
+    plane: tuple[int, int]
+    span: tuple[float, ...]
+    length_mm: float
+    feed: Feed
+    exact_stop: bool
+    line: int
+    tag: int = 0
+
+    def tagged(self, tag: int) -> Spline:
+        """Return the same move as part of another block."""
+        span, length = self.span, self.length_mm
+        return Spline(
+            self.start, self.end, self.plane, span, length, self.feed, self.exact_stop, self.line, tag
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Wait:
     """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order.
 
@@ -96,4 +121,4 @@ class Wait:
 
 
 Move: TypeAlias = Line | Arc
-QueueItem: TypeAlias = Line | Arc | Wait
+QueueItem: TypeAlias = Line | Arc | Spline | Wait

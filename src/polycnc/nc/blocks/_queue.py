@@ -17,10 +17,11 @@ from polycnc.kernel import (
     Segments,
     append_arc,
     append_line,
+    append_spline,
     append_wait,
     free_slots,
 )
-from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Stop, Wait
+from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Spline, Stop, Wait
 
 NO_EVENT = -1
 
@@ -92,7 +93,7 @@ class QueueWriter:
             self.mark(items[0].tag)
 
     def put(self, item: QueueItem) -> None:
-        """Append one line, arc or wait, behind what waits for room."""
+        """Append one move or wait, behind what waits for room."""
         if self.backlog or not self._has_room(item):
             self.backlog.append(item)
         else:
@@ -145,6 +146,8 @@ class QueueWriter:
                 self._put_line(item)
             case Arc():
                 self._put_arc(item)
+            case Spline():
+                self._put_spline(item)
             case Wait():
                 self._put_wait(item)
 
@@ -172,6 +175,20 @@ class QueueWriter:
             item.center[1],
             item.sweep_rad,
             self._speed(item.feed, self._arc_length(item)),
+            STOP if item.exact_stop else 0,
+            item.tag,
+        )
+
+    def _put_spline(self, item: Spline) -> None:
+        append_spline(
+            self.seg,
+            self.paths,
+            self.path,
+            np.array(item.end),
+            *item.plane,
+            np.array(item.span),
+            item.length_mm,
+            self._speed(item.feed, item.length_mm),
             STOP if item.exact_stop else 0,
             item.tag,
         )

@@ -1,0 +1,71 @@
+"""The blocks of a contour that a turning cycle names by their sequence numbers."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import NamedTuple
+
+from polycnc.nc._dialect import Dialect
+from polycnc.nc.blocks import _turning_blocks as turning_blocks
+from polycnc.nc.blocks._actions import Action
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan_plain import Block, scan_block
+
+MOST_CONTOUR_BLOCKS = 10_000
+_COMPENSATION = (Action.COMP_LEFT, Action.COMP_RIGHT, Action.COMP_OFF)
+
+
+class ContourTrouble(NamedTuple):
+    """What is wrong with a contour, and what to do."""
+
+    what: str
+    hint: str
+
+
+def numbered_block(text: ProgramText, number: int, begin: int, end: int, rules: TextRules) -> Block | None:
+    """Return the first block with a sequence number that begins between two offsets."""
+    pattern = re.compile(rb"^[ \t]*/?[ \t]*[Nn][ \t]*0*%d(?![0-9])" % number, re.MULTILINE)
+    match = pattern.search(text.content, begin, end)
+    if match is None:
+        return None
+    offset = match.start()
+    return scan_block(text, offset, text.content.count(b"\n", 0, offset) + 1, rules)
+
+
+def contour_blocks(
+    text: ProgramText, begin: Block | None, numbers: tuple[int, int], rules: TextRules
+) -> list[Block] | ContourTrouble:
+    """Return the blocks from `begin`, the first of the two numbers, to the last one."""
+    first, last = numbers
+    if begin is None:
+        return ContourTrouble(f"there is no block N{first}", "P names the first block of the contour.")
+    blocks = [begin]
+    while not _is_numbered(blocks[-1], last):
+        block = blocks[-1]
+        if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
+            return ContourTrouble(
+                f"there is no block N{last} behind N{first}", "Q names the last block of the contour."
+            )
+        blocks.append(scan_block(text, block.end, block.line + 1, rules))
+    return blocks
+
+
+def _is_numbered(block: Block, number: int) -> bool:
+    return any(word.letter == "N" and word.value == number for word in block.words)
+
+
+def holds_cycle(block: Block, dialect: Dialect) -> bool:
+    """Tell whether a block of a contour holds a cycle itself."""
+    actions = {dialect.g_action(word.value) for word in block.words if word.letter == "G"}
+    return not actions.isdisjoint(turning_blocks.CONTOUR | turning_blocks.CYCLES)
+
+
+def without_compensation(block: Block, dialect: Dialect) -> Block:
+    """Return a block of a contour without the words of radius compensation."""
+    words = tuple(
+        word
+        for word in block.words
+        if word.letter != "G" or dialect.g_action(word.value) not in _COMPENSATION
+    )
+    return dataclasses.replace(block, words=words)
