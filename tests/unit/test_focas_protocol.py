@@ -283,6 +283,20 @@ def test_a_program_goes_out_in_pieces() -> None:
     assert session.receive(bytes(Frame(FrameType.UPLOAD_END))).hex() == "a0a0a0a00003190300080000000d00000000"
 
 
+def test_an_old_series_sends_an_empty_piece_for_a_program_that_is_not_there() -> None:
+    session = Session(Control(version=2))
+    session.receive(OPEN_TRANSFER)
+    missing = frames(session.receive(transfer(FrameType.UPLOAD_START, "O7-O7")))
+    assert [(each.name, len(each.body)) for each in missing] == [
+        ("UPLOAD_STARTED", 513),
+        ("UPLOAD_DATA", 0),
+        ("UPLOAD_FINISHED", 0),
+    ]
+    assert session.receive(bytes(Frame(FrameType.UPLOAD_ACKNOWLEDGED))) == b""
+    sent = frames(session.receive(transfer(FrameType.UPLOAD_START, "O0100-O0100")))
+    assert [len(each.body) for each in sent] == [513, 0x500, 228, 0]
+
+
 def test_every_state_but_the_last_can_be_closed() -> None:
     closing = {row.state for row in TRANSITIONS if row.frame is FrameType.CLOSE}
     assert closing == set(State) - {State.ENDED}

@@ -117,6 +117,8 @@ TRANSITIONS = (
     Transition(State.UPLOADED, FrameType.CLOSE, "close", State.ENDED),
 )
 _BY_FRAME = {(row.state, int(row.frame)): row for row in TRANSITIONS}
+_STARTED, _OLD_STARTED = 256, 513
+_LAST_OLD_VERSION = 2
 _CHANNELS = {1: State.TRANSFER, 2: State.COMMAND}
 
 
@@ -240,7 +242,7 @@ class Session:
         if refused.code:
             self._send(FrameType.DOWNLOAD_START_STATUS, status_body(*refused))
             return State.TRANSFER
-        self._send(FrameType.DOWNLOAD_STARTED, bytes(256))
+        self._send(FrameType.DOWNLOAD_STARTED, bytes(_STARTED))
         return following
 
     def _download(self, frame: Frame, following: State) -> State:
@@ -257,13 +259,16 @@ class Session:
 
     def _upload_start(self, frame: Frame, following: State) -> State:
         text = self.control.upload(_name(frame.body))
+        old = self.control.version <= _LAST_OLD_VERSION
+        if isinstance(text, Status) and old:
+            text = b""  # a program that is not there comes as an empty piece
         if isinstance(text, Status):
             self._send(
                 FrameType.UPLOAD_STARTED, (0).to_bytes(2, "big") + text.code.to_bytes(2, "big", signed=True)
             )
             return State.TRANSFER
-        self._send(FrameType.UPLOAD_STARTED, bytes(256))
-        for at in range(0, len(text), _UPLOAD_PIECE):
+        self._send(FrameType.UPLOAD_STARTED, bytes(_OLD_STARTED if old else _STARTED))
+        for at in range(0, len(text) or 1, _UPLOAD_PIECE):
             self._send(FrameType.UPLOAD_DATA, text[at : at + _UPLOAD_PIECE])
         self._send(FrameType.UPLOAD_FINISHED)
         return following

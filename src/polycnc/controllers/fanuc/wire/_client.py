@@ -10,6 +10,7 @@ from polycnc.controllers.fanuc.wire._frames import Frame, FrameReader, FrameType
 from polycnc.errors import ProtocolError
 
 _TRANSFER, _COMMANDS = 1, 2
+_NO_PROGRAM = 5
 _NAME_SIZE = 512
 _MOST_RECEIVED = 65536
 _PIECE = 1024
@@ -130,6 +131,8 @@ class Client:
             if frame.type != FrameType.UPLOAD_FINISHED:
                 raise ProtocolError(f"{frame.name} came within a program")
             connection.send(FrameType.UPLOAD_ACKNOWLEDGED)
+            if not text:  # as old series say that there is no such program
+                raise WireRefusedError(_NO_PROGRAM)
             return bytes(text)
         finally:
             connection.close()
