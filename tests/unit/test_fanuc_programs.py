@@ -279,6 +279,19 @@ def _memory(*, selected: int = 201, **keys: object) -> tuple[PowerMate, int]:
     return control, handle
 
 
+def test_transfers_end_with_the_power() -> None:
+    control, handle = attached()
+    registered(control, O7="\nG4X7.\nM30\n")
+    assert fwlib.cnc_upstart(handle, 7) == OK
+    assert fwlib.cnc_upload(handle, 5)[2] == 5
+    assert fwlib.cnc_dwnstart(handle) == OK
+    control.power_cycle()
+    assert fwlib.cnc_statinfo(handle)[1].edit == 0
+    assert fwlib.cnc_upload(handle, 5)[0] == EW.EW_FUNC
+    assert fwlib.cnc_download(handle, "\nO8", 3) == EW.EW_FUNC
+    assert uploaded(handle, 7) == "%\nO0007\nG4X7.\nM30\n%"
+
+
 @covers(
     "cnc_search", "enum.search.foreground", "enum.search.background", "mode.MEM", "mode.EDIT", "mode.OTHER",
     "concept.selected_program", "example.cnc_search", "cnc_search.err.EW_DATA",

@@ -116,6 +116,8 @@ class PowerMate:
         self.protection_keys: frozenset[int] = frozenset()
         self.parameters_writable = True
         self.transfer: Transfer | None = None
+        self.power_ups = 0
+        """How often it was switched off and on."""
         self._script = script
         self._servo = servo
         self._sizes = characters, most_programs
@@ -376,6 +378,7 @@ class PowerMate:
         """Switch off and on: durable data and the positions of the axes stay, everything else begins anew."""
         old = self.control
         old.timers.save()
+        self.power_ups += 1
         self.transfer = None
         self._skip, self._skip_positions, self._cursor = False, (), 0
         self.mdi.clear()

@@ -262,9 +262,10 @@ class Transfer:
 
 
 class Upload:
-    """A program going out: % LF O1234 LF block LF ... LF %, in pieces of any size."""
+    """A program going out: % LF O1234 LF block LF ... LF %, in pieces of any size; it ends with the power."""
 
-    def __init__(self, content: bytes) -> None:
+    def __init__(self, content: bytes, power_ups: int = 0) -> None:
+        self.power_ups = power_ups
         self._left = b"%\n" + content + b"%"
 
     def read(self, most: int) -> bytes:

@@ -67,6 +67,8 @@ class Link:
     def _reach(self) -> None:
         if self.node.fault is not EW.EW_OK:
             raise Refused(self.node.fault)
+        if self.upload is not None and self.upload.power_ups != self.device.power_ups:
+            self.upload = None
 
 
 _LOCK = threading.RLock()

@@ -115,7 +115,7 @@ def cnc_upstart(link: Link, number: SHORT) -> EW:
     device = link.command()
     _refuse_if(link.upload is not None or device.transfers_blocked, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
-    link.upload = Upload(device.programs.read(number))
+    link.upload = Upload(device.programs.read(number), device.power_ups)
     return EW.EW_OK
 
 
