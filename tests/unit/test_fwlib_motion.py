@@ -203,6 +203,43 @@ def test_a_reset_and_an_alarm_empty_the_buffers() -> None:
         assert list(library.cnc_finstate(handle)[1].cdata) == [0] * 8
 
 
+def test_a_change_of_mode_lets_commands_go_on() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    library.cnc_incpoint(handle, 1, 0, 1, 600, idb((1, 9000)))
+    library.cnc_incpoint(handle, 1, 1, 1, 600, idb((1, 4000)))
+    library.cnc_dwell(handle, 2, 1, 1, idb((2, 700)))
+    control.advance(200)
+    for mode in ("JOG", "EDIT", "MDI", "REF"):
+        control.select_mode(mode)
+        control.advance(50)
+        assert control.status().axes["X"].velocity * 60.0 == pytest.approx(600.0)
+    assert list(library.cnc_finstate(handle)[1].cdata) == [0] * 8
+    control.advance(1200)
+    assert machine(control) == [13000, 0, 0]
+    assert list(library.cnc_finstate(handle)[1].cdata) == [1, 2, 0, 0, 0, 0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("axis", "distance", "alarm"),
+    [(2, 9000, (500, "OVER TRAVEL : +Y")), (3, -9000, (501, "OVER TRAVEL : -Z"))],
+)
+def test_a_command_past_a_limit_names_it(axis: int, distance: int, alarm: tuple[int, str]) -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    control.parameters.set(1320, 5000, 2)
+    control.parameters.set(1321, -5000, 3)
+    library.cnc_incpoint(handle, 1, 1, 2, 600, idb((1, 2000), (axis, distance)))
+    control.advance(500)
+    (found,) = control.status().alarms
+    assert ((found.number, found.text), found.axis) == (alarm, "XYZ"[axis - 1])
+    assert buffers(library, handle) == [[0] * 8, [0] * 8]
+    control.reset()
+    library.cnc_abspoint(handle, 1, 1, 1, 600, idb((axis, distance)))
+    control.advance(500)
+    assert [(each.number, each.text) for each in control.status().alarms] == [alarm]
+
+
 def test_a_running_program_has_the_axes() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -6,7 +6,7 @@ Every command is carried out or refused whole: a refused one raises `ControlErro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
 from enum import IntFlag
 from pathlib import Path
@@ -208,8 +208,10 @@ class Control:
         """The state of the emergency stop."""
         return self._emergency
 
-    def select_mode(self, mode: Mode, *, channel: int | None = None) -> None:
-        """Change the mode; manual motion of the old one brakes, an edit in the foreground ends.
+    def select_mode(
+        self, mode: Mode, *, channel: int | None = None, going: Collection[str] = frozenset()
+    ) -> None:
+        """Change the mode; manual motion of the old one brakes, but of the axes `going`, a foreground edit ends.
 
         What it does to a program that is executed is `ControlData.mode_change_while_running`.
 
@@ -234,7 +236,7 @@ class Control:
             self._break_off(running)
         for each in changing:
             each.hold()
-            self.manual.stop_all(each.axes)
+            self.manual.stop_all(axis for axis in each.axes if axis not in going)
             if each.mode is Mode.EDIT:
                 self._edits.close_foreground()
             each.mode = mode

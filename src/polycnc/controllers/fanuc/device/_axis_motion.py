@@ -111,6 +111,12 @@ class AxisMotion:
         """Whether a buffer holds a block."""
         return any(path.blocks for path in self._paths)
 
+    @property
+    def moving(self) -> frozenset[str]:
+        """The names of the axes that move by a command."""
+        moves = (path.blocks[0][1] for path in self._paths if path.begun)
+        return frozenset(self._power_mate.axis_name(axis) for block in moves for axis in block.axes)
+
     def buffers(self, path: int) -> tuple[bool, bool]:
         """Return which execution buffers of a path (from 1) hold a block."""
         used = {buffer for buffer, _ in self._paths[path - 1].blocks}
@@ -196,16 +202,21 @@ class AxisMotion:
                 for axis, value in block.values:
                     self._move(block, axis, value)
             except ControlError as error:
-                for axis in block.axes:
-                    power_mate.control.manual.stop(power_mate.axis_name(axis))
-                if error.reason.name != "TRAVEL":
-                    return False
-                self.drop()
-                axis = min(block.axes)
-                power_mate.raise_alarm(500, f"OVER TRAVEL : {power_mate.axis_name(axis)}", axis=axis)
+                for each in block.axes:
+                    power_mate.control.manual.stop(power_mate.axis_name(each))
+                if error.reason.name == "TRAVEL":
+                    self.drop()
+                    self._travel_alarm(block, axis, value)
                 return False
         path.begun = True
         return True
+
+    def _travel_alarm(self, block: Block, axis: int, value: int) -> None:
+        """Raise the alarm of the limit that a command would go past."""
+        power_mate = self._power_mate
+        position = 0 if block.order is Order.INCREMENTAL else power_mate.positions.read()[axis - 1].absolute
+        number, sign = (500, "+") if value > position else (501, "-")
+        power_mate.raise_alarm(number, f"OVER TRAVEL : {sign}{power_mate.axis_name(axis)}", axis=axis)
 
     def _move(self, block: Block, axis: int, value: int) -> None:
         power_mate = self._power_mate

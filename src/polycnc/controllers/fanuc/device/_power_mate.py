@@ -215,7 +215,7 @@ class PowerMate:
             UsageError: There is no such mode.
         """
         wanted = mode_of(mode)
-        self.control.select_mode(CONTROL_MODES[wanted])
+        self.control.select_mode(CONTROL_MODES[wanted], going=self.axis_motion.moving)
         self._mode = wanted
         self.signals.mode_changed()
 
