@@ -83,6 +83,7 @@ WORDS: tuple[WordRow, ...] = (
     WordRow("Q", "number", "peck, as a length above 0"),
     WordRow("P", "number", "dwell in seconds"),
     WordRow("PITCH", "number", "pitch of the thread: feed per revolution"),
+    WordRow("LEAD", "number", "lead of the thread: the way of one turn of the spindle", added=True),
     WordRow("S", "number", "spindle speed, or surface speed, as SPINDLEMODE says"),
     WordRow("SPINDLEMODE", "number", "97: S is revolutions per minute; 96: m per minute, in inch feet per minute"),
     WordRow("MAXRPM", "number", "highest speed that is allowed with a surface speed, 0 if none is given", added=True),
@@ -128,6 +129,7 @@ EVENTS: tuple[EventRow, ...] = (
     EventRow("COMP_OFF", "state", "CUTCOM/OFF"),
     EventRow("RAPID", "motion", "a move behind RAPID", _MOVE),
     EventRow("LINEAR", "motion", "a move with feed, a piece of an arc that is split into lines", (*_MOVE, *_FEED)),
+    EventRow("THREAD", "motion", "a cut of a thread, between THREAD/TURN and THREAD/OFF", (*_MOVE, "LEAD"), added=True),
     EventRow("ARC_CW", "arc", "an arc clockwise in its plane, or a helix", _ARC),
     EventRow("ARC_CCW", "arc", "an arc counter-clockwise in its plane, or a helix", _ARC),
     EventRow("CYCLE_DRILL", "cycle", "each hole of CYCLE/DRILL", _HOLE),
@@ -199,4 +201,4 @@ def is_macro(name: str) -> bool:
 
 def is_added_macro(name: str) -> bool:
     """Tell whether a macro is an addition, which a control file with `strict` cannot have."""
-    return name == "WORD" or name.startswith("WORD_")
+    return name.startswith("WORD_") or any(event.added and event.macro == name for event in EVENTS)

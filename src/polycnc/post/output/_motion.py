@@ -16,7 +16,7 @@ from polycnc.post.output._rotary import table_angles
 from polycnc.post.tool_path._arcs import Arc, cuts
 from polycnc.post.tool_path._course import Straight, Turn
 from polycnc.post.tool_path._cycles import Step
-from polycnc.post.tool_path._records import UPRIGHT, Feed, Vector
+from polycnc.post.tool_path._records import UPRIGHT, Feed, Thread, Vector
 from polycnc.post.tool_path._tangency import Tangency
 
 _TILTED = 1e-6
@@ -48,7 +48,9 @@ class Motion:
         self.angles: Angles = (0.0, 0.0)
         self.tool_length_mm: float | None = None
         self._has_start = any(output.control.names(word) for word in START_WORDS)
-        self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR")}
+        self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR", "THREAD")}
+        self.surface_speed = False
+        self._thread: Thread | None = None
 
     def set_feed(self, record: Feed) -> None:
         """Take the feed of later moves."""
@@ -61,11 +63,36 @@ class Motion:
             or self._first
             or self._kinematics is not None
             or self._rotary
+            or self._thread is not None
             or axis is not self.axis
             or self.position != start
             or self.feed is None
             or not self._needs["LINEAR"]
         )
+
+    def thread(self, record: Thread | None) -> None:
+        """Let feed moves be cuts of a thread, or not any more."""
+        self._thread = record if record is not None and record.on else None
+
+    def _lead(self, line: int, thread: Thread) -> float:
+        """Return the lead of a cut.
+
+        Raises:
+            ProgramError: it is not known, or the spindle does not keep its speed.
+        """
+        if self.surface_speed:
+            raise self._output.fail(
+                line, "a thread with constant surface speed", "Write SPINDL/RPM before the thread."
+            )
+        if thread.lead is not None:
+            return thread.lead
+        if self.feed is None or not self.per_revolution:
+            raise self._output.fail(
+                line,
+                "a thread whose lead is not known",
+                "Write PITCH/LEAD,1.5 before it, or a feed per revolution like FEDRAT/1.5,MMPR.",
+            )
+        return self.feed
 
     def feed_along(self, start: Vector, ends: npt.NDArray[np.float64], blocks: array[int] | None) -> None:
         """Move straight with the feed to one point after the other, [points, 3], where that is plain.
@@ -182,6 +209,11 @@ class Motion:
             self.rapid_mm += math.dist(start, end)
             self._check("RAPID", line)
             self._call("RAPID", words)
+        elif self._thread is not None:
+            self.feed_mm += math.dist(start, end)
+            self._check("THREAD", line)
+            words["LEAD"] = self._lead(line, self._thread) * scale
+            self._call("THREAD", words)
         else:
             self.feed_mm += math.dist(start, end)
             self._check("LINEAR", line)
@@ -202,6 +234,10 @@ class Motion:
 
     def _turn_to(self, line: int, kinematics: Kinematics, before: Angles, end: Vector, rapid: bool) -> None:
         """Move straight to a point with rotary axes, in pieces that keep the tip on its line."""
+        if self._thread is not None and not rapid:
+            raise self._output.fail(
+                line, "a thread on a machine with five axes", "Post it for a lathe by itself."
+            )
         start = self.position
         if start == end and not self._must_write:
             return
@@ -311,6 +347,8 @@ class Motion:
     def circle(self, act: Turn) -> None:
         """Move along an arc: in pieces as the parameters say, or in lines."""
         line = act.line
+        if self._thread is not None:
+            raise self._output.fail(line, "an arc within a thread", "Write THREAD/OFF before it.")
         if act.axis != self.axis:
             raise self._output.fail(
                 line, "the tool axis changes with an arc", "Write a GOTO with the new axis before it."

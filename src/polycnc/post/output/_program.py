@@ -38,6 +38,7 @@ from polycnc.post.tool_path._records import (
     Spindle,
     Stop,
     Text,
+    Thread,
     Tool,
     ToolShape,
     Word,
@@ -204,6 +205,7 @@ class _Driver:
             Circle: self._working(self._move),
             Cycle: self._working(self._cycle),
             CycleOff: self._working(self._cycle_off),
+            Thread: self._thread,
             Coolant: self._working(self._coolant),
             Compensation: self._working(self._compensation),
             Dwell: self._working(self._dwell),
@@ -316,6 +318,7 @@ class _Driver:
         self._take(record)
         self.drilling.close()
         self._resumes = True
+        self.motion.thread(None)
         self._tool_shape(ToolShape(record.line, record.name, None, record.length))
         self.tools += 1
         self._tool_number = record.number
@@ -357,6 +360,7 @@ class _Driver:
             speed, surface = before.speed, before.surface
         self._turning = Spindle(record.line, "cw" if sense == "on" else sense, speed, surface)
         self.drilling.rpm = 0.0 if surface else speed
+        self.motion.surface_speed = surface
         self.drilling.spindle_sense = self._turning.sense
         words: dict[str, float | str] = {
             "S": self._spindle_number(speed, surface),
@@ -445,6 +449,10 @@ class _Driver:
     def _cycle(self, record: Cycle) -> None:
         self._take(record)
         self.drilling.begin(record)
+
+    def _thread(self, record: Thread) -> None:
+        self.drilling.close()
+        self.motion.thread(record)
 
     def _cycle_off(self, record: CycleOff) -> None:
         self._take(record)

@@ -62,6 +62,9 @@ class Reading:
     resumes: bool = False
     """Whether CUTCOM/ON waits for its side, which comes with the next statement or is the last one."""
     cycle_on: bool = False
+    threads: bool = False
+    lead: float | None = None
+    """The last PITCH, in mm."""
     tool: Tool | None = None
     """The last tool change."""
     cycle_began: int = 0

@@ -23,6 +23,7 @@ from polycnc.post.tool_path._records import (
     Spindle,
     Stop,
     Text,
+    Thread,
     Tool,
     ToolShape,
 )
@@ -53,7 +54,7 @@ IGNORED = frozenset(
 
 LEFT_OUT_MOTION = frozenset(
     (
-        *("ARC", "GO", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN", "THREAD", "INDEX", "ROTABL"),
+        *("ARC", "GO", "GOLFT", "GORGT", "GOFWD", "GOBACK", "GOUP", "GODOWN", "INDEX", "ROTABL"),
         *("ROTATE", "ROTHED", "TRACUT", "COPY", "TRANS", "ORIGIN", "DNTCUT", "SPLINE", "NURBS", "GOCLER"),
         *(
             "SAFPOS",
@@ -195,6 +196,7 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     )
     if reading.tool is None or change != reading.tool._replace(line=change.line):
         reading.tool = change
+        reading.threads = False
         yield change
     elif reading.cycle_on:
         yield CycleOff(statement.line)
@@ -258,6 +260,51 @@ def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
         reading.check_units(statement)
         reading.cycle_began = reading.moves
         yield read_cycle(statement, reading.scale, _FEED_UNITS)
+
+
+def _thread(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read THREAD, or OP/THREAD as Creo writes it: feed moves are cuts of a thread from here on."""
+    words = statement.words()
+    if statement.major == "OP" and "THREAD" not in words:
+        if reading.threads:
+            reading.threads = False
+            yield Thread(statement.line, False)
+        return
+    if "AUTO" in words or any(token.number is not None for token in statement):
+        raise statement.fail(
+            f"{statement.major} that leaves the passes of a thread to the control",
+            "Let the CAM system write each pass as points, between THREAD/TURN and THREAD/OFF.",
+        )
+    known = {"TURN", "FACE", "TAPER", "ON", "OFF", "OUT", "IN", "THREAD"}
+    if strange := sorted(words - known):
+        raise statement.fail(
+            f"{statement.major}/{strange[0]} is not known", "Write THREAD/TURN, THREAD/FACE or THREAD/OFF."
+        )
+    reading.threads = "OFF" not in words
+    yield Thread(statement.line, reading.threads, reading.lead if reading.threads else None)
+
+
+def _pitch(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read PITCH: the lead of threads. A bare number is a lead for some systems and threads per inch for others."""
+    words = statement.words()
+    reading.check_units(statement)
+    per_inch = statement.value_of("TPI", "threads per inch") if "TPI" in words else None
+    value = next((n for token in statement if (n := token.number) is not None), None)
+    if value is None or value <= 0.0:
+        raise statement.fail("PITCH needs a number above 0", "Write it like PITCH/LEAD,1.5 or PITCH/TPI,12.")
+    if per_inch is not None:
+        reading.lead = MM_PER_INCH / value
+    elif words & {"MMPR", "IPR"}:
+        reading.lead = value * (MM_PER_INCH if "IPR" in words else 1.0)
+    elif "LEAD" in words:
+        reading.lead = value * reading.scale
+    else:
+        raise statement.fail(
+            "PITCH that says neither a lead nor threads per inch",
+            "Write PITCH/LEAD,1.5 for a lead, or PITCH/TPI,12 for threads per inch.",
+        )
+    if reading.threads:
+        yield Thread(statement.line, True, reading.lead)
 
 
 def _coolant(reading: Reading, statement: Statement) -> Iterator[Record]:
@@ -362,6 +409,9 @@ HANDLERS: dict[str, Handler] = {
     "INDIRV": _cl_moves.direction,
     "TLON,GOFWD": _cl_moves.follow_circle,
     "CYCLE": _cycle,
+    "THREAD": _thread,
+    "OP": _thread,
+    "PITCH": _pitch,
     "COOLNT": _coolant,
     "CUTCOM": _compensation,
     "DELAY": _dwell,

@@ -179,6 +179,17 @@ class Cycle(NamedTuple):
     dwell_s: float = 0.0
 
 
+class Thread(NamedTuple):
+    """Feed moves cut a thread from here on, or do not any more.
+
+    `lead` is the way of one turn of the spindle; None is the feed per revolution in force.
+    """
+
+    line: int
+    on: bool
+    lead: float | None = None
+
+
 class CycleOff(NamedTuple):
     """Points are moves again; `on` takes the cycle up once more."""
 
@@ -237,7 +248,7 @@ class End(NamedTuple):
 
 Record: TypeAlias = (
     Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis | Circle
-    | Cycle | CycleOff | Coolant | Compensation | Dwell | Stop | Word | End
+    | Cycle | CycleOff | Thread | Coolant | Compensation | Dwell | Stop | Word | End
 )  # fmt: skip
 
 
