@@ -20,7 +20,12 @@ TIMEOUT_S = 240.0
 
 def environment(**more: str) -> dict[str, str]:
     """Return the environment of a user's process: without what tests set, and 80 columns wide."""
-    kept = {name: value for name, value in os.environ.items() if name != "POLYCNC_OPEN_INTERNALS"}
+    # One of pytest's variables is another one in every test, which would mean a server for each of them.
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name != "POLYCNC_OPEN_INTERNALS" and not name.startswith("PYTEST_")
+    }
     return {**kept, "COLUMNS": "80", "PYTHONUTF8": "1", **more}
 
 
