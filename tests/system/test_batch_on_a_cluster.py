@@ -22,6 +22,7 @@ from support.command import polycnc as command
 pytest.importorskip("distributed", reason="no dask.distributed: pip install 'polycnc[cluster]'")
 
 PROGRAM = "G0 X{0} Y2\nG1 X{1} F{2}\nG2 X{1} Y2 I7\nM30\n"
+PROGRAMS = 40
 PLAIN = {"NUMBA_DISABLE_JIT": "1"}  # the same bits, and quick to start
 
 
@@ -47,12 +48,13 @@ def _client(card: Path) -> Any:
     return make(scheduler_file=str(card), timeout=60, set_as_default=False)
 
 
-@pytest.fixture
-def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
     """Start a scheduler and two workers, as the how-to does; yield the address and the workers."""
-    card = tmp_path / "scheduler.json"
+    place = tmp_path_factory.mktemp("cluster")
+    card = place / "scheduler.json"
     worker = ("worker", "--scheduler-file", str(card), "--nthreads", "1", "--no-dashboard", "--no-nanny")
-    local = str(tmp_path / "local")
+    local = str(place / "local")
     scheduler = ("scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard")
     with (
         _dask(*scheduler, "--scheduler-file", str(card)),
@@ -68,15 +70,29 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]
 def folder(tmp_path: Path) -> Path:
     parts = tmp_path / "parts"
     parts.mkdir()
-    for number in range(150):
-        (parts / f"p{number:03}.nc").write_text(PROGRAM.format(number, 200 + number, 900 + number))
-    (parts / "p077.nc").write_text("G1 X5 F100\nG1 X7 Q\n")
+    for number in range(PROGRAMS):
+        (parts / f"p{number:03}.nc").write_text(PROGRAM.format(number, 100 + number, 2900 + number))
+    (parts / "p017.nc").write_text("G1 X5 F100\nG1 X7 Q\n")
     return parts
 
 
 def _reports(result: polycnc.BatchResult) -> list[dict[str, Any]]:
     with result:
         return [report.as_dict() for report in result]
+
+
+def test_the_command_on_a_cluster(
+    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, tmp_path: Path
+) -> None:
+    address, workers = cluster
+    (folder / "endless.tap").write_text("WHILE [1 EQ 1] DO1\n#1=#1+1\nEND1\n")
+    arguments = ("batch", "parts", "--cluster", address, "-o", "out.csv", "--timeout", "2")
+    done = command(*arguments, cwd=tmp_path, status=1)
+    assert f"{PROGRAMS + 1} runs, 2 with errors\n" in done.stdout
+    assert "endless.tap: stopped after 2 s\n" in done.stdout
+    again = command(*arguments, cwd=tmp_path, status=1)
+    assert f"done before and unchanged: {PROGRAMS}\n" in again.stdout
+    assert [worker.poll() for worker in workers] == [None, None]  # the cluster is left as it was
 
 
 @pytest.mark.filterwarnings("ignore::ResourceWarning")  # of sockets that dask leaves to the garbage collector
@@ -99,23 +115,9 @@ def test_a_worker_is_killed_and_everything_comes_once(
     finally:
         connected.close()
     assert workers[0].wait(60) == -signal.SIGKILL
-    assert seen[-1] == len(there) == 150
+    assert seen[-1] == len(there) == PROGRAMS
     assert there == here
     assert [each["ok"] for each in there].count(False) == 1
-
-
-def test_the_command_on_a_cluster(
-    cluster: tuple[str, list[subprocess.Popen[bytes]]], folder: Path, tmp_path: Path
-) -> None:
-    address, workers = cluster
-    (folder / "endless.tap").write_text("WHILE [1 EQ 1] DO1\n#1=#1+1\nEND1\n")
-    arguments = ("batch", "parts", "--cluster", address, "-o", "out.csv", "--timeout", "2")
-    done = command(*arguments, cwd=tmp_path, status=1)
-    assert "151 runs, 2 with errors\n" in done.stdout
-    assert "endless.tap: stopped after 2 s\n" in done.stdout
-    again = command(*arguments, cwd=tmp_path, status=1)
-    assert "done before and unchanged: 150\n" in again.stdout
-    assert [worker.poll() for worker in workers] == [None, None]  # the cluster is left as it was
 
 
 def test_nobody_answers() -> None:
