@@ -1,7 +1,7 @@
 """What `scripts/mutate` does: change one thing in a module, and see whether the tests that reach it notice."""
 
-from support.mutation._mutants import Mutant, mutants_of
-from support.mutation._reach import Reach, candidate_tests
-from support.mutation._session import Outcome, Session
+from ._mutants import Mutant, mutants_of
+from ._reach import Reach, candidate_tests
+from ._session import Outcome, Session
 
 __all__ = ["Mutant", "Outcome", "Reach", "Session", "candidate_tests", "mutants_of"]

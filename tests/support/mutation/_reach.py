@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,12 +26,26 @@ class Reach:
     failed: list[str]
 
     def of(self, file: str, lines: range) -> list[str]:
-        """Return the tests that ran one of a file's lines, the quickest first."""
+        """Return the tests that ran one of a file's lines, file by file, the quickest first."""
         seen = self.tests.get(file, {})
         found = {test for line in lines for test in seen.get(line, ()) if test}
         if not found and any(line in seen for line in lines):  # an import ran it: the module's tests may tell
             found = {test for tests in seen.values() for test in tests if test} or set(self.times_s)
-        return sorted(found, key=lambda test: (self.times_s.get(test, 0.0), test))
+        together = defaultdict[str, float](float)
+        for test in found:
+            together[test.partition("::")[0]] += self.times_s.get(test, 0.0)
+        return sorted(
+            found, key=lambda test: (together[test.partition("::")[0]], self.times_s.get(test, 0.0), test)
+        )
+
+    def imported(self, file: str, lines: range) -> bool:
+        """Return whether an import ran one of a file's lines."""
+        seen = self.tests.get(file, {})
+        return any("" in seen.get(line, ()) for line in lines)
+
+    def reaching(self) -> set[str]:
+        """Return the tests that reach anything."""
+        return {test for seen in self.tests.values() for tests in seen.values() for test in tests if test}
 
 
 def candidate_tests(root: Path, modules: Iterable[Path]) -> list[Path]:

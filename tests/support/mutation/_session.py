@@ -14,8 +14,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from support.mutation._mutants import Mutant
-from support.mutation._reach import Reach
+from ._lines import forget_bytecode
+from ._mutants import Mutant
+from ._reach import Reach
 
 COPIED = (
     "src",
@@ -28,16 +29,20 @@ COPIED = (
     "pyproject.toml",
     "mkdocs.yml",
 )
-PYTEST = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:benchmark"]
+PYTEST = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-p", "no:benchmark", "-o", "timeout=0"]
 REACH_LIMIT_S = 3600.0
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What the tests said to a mutant: killed, timeout and crash notice it; survived and unreached do not."""
+    """What the tests said to a mutant: killed, timeout and crash notice it; survived and unreached do not.
+
+    `by` is the test that noticed it, where one said so.
+    """
 
     verdict: str
     tests: int
+    by: str = ""
 
     @property
     def noticed(self) -> bool:
@@ -46,7 +51,11 @@ class Outcome:
 
 
 class Session:
-    """Holds the copy and two processes that run tests there; with `jit` mutants run compiled."""
+    """Holds the copy and processes that run tests there; with `jit` mutants run compiled.
+
+    A change inside a function is tried in forked children of a process that has collected the tests; what an import
+    runs, and all compiled code, is imported anew for each change.
+    """
 
     def __init__(self, root: Path, *, jit: bool = False) -> None:
         self._root = root
@@ -61,14 +70,16 @@ class Session:
                 )
             elif source.is_file():
                 shutil.copy2(source, self.copy / name)
-        self._interpreted = self._worker(jit=False)
-        self._mutated = self._worker(jit=True) if jit else self._interpreted
+        self._jit = jit
+        self._interpreted = self._worker("fresh", jit=False)
+        self._mutated = self._worker("fresh", jit=True) if jit else self._interpreted
+        self._ready: subprocess.Popen[str] | None = None
 
     def __enter__(self) -> Session:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, error: object, trace: TracebackType | None) -> None:
-        for worker in {self._interpreted, self._mutated}:
+        for worker in {self._interpreted, self._mutated, *([self._ready] if self._ready else [])}:
             worker.kill()
             worker.communicate()
         self._folder.cleanup()
@@ -81,12 +92,12 @@ class Session:
         Raises:
             RuntimeError: The tests cannot be run.
         """
-        watched = {str(self.copy / module.relative_to(self._root)): module for module in modules}
+        watched = {str(self._copied(module)): module for module in modules}
         answer = self._asked(
             self._interpreted,
-            arguments=[*PYTEST, *(str(self.copy / test.relative_to(self._root)) for test in tests)],
+            arguments=[*self._pytest(), *(str(self._copied(test)) for test in tests)],
             only=None,
-            trace=list(watched),
+            watch=list(watched),
             limit_s=REACH_LIMIT_S,
         )
         if answer["status"] not in (0, 1):
@@ -104,51 +115,81 @@ class Session:
 
     def source(self, module: Path) -> bytes:
         """Return a module's text as it was when the copy was made."""
-        return (self.copy / module.relative_to(self._root)).read_bytes()
+        return self._copied(module).read_bytes()
 
     def outcome(self, module: Path, mutant: Mutant, reach: Reach) -> Outcome:
         """Return what the tests that reach a mutant say to it."""
-        place = self.copy / module.relative_to(self._root)
         tests = reach.of(str(module), mutant.lines)
         if not tests:
             return Outcome("unreached", 0)
+        answer: dict[str, Any] = {"status": None}
+        if not self._jit and not reach.imported(str(module), mutant.lines):
+            answer = self._tried(module, mutant, tests, reach)
+        if answer["status"] is None:
+            answer = self._tried_anew(module, mutant, tests, reach)
+        verdicts = {0: "survived", 5: "unreached", "timeout": "timeout", "crash": "crash"}
+        return Outcome(verdicts.get(answer["status"], "killed"), len(tests), answer.get("by", ""))
+
+    def _tried(self, module: Path, mutant: Mutant, tests: list[str], reach: Reach) -> dict[str, Any]:
+        """Run tests with other functions in modules that are imported already."""
+        if self._ready is None:
+            self._ready = self._worker("ready", jit=False)
+            files = sorted({str(self.copy / test.partition("::")[0]) for test in reach.reaching()})
+            self._tell(self._ready, arguments=[*self._pytest(), *files])
+        source = self.source(module)
+        return self._asked(
+            self._ready,
+            file=str(self._copied(module)),
+            before=source.decode(),
+            after=mutant.applied(source).decode(),
+            only=tests,
+            times_s={test: reach.times_s.get(test, 0.0) for test in tests},
+            limit_s=60.0 + 4 * sum(reach.times_s.get(test, 0.0) for test in tests),
+        )
+
+    def _tried_anew(self, module: Path, mutant: Mutant, tests: list[str], reach: Reach) -> dict[str, Any]:
+        """Run tests in a process that imports the changed module."""
+        place = self._copied(module)
         source = place.read_bytes()
         self._write(place, mutant.applied(source))
         try:
-            answer = self._asked(
+            return self._asked(
                 self._mutated,
                 arguments=[
-                    *PYTEST,
+                    *self._pytest(),
                     "-x",
                     *sorted({str(self.copy / test.partition("::")[0]) for test in tests}),
                 ],
                 only=tests,
-                trace=[],
-                limit_s=15.0 + 4 * sum(reach.times_s.get(test, 0.0) for test in tests),
+                watch=[],
+                limit_s=60.0 + 4 * sum(reach.times_s.get(test, 0.0) for test in tests),
             )
         finally:
             self._write(place, source)
-        verdicts = {0: "survived", 5: "unreached", "timeout": "timeout", "crash": "crash"}
-        return Outcome(verdicts.get(answer["status"], "killed"), len(tests))
+
+    def _copied(self, path: Path) -> Path:
+        return self.copy / path.relative_to(self._root)
+
+    def _pytest(self) -> list[str]:
+        return [*PYTEST, f"--basetemp={self.copy.parent / 'tmp'}"]
 
     def _write(self, place: Path, source: bytes) -> None:
         place.write_bytes(source)
-        for stale in (place.parent / "__pycache__").glob(f"{place.stem}.*.pyc"):
-            stale.unlink()  # it is told from its source by size and second, and mutants share both
+        forget_bytecode(place)
 
-    def _worker(self, *, jit: bool) -> subprocess.Popen[str]:
+    def _worker(self, kind: str, *, jit: bool) -> subprocess.Popen[str]:
         environment = {
             **os.environ,
-            "PYTHONPATH": str(self.copy / "src"),
+            # The script itself is that of the repository, by a name that the copy's tests do not have.
+            "PYTHONPATH": os.pathsep.join((str(self.copy / "src"), str(Path(__file__).parents[1]))),
             "NUMBA_DISABLE_JIT": "0" if jit else "1",
             "POLYCNC_CACHE_DIR": str(self.copy.parent / "cache"),
         }
         beside = self._root.parent / "shared" / "data"
         if beside.is_dir():
             environment.setdefault("POLYCNC_DATA", str(beside))
-        script = Path(__file__).with_name("worker.py")
         return subprocess.Popen(
-            [sys.executable, str(script)],
+            [sys.executable, "-m", "mutation.worker", kind],
             cwd=self.copy,
             env=environment,
             stdin=subprocess.PIPE,
@@ -156,10 +197,13 @@ class Session:
             text=True,
         )
 
-    def _asked(self, worker: subprocess.Popen[str], **request: object) -> dict[str, Any]:
+    def _tell(self, worker: subprocess.Popen[str], **request: object) -> None:
         assert worker.stdin is not None
-        assert worker.stdout is not None
         worker.stdin.write(json.dumps({"output": str(self._output), **request}) + "\n")
         worker.stdin.flush()
+
+    def _asked(self, worker: subprocess.Popen[str], **request: object) -> dict[str, Any]:
+        assert worker.stdout is not None
+        self._tell(worker, **request)
         answer: dict[str, Any] = json.loads(worker.stdout.readline())
         return answer

@@ -1,38 +1,40 @@
-"""Runs tests in forked children of a process that has the heavy imports behind it; one request a line, as JSON.
+"""Runs tests in forked children; one request a line and one answer, as JSON: `python -m mutation.worker (fresh|ready)`.
 
-A request has `output` (the file for what pytest says), `arguments` for pytest, `only` (the tests to run, in that order,
-or null), `trace` (the files whose lines are watched) and `limit_s`; an answer has `status`, the tests' `times_s`, those
-that `failed` and, for each traced file, its `lines`.
+`fresh` has the heavy imports behind it and imports polycnc anew for each request: `arguments` for pytest, `only` (the
+tests to run, in that order, or null), `watch` (the files whose lines are asked for) and `limit_s`. The answer has
+`status`, the tests' `times_s`, those that `failed` and, for each watched file, its `lines`.
+
+`ready` takes `arguments` first, collects those tests once, and runs some of them for each request with the functions
+of `file` as they are in the text `after` instead of `before`, until one fails.
 """
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
-import signal
 import sys
-import threading
-import time
-import traceback
-from types import FrameType
-from typing import Any
+from collections.abc import Generator, Iterator
+from typing import Any, TextIO
 
 import numba  # noqa: F401
 import numpy  # noqa: F401  (what every run would import again)
 import pydantic  # noqa: F401
 import pytest
 
-TIMEOUT = "timeout"
+from ._children import TEST_LIMIT_S, Answer, answer_of, limited
+from ._exchange import NotExchangeableError, exchange
+from ._lines import Watch
 
 
 class Choice:
-    """Takes away what is not asked for and remembers how long each test took."""
+    """Takes away what is not asked for and remembers how long each test took, and what it reached."""
 
-    def __init__(self, only: list[str] | None) -> None:
+    def __init__(self, only: list[str] | None, watch: Watch | None) -> None:
         self.only = only
+        self.watch = watch
         self.times_s: dict[str, float] = {}
         self.failed: set[str] = set()
+        self.lines: dict[str, dict[int, list[str]]] = {}
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
@@ -42,105 +44,103 @@ class Choice:
                 (item for item in items if item.nodeid in places), key=lambda item: places[item.nodeid]
             )
 
+    @pytest.hookimpl(wrapper=True, tryfirst=True)
+    def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        self.note("")  # what ran before belongs to no test
+        try:
+            return (yield)
+        finally:
+            self.note(item.nodeid)
+
+    def note(self, test: str) -> None:
+        """Let what ran since the last call be of a test."""
+        if self.watch is not None:
+            for file, lines in self.watch.taken().items():
+                seen = self.lines.setdefault(file, {})
+                for line in lines:
+                    seen.setdefault(line, []).append(test)
+
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         self.times_s[report.nodeid] = self.times_s.get(report.nodeid, 0.0) + report.duration
         if report.failed:
             self.failed.add(report.nodeid)
 
 
-class Watch:
-    """Notes which test runs which line of some files."""
-
-    def __init__(self, files: list[str]) -> None:
-        self.lines: dict[str, dict[int, set[str]]] = {file: {} for file in files}
-        self.test = ""  # imports belong to no test
-        sys.settrace(self.enter)
-
-    @pytest.hookimpl(wrapper=True, tryfirst=True)
-    def pytest_runtest_protocol(self, item: pytest.Item) -> Any:
-        self.test = item.nodeid
-        sys.settrace(self.enter)
-        threading.settrace(self.enter)
-        try:
-            return (yield)
-        finally:
-            self.test = ""
-            threading.settrace(None)
-
-    def enter(self, frame: FrameType, event: str, argument: object) -> Any:
-        seen = self.lines.get(frame.f_code.co_filename)
-        if seen is None:
-            return None
-        test = self.test
-
-        def line(frame: FrameType, event: str, argument: object) -> Any:
-            seen.setdefault(frame.f_lineno, set()).add(test)
-            return line
-
-        return line(frame, event, argument)
-
-
-def run(request: dict[str, Any], answer: int) -> None:
-    """Run pytest in this process and write what came out of it to a pipe."""
-    os.setsid()
-    nothing, said = (
-        os.open(os.devnull, os.O_RDONLY),
-        os.open(request["output"], os.O_CREAT | os.O_TRUNC | os.O_WRONLY),
-    )
-    for stream, to in ((0, nothing), (1, said), (2, said)):
-        os.dup2(to, stream)
-    choice = Choice(request["only"])
-    watches = [Watch(request["trace"])] if request["trace"] else []
-    status = pytest.main(request["arguments"], plugins=[choice, *watches])
-    sys.settrace(None)
-    lines = {
-        file: {line: sorted(tests) for line, tests in seen.items()}
-        for watch in watches
-        for file, seen in watch.lines.items()
+def run(request: dict[str, Any]) -> Answer:
+    """Run pytest in this process."""
+    watch = Watch(request["watch"]) if request["watch"] else None
+    if watch:
+        sys.dont_write_bytecode = True  # the notes stay out of it
+    choice = Choice(request["only"], watch)
+    status = pytest.main(request["arguments"], plugins=[choice])
+    for file, lines in watch.imported.items() if watch else ():
+        for line in lines:
+            choice.lines.setdefault(file, {}).setdefault(line, []).append("")
+    return {
+        "status": int(status),
+        "times_s": choice.times_s,
+        "failed": sorted(choice.failed),
+        "lines": choice.lines,
     }
-    with os.fdopen(answer, "w") as pipe:
-        found = {
-            "status": int(status),
-            "times_s": choice.times_s,
-            "failed": sorted(choice.failed),
-            "lines": lines,
-        }
-        json.dump(found, pipe)
 
 
-def answered(request: dict[str, Any]) -> str:
-    """Return the answer of a child, or that it ran out of time."""
-    reading, writing = os.pipe()
-    child = os.fork()
-    if child == 0:
-        os.close(reading)
+class Ready:
+    """Runs some of the collected tests for each request."""
+
+    def __init__(self, requests: Iterator[str], answers: TextIO) -> None:
+        self.requests = requests
+        self.answers = answers
+        self.failed = False
+
+    def pytest_runtestloop(self, session: pytest.Session) -> bool:
+        items = {item.nodeid: item for item in session.items}
+        for line in self.requests:
+            request = json.loads(line)
+
+            def work(request: dict[str, Any] = request) -> Answer:
+                return self.told(items, request)
+
+            print(answer_of(work, request["limit_s"], request["output"]), file=self.answers, flush=True)
+        return True
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self.failed |= report.failed
+
+    def told(self, items: dict[str, pytest.Item], request: dict[str, Any]) -> Answer:
+        """Return what tests say to a change."""
         try:
-            run(request, writing)
-        except BaseException:
-            traceback.print_exc()
-        finally:
-            os._exit(0)
-    os.close(writing)
-    late = threading.Timer(request["limit_s"], end, [child])
-    late.start()
-    begun = time.monotonic()
-    with os.fdopen(reading) as stream:
-        text = stream.read()
-    late.cancel()
-    end(child)  # what a test left running
-    os.waitpid(child, 0)
-    if text:
-        return text
-    in_time = time.monotonic() - begun < request["limit_s"]
-    return json.dumps({"status": "crash" if in_time else TIMEOUT, "times_s": {}, "failed": [], "lines": {}})
+            exchange(request["file"], request["before"].encode(), request["after"].encode())
+        except NotExchangeableError:
+            return {"status": None}
+        chosen = [items[test] for test in request["only"] if test in items]
+        for item, following in zip(chosen, [*chosen[1:], None], strict=True):
+            limited(TEST_LIMIT_S + 10 * request["times_s"][item.nodeid])
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
+            if self.failed:
+                break
+        limited(0.0)
+        return {"status": int(self.failed), "by": item.nodeid if self.failed else ""}
 
 
-def end(child: int) -> None:
-    """End a child and what it started; both may have ended by themselves."""
-    with contextlib.suppress(ProcessLookupError, PermissionError):
-        os.killpg(child, signal.SIGKILL)
+def main() -> None:
+    """Answer requests."""
+    requests, answers = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+    if sys.argv[1] == "fresh":
+        for line in requests:
+            request = json.loads(line)
+
+            def work(request: dict[str, Any] = request) -> Answer:
+                return run(request)
+
+            print(answer_of(work, request["limit_s"], request["output"]), file=answers, flush=True)
+        return
+    first = json.loads(requests.readline())
+    said = os.open(first["output"], os.O_CREAT | os.O_TRUNC | os.O_WRONLY)
+    os.dup2(said, 1)
+    os.dup2(said, 2)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    pytest.main(first["arguments"], plugins=[Ready(iter(requests), answers)])
 
 
 if __name__ == "__main__":
-    for text in sys.stdin:
-        print(answered(json.loads(text)), flush=True)
+    main()
