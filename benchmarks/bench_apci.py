@@ -1,24 +1,35 @@
-"""Time the APCI board: scans of 18 axes that work through their spoolers, and commands that fill these."""
+"""Time the APCI board: 18 axes that work through their spoolers, commands that fill these, and what polls."""
 
 from __future__ import annotations
 
 import statistics
 import time
+from collections.abc import Sequence
 
 from _measure import Figure, at_least
 from _report import run_script
+from polycnc.controllers.apci import pcap, sap
 from polycnc.controllers.apci.board._axis_commands import cl
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.board._spool_commands import ssms
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.core._registers import ModeReg
+from polycnc.controllers.apci.sap._board_host import BoardTasks
 
 RUNS = 3
 AXES = 18
 ENTRIES = 900  # in the spooler at once
 SCANS_PER_LINE = 20
 GOES_ON = Speeds(1e5, 1000.0, 1000.0)
+POLLING = (
+    "BEGIN REPEAT wt (3.3) UNTIL CI8 = 5 END.",
+    "BEGIN REPEAT UNTIL A2.axst AND 1024 <> 0 END.",
+    "BEGIN REPEAT UNTIL CI7 = 3 END.",
+    "BEGIN REPEAT UNTIL A3.digi AND 4 <> 0 END.",
+)
+POLLING_A_POSITION = ("BEGIN REPEAT UNTIL A1.rp > 1e9 END.",)  # which changes with every scan
+CALLS = 20_000
 
 
 def closed_board(mode: int = 0) -> Board:
@@ -51,6 +62,34 @@ def run(board: Board, scans: int) -> float:
     return spent
 
 
+def rate_polling(programs: Sequence[str], scans: int) -> float:
+    """Let 18 axes interpolate while programs poll in the board's tasks; return board seconds per processor second."""
+    board = closed_board()
+    tasks = BoardTasks(board)
+    for number, text in enumerate(programs):
+        tasks.load(sap.compile_program(text, task=number))
+        tasks.tasks.startcnct(number)
+    fill(board, range(AXES))
+    return scans * board.config.sample_time_s / run(board, scans)
+
+
+def polled_calls() -> float:
+    """Let a program of the PC read a status again and again, a scan each; return calls per processor second."""
+    pcap.attach(Board(parse_system_file(f"number_of_axes = {AXES}")))
+    records = pcap.tsrp_array()
+    pcap.InitMcuSystem3(records, pcap.ROSI(), 0, "system.dat")
+    record = records[3]
+    pcap.rdaxst(record)
+    begin = time.process_time()
+    before = pcap.board().clock.cycles
+    for _ in range(CALLS):
+        pcap.rdaxst(record)
+    spent = time.process_time() - begin
+    assert pcap.board().clock.cycles - before >= CALLS
+    pcap.detach()
+    return CALLS / spent
+
+
 def figures(quick: bool) -> list[Figure]:
     """Measure and return the figures."""
     scans = (ENTRIES - 20) * SCANS_PER_LINE
@@ -67,6 +106,14 @@ def figures(quick: bool) -> list[Figure]:
         spooled["3 axes"].append(ENTRIES / fill(closed_board(), range(3)))
         spooled["3 axes, look-ahead"].append(ENTRIES / fill(closed_board(int(ModeReg.lookahead)), range(3)))
     found = [at_least("18 axes interpolate from their spoolers", statistics.median(rates), "x real", 1000.0)]
+    for name, programs, length, budget in (
+        ("SAP polling: four tasks, a time, a status, a variable, an input", POLLING, scans, 500.0),
+        ("SAP polling: one task, the position of a moving axis", POLLING_A_POSITION, scans // 10, None),
+    ):
+        rate = statistics.median(rate_polling(programs, length) for _ in range(runs))
+        found.append(at_least(name, rate, "x real", budget) if budget else Figure(name, rate, "x real"))
+    calls = statistics.median(polled_calls() for _ in range(runs))
+    found.append(Figure("a polled call (rdaxst, one scan each)", calls, "1/s"))
     for name, each in spooled.items():
         rate = statistics.median(each)
         title = f"lines spooled from Python, {name}"
