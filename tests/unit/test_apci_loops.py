@@ -360,6 +360,7 @@ def test_recording_for_the_analysis() -> None:
     assert len(rig.board.analysis(0)) == 4096  # full: it keeps what it has
 
 
+@pytest.mark.filterwarnings("ignore:overflow encountered:RuntimeWarning")  # of NumPy, uncompiled
 def test_numbers_that_are_none_do_not_get_in() -> None:
     rig = Rig()
     axis = rig.board.axes[0]

@@ -42,6 +42,8 @@ def test_everything_is_there_again_when_it_is_switched_on(memory: Path, tmp_path
     pcap.rdepc(records[0])
     assert records[0].epc == 37
     assert slot.environment.read("SerialNumber") == (8, "77001133")
+    pcap.board().advance(3)
+    assert pcap.gettskstr(2, 100)[-1] == ""  # loaded, not started
     pcap.startcnct(2)
     pcap.board().advance(3)
     assert pcap.gettskstr(2, 100)[-1].startswith("seven")
