@@ -18,8 +18,12 @@ from pathlib import Path
 
 import pytest
 
+from polycnc.controllers.apci import sap
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.machine import Store
+from polycnc.nc import ProgramText
+from polycnc.runner import run
+from support.programs import MILL
 
 FEW = 2
 
@@ -107,6 +111,42 @@ for number in itertools.count(int(sys.argv[2]) + 1):
     print(number, flush=True)
 """
 
+BOARD = """
+import itertools, sys
+from pathlib import Path
+from polycnc.controllers.apci import Board, pcap, sap
+folder = Path(sys.argv[1])
+(slot,) = pcap.attach(Board(), clock=None, folder=folder.parent, memory=folder / "m.db")
+pcap.InitMcuSystem3(pcap.tsrp_array(), pcap.ROSI(), 0, "system.dat")
+for number in itertools.count(int(sys.argv[2]) + 1):
+    slot.board.eprom_cycles = number * 3
+    slot.stop()
+    slot.write_environment("Number", str(number) * 90)
+    slot.running = True
+    lines = f"  ci[{number % 2 + 1}] := {number * 3};\\n" * 40
+    program = sap.compile_program(f"program p;\\nbegin\\n{lines}end.\\n", "p.sap", number % 4)
+    file = folder.parent / f"{folder.name}.CNC"
+    file.write_bytes(sap.write_cnc(program))
+    assert pcap.txbf2(file.name) == 0
+    print(number, flush=True)
+"""
+
+CPL = """
+import itertools, sys
+from pathlib import Path
+from polycnc.machine import load_machine
+from polycnc.nc import ProgramText
+from polycnc.runner import run
+folder, mill = Path(sys.argv[1]), load_machine("mill3")
+for number in itertools.count(int(sys.argv[2]) + 1):
+    records = "".join(f'{10 + k} PRN#(1,"{number} {k} {number * 7}")\\n' for k in range(30))
+    text = f'1 OPENW(1,"P{number % 5}",3000)\\n2 REWRITE(1)\\n{records}70 CLOSE(1)\\n'
+    text += f"80 @5%={number} : @_R(7)={number}*0.25\\n"
+    result = run(ProgramText.from_text(text, str(folder / "main.npg")), mill, "bosch", root=folder)
+    assert not result.alarms
+    print(number, flush=True)
+"""
+
 
 def _check_store(folder: Path, said: int) -> None:
     with Store(folder / "m.db") as store:
@@ -171,6 +211,28 @@ def _check_library(folder: Path, said: int) -> None:
         control.close()
 
 
+def _check_board(folder: Path, said: int) -> None:
+    with Store(folder / "m.db") as store:
+        cycles = store.area("apci.board0.eeprom", int).load()["cycles"]
+        strings = store.area("apci.board0.environment", str).load()
+        programs = store.area("apci.board0.tasks", bytes).load()
+    assert cycles in (said * 3, said * 3 + 3)
+    assert strings["Number"] in (str(said) * 90, str(said + 1) * 90)
+    for number in range(max(1, said - 2), said + 1):
+        program = sap.read_cnc(programs[number % 4])  # which has a check sum
+        assert sum(code[:2] == ("const", number * 3) for code in program.code) == 40
+
+
+def _check_cpl(folder: Path, said: int) -> None:
+    for number in range(max(1, said - 3), said + 1):
+        records = "".join(f"{number} {k} {number * 7}\n" for k in range(30))
+        assert (folder / f"P{number % 5}").read_bytes() == records.encode() + b"\x03\n"
+    found = run(
+        ProgramText.from_text("1 #A%=@5% : #B=@_R(7)\n", str(folder / "main.npg")), MILL, "bosch", root=folder
+    ).variables
+    assert (found["#A%"], found["#B"]) in ((said, said * 0.25), (said + 1, (said + 1) * 0.25))
+
+
 @dataclass(frozen=True)
 class Write:
     """A kind of write: its writer, what is held to what it said, and how far on it is killed, in lines."""
@@ -187,6 +249,8 @@ WRITES = {
     "trace": Write(TRACE, _check_trace, 6),
     "post": Write(POST, _check_post, 6),
     "library": Write(LIBRARY, _check_library, 12),
+    "board": Write(BOARD, _check_board, 12),
+    "cpl": Write(CPL, _check_cpl, 6),
 }
 
 
@@ -221,7 +285,7 @@ def kill_once(write: Write, folder: Path, chance: random.Random, said: int) -> i
 
 def _campaign(name: str, folder: Path, kills: int, seed: int) -> None:
     chance = random.Random(f"{name} {seed}")
-    grows = name in ("store", "library")
+    grows = name in ("store", "library", "board", "cpl")
     said = 0
     for number in range(kills):
         at = folder / "lasting" if grows else folder / str(number)
