@@ -534,3 +534,15 @@ def test_taking_startsyn_back_brakes_with_the_rate_of_the_axis() -> None:
     assert [a - b for a, b in pairwise(steps[1:6])] == [2.0] * 4
     assert (steps[-1], card.read("moving", 1), card.read("pcsmoving", 1)) == (0, 0, 0)
     assert place + speed * speed / 4 - speed < card.read("curpos", 1) < place + speed * speed / 4 + speed
+
+
+def test_a_slave_whose_move_cannot_be_leaves_the_gear_and_stops() -> None:
+    card = ready_card()
+    set_now(card, ("stopfilt", 0, 1), ("mcstgvel", 10))
+    gear(card, -0.5)
+    card.advance(30)
+    assert card.read("mcsvel", 1) == -5
+    move_relative(card, -(2**31) + 3, 1)
+    card.advance(20)
+    assert (card.read("error", 1), card.read("engear", 1), card.read("mcsvel", 1)) == (0x200, 0, 0)
+    assert card.read("mcsvel", 0) == 10

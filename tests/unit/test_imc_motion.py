@@ -445,3 +445,15 @@ def test_the_origin_is_set_in_the_scale_of_the_encoder() -> None:
     move_relative(card, 40, 2)
     card.wait()
     assert [card.read(name, 2) for name in ("curpos", "encp")] == [65, 25 + 60]
+
+
+@pytest.mark.parametrize("system", ["mcs", "pcs"])
+def test_of_a_move_and_a_velocity_in_one_cycle_the_last_counts(system: str) -> None:
+    go = (setting(f"{system}dist", 7000, 1), setting(f"{system}go", FLAG, 1))
+    velocity = setting(f"{system}tgvel", -3, 1)
+    for writes, after in (((*go, velocity), -3), ((velocity, *go), 10)):
+        card = ready_card()
+        set_now(card, (f"{system}maxvel", 10, 1))
+        assert card.push(IFIFO, WriteMany(writes))
+        card.advance(40)
+        assert card.read(f"{system}vel", 1) == after

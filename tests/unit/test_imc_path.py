@@ -326,16 +326,16 @@ def test_an_axis_that_has_left_the_mapping_takes_a_command_behind_the_joint() ->
 
 def test_an_axis_cannot_be_in_both_spaces_at_once() -> None:
     card = ready_card()
-    set_now(card, ("stopfilt", 0, 0), ("stopfilt", 0, 1))
-    enable_path(card, 0, 1)
+    set_now(card, ("stopfilt", 0, 2), ("stopfilt", 0, 3))
+    enable_path(card, 1, 3)
     line(card, 700, 310, speed=10)
     card.advance(10)
-    enable_path(card, 1, 2, space=2)
+    enable_path(card, 3, 2, space=2)
     line(card, 55, 66, speed=10, space=2)
     card.advance(5)
-    assert (card.read("error", 0), card.read("error", 1), card.read("error", 2)) == (0, 0x1000, 0x1000)
+    assert [card.read("error", axis) for axis in range(4)] == [0, 0, 0x1000, 0x1000]
     card.wait()
-    assert _positions(card, 3) == [700, 310, 0]
+    assert _positions(card, 4) == [0, 700, 0, 310]
 
 
 @pytest.mark.covers("imc.param.pathaxisnum1", "imc.param.pathaxisnum2", "imc.concept.pfifo_setup")

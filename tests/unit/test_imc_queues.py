@@ -86,6 +86,21 @@ def test_a_wait_is_released_by_its_time_register_or_by_clearing(release: str) ->
     assert card.waiting_words(QFIFO) == 0
 
 
+@pytest.mark.parametrize(
+    ("queue", "shown"), [(QFIFO, "qwaittime"), (PFIFO1, "pwaittime1"), (PFIFO2, "pwaittime2")]
+)
+def test_a_queue_that_is_emptied_waits_no_longer(queue: Fifo, shown: str) -> None:
+    card = ready_card()
+    enable_path(card)
+    enable_path(card, space=2)
+    card.push(queue, WaitTime(50))
+    card.advance(20)
+    assert card.read(shown) == 50 - 19
+    card.clear_fifo(queue)
+    card.advance(1)
+    assert card.read(shown) == 0
+
+
 @pytest.mark.parametrize("queue", [QFIFO, PFIFO1, PFIFO2])
 def test_a_wait_of_time_lasts_its_milliseconds(queue: Fifo) -> None:
     card = ready_card()
