@@ -339,6 +339,19 @@ def test_tables_give_one_setpoint_a_scan() -> None:
     assert rig.board.state.axis[0]["pcap_index"] == 42
 
 
+@pytest.mark.covers("apci.spd", "apci.spdr")
+def test_a_relative_line_counts_from_the_end_of_the_last_table() -> None:
+    rig = Rig()
+    spd(rig.board, 1, [0.02, 0.05], index=3)
+    spd(rig.board, 2, [0.03, 0.07, 0.09])
+    spd(rig.board, 2, [0.04, -0.01], relative=True)
+    mlr(rig.board, (1, 2), (0.7, -1.3), SLOW, spool=True)
+    ssms(rig.board, (1, 2))
+    rig.scans_until_end()
+    assert rig.board.axes[1].rp == pytest.approx(0.75)
+    assert rig.board.axes[2].rp == pytest.approx(-1.18)
+
+
 @pytest.mark.covers("apci.spd", "apci.const.spdsize")
 def test_table_sizes_and_memory() -> None:
     rig = Rig(keep=50_000)
