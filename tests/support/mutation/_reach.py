@@ -13,6 +13,8 @@ FOLDERS = (
     "conformance",
 )  # tests of commands run in processes of their own, which nothing sees
 
+IMPORTED_LIMIT_S = 60.0  # for what an import runs, which every test of a module reaches
+
 
 @dataclass(frozen=True)
 class Reach:
@@ -30,13 +32,25 @@ class Reach:
         seen = self.tests.get(file, {})
         found = {test for line in lines for test in seen.get(line, ()) if test}
         if not found and any(line in seen for line in lines):  # an import ran it: the module's tests may tell
-            found = {test for tests in seen.values() for test in tests if test} or set(self.times_s)
+            found = self._quick(
+                {test for tests in seen.values() for test in tests if test} or set(self.times_s)
+            )
         together = defaultdict[str, float](float)
         for test in found:
             together[test.partition("::")[0]] += self.times_s.get(test, 0.0)
         return sorted(
             found, key=lambda test: (together[test.partition("::")[0]], self.times_s.get(test, 0.0), test)
         )
+
+    def _quick(self, tests: set[str]) -> set[str]:
+        """Return the quickest of some tests, as many as fit into `IMPORTED_LIMIT_S`."""
+        chosen, total_s = set(), 0.0
+        for test in sorted(tests, key=lambda test: (self.times_s.get(test, 0.0), test)):
+            total_s += self.times_s.get(test, 0.0)
+            if total_s > IMPORTED_LIMIT_S:
+                break
+            chosen.add(test)
+        return chosen
 
     def imported(self, file: str, lines: range) -> bool:
         """Return whether an import ran one of a file's lines."""
