@@ -60,17 +60,29 @@ def _from_nothing(
 
 def _forked(words: list[str], cwd: Path | None) -> subprocess.CompletedProcess[str]:
     """Let a process that has its imports behind it become the command."""
+    return _answered(words, cwd, {"arguments": words})
+
+
+def script(path: Path, text: str, cwd: Path, **more: str) -> subprocess.CompletedProcess[str]:
+    """Let such a process become a Python script that reads a text; `more` is not seen by what is imported already."""
+    if not hasattr(os, "fork"):
+        return subprocess.run(
+            [sys.executable, str(path)], input=text, cwd=cwd, env=environment(**more), capture_output=True, text=True,
+            encoding="utf-8", timeout=TIMEOUT_S, check=False,
+        )  # fmt: skip
+    return _answered([str(path)], cwd, {"script": str(path), "text": text, "environment": more})
+
+
+def _answered(
+    words: list[str], cwd: Path | None, request: dict[str, object]
+) -> subprocess.CompletedProcess[str]:
     server = _server(tuple(sorted(environment().items())))
     assert server.stdin is not None
     assert server.stdout is not None
     with tempfile.TemporaryDirectory() as folder:
         outputs = [Path(folder, name) for name in ("stdout", "stderr")]
-        request = {
-            "arguments": words,
-            "folder": str(cwd or Path.cwd()),
-            "outputs": [str(path) for path in outputs],
-        }
-        server.stdin.write(json.dumps(request) + "\n")
+        place = {"folder": str(cwd or Path.cwd()), "outputs": [str(path) for path in outputs]}
+        server.stdin.write(json.dumps({**request, **place}) + "\n")
         server.stdin.flush()
         if not select.select([server.stdout], [], [], TIMEOUT_S)[0]:
             _server.cache_clear()

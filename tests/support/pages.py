@@ -8,13 +8,12 @@ prints. A page runs in one process of its own (`page_driver`), in a folder of it
 from __future__ import annotations
 
 import json
+import os
 import re
-import subprocess
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from support.command import COMMAND, environment
+from support.command import COMMAND, script
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGES = sorted([*REPOSITORY.glob("*.md"), *REPOSITORY.glob("docs/**/*.md")])
@@ -98,17 +97,8 @@ def run_page(page: Path, folder: Path) -> None:
     command.write_text(f'#!/bin/sh\nexec {" ".join(COMMAND)} "$@"\n', encoding="utf-8")
     command.chmod(0o755)
     todo = steps(page)
-    done = subprocess.run(
-        [sys.executable, str(_DRIVER)],
-        input=json.dumps([(step.kind, step.what, step.text) for step in todo]),
-        cwd=folder,
-        env=environment(PATH=f"{tools.resolve()}:{environment().get('PATH', '')}"),
-        capture_output=True,
-        text=True,
-        encoding="utf-8",
-        timeout=240,
-        check=False,
-    )
+    given = json.dumps([(step.kind, step.what, step.text) for step in todo])
+    done = script(_DRIVER, given, folder, PATH=f"{tools.resolve()}:{os.environ.get('PATH', '')}")
     assert done.returncode == 0, f"{page}\n{done.stdout}\n{done.stderr}"
     for step, (status, printed) in zip(todo, json.loads(done.stdout), strict=True):
         # A command that is to fail shows what it prints.
