@@ -30,6 +30,7 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--lines", metavar="A-B", help="only changes in these lines")
     parser.add_argument("--kinds", nargs="+", metavar="KIND", help="only changes of these kinds")
     parser.add_argument("--jit", action="store_true", help="run compiled: slower, but what users run")
+    parser.add_argument("--verbose", action="store_true", help="say of each change who noticed it, and when")
     parser.add_argument("--list", action="store_true", help="show the changes and run nothing")
     return parser.parse_args()
 
@@ -88,6 +89,11 @@ def main() -> int:
         for module, mutant in pool:
             outcome = session.outcome(module, mutant, reach)
             found[outcome.verdict] += 1
+            if outcome.noticed and options.verbose:
+                print(
+                    f"{time.monotonic() - begun:.0f} s {outcome.verdict} {mutant.lines[0]} {outcome.by}",
+                    flush=True,
+                )
             if not outcome.noticed:
                 place = f"{module.relative_to(ROOT)}:{mutant.lines[0]}"
                 print(f"{outcome.verdict}: {place} {mutant.kind} ({outcome.tests} tests)", flush=True)
