@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain, zip_longest
 from pathlib import Path
 
 FOLDERS = (
@@ -13,7 +14,7 @@ FOLDERS = (
     "conformance",
 )  # tests of commands run in processes of their own, which nothing sees
 
-IMPORTED_LIMIT_S = 60.0  # for what an import runs, which every test of a module reaches
+LIMIT_S = 120.0  # of tests for one change, as long as they took when nothing was changed
 
 
 @dataclass(frozen=True)
@@ -28,29 +29,26 @@ class Reach:
     failed: list[str]
 
     def of(self, file: str, lines: range) -> list[str]:
-        """Return the tests that ran one of a file's lines, file by file, the quickest first."""
+        """Return the tests that ran one of a file's lines, file by file, the quickest first.
+
+        Where there are more than `LIMIT_S` allows, each file gives its quickest.
+        """
         seen = self.tests.get(file, {})
         found = {test for line in lines for test in seen.get(line, ()) if test}
         if not found and any(line in seen for line in lines):  # an import ran it: the module's tests may tell
-            found = self._quick(
-                {test for tests in seen.values() for test in tests if test} or set(self.times_s)
-            )
-        together = defaultdict[str, float](float)
-        for test in found:
-            together[test.partition("::")[0]] += self.times_s.get(test, 0.0)
-        return sorted(
-            found, key=lambda test: (together[test.partition("::")[0]], self.times_s.get(test, 0.0), test)
-        )
-
-    def _quick(self, tests: set[str]) -> set[str]:
-        """Return the quickest of some tests, as many as fit into `IMPORTED_LIMIT_S`."""
-        chosen, total_s = set(), 0.0
-        for test in sorted(tests, key=lambda test: (self.times_s.get(test, 0.0), test)):
-            total_s += self.times_s.get(test, 0.0)
-            if total_s > IMPORTED_LIMIT_S:
-                break
-            chosen.add(test)
-        return chosen
+            found = {test for tests in seen.values() for test in tests if test} or set(self.times_s)
+        by_file = defaultdict[str, list[str]](list)
+        for test in sorted(found, key=lambda test: (self.times_s.get(test, 0.0), test)):
+            by_file[test.partition("::")[0]].append(test)
+        left_s, chosen = LIMIT_S, set[str]()
+        for test in chain.from_iterable(
+            zip_longest(*by_file.values())
+        ):  # one of each file, then the next of each
+            if test is not None and (left_s > 0.0 or not chosen):
+                chosen.add(test)
+                left_s -= self.times_s.get(test, 0.0)
+        files = sorted(by_file.values(), key=lambda tests: sum(self.times_s.get(test, 0.0) for test in tests))
+        return [test for tests in files for test in tests if test in chosen]
 
     def imported(self, file: str, lines: range) -> bool:
         """Return whether an import ran one of a file's lines."""
