@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -362,3 +364,56 @@ def test_a_wrong_rotary_axis_is_found(change: tuple[str, tuple[str, str]], outpu
     assert proof.tool_axis_deg > 0.05
     assert 6 <= proof.tool_axis_line <= 10
     assert (proof.deviation_mm > proof.tolerance_mm) is (output == "machine")
+
+
+SWIVEL = Path(__file__).parents[2] / "examples" / "swivel_head.toml"
+
+
+def head_proof(*changes: tuple[str, str], path: str = VERIFIED) -> PostVerification:
+    """Return the verification on the example machine, with the axes that its file tells to write, changed."""
+    axes = "\n".join(
+        line[4:] for line in SWIVEL.read_text().splitlines() if line == "#" or line.startswith("#   ")
+    )
+    shipped = shipped_text("fanuc-5axis")
+    begin, end = shipped.index("[[parameters.five_axis.axis]]"), shipped.index("[nc_code]")
+    macros = re.sub(
+        r"\$A\$|&A&|\bA(?= = \{)|(?<=\")A(?=%)| A0", lambda found: found[0].replace("A", "B"), shipped[end:]
+    )
+    text = f"{shipped[:begin]}{axes}\n\n{macros}"
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    tool_path = parse_tool_path(path.replace("LOADTL/3", "LOADTL/3,LENGTH,95"), "part.cl")
+    proof = post_file(tool_path, parse_control(text), verify=True, machine=str(SWIVEL)).verification
+    assert proof is not None
+    assert not proof.run.alarms
+    return proof
+
+
+def test_a_program_for_a_swivelling_head_is_verified_on_its_machine() -> None:
+    proof = head_proof()
+    assert proof.ok
+    assert proof.compared == "X Y Z, tool axis by C and B, tip by the geometry of the machine"
+    assert 0.0 < proof.tool_axis_deg < 1e-3
+
+
+@pytest.mark.parametrize("pivot_mm", [179.5, 100.0])
+def test_a_wrong_pivot_length_is_found(pivot_mm: float) -> None:
+    proof = head_proof(("point_mm = [0, 0, 180]", f"point_mm = [0, 0, {pivot_mm}]"))
+    assert not proof.ok
+    # The tool leans by up to 31.1 degree, and its pivot is off along it.
+    lean = math.acos(0.8562126)
+    assert proof.deviation_mm == pytest.approx(2.0 * (180.0 - pivot_mm) * math.sin(0.5 * lean), rel=0.05)
+    assert proof.tool_axis_deg < 1e-3
+
+
+def test_a_head_that_counts_the_other_way_is_found() -> None:
+    proof = head_proof(("direction = [0, 1, 0]", "direction = [0, -1, 0]"))
+    assert not proof.ok
+    assert proof.tool_axis_deg > 5.0
+
+
+def test_the_ring_is_posted_for_the_head_too() -> None:
+    ring = (SWIVEL.parent / "ring.cl").read_text()
+    proof = head_proof(path=ring.replace("LOADTL/4,LENGTH,95", "LOADTL/3"))
+    assert proof.ok

@@ -287,14 +287,16 @@ class RotaryAxis(AxisConfig):
     reference_switch_deg: float | None = Field(default=None, description=_TEXT["reference_switch"])
     index_pulse_deg: float | None = Field(default=None, description=_TEXT["index_pulse"])
     backlash_deg: NotNegative = Field(default=0.0, description=_TEXT["backlash"])
-    carries: Literal["nothing", "part"] = Field(
+    carries: Literal["nothing", "part", "tool"] = Field(
         default="nothing",
         description='"part": the axis is a table that turns the part; views then show the path on the part too. '
-        "A turns about X, B about Y, C about Z; of several tables the first stands on the machine.",
+        '"tool": it is a head that swivels the tool; a posted program is then verified with the place of its centre. '
+        "A turns about X, B about Y, C about Z; of several tables, or heads, the first stands on the machine.",
     )
     center_mm: tuple[Position, Position, Position] = Field(
         default=(0.0, 0.0, 0.0),
-        description="A point of the line that a table turns about: X, Y, Z of the machine.",
+        description="A point of the line that the axis turns about: of a table X, Y, Z of the machine; of a head from "
+        "the nose of the spindle, with all rotary axes at 0, so that Z is the length of its pivot.",
     )
     servo: RotaryServo = Field(default=RotaryServo(), description="Position loop, see `[axis.servo]`.")
 

@@ -7,15 +7,20 @@ from the part to the axes.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.machine import MachineConfig
+from polycnc.machine import RotaryAxis as MachineRotary
 from polycnc.post import Parameters, RotaryAxis
 from polycnc.runner._post_geometry import Floats, Indices, to_segments
 
 _Z = (0.0, 0.0, 1.0)
 _TURNS = RotaryAxis(letter="C", on="table", direction=_Z)
+_LETTERS: tuple[Literal["A"], Literal["B"], Literal["C"]] = ("A", "B", "C")
+_ABOUT: dict[str, tuple[float, float, float]] = {"A": (1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "C": _Z}
 _TABLES = {
     "ac_table": (_TURNS, RotaryAxis(letter="A", on="table", direction=(1.0, 0.0, 0.0))),
     "bc_table": (_TURNS, RotaryAxis(letter="B", on="table", direction=(0.0, 1.0, 0.0))),
@@ -23,20 +28,32 @@ _TABLES = {
 
 
 class PartFrame:
-    """The rotary axes that a control file names, from the part to the tool; there may be none."""
+    """The rotary axes that a control file names, from the part to the tool; there may be none.
 
-    def __init__(self, parameters: Parameters) -> None:
+    A head that the machine knows by itself (`carries = "tool"`) is that of the machine.
+    """
+
+    def __init__(self, parameters: Parameters, machine: MachineConfig | None = None) -> None:
         five_axis = parameters.five_axis
         self.axes: tuple[RotaryAxis, ...] = () if five_axis is None else five_axis.axis
         self.on_machine = five_axis is not None and five_axis.output == "machine"
         self.axes = _TABLES.get(parameters.rotary, self.axes)
+        heads = _heads_of(machine) if machine is not None and self.on_machine else ()
+        if heads and {axis.letter for axis in heads} <= {axis.letter for axis in self.axes}:
+            known = {axis.letter for axis in heads}
+            self.axes = (*(axis for axis in self.axes if axis.letter not in known), *heads)
+        else:
+            heads = ()
         self.letters = tuple(axis.letter for axis in self.axes)
         self.has_head = self.on_machine and any(axis.on == "head" for axis in self.axes)
         self.compared = "X Y Z"
         if self.axes:
             self.compared += f", tool axis by {' and '.join(self.letters)}"
         if self.on_machine:
-            self.compared += ", tip by the geometry of the control file"
+            whose = "the control file"
+            if heads:
+                whose = "the machine" if len(heads) == len(self.axes) else f"the machine's head and {whose}"
+            self.compared += f", tip by the geometry of {whose}"
         elif parameters.rotary == "vector":
             self.compared += "; not the tool axis"
 
@@ -67,6 +84,16 @@ class PartFrame:
 
     def _with_angles(self, angles: Floats) -> list[tuple[RotaryAxis, Floats]]:
         return [(axis, angles[:, place]) for place, axis in enumerate(self.axes)]
+
+
+def _heads_of(machine: MachineConfig) -> tuple[RotaryAxis, ...]:
+    """Return the axes that swivel the tool of a machine, from the machine to the tool."""
+    return tuple(
+        RotaryAxis(letter=letter, on="head", direction=_ABOUT[letter], point_mm=axis.center_mm)
+        for axis in machine.axes
+        for letter in _LETTERS
+        if isinstance(axis, MachineRotary) and axis.carries == "tool" and axis.name.startswith(letter)
+    )
 
 
 class ToolAxisCheck:

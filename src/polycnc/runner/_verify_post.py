@@ -160,7 +160,7 @@ def verify_post(
     if carried is not None:
         owners = carried
         sweeps = (sweep._replace(record=int(owners[sweep.record])) for sweep in sweep_tool_path(tool_path))
-    frame = PartFrame(parameters or Parameters())
+    frame = PartFrame(parameters or Parameters(), config)
     moves = Moves(
         _judged(sweeps, tangency),
         len(block_map.line),
