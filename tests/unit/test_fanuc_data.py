@@ -97,6 +97,15 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     "cnc_rdtofsr", "cnc_wrtofsr", "example.cnc_rdtofsr", "example.cnc_wrtofsr", "enum.offset_type.all",
     "cnc_rdtofsinfo",
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.IODBTO.datano_s",
+    "fanuc.IODBTO.datano_e",
+    "fanuc.IODBTO.type",
+    "fanuc.IODBTO.u.m_ofs",
+    "fanuc.IODBTO.u.m_ofs_a",
+    "fanuc.ODBTLINF.ofs_type",
+    "fanuc.ODBTLINF.use_no",
+)
 def test_examples_of_tool_offset_ranges() -> None:
     _, handle = attached()
     values = [37 * k - 1500 for k in range(1, 100)]
@@ -215,6 +224,7 @@ def test_parameters_of_axes(kind: str) -> None:
 
 
 @covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
+@pytest.mark.covers("fanuc.IODBPSD.u.cdatas")
 def test_example_axis_names() -> None:
     _, handle = attached(axes=4, rotary=(3,))
     code, data = fwlib.cnc_rdparam(handle, 1020, ALL_AXES, 4 + 1 * fwlib.MAX_AXIS)
@@ -466,6 +476,12 @@ def test_records_that_are_refused_change_nothing() -> None:
 
 
 @covers("cnc_rdparainfo", "cnc_rdparainfo.err.EW_NUMBER")
+@pytest.mark.covers(
+    "fanuc.ODBPARAIF.info.prm_no",
+    "fanuc.ODBPARAIF.info_no",
+    "fanuc.ODBPARAIF.prev_no",
+    "fanuc.ODBPARAIF.next_no",
+)
 def test_walking_through_the_parameters() -> None:
     _, handle = attached()
     rows = parameter_rows()
