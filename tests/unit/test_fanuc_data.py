@@ -251,7 +251,15 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     running(control, 7)
     control.advance(3000)
     assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
-    assert control.alarm_bits
+    (alarm,) = control.status().alarms
+    assert (alarm.number, alarm.text, alarm.axis) == (500, "OVER TRAVEL : +Y", "Y")
+    assert fwlib.cnc_rddynamic(handle, 1, 38)[1].alarm == 1 << 4
+    control.reset()
+    registered(control, O8="\nG1 X-9. Y-7.26 F600\nM30\n")
+    running(control, 8)
+    control.advance(3000)
+    assert [(each.number, each.text) for each in control.status().alarms] == [(501, "OVER TRAVEL : -Y")]
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
     control.reset()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=-8_000)) == OK  # below 1321: no limits
     running(control, 7)
