@@ -61,7 +61,12 @@ class ConfigurationError(UsageError):
 
 
 class ProgramError(PolycncError):
-    """A part program that cannot be run as written."""
+    """A part program that cannot be run as written.
+
+    `limit` is the axis whose soft limit a move would pass, and whether that is the upper one.
+    """
+
+    limit: tuple[str, bool] | None = None
 
     def __init__(
         self, what: str, *, code: str = "", position: SourcePosition | None = None, hint: str = ""

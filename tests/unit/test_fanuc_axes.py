@@ -134,6 +134,7 @@ def test_two_sessions_have_handles_of_their_own() -> None:
 
 
 @covers("example.cnc_actf", "cnc_actf")
+@pytest.mark.covers("fanuc.ODBACT.data")
 def test_example_actual_feed() -> None:
     control, handle = attached()
     registered(control, O1234="\nN10 G98 F1200\nN20 G1 X10. Z200.\nM30\n")
@@ -162,6 +163,7 @@ def test_actual_feed_in_inch_has_two_decimals() -> None:
 @covers(
     "example.cnc_absolute", "cnc_absolute", "enum.axis.ALL_AXES", "enum.axis.1..m", "concept.decimal_point"
 )
+@pytest.mark.covers("fanuc.ODBAXIS.data", "fanuc.ODBAXIS.type")
 def test_example_absolute() -> None:
     control, handle = attached()
     moved(control, "G0 X120.005 Y-50.119 Z0.08")
@@ -202,6 +204,7 @@ def test_example_distance_is_twice_the_real_one() -> None:
 
 
 @covers("example.cnc_wrrelpos", "cnc_wrrelpos", "concept.position_contents")
+@pytest.mark.covers("fanuc.IDBWRR.data", "fanuc.IDBWRR.type")
 def test_example_relative_preset_to_the_origin() -> None:
     control, handle = attached()
     moved(control, "G0 X33.21 Y-7.5 Z3.")
@@ -362,6 +365,20 @@ def test_reads_need_no_option() -> None:
 
 
 @covers("cnc_rddynamic", "concept.dynamic_snapshot", "example.cnc_rddynamic")
+@pytest.mark.covers(
+    "fanuc.ODBDY.actf",
+    "fanuc.ODBDY.acts",
+    "fanuc.ODBDY.alarm",
+    "fanuc.ODBDY.axis",
+    "fanuc.ODBDY.prgmnum",
+    "fanuc.ODBDY.prgnum",
+    "fanuc.ODBDY.seqnum",
+    "fanuc.ODBDY.pos.faxis.distance",
+    "fanuc.ODBDY.pos.oaxis.absolute",
+    "fanuc.ODBDY.pos.oaxis.distance",
+    "fanuc.ODBDY.pos.oaxis.machine",
+    "fanuc.ODBDY.pos.oaxis.relative",
+)
 def test_the_dynamic_data_are_those_of_the_single_functions() -> None:
     control, handle = attached(axes=4, rotary=(4,))
     registered(

@@ -97,6 +97,15 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     "cnc_rdtofsr", "cnc_wrtofsr", "example.cnc_rdtofsr", "example.cnc_wrtofsr", "enum.offset_type.all",
     "cnc_rdtofsinfo",
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.IODBTO.datano_s",
+    "fanuc.IODBTO.datano_e",
+    "fanuc.IODBTO.type",
+    "fanuc.IODBTO.u.m_ofs",
+    "fanuc.IODBTO.u.m_ofs_a",
+    "fanuc.ODBTLINF.ofs_type",
+    "fanuc.ODBTLINF.use_no",
+)
 def test_examples_of_tool_offset_ranges() -> None:
     _, handle = attached()
     values = [37 * k - 1500 for k in range(1, 100)]
@@ -215,6 +224,7 @@ def test_parameters_of_axes(kind: str) -> None:
 
 
 @covers("cnc_rdparam", "example.cnc_rdparam", "ncparam.1020")
+@pytest.mark.covers("fanuc.IODBPSD.u.cdatas")
 def test_example_axis_names() -> None:
     _, handle = attached(axes=4, rotary=(3,))
     code, data = fwlib.cnc_rdparam(handle, 1020, ALL_AXES, 4 + 1 * fwlib.MAX_AXIS)
@@ -241,7 +251,15 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     running(control, 7)
     control.advance(3000)
     assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
-    assert control.alarm_bits
+    (alarm,) = control.status().alarms
+    assert (alarm.number, alarm.text, alarm.axis) == (500, "OVER TRAVEL : +Y", "Y")
+    assert fwlib.cnc_rddynamic(handle, 1, 38)[1].alarm == 1 << 4
+    control.reset()
+    registered(control, O8="\nG1 X-9. Y-7.26 F600\nM30\n")
+    running(control, 8)
+    control.advance(3000)
+    assert [(each.number, each.text) for each in control.status().alarms] == [(501, "OVER TRAVEL : -Y")]
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
     control.reset()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=-8_000)) == OK  # below 1321: no limits
     running(control, 7)
@@ -466,6 +484,12 @@ def test_records_that_are_refused_change_nothing() -> None:
 
 
 @covers("cnc_rdparainfo", "cnc_rdparainfo.err.EW_NUMBER")
+@pytest.mark.covers(
+    "fanuc.ODBPARAIF.info.prm_no",
+    "fanuc.ODBPARAIF.info_no",
+    "fanuc.ODBPARAIF.prev_no",
+    "fanuc.ODBPARAIF.next_no",
+)
 def test_walking_through_the_parameters() -> None:
     _, handle = attached()
     rows = parameter_rows()

@@ -105,6 +105,13 @@ def test_directory_requests_that_are_refused() -> None:
     "cnc_rdproginfo", "enum.rdproginfo_type.0", "enum.rdproginfo_type.1", "format.proginfo_ascii",
     "example.cnc_rdproginfo", "cnc_rdproginfo.err.EW_LENGTH", "cnc_rdproginfo.err.EW_ATTRIB",
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.ODBNC.u.asc",
+    "fanuc.ODBNC.u.bin.reg_prg",
+    "fanuc.ODBNC.u.bin.unreg_prg",
+    "fanuc.ODBNC.u.bin.used_mem",
+    "fanuc.ODBNC.u.bin.unused_mem",
+)
 def test_program_information() -> None:
     _, handle = _directory()
     code, info = fwlib.cnc_rdproginfo(handle, 0, 12)
@@ -129,6 +136,7 @@ def test_program_information() -> None:
 
 
 @covers("example.cnc_rdprgnum", "cnc_rdprgnum", "concept.subprogram_numbers")
+@pytest.mark.covers("fanuc.ODBPRO.data", "fanuc.ODBPRO.mdata")
 def test_example_program_numbers_in_a_subprogram() -> None:
     control, handle = attached()
     registered(
@@ -238,6 +246,9 @@ def test_mdi_programs_that_are_refused() -> None:
 
 
 @covers("cnc_rdmdipntr", "cnc_wrmdipntr")
+@pytest.mark.covers(
+    "fanuc.ODBMDIP.mdiprog", "fanuc.ODBMDIP.mdipntr", "fanuc.ODBMDIP.crntprog", "fanuc.ODBMDIP.crntpntr"
+)
 def test_mdi_pointers() -> None:
     control, handle = attached(axes=1)
     registered(control, O77="\nG4P80\nM99\n")

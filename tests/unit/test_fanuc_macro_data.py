@@ -124,6 +124,7 @@ def test_binary_form_reaches_farther_than_the_decimal_one() -> None:
     ],
 )
 @covers("cnc_rdmacroinfo", "cnc_rdmacro.err.EW_NUMBER", "cnc_wrmacro.err.EW_NUMBER")
+@pytest.mark.covers("fanuc.ODBMVINF.use_no1", "fanuc.ODBMVINF.use_no2", "fanuc.ODBM.dec_val")
 def test_ranges_of_common_variables(
     options: Any, code: int, there: tuple[int, ...], missing: tuple[int, ...]
 ) -> None:
@@ -154,6 +155,9 @@ def test_local_variables_are_those_of_the_macro_and_cannot_be_written() -> None:
 
 
 @covers("cnc_rdmacror", "cnc_wrmacror", "example.cnc_rdmacror", "example.cnc_wrmacror")
+@pytest.mark.covers(
+    "fanuc.IODBMR.datano_s", "fanuc.IODBMR.datano_e", "fanuc.IODBMR.data.mcr_val", "fanuc.IODBMR.data.dec_val"
+)
 def test_ranges_of_macro_variables() -> None:
     control, handle = attached()
     count = 20

@@ -210,6 +210,7 @@ def test_a_download_never_answers_that_a_buffer_is_full() -> None:
 
 @covers("example.cnc_upload_format", "cnc_upstart", "cnc_upload", "cnc_upend", "format.upload")
 @covers("concept.no_nul_termination")
+@pytest.mark.covers("fanuc.ODBUP.data")
 def test_example_upload_in_pieces() -> None:
     _, handle = attached()
     assert sent(handle, FORMAT) == (OK, OK)

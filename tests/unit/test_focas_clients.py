@@ -140,3 +140,15 @@ def test_the_load_of_the_spindle_follows_its_speed(profile: str) -> None:
     assert loads == [25.0, *[0.0] * 7]
     assert Value8.from_wire(raw.payload).number == 25.0
     assert Value8.from_wire(most.payload).number == 6000.0
+
+
+@pytest.mark.parametrize("profile", ["power-mate", *LATER])
+def test_a_program_past_a_limit_is_an_overtravel_of_its_axis(profile: str) -> None:
+    control, session = served(profile, "O0077\nG1X2.F3000\nX3.Y-7.51\nM30\n")
+    control.parameters.set(1321, -7500, 2)
+    control.cycle_start()
+    control.advance(4000)
+    found, bits = ask(session, r(0x23, ALL, 10, 1, 32), r(0x1A))
+    assert struct.unpack_from(">4i", found.payload) == (501, 4, 2, 16)
+    assert found.payload[16:33] == b"OVER TRAVEL : -Y\0"
+    assert bits.payload == (1 << 4).to_bytes(4, "big")

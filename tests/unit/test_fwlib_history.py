@@ -92,6 +92,7 @@ def test_histories_are_read_while_sampling_is_stopped() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdophistry", "fanuc.ODBHIS.rec_type.0", "fanuc.concept.history_record_kinds")
+@pytest.mark.covers("fanuc.ODBHIS.rec_mdi", "fanuc.ODBHIS.rec_type")
 def test_a_key() -> None:
     control, library, handle = fresh()
     control.history.press_key(ord("G"))
@@ -118,6 +119,14 @@ def monitored(library: Any, handle: int, *entries: tuple[int, int, int, int]) ->
     ],
 )  # fmt: skip
 @pytest.mark.covers("fanuc.ODBHIS.rec_type.1", "fanuc.cnc_wrhissgnl")
+@pytest.mark.covers(
+    "fanuc.ODBHIS.rec_sgn",
+    "fanuc.ODBHIS.sig_name",
+    "fanuc.ODBHIS.sig_old",
+    "fanuc.ODBHIS.sig_new",
+    "fanuc.ODBHIS.sig_no",
+    "fanuc.concept.history_record_kinds",
+)
 def test_the_change_of_a_signal(letter: str, number: int) -> None:
     control, library, handle = fresh()
     address = 3 if letter == "F" else 44
@@ -161,6 +170,12 @@ def test_the_change_of_a_signal(letter: str, number: int) -> None:
     ],
 )
 @pytest.mark.covers("fanuc.ODBHIS.rec_type.2")
+@pytest.mark.covers(
+    "fanuc.ODBHIS.rec_alm",
+    "fanuc.ODBHIS.alm_grp",
+    "fanuc.ODBHIS.axis_no",
+    "fanuc.concept.history_record_kinds",
+)
 def test_an_alarm(bit: int, number: int) -> None:
     control, library, handle = fresh()
     control.raise_alarm(number, "TEXT", axis=2)
@@ -180,12 +195,20 @@ def test_unused_alarm_groups_never_appear() -> None:
     assert bits & 0x0100
 
 
+@pytest.mark.covers(
+    "fanuc.ODBHIS.rec_date",
+    "fanuc.ODBHIS.rec_time",
+    "fanuc.ODBHIS.year",
+    "fanuc.ODBHIS.pw_flag",
+    "fanuc.concept.history_record_kinds",
+)
 def test_power_on_notes_date_and_time() -> None:
     control, library, handle = fresh()
     control.power_cycle()
     assert operations(library, handle) == [b"\3\0\x1f\4\x11\1\0\0", b"\4\0\x16\x35\x29\1\0\0"]
 
 
+@pytest.mark.covers("fanuc.ODBHIS.s_no", "fanuc.ODBHIS.e_no")
 def test_fewer_records_than_asked_for() -> None:
     control, library, handle = fresh()
     for code in (65, 66, 67):
@@ -243,6 +266,12 @@ def test_reading_is_refused(function: str, first: int, last: int, length: int, c
 
 
 @pytest.mark.covers("fanuc.cnc_rdalmhistry")
+@pytest.mark.covers(
+    "fanuc.ODBAHIS.alm_his.alm_grp",
+    "fanuc.ODBAHIS.alm_his.alm_msg",
+    "fanuc.ODBAHIS.alm_his.axis_no",
+    "fanuc.ODBAHIS.alm_his.len_msg",
+)
 def test_an_alarm_record_byte_by_byte() -> None:
     control, library, handle = fresh()
     control.raise_alarm(85, "COMMUNICATION ERROR OF THE READER/PUNCHER")
@@ -286,6 +315,13 @@ def test_one_history_is_cleared_alone() -> None:
 
 
 @pytest.mark.covers("fanuc.cnc_rdhissgnl", "fanuc.IODBSIG.sig_name.0")
+@pytest.mark.covers(
+    "fanuc.IODBSIG.type",
+    "fanuc.IODBSIG.data.ent_no",
+    "fanuc.IODBSIG.data.sig_name",
+    "fanuc.IODBSIG.data.sig_no",
+    "fanuc.IODBSIG.data.mask_pat",
+)
 def test_the_table_has_twenty_entries_and_keeps_those_not_named() -> None:
     _, library, handle = fresh()
     assert monitored(library, handle, (20, 2, 1003, 0x81), (3, 1, 12, 0x7F)) is EW.EW_OK

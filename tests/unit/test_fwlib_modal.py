@@ -81,6 +81,7 @@ CODES = [
         for row in CODES
     ],
 )
+@pytest.mark.covers("fanuc.ODBMDL.g_data")
 def test_a_code_has_its_number_and_stays_in_force(group: int, value: int, text: str, words: str) -> None:
     extra = "G1 X3. Y7. Z9. F800" if group else "X3. Y7. R50."
     library, handle, _ = executing(f"{text}\n{extra}", words)
@@ -124,6 +125,7 @@ def test_polar_interpolation_that_comes_next_has_its_number() -> None:
 @pytest.mark.covers(
     "fanuc.cnc_modal.type.-1", "fanuc.modal.G.undefined", "fanuc.modal.G.11.0", "fanuc.modal.G.20.0"
 )
+@pytest.mark.covers("fanuc.ODBMDL.datano", "fanuc.ODBMDL.g_rdata")
 def test_all_groups_at_once_and_those_without_codes() -> None:
     library, handle, _ = executing("G91 G18\nG1 Z20. F900", "G1")
     code, modal = library.cnc_modal(handle, -1, 0)
@@ -169,6 +171,7 @@ SINGLE = {
         if (found := SINGLE[name]) is not None
     ],
 )
+@pytest.mark.covers("fanuc.ODBMDL.datano", "fanuc.ODBMDL.aux", "fanuc.ODBMDL.raux1")
 def test_an_address_has_its_number_and_last_value(number: int, text: str, value: int) -> None:
     name = NUMBERS[number]
     control_axes = {"axes": 4, "rotary": (4,)} if name in "ABC" else {"axes": 4} if name in "UVW" else {}
@@ -218,6 +221,7 @@ def test_words_of_the_axes(number: int, value: int) -> None:
     "fanuc.ODBMDL.flag1.bit7", "fanuc.ODBMDL.flag1.bit6", "fanuc.ODBMDL.flag1.bit5", "fanuc.ODBMDL.flag1.bit4",
     "fanuc.ODBMDL.flag1.bits3_0", "fanuc.ODBMDL.flag2.bits2_0", "fanuc.ODBMDL.flag2.bits7_3",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBMDL.aux.flag2")
 def test_what_is_known_about_a_word() -> None:
     library, handle, _ = executing("G1 X-12.5 F812.25\nY3.\nF60 X-20.", "G1")
 

@@ -40,6 +40,7 @@ def buffers(library: Any, handle: int) -> list[list[int]]:
 @pytest.mark.covers(
     "fanuc.example.cnc_abspoint", "fanuc.cnc_abspoint", "fanuc.nmod.0", "fanuc.ODBPOS.unit.linear_mm"
 )
+@pytest.mark.covers("fanuc.ODBPOS.idata", "fanuc.ODBPOS.ldata")
 def test_absolute_motion_of_the_manual() -> None:
     control = PowerMate()
     control.programs.memory.create("O0004", b"O0004\nG0 X10. Y10.\n")
@@ -153,6 +154,7 @@ def test_setting_a_coordinate() -> None:
     "fanuc.ODBFIN.bits7_6", "fanuc.cnc_dwell.err.EW_BUSY", "fanuc.cnc_incpoint.err.EW_BUSY",
     "fanuc.cnc_abspoint.err.EW_BUSY", "fanuc.cnc_coordre.err.EW_BUSY", "fanuc.cnc_refpoint.err.EW_BUSY",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBEXEC.cdata", "fanuc.ODBFIN.cdata")
 def test_two_buffers_and_a_completion_flag_per_path(path: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -447,6 +449,7 @@ def test_single_block() -> None:
     "fanuc.cnc_opdi.sig14.axis", "fanuc.cnc_opdi.number.7", "fanuc.cnc_opdi.sig7.cdata.0",
     "fanuc.cnc_opdi.sig7.cdata.1",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBOPDI.axis")
 def test_jog_feed_of_one_axis_and_of_all() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -134,6 +134,7 @@ def test_mode(value: int, aut: int) -> None:
         for value, speed in enumerate((15000, 7500, 3750, 500))
     ],
 )
+@pytest.mark.covers("fanuc.IODBSGNL.rpd_ovrd")
 def test_rapid_override(value: int, mm_min: int) -> None:
     control, _, _ = written(rpd_ovrd=value)
     control.programs.memory.create("O0004", b"O0004\nG0 X300.\n")
@@ -156,6 +157,7 @@ JOG_PERCENT = (
         for value, percent in enumerate(JOG_PERCENT)
     ],
 )
+@pytest.mark.covers("fanuc.IODBSGNL.jog_ovrd")
 def test_jog_override(value: int, percent: float) -> None:
     control, _, _ = written(jog_ovrd=value, mode=4)
     control.signals.give(100, 4)
@@ -191,6 +193,7 @@ PROGRAM = b"O0004\nG1 X2. F600\n/Y3.\nZ4.\n"
         pytest.param("sngl_blck", 1, 0, marks=pytest.mark.covers("fanuc.IODBSGNL.sngl_blck.1")),
     ],
 )
+@pytest.mark.covers("fanuc.IODBSGNL.blck_del")
 def test_switches_of_a_program(member: str, value: int, seen: int) -> None:
     control, _, _ = written(**{member: 1 - value})
     control.panel.set({member: value})
@@ -219,6 +222,7 @@ def test_dry_run(value: int, mm_min: int) -> None:
 
 
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct.0", "fanuc.IODBSGNL.mem_prtct.1")
+@pytest.mark.covers("fanuc.IODBSGNL.mem_prtct")
 def test_memory_protection() -> None:
     control, library, handle = written(mem_prtct=1)
     assert control.protection_keys == {1, 2, 3, 4}
@@ -260,6 +264,7 @@ def test_feed_hold_holds_and_keeps_from_starting() -> None:
         for bit in range(8)
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.IODBGNRL.sgnal")
 def test_a_general_purpose_signal(bit: int) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -299,6 +304,17 @@ def test_bits_above_the_eighth_select_nothing() -> None:
         )
         for bit in range(8)
     ],
+)
+@pytest.mark.covers(
+    "fanuc.IODBRDNA.type",
+    "fanuc.IODBRDNA.sgnl1_name",
+    "fanuc.IODBRDNA.sgnl2_name",
+    "fanuc.IODBRDNA.sgnl3_name",
+    "fanuc.IODBRDNA.sgnl4_name",
+    "fanuc.IODBRDNA.sgnl5_name",
+    "fanuc.IODBRDNA.sgnl6_name",
+    "fanuc.IODBRDNA.sgnl7_name",
+    "fanuc.IODBRDNA.sgnl8_name",
 )
 def test_a_signal_has_a_name_of_eight_characters(bit: int) -> None:
     library, handle = at(PowerMate())

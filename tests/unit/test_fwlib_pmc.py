@@ -141,6 +141,13 @@ def test_protected_addresses_are_not_written(kind: int, first: int, count: int) 
         pytest.param(2, 43, 12, "ldata", [-0x1A9CBEE], marks=pytest.mark.covers("fanuc.pmc.data_type.2")),
     ],
 )
+@pytest.mark.covers(
+    "fanuc.IODBPMC.type_d",
+    "fanuc.IODBPMC.u",
+    "fanuc.IODBPMC.u.cdata",
+    "fanuc.IODBPMC.u.idata",
+    "fanuc.IODBPMC.u.ldata",
+)
 def test_items_of_a_type(data_type: int, last: int, length: int, member: str, values: list[int]) -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -212,6 +219,7 @@ def test_a_control_without_a_pmc() -> None:
     "fanuc.pmc_rdpmcinfo", "fanuc.pmc_rdpmcinfo.adr_type.-1", "fanuc.pmc_rdpmcinfo.err.EW_ATTRIB",
     "fanuc.ODBPMCINF.adr_attr.bit7", "fanuc.ODBPMCINF.adr_attr.bits6_0",
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBPMCINF.datano", "fanuc.ODBPMCINF.info.adr_attr")
 def test_which_addresses_there_are() -> None:
     library, handle = at(PowerMate())
     code, every = library.pmc_rdpmcinfo(handle, -1)

@@ -39,6 +39,14 @@ def running(text: str, cycles: int = 5, **more: Any) -> PowerMate:
 @pytest.mark.covers(
     "fanuc.cnc_sysinfo", "fanuc.example.cnc_sysinfo", "fanuc.ODBSYS.cnc_type.PM", "fanuc.ODBSYS.mt_type.H"
 )
+@pytest.mark.covers(
+    "fanuc.ODBSYS.max_axis",
+    "fanuc.ODBSYS.cnc_type",
+    "fanuc.ODBSYS.mt_type",
+    "fanuc.ODBSYS.series",
+    "fanuc.ODBSYS.version",
+    "fanuc.ODBSYS.axes",
+)
 def test_system_of_the_manuals_sample() -> None:
     library, handle = at(PowerMate(axes=4))
     code, system = library.cnc_sysinfo(handle)
@@ -95,6 +103,9 @@ MODULES: dict[str, tuple[str, dict[int, Any]]] = {
         for value, module in modules.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers(
+    "fanuc.ODBSYSC.hdiio", "fanuc.ODBSYSC.posmin", "fanuc.ODBSYSC.sicmin", "fanuc.ODBSYSC.srmmin"
+)
 def test_a_module_has_its_code(element: str, argument: str, module: Any, value: int) -> None:
     control = PowerMate()
     control.configuration = Configuration(**{argument: module})
@@ -114,6 +125,7 @@ def test_a_module_has_its_code(element: str, argument: str, module: Any, value: 
         pytest.param(5, [0, 0, 0], marks=pytest.mark.covers("fanuc.ODBSYSC.sv5min.0")),
     ],
 )
+@pytest.mark.covers("fanuc.ODBSYSC.sv1min", "fanuc.ODBSYSC.sv3min", "fanuc.ODBSYSC.sv5min")
 def test_servo_modules_are_those_of_the_axes(axes: int, modules: list[int]) -> None:
     library, handle = at(PowerMate(axes=axes))
     system = library.cnc_sysconfig(handle)[1]
@@ -121,6 +133,15 @@ def test_servo_modules_are_those_of_the_axes(axes: int, modules: list[int]) -> N
 
 
 @pytest.mark.covers("fanuc.cnc_sysconfig", "fanuc.ODBSYSC.soft_id.40H", "fanuc.ODBSYSC.soft_id.FFH")
+@pytest.mark.covers(
+    "fanuc.ODBSYSC.soft_id",
+    "fanuc.ODBSYSC.s_series",
+    "fanuc.ODBSYSC.s_version",
+    "fanuc.ODBSYSC.svo_soft",
+    "fanuc.ODBSYSC.pmc_soft",
+    "fanuc.ODBSYSC.lad_soft",
+    "fanuc.ODBSYSC.mcr_soft",
+)
 def test_software_of_the_control() -> None:
     control = PowerMate()
     library, handle = at(control)
@@ -148,6 +169,7 @@ def test_software_of_the_control() -> None:
         }.items()
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBST.aut")
 def test_mode(mode: str, value: int) -> None:
     control = PowerMate()
     control.select_mode(mode)
@@ -195,6 +217,7 @@ def stopped() -> PowerMate:
         ))
     ],
 )  # fmt: skip
+@pytest.mark.covers("fanuc.ODBST.mstb")
 def test_state_of_a_program(element: str, value: int, setup: Callable[[], PowerMate]) -> None:
     library, handle = at(setup())
     assert getattr(library.cnc_statinfo(handle)[1], element) == value
@@ -351,6 +374,12 @@ def test_the_manuals_program_prints_alarms(numbers: tuple[int, ...], printed: li
 
 
 @pytest.mark.covers("fanuc.cnc_rdalminfo", "fanuc.cnc_rdalminfo.type.0", "fanuc.cnc_rdalminfo.type.1")
+@pytest.mark.covers(
+    "fanuc.ALMINFO.alm.axis",
+    "fanuc.ALMINFO.alm.msg_len",
+    "fanuc.ALMINFO.alm.alm_msg",
+    "fanuc.ALMINFO.data_end",
+)
 def test_alarms_with_axis_and_text() -> None:
     control = PowerMate()
     library, handle = at(control)

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TypeAlias
 
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.errors import ProgramError
 from polycnc.machine import Clock, Store
 
 _ALARMS = "cnc.alarm_history"
@@ -64,7 +65,8 @@ ALARMS: AlarmTable = MappingProxyType({
 # fmt: on
 """The alarms of a control without a vendor, by the name that the code uses; a vendor has its own numbers and texts.
 
-Errors of a program are "program", or "program CODE" where a vendor has a number for the error's code."""
+Errors of a program are "program", or "program CODE" where a vendor has a number for the error's code; moves past a soft
+limit "program soft_limit_low" or "..._high" where a vendor has such rows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,10 +145,15 @@ class AlarmList:
         """Return the alarms that stop a channel, oldest first."""
         return tuple(alarm for alarm in self._active.values() if alarm.channel in (None, channel))
 
-    def of_program(self, code: str) -> str:
-        """Return the name of the alarm for an error of a program: the table's row "program CODE", or "program"."""
-        name = f"program {code}"
-        return name if code and name in self._table else "program"
+    def of_program(self, error: ProgramError) -> tuple[str, str | None]:
+        """Return name and axis of the alarm for an error of a program: a row of its own in the table, or "program"."""
+        if error.limit is not None:
+            axis, upper = error.limit
+            name = f"program soft_limit_{'high' if upper else 'low'}"
+            if name in self._table:
+                return name, axis
+        name = f"program {error.code}"
+        return (name if error.code and name in self._table else "program"), None
 
     def owner(self, axis: str) -> int | None:
         """Return the channel of an axis, None where there is only one."""

@@ -645,9 +645,9 @@ class Control:
             self.parts.count()
         if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
             error = run.error
-            name = self.alarms.of_program(error.code)
+            name, axis = self.alarms.of_program(error)
             detail = str(error).splitlines()[0] if name == "program" else error.what
-            self.alarms.put(name, detail=detail, channel=channel.path)
+            self.alarms.put(name, axis=axis, detail=detail, channel=channel.path)
 
     def _note_running(self) -> None:
         self.programs.running = frozenset().union(*(channel.programs for channel in self.channels))

@@ -224,7 +224,10 @@ class MotionBuilder:
         later = (int(whole[AXIS_P]), int(whole[AXIS_Q])) if compensated else ()
         if trouble := self._limit_trouble(point, what, later):
             index, text, hint = trouble
-            raise self.fail(text, hint, self.words.first(self.state.axis_names[index]))
+            axis = self.state.axis_names[index]
+            error = self.fail(text, hint, self.words.first(axis))
+            error.limit = axis, point[index] > self._high[index]
+            raise error
 
     def check_path(self, item: Move) -> None:
         """Refuse a compensated move that leaves the soft limits.

@@ -96,6 +96,8 @@ POWER_MATE_ALARMS = _Table({
     "program":               AlarmRow(10, AlarmKind.PROGRAM, "{detail}"),
     "soft_limit_low":        AlarmRow(501, AlarmKind.TRAVEL, "OVER TRAVEL : -{axis}"),
     "soft_limit_high":       AlarmRow(500, AlarmKind.TRAVEL, "OVER TRAVEL : +{axis}"),
+    "program soft_limit_low":  AlarmRow(501, AlarmKind.TRAVEL, "OVER TRAVEL : -{axis}"),
+    "program soft_limit_high": AlarmRow(500, AlarmKind.TRAVEL, "OVER TRAVEL : +{axis}"),
     "limit_switch_low":      AlarmRow(507, AlarmKind.TRAVEL, "OVER TRAVEL : -{axis}"),
     "limit_switch_high":     AlarmRow(506, AlarmKind.TRAVEL, "OVER TRAVEL : +{axis}"),
     "reference_not_found":   AlarmRow(90, AlarmKind.PROGRAM, "REFERENCE RETURN INCOMPLETE: {axis} ({detail})"),
