@@ -18,7 +18,7 @@ from polycnc.nc import ProgramText
 from polycnc.runner._blocks import KINDS, ExecutedBlock
 from polycnc.runner._result import RunResult, counted, time_text
 from polycnc.runner.view._motion import DERIVATIVES
-from polycnc.runner.view._part_frame import tables_of, with_part_frame
+from polycnc.runner.view._part_frame import turning_axes, with_part_frame
 from polycnc.runner.view._track import Track
 
 _MOST_LINES = 250_000  # of a listing; of longer programs only the lines that the path shows are listed
@@ -65,7 +65,7 @@ def page(
     library = plotly_source()
     machine = result.config
     framed = machine is not None and [axis.name for axis in machine.axes] == [name for name, _ in axes]
-    if machine is not None and framed and beside is None and tables_of(machine):
+    if machine is not None and framed and beside is None and turning_axes(machine):
         track = with_part_frame(track, machine)
     on_part = track.position.shape[1] - len(axes)
     listing = _Listing(result, track, texts)

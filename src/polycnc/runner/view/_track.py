@@ -18,7 +18,7 @@ from polycnc.runner.view._thin import Floats, kept_rows
 MOST_POINTS = 100_000
 _PIECE = 1 << 16  # rows of a trace that are thinned at a time
 _TOLERANCE = {"mm": 0.005, "deg": 0.01}
-_SPEED_MM_S = 1.0  # deviation of the speed that counts as much as a tolerance of position
+_SPEED_MM_S = 0.1  # deviation of the speed that counts as much as a tolerance of position
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,16 @@ class Track:
     tolerance_mm: float
     thinned: bool  # executions are left out too
     motion: Motion
+
+    def block_at(self) -> npt.NDArray[np.int64]:
+        """Return the place in `blocks` of each point's block; the rows before the first block count for it."""
+        at = np.searchsorted(self.start_s, self.t_s - 1e-6, side="left") - 1
+        return self.number[np.maximum(at, 0)] if len(self.number) else np.zeros(len(at), np.int64)
+
+    def tools(self) -> npt.NDArray[np.int64]:
+        """Return the tool in the spindle at each point, 0 where no block is known."""
+        of_block = np.array([block.tool for block in self.blocks], np.int64)
+        return of_block[self.block_at()] if len(of_block) else np.zeros(len(self.t_s), np.int64)
 
 
 class TrackCollector:
