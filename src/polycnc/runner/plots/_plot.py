@@ -9,8 +9,8 @@ import numpy as np
 
 from polycnc.errors import UsageError
 from polycnc.outputs import check_output, complete_or_absent, format_of
-from polycnc.runner._blocks import ExecutedBlock, Execution
-from polycnc.runner._result import RunResult, Trace, counted, time_text
+from polycnc.runner._blocks import execution_by_lines
+from polycnc.runner._result import RunResult, counted, time_text
 from polycnc.runner.plots._over_time import draw_positions, draw_speed
 from polycnc.runner.plots._paths import draw_legend, draw_perspective, draw_plan
 from polycnc.runner.plots._scene import Scene, scene
@@ -49,7 +49,7 @@ def plot(result: RunResult, path: str | Path | None = None) -> Figure:
         raise UsageError("there is nothing to plot: the result has no trace", hint="Run with trace=True.")
     _figure_class()
     collector = TrackCollector(trace.units)
-    execution = trace.execution or _unknown(trace)
+    execution = trace.execution or execution_by_lines(trace.block)
     collector.add_trace(trace, execution)
     axes = tuple(zip(trace.axes, trace.units, strict=True))
     return plot_track(result, axes, collector.track(execution), path)
@@ -73,12 +73,6 @@ def plot_track(
         with complete_or_absent(target) as partial, matplotlib.rc_context({"svg.hashsalt": "polycnc"}):
             figure.savefig(partial, dpi=150, metadata=undated, format=extension[1:])
     return figure
-
-
-def _unknown(trace: Trace) -> Execution:
-    """Return the execution of one block that nothing is known about."""
-    once = np.zeros(min(len(trace), 1), np.int64)
-    return Execution(once, once, (ExecutedBlock("", 0, 0, "other"),), {})
 
 
 def _figure_class() -> type[Figure]:
