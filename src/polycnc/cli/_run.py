@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -118,9 +119,13 @@ def run_command(
             writer = None
             if plot is not None:
                 runner.check_plot_file(plot)
-                picture = runner.PlotCollector(config)
+                picture = runner.TrackCollector(tuple(axis.unit for axis in config.axes))
             if trace is not None:
                 writer = stack.enter_context(runner.TraceWriter(trace, config, servo))
+            sinks = [
+                *([picture.add] if picture is not None else []),
+                *([writer.add_tagged] if writer is not None else []),
+            ]
             with progress_bar(Path(text.name).name) as bar:
                 result = runner.run(
                     text,
@@ -130,8 +135,7 @@ def run_command(
                     check=False,
                     skip_levels=skip or (),
                     stop_at_m0=stop_at_m0,
-                    rows=None if picture is None else picture.add,
-                    tagged_rows=None if writer is None else writer.add_tagged,
+                    tagged_rows=_to_all(sinks),
                     progress=bar,
                     root=root,
                     keys=() if keys is None else runner.read_keys(keys),
@@ -139,7 +143,8 @@ def run_command(
                     ignore=codes_of(ignore),
                 )
             if picture is not None and plot is not None:
-                runner.plot(picture.with_trace(result), plot)
+                names = tuple((axis.name, axis.unit) for axis in config.axes)
+                runner.plot_track(result, names, picture.track(picture.execution()), plot)
         results.append(result)
         if not as_json:
             print_summary(result, units)
@@ -156,6 +161,16 @@ def run_command(
             if path is not None:
                 say(f"wrote      {path}")
     sys.exit(0 if all(result.ok for result in results) else 1)
+
+
+def _to_all(sinks: Sequence[Callable[..., None]]) -> Callable[..., None] | None:
+    """Return what gives each piece of the record to all of them; None where there is none."""
+
+    def give(*piece: Any) -> None:
+        for sink in sinks:
+            sink(*piece)
+
+    return give if sinks else None
 
 
 def _all_as_dict(results: list[RunResult]) -> dict[str, Any]:

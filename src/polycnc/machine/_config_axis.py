@@ -289,16 +289,41 @@ class RotaryAxis(AxisConfig):
     backlash_deg: NotNegative = Field(default=0.0, description=_TEXT["backlash"])
     carries: Literal["nothing", "part", "tool"] = Field(
         default="nothing",
-        description='"part": the axis is a table that turns the part; views then show the path on the part too. '
-        '"tool": it is a head that swivels the tool; a posted program is then verified with the place of its centre. '
-        "A turns about X, B about Y, C about Z; of several tables, or heads, the first stands on the machine.",
+        description='What the axis turns: "part" for a table, "tool" for a head; views and plots then show the path on '
+        "the part, and a posted program is verified with these places. Tables are listed from the machine to the part, "
+        "heads from the machine to the tool. A positive angle turns the tool by the right-hand rule, as the part sees it.",
     )
     center_mm: tuple[Position, Position, Position] = Field(
         default=(0.0, 0.0, 0.0),
-        description="A point of the line that the axis turns about: of a table X, Y, Z of the machine; of a head from "
-        "the nose of the spindle, with all rotary axes at 0, so that Z is the length of its pivot.",
+        description="A point of the line that it turns about, with all angles at 0: of a table X, Y, Z of the machine, "
+        "of a head as seen from the nose of the spindle, so that Z is the length of its pivot.",
+    )
+    direction: tuple[Position, Position, Position] | None = Field(
+        default=None,
+        description="The direction of that line; absent: A turns about X, B about Y, C about Z.",
     )
     servo: RotaryServo = Field(default=RotaryServo(), description="Position loop, see `[axis.servo]`.")
+
+    _ABOUT: ClassVar = {"A": (1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "C": (0.0, 0.0, 1.0)}
+
+    @property
+    def about(self) -> tuple[float, float, float]:
+        """The direction of the line that an axis which carries something turns about."""
+        return self.direction or self._ABOUT[self.name[0]]
+
+    @model_validator(mode="after")
+    def _turns_about_a_direction(self) -> RotaryAxis:
+        if self.direction is not None and not any(self.direction):
+            raise problem(
+                "'direction' has no length", hint="write it like direction = [0, 1, 1]", at=("direction",)
+            )
+        if self.carries != "nothing" and self.direction is None and self.name[0] not in self._ABOUT:
+            raise problem(
+                f"nothing says what axis {self.name} turns about",
+                hint="write its direction, like direction = [0, 1, 1]",
+                at=("carries",),
+            )
+        return self
 
     @model_validator(mode="after")
     def _modulo_has_no_ends(self) -> RotaryAxis:

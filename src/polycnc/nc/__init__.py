@@ -1,6 +1,14 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
-from polycnc.nc._block_records import LINE_MASK, BlockRecord, BlockRecords, Call, ModalWords, line_of
+from polycnc.nc._block_records import (
+    CONTEXT_SHIFT,
+    LINE_MASK,
+    BlockRecord,
+    BlockRecords,
+    Call,
+    ModalWords,
+    line_of,
+)
 from polycnc.nc._block_source import (
     BlockSource,
     BoundLanguage,
@@ -28,6 +36,7 @@ from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 __all__ = [
+    "CONTEXT_SHIFT",
     "DEFAULT_DIALECT",
     "DIALECTS",
     "LINE_MASK",

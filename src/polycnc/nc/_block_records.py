@@ -244,6 +244,20 @@ class BlockRecords:
             motion = _latest(replay.motion, bisect_right(replay.lines, tag & LINE_MASK) - 1, motion)
         return _MOTION_ACTIONS.get(int(motion))
 
+    def motions(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+        """Return what `motion` says of each of some tags, which have one context; 0 for nothing."""
+        context = self._contexts.get(int(tags[0]) >> CONTEXT_SHIFT)
+        if context is None or context.modal.cycle or context.begin is None:
+            return np.full(len(tags), self.motion(int(tags[0])) or 0, np.int64)
+        # Of a long program each run is asked about once or twice: what is not known yet is not kept either.
+        replay = context.replay or self._read_run(context.text, context.begin)
+        blocks, motions = replay.motion
+        block = np.searchsorted(np.array(replay.lines, np.int64), tags & LINE_MASK, side="right") - 1
+        said = np.searchsorted(np.array(blocks, np.int64), block, side="right")
+        found = [float(context.modal.whole[MOTION]), *motions]
+        actions = np.array([_MOTION_ACTIONS.get(int(motion), 0) for motion in found], np.int64)
+        return actions[said]
+
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""
         context = self._contexts.get(tag >> CONTEXT_SHIFT)

@@ -6,7 +6,6 @@ What posting and debugging need is loaded when it is first used.
 from typing import TYPE_CHECKING, Any
 
 from polycnc.runner._operations import Operation
-from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._remarks import Remark
 from polycnc.runner._result import (
@@ -33,9 +32,11 @@ if TYPE_CHECKING:
     from polycnc.runner.batches import BatchResult, batch
     from polycnc.runner.comparison import Comparison, PathDeviation, compare
     from polycnc.runner.machine_sources import machine_from
-    from polycnc.runner.view import View, check_view_file, open_in_browser, view_program
+    from polycnc.runner.plots import PLOT_FORMATS, check_plot_file, plot, plot_track
+    from polycnc.runner.view import TrackCollector, View, check_view_file, open_in_browser, view_program
 
 _LATER = {
+    "PLOT_FORMATS": "plots",
     "SCHEMAS": "_schemas",
     "BatchResult": "batches",
     "Comparison": "comparison",
@@ -45,13 +46,17 @@ _LATER = {
     "Place": "_debugger",
     "PostResult": "_post",
     "PostVerification": "_verify_post",
+    "TrackCollector": "view",
     "View": "view",
     "batch": "batches",
+    "check_plot_file": "plots",
     "check_view_file": "view",
     "compare": "comparison",
     "json_schema": "_schemas",
     "machine_from": "machine_sources",
     "open_in_browser": "view",
+    "plot": "plots",
+    "plot_track": "plots",
     "post_file": "_post",
     "verify_post": "_verify_post",
     "view_program": "view",
@@ -71,7 +76,6 @@ __all__ = [
     "Operation",
     "PathDeviation",
     "Place",
-    "PlotCollector",
     "PostResult",
     "PostVerification",
     "Remark",
@@ -81,6 +85,7 @@ __all__ = [
     "Trace",
     "TraceWriter",
     "TracedResult",
+    "TrackCollector",
     "View",
     "Violation",
     "WallClock",
@@ -95,6 +100,7 @@ __all__ = [
     "machine_from",
     "open_in_browser",
     "plot",
+    "plot_track",
     "post_file",
     "program_text",
     "read_keys",

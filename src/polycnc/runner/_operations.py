@@ -84,12 +84,14 @@ class OperationCollector:
     def _remark(self, begin: int, end: int) -> str:
         """Return the last remark that stands alone in a line between two offsets."""
         content = self.text.content
-        while end > begin:
-            start = content.rfind(b"\n", begin, end - 1) + 1 if end - 1 > begin else begin
-            start = max(start, begin)
+        places = {sign: content.rfind(sign, begin, end) for sign in (b"(", b";")}
+        while (at := max(places.values())) >= 0:
+            start = content.rfind(b"\n", begin, at) + 1 or begin
             if found := _ALONE.fullmatch(content, start, self.text.line_end(start)):
                 remark = (found[1] or found[2] or b"").decode("utf-8", "replace").strip()
                 if remark:
                     return remark
-            end = start
+            for sign, place in places.items():
+                if place >= start:
+                    places[sign] = content.rfind(sign, begin, start)
         return ""

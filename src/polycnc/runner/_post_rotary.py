@@ -16,11 +16,11 @@ from polycnc.machine import MachineConfig
 from polycnc.machine import RotaryAxis as MachineRotary
 from polycnc.post import Parameters, RotaryAxis
 from polycnc.runner._post_geometry import Floats, Indices, to_segments
+from polycnc.runner._rotation import turned
 
 _Z = (0.0, 0.0, 1.0)
 _TURNS = RotaryAxis(letter="C", on="table", direction=_Z)
 _LETTERS: tuple[Literal["A"], Literal["B"], Literal["C"]] = ("A", "B", "C")
-_ABOUT: dict[str, tuple[float, float, float]] = {"A": (1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "C": _Z}
 _TABLES = {
     "ac_table": (_TURNS, RotaryAxis(letter="A", on="table", direction=(1.0, 0.0, 0.0))),
     "bc_table": (_TURNS, RotaryAxis(letter="B", on="table", direction=(0.0, 1.0, 0.0))),
@@ -68,18 +68,18 @@ class PartFrame:
             hangs = nose
             for axis, angle in reversed(self._with_angles(angles)):
                 if axis.on == "head":
-                    hangs = _turn(hangs - axis.point_mm, axis, angle) + axis.point_mm
+                    hangs = turned(hangs, axis.direction, angle, axis.point_mm)
             found = found + hangs - nose
         for axis, angle in reversed(self._with_angles(angles)):
             if axis.on == "table":
-                found = _turn(found - axis.point_mm, axis, angle) + axis.point_mm
+                found = turned(found, axis.direction, angle, axis.point_mm)
         return found
 
     def tool_axes(self, angles: Floats) -> Floats:
         """Return the tool axes on the part."""
         found = np.tile(_Z, (len(angles), 1))
         for axis, angle in reversed(self._with_angles(angles)):
-            found = _turn(found, axis, angle)
+            found = turned(found, axis.direction, angle)
         return found
 
     def _with_angles(self, angles: Floats) -> list[tuple[RotaryAxis, Floats]]:
@@ -89,7 +89,7 @@ class PartFrame:
 def _heads_of(machine: MachineConfig) -> tuple[RotaryAxis, ...]:
     """Return the axes that swivel the tool of a machine, from the machine to the tool."""
     return tuple(
-        RotaryAxis(letter=letter, on="head", direction=_ABOUT[letter], point_mm=axis.center_mm)
+        RotaryAxis(letter=letter, on="head", direction=axis.about, point_mm=axis.center_mm)
         for axis in machine.axes
         for letter in _LETTERS
         if isinstance(axis, MachineRotary) and axis.carries == "tool" and axis.name.startswith(letter)
@@ -127,17 +127,6 @@ class ToolAxisCheck:
         if place < 0 or off[place] == 0.0:
             return 0.0, -1
         return float(np.degrees(2.0 * np.arcsin(min(0.5 * off[place], 1.0)))), place
-
-
-def _turn(points: Floats, axis: RotaryAxis, angles_deg: Floats) -> Floats:
-    """Return points turned about the direction of an axis by the right-hand rule, each by its angle."""
-    x, y, z = np.asarray(axis.direction) / np.linalg.norm(axis.direction)
-    skew = np.array(((0.0, -z, y), (z, 0.0, -x), (-y, x, 0.0)))
-    angles = np.radians(angles_deg)[:, None]
-    once: Floats = points @ skew.T
-    twice = once @ skew.T
-    found: Floats = points + np.sin(angles) * once + (1.0 - np.cos(angles)) * twice
-    return found
 
 
 def angle_columns(frame: PartFrame, names: Sequence[str]) -> list[int]:

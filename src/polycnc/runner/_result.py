@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from polycnc.runner._blocks import Execution
 from polycnc.runner._operations import Operation
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from polycnc.runner.view import View
 
 Floats = npt.NDArray[np.float64]
@@ -164,13 +167,12 @@ class RunResult:
         """Return a small picture of the path, where there is a trace of it."""
         if self.trace is None or self.trace.execution is None or self.config is None:
             return ""
-        from polycnc.runner.batches import svg, thumbnail
+        from polycnc.runner.batches import picture
         from polycnc.runner.view import TrackCollector
 
         collector = TrackCollector(self.trace.units, most=2_000)
         collector.add_trace(self.trace, self.trace.execution)
-        paths = thumbnail(collector.track(self.trace.execution), self.config)
-        return "" if paths is None else svg(paths, 240)
+        return picture(collector.track(self.trace.execution), self.config, 320)
 
     @property
     def ok(self) -> bool:
@@ -208,6 +210,16 @@ class RunResult:
         if self.trace is None or self.trace.execution is None:
             raise UsageError("there is nothing to view: the result has no trace", hint="Run with trace=True.")
         return view_of_trace(self, self.trace, self.trace.execution)
+
+    def plot(self, path: str | Path | None = None) -> Figure:
+        """Draw the run to a .png, .svg or .pdf file; return the matplotlib figure. Without a path nothing is written.
+
+        Raises:
+            UsageError: no trace, an unknown extension, no such folder, or matplotlib is not installed.
+        """
+        from polycnc.runner.plots import plot
+
+        return plot(self, path)
 
     def as_dict(self) -> dict[str, Any]:
         """Return the result as plain data for JSON, without the trace."""

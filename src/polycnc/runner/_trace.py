@@ -84,8 +84,8 @@ class TraceCollector:
 
 def _programs(execution: Execution, rows: int) -> npt.NDArray[np.object_] | None:
     """Return the program of each row, None where there is no more than one."""
-    of_block = np.array([block.program for block in execution.blocks], object)
-    names = _carried(of_block[execution.number], "")
+    blocks = execution.blocks
+    names = _carried(np.array(blocks.names, object)[blocks.program[execution.number]], "")
     known = {name for name in names.tolist() if name}
     if len(known) < 2:
         return None

@@ -6,7 +6,7 @@ from polycnc.runner.batches._job import ProgramReport
 from polycnc.runner.batches._programs import find_programs, program_extensions
 from polycnc.runner.batches._store import forget_done
 from polycnc.runner.batches._sweep import SWEEPS, parse_sweep
-from polycnc.runner.batches._thumbnail import svg, thumbnail
+from polycnc.runner.batches._thumbnail import picture, thumbnail
 from polycnc.runner.batches._workers import ClusterWorkers
 from polycnc.runner.batches._write import BATCH_FORMATS, check_batch_file
 
@@ -25,8 +25,8 @@ __all__ = [
     "find_programs",
     "forget_done",
     "parse_sweep",
+    "picture",
     "program_extensions",
     "serve_jobs",
-    "svg",
     "thumbnail",
 ]

@@ -15,7 +15,7 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, dialect_for
 from polycnc.runner._program_control import needs_root
 from polycnc.runner.batches._child import Limits
-from polycnc.runner.batches._job import Job, ProgramReport, Setup, blank_report
+from polycnc.runner.batches._job import Job, ProgramReport, Setup, answer_of, blank_report
 from polycnc.runner.batches._programs import find_programs
 from polycnc.runner.batches._store import ResultStore, folder_digest, key_of, version_digest
 from polycnc.runner.batches._sweep import setups_of
@@ -178,7 +178,7 @@ class _Run:
         """Run everything that is not done."""
         for reported in workers.run(self._chunks(), self._setups, limits):
             self._store.keep(reported)
-            self._count(len(reported), sum(report.ok for _, report in reported))
+            self._count(len(reported), sum(answer.ok for _, answer in reported))
 
     def counts(self) -> BatchCounts:
         """Return what came out, in numbers."""
@@ -222,11 +222,11 @@ class _Run:
                 self.keys.append(key)
                 job = Job(key, str(path), content, number, None if root is None else str(root.resolve()))
                 if trouble:
-                    self._store.keep([(key, blank_report(job, setup, "error", trouble))])
+                    self._store.keep([(key, answer_of(blank_report(job, setup, "error", trouble)))])
                     self._count(1, 0)
-                elif self._store.done(key):
+                elif status := self._store.done(key):
                     self._earlier += 1
-                    self._count(1, int(self._store.report(key).ok))
+                    self._count(1, int(status == "ok"))
                 else:
                     yield job
 

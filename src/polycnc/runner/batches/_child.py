@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from polycnc.errors import PolycncError
-from polycnc.runner.batches._job import Job, ProgramReport, Setup, blank_report, report_of
+from polycnc.runner.batches._job import Answer, Job, Setup, answer_of, blank_report, report_of
 
 _HEAD = struct.Struct("<Q")
 _START_S = 600.0  # the first start on a machine compiles
@@ -60,14 +60,33 @@ class Child:
         """The number of the process, None while there is none."""
         return None if self._process is None else self._process.pid
 
-    def reports(self, jobs: Sequence[Job], setups: Sequence[Setup]) -> Iterator[ProgramReport]:
-        """Run jobs one after the other; every one gives a report.
+    def answers(self, jobs: Sequence[Job], setups: Sequence[Setup]) -> Iterator[Answer]:
+        """Run jobs one after the other; every one gives an answer.
+
+        All of them are sent at once, so that the process never waits for somebody who is busy with what it said.
 
         Raises:
             BatchError: no process can be started.
         """
-        for job in jobs:
-            yield self._report(job, setups)
+        done = attempts = 0
+        sent = False
+        while done < len(jobs):
+            if self._process is None or self._setups is not setups:
+                self._begin(setups)
+                sent = False
+            answer = self._next_answer(jobs[done], setups, () if sent else jobs[done:])
+            sent = True
+            if answer is None:
+                attempts += 1
+                how = self._ended()
+                if self._closed:
+                    raise BatchError("the batch was stopped")
+                if attempts < _ATTEMPTS:
+                    continue
+                text = f"{jobs[done].name}: its process ended {_ATTEMPTS} times before the program did{how}"
+                answer = answer_of(blank_report(jobs[done], setups[jobs[done].setup], "lost", text))
+            yield answer
+            done, attempts = done + 1, 0
 
     def close(self) -> None:
         """End the process, whatever it does; nothing is started any more."""
@@ -75,34 +94,23 @@ class Child:
             self._closed = True
             self._end()
 
-    def _report(self, job: Job, setups: Sequence[Setup]) -> ProgramReport:
-        setup = setups[job.setup]
-        how = ""
-        for _ in range(_ATTEMPTS):
-            if self._process is None or self._setups is not setups:
-                self._begin(setups)
-            try:
-                self._send(("job", job))
-                answer = self._answers.get(timeout=self._limits.time_s or None)
-            except queue.Empty:
-                self._stop()
-                return blank_report(
-                    job, setup, "time-out", f"{job.name}: stopped after {self._limits.time_s:g} s"
-                )
-            except OSError:
-                answer = None
-            if isinstance(answer, ProgramReport):
-                return answer
-            if answer == "memory":
-                self._stop()
-                limit = f"{job.name}: needs more than {self._limits.memory_mb:g} MB of memory"
-                return blank_report(job, setup, "memory", limit)
-            how = self._ended()
-            if self._closed:
-                raise BatchError("the batch was stopped")
-        return blank_report(
-            job, setup, "lost", f"{job.name}: its process ended {_ATTEMPTS} times before the program did{how}"
-        )
+    def _next_answer(self, job: Job, setups: Sequence[Setup], send: Sequence[Job]) -> Answer | None:
+        """Send jobs, and return the answer to the first one that is open; None if the process has ended."""
+        try:
+            if send:
+                self._send(("jobs", list(send)))
+            answer = self._answers.get(timeout=self._limits.time_s or None)
+        except queue.Empty:
+            self._stop()
+            late = f"{job.name}: stopped after {self._limits.time_s:g} s"
+            return answer_of(blank_report(job, setups[job.setup], "time-out", late))
+        except OSError:
+            return None
+        if answer == "memory":
+            self._stop()
+            limit = f"{job.name}: needs more than {self._limits.memory_mb:g} MB of memory"
+            return answer_of(blank_report(job, setups[job.setup], "memory", limit))
+        return Answer(*answer) if isinstance(answer, tuple) else None
 
     def _begin(self, setups: Sequence[Setup]) -> None:
         how = ""
@@ -206,17 +214,21 @@ def serve_jobs() -> None:
             setups, limits = message[1], message[2]
             _limit_memory(limits)
             continue
-        job: Job = message[1]
-        _alarm(limits)
-        try:
-            answer: object = report_of(job, setups[job.setup])
-        except MemoryError:
-            answer = "memory"
-        _alarm(Limits(time_s=0.0))
-        try:
-            _write(answers, answer)
-        except OSError:  # nobody waits any more
-            return
+        for job in message[1]:
+            _alarm(limits)
+            answer = _answer(job, setups)
+            _alarm(Limits(time_s=0.0))
+            try:
+                _write(answers, answer)
+            except OSError:  # nobody waits any more
+                return
+
+
+def _answer(job: Job, setups: Sequence[Setup]) -> object:
+    try:
+        return tuple(answer_of(report_of(job, setups[job.setup])))
+    except MemoryError:
+        return "memory"
 
 
 def _default_machine() -> Any:

@@ -5,11 +5,12 @@ A report is a pure function of its job: program, machine, dialect and options al
 
 from __future__ import annotations
 
+import json
 import shutil
 import tempfile
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -93,6 +94,38 @@ class ProgramReport:
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""
         return {"ok": self.ok, **asdict(self)}
+
+
+class Answer(NamedTuple):
+    """A report as it travels and is kept: its status, and the report as JSON."""
+
+    status: str
+    text: str
+
+    @property
+    def ok(self) -> bool:
+        """Whether the program has no error and ran to its end."""
+        return self.status == "ok"
+
+
+_FIELDS = tuple(each.name for each in fields(ProgramReport))
+_TUPLES = ("tools", "extents", "slowest")
+
+
+def answer_of(report: ProgramReport) -> Answer:
+    """Return a report as it is kept."""
+    data = {name: getattr(report, name) for name in _FIELDS}
+    return Answer(report.status, json.dumps(data, separators=(",", ":")))
+
+
+def report_in(text: str) -> ProgramReport:
+    """Return the report that was kept."""
+    data: dict[str, Any] = json.loads(text)
+    for name in _TUPLES:
+        data[name] = [tuple(row) for row in data[name]]
+    if data["thumbnail"] is not None:
+        data["thumbnail"] = tuple(data["thumbnail"])
+    return ProgramReport(**data)
 
 
 def blank_report(job: Job, setup: Setup, status: str, *errors: str) -> ProgramReport:

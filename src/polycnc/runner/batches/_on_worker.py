@@ -9,7 +9,7 @@ from typing import Any
 import distributed
 
 from polycnc.runner.batches._child import Child, Limits
-from polycnc.runner.batches._job import Job, ProgramReport, Setup
+from polycnc.runner.batches._job import Answer, Job, Setup
 
 
 class ChildrenPlugin(distributed.WorkerPlugin):
@@ -45,14 +45,12 @@ class ChildrenPlugin(distributed.WorkerPlugin):
             self._free.append(child)
 
 
-def run_chunk(
-    jobs: Sequence[Job], setups: Sequence[Setup], limits: Limits
-) -> list[tuple[str, ProgramReport]]:
+def run_chunk(jobs: Sequence[Job], setups: Sequence[Setup], limits: Limits) -> list[tuple[str, Answer]]:
     """Run a chunk of jobs on this worker, and return their reports by key."""
     plugin = distributed.get_worker().plugins["polycnc-batch"]
     assert isinstance(plugin, ChildrenPlugin)
     child = plugin.take()
     try:
-        return list(zip([job.key for job in jobs], child.reports(jobs, setups), strict=True))
+        return list(zip([job.key for job in jobs], child.answers(jobs, setups), strict=True))
     finally:
         plugin.give_back(child)

@@ -3,20 +3,17 @@
 from __future__ import annotations
 
 import hashlib
-import json
 import sqlite3
 from collections.abc import Iterable, Iterator
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import Any
 
 from polycnc.errors import UsageError
-from polycnc.runner.batches._job import ProgramReport
+from polycnc.runner.batches._job import Answer, ProgramReport, report_in
 
 _APPLICATION = 0x504E4342  # "PNCB"
 _KEPT = ("ok", "error")  # what depends on the program alone; anything else is tried again
-_TUPLES = ("tools", "extents", "slowest")
 
 
 class ResultStore:
@@ -56,21 +53,21 @@ class ResultStore:
         """Close the file."""
         self._db.close()
 
-    def done(self, key: str) -> bool:
-        """Say whether a job has a report that holds for good."""
+    def done(self, key: str) -> str | None:
+        """Return the status of a job that has a report that holds for good, None of any other."""
         row = self._db.execute("SELECT status FROM report WHERE key = ?", (key,)).fetchone()
-        return row is not None and row[0] in _KEPT
+        return row[0] if row is not None and row[0] in _KEPT else None
 
-    def keep(self, reports: Iterable[tuple[str, ProgramReport]]) -> None:
+    def keep(self, answers: Iterable[tuple[str, Answer]]) -> None:
         """Keep reports, durably."""
-        rows = [(key, report.status, _text(report)) for key, report in reports]
+        rows = [(key, answer.status, answer.text) for key, answer in answers]
         with self._db:
             self._db.executemany("INSERT OR REPLACE INTO report VALUES (?, ?, ?)", rows)
 
     def report(self, key: str) -> ProgramReport:
         """Return the report of a job."""
         (text,) = self._db.execute("SELECT report FROM report WHERE key = ?", (key,)).fetchone()
-        return _report(text)
+        return report_in(text)
 
     def reports(self, keys: Iterable[str]) -> Iterator[ProgramReport]:
         """Return the reports of jobs, in their order."""
@@ -87,21 +84,6 @@ def forget_done(path: Path) -> None:
         ResultStore(path).close()
         for name in (path.name, f"{path.name}-wal", f"{path.name}-shm"):
             path.with_name(name).unlink(missing_ok=True)
-
-
-def _text(report: ProgramReport) -> str:
-    data = report.as_dict()
-    del data["ok"]
-    return json.dumps(data, separators=(",", ":"))
-
-
-def _report(text: str) -> ProgramReport:
-    data: dict[str, Any] = json.loads(text)
-    for name in _TUPLES:
-        data[name] = [tuple(row) for row in data[name]]
-    if data["thumbnail"] is not None:
-        data["thumbnail"] = tuple(data["thumbnail"])
-    return ProgramReport(**data)
 
 
 def key_of(*parts: bytes) -> str:

@@ -9,11 +9,11 @@ from typing import Any, Protocol
 
 from polycnc.errors import UsageError
 from polycnc.runner.batches._child import BatchError, Child, Limits
-from polycnc.runner.batches._job import Job, ProgramReport, Setup, blank_report
+from polycnc.runner.batches._job import Answer, Job, Setup, answer_of, blank_report
 from polycnc.runner.batches._store import version_digest
 
 Chunk = list[Job]
-Reported = list[tuple[str, ProgramReport]]
+Reported = list[tuple[str, Answer]]
 _PLUGIN = "polycnc-batch"
 _AHEAD = 3  # chunks for each worker that are on their way
 
@@ -82,7 +82,7 @@ def _work(
     while (chunk := todo.get()) is not None:
         keys = [job.key for job in chunk]
         try:
-            done.put(list(zip(keys, child.reports(chunk, setups), strict=True)))
+            done.put(list(zip(keys, child.answers(chunk, setups), strict=True)))
         except BatchError as error:
             done.put(error)
             return
@@ -188,9 +188,9 @@ def _check_versions(client: Any) -> None:
         )
 
 
-def _lost(job: Job, setups: Sequence[Setup], error: Exception) -> ProgramReport:
+def _lost(job: Job, setups: Sequence[Setup], error: Exception) -> Answer:
     text = f"{job.name}: the workers that ran it were lost, one after the other ({type(error).__name__})"
-    return blank_report(job, setups[job.setup], "lost", text)
+    return answer_of(blank_report(job, setups[job.setup], "lost", text))
 
 
 def distributed_module() -> Any:

@@ -11,6 +11,7 @@ import numpy as np
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import BlockRecords, Dialect, ProgramText, dialect_for
+from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner._execution import Progress
 from polycnc.runner._result import RunResult, Trace
 from polycnc.runner._run import program_text, run
@@ -24,7 +25,6 @@ from polycnc.runner.comparison._path import (
     Indices,
     Path,
     PathCollector,
-    execution_of,
 )
 from polycnc.runner.view import Track, TrackCollector, View
 
@@ -301,7 +301,7 @@ def _taken(
 def _of_trace(trace: Trace, name: str, result: RunResult | None) -> _Taken:
     path = PathCollector(trace.axes, trace.units).path_of(trace)
     tracks = TrackCollector(trace.units)
-    execution = execution_of(trace)
+    execution = trace.execution or execution_by_lines(trace.block)
     tracks.add_trace(trace, execution)
     seen = Compared(
         name,

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.nc import BlockRecords
-from polycnc.runner._blocks import ExecutedBlock, Execution, ExecutionCollector
+from polycnc.runner._blocks import Blocks, ExecutionCollector, execution_by_lines
 from polycnc.runner._result import Trace
 from polycnc.runner.view import kept_rows
 
@@ -38,14 +38,14 @@ class Path:
     point: Floats  # [points, axes]
     number: Indices
     rapid: Flags
-    blocks: tuple[ExecutedBlock, ...]
+    blocks: Blocks
     step: float
     kinds_known: bool
 
     @property
     def tools(self) -> Indices:
         """The tool of the segment that ends at each point."""
-        return np.array([block.tool for block in self.blocks], np.int64)[self.number]
+        return self.blocks.tool[self.number].astype(np.int64)
 
     @property
     def tool_order(self) -> tuple[int, ...]:
@@ -82,7 +82,7 @@ class PathCollector:
 
     def path_of(self, trace: Trace) -> Path:
         """Take a whole trace, and return its path."""
-        execution = execution_of(trace)
+        execution = trace.execution or execution_by_lines(trace.block)
         number = np.repeat(execution.number, np.diff(execution.start, append=len(trace)))
         for first in range(0, len(trace), _PIECE):
             part = slice(first, first + _PIECE)
@@ -90,7 +90,7 @@ class PathCollector:
             self._take(np.column_stack([column[part] for column in columns]))
         return self._path(execution.blocks, kinds_known=trace.execution is not None)
 
-    def _path(self, blocks: tuple[ExecutedBlock, ...], *, kinds_known: bool) -> Path:
+    def _path(self, blocks: Blocks, *, kinds_known: bool) -> Path:
         points = np.concatenate([np.zeros((0, _HEAD + len(self._axes))), *self._pieces])
         return Path(
             self._axes,
@@ -122,13 +122,3 @@ class PathCollector:
         kept = whole[kept_rows(along, whole[:, _HEAD:] / THINNING_MM, forced)]
         self._pieces.append(kept if begins else kept[1:])
         self._last = kept[-1:].copy()
-
-
-def execution_of(trace: Trace) -> Execution:
-    """Return which block of a trace was executed when; by its lines alone where it was read from a file."""
-    if trace.execution is not None:
-        return trace.execution
-    begins = np.flatnonzero(np.diff(trace.block, prepend=-1))
-    lines, number = np.unique(trace.block[begins], return_inverse=True)
-    blocks = tuple(ExecutedBlock("", line, 0, "other") for line in lines.tolist())
-    return Execution(begins, number.astype(np.int64), blocks, {})

@@ -1,6 +1,7 @@
 """See a run: one self-contained page with the path in three dimensions, time, blocks, tools, speed."""
 
 from polycnc.runner.view._page import Beside, Mark, page
+from polycnc.runner.view._part_frame import turns, with_part_frame
 from polycnc.runner.view._thin import kept_rows
 from polycnc.runner.view._track import MOST_POINTS, Track, TrackCollector
 from polycnc.runner.view._view import (
@@ -24,6 +25,8 @@ __all__ = [
     "kept_rows",
     "open_in_browser",
     "page",
+    "turns",
     "view_of_trace",
     "view_program",
+    "with_part_frame",
 ]

@@ -15,10 +15,10 @@ import numpy.typing as npt
 
 from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
-from polycnc.runner._blocks import KINDS, ExecutedBlock
+from polycnc.runner._blocks import KINDS, Blocks
 from polycnc.runner._result import RunResult, counted, time_text
 from polycnc.runner.view._motion import DERIVATIVES
-from polycnc.runner.view._part_frame import tables_of, with_part_frame
+from polycnc.runner.view._part_frame import turning_axes, with_part_frame
 from polycnc.runner.view._track import Track
 
 _MOST_LINES = 250_000  # of a listing; of longer programs only the lines that the path shows are listed
@@ -65,7 +65,7 @@ def page(
     library = plotly_source()
     machine = result.config
     framed = machine is not None and [axis.name for axis in machine.axes] == [name for name, _ in axes]
-    if machine is not None and framed and beside is None and tables_of(machine):
+    if machine is not None and framed and beside is None and turning_axes(machine):
         track = with_part_frame(track, machine)
     on_part = track.position.shape[1] - len(axes)
     listing = _Listing(result, track, texts)
@@ -77,9 +77,9 @@ def page(
         "start_s": np.ascontiguousarray(track.start_s, dtype=np.float64),
         "number": track.number.astype(np.int32),
         "block_row": listing.rows_of(track.blocks),
-        "block_tool": np.array([block.tool for block in track.blocks], np.int32),
-        "block_kind": np.array([KINDS.index(block.kind) for block in track.blocks], np.uint8),
-        "line": np.array(listing.lines, np.int32),
+        "block_tool": np.ascontiguousarray(track.blocks.tool),
+        "block_kind": np.ascontiguousarray(track.blocks.kind),
+        "line": listing.lines.astype(np.int32),
     }
     motion = track.motion
     if motion.low.shape[2] == len(axes):
@@ -160,31 +160,46 @@ class _Listing:
         if result.source is not None:
             texts = {result.source.name: result.source, **texts}
         self.whole = sum(text.content.count(b"\n") + 1 for text in texts.values()) <= _MOST_LINES
-        self.lines: list[int] = []  # 0 for the name of a program
         self.texts: list[str] = []
-        self._row: dict[tuple[str, int], int] = {}
-        executed: dict[str, set[int]] = {}
-        for number in np.unique(track.number).tolist():
-            executed.setdefault(track.blocks[number].program, set()).add(track.blocks[number].line)
+        self._shown: dict[str, tuple[npt.NDArray[np.int64], int]] = {}  # lines, and the row of the first one
+        lines: list[npt.NDArray[np.int64]] = []  # 0 for the name of a program
+        executed = track.blocks.program[track.number], track.blocks.line[track.number]
         for name, text in texts.items():
             if len(texts) > 1:
-                self.lines.append(0)
+                lines.append(np.zeros(1, np.int64))
                 self.texts.append(name)
-            rows = _lines(text)
-            shown = range(1, len(rows) + 1) if self.whole else sorted(executed.get(name, ()))
-            for line in shown:
-                self._row[name, line] = len(self.lines)
-                self.lines.append(line)
-                self.texts.append(rows[line - 1][:_MOST_COLUMNS])
+            if self.whole:
+                rows = _lines(text)
+                shown = np.arange(1, len(rows) + 1)
+            else:
+                number = track.blocks.names.index(name) if name in track.blocks.names else -1
+                shown = np.unique(executed[1][executed[0] == number]).astype(np.int64)
+                shown = shown[shown >= 1]
+                rows = [text.line(text.line_start(line)) for line in shown.tolist()]
+            self._shown[name] = shown, len(self.texts)
+            lines.append(shown)
+            self.texts += [row[:_MOST_COLUMNS] for row in rows]
+        self.lines = np.concatenate([np.zeros(0, np.int64), *lines])
         self._main = next(iter(texts), "")
 
-    def rows_of(self, blocks: tuple[ExecutedBlock, ...]) -> npt.NDArray[np.int32]:
+    def rows_of(self, blocks: Blocks) -> npt.NDArray[np.int32]:
         """Return the row of each block, -1 for one that is not listed."""
-        return np.array([self._row.get((block.program, block.line), -1) for block in blocks], np.int32)
+        found = np.full(len(blocks), -1, np.int32)
+        for number, name in enumerate(blocks.names):
+            here = blocks.program == number
+            found[here] = self._rows(name, blocks.line[here])
+        return found
 
-    def row_of(self, line: int) -> int:
-        """Return the row of a line of the main program, -1 where it is not listed."""
-        return self._row.get((self._main, line), -1)
+    def row_of(self, line: int, name: str | None = None) -> int:
+        """Return the row of a line of a program, or of the main one; -1 where it is not listed."""
+        return int(self._rows(self._main if name is None else name, np.array([line]))[0])
+
+    def _rows(self, name: str, lines: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+        shown, first = self._shown.get(name, (np.zeros(0, np.int64), 0))
+        if not len(shown):
+            return np.full(len(lines), -1)
+        place = np.minimum(np.searchsorted(shown, lines), len(shown) - 1)
+        return np.where(shown[place] == lines, first + place, -1)
 
     def remarks(self, result: RunResult) -> list[dict[str, Any]]:
         """Return alarms and remarks with the rows that they are about, -1 where there is none."""
@@ -193,7 +208,7 @@ class _Listing:
                 "kind": "alarm",
                 "text": alarm.text + (f" {alarm.hint}" if alarm.hint else ""),
                 "line": alarm.line,
-                "row": self._row.get((alarm.file or self._main, alarm.line), -1),
+                "row": self.row_of(alarm.line, alarm.file or None),
                 "time_s": alarm.time_s,
             }
             for alarm in result.alarms
@@ -203,7 +218,7 @@ class _Listing:
                 "kind": "remark",
                 "text": message.text + (f" ({message.count} times)" if message.count > 1 else ""),
                 "line": message.line,
-                "row": self._row.get((self._main, message.line), -1),
+                "row": self.row_of(message.line),
                 "time_s": None,
             }
             for message in result.messages
@@ -239,7 +254,7 @@ def _packed(columns: dict[str, npt.NDArray[Any]]) -> tuple[bytes, dict[str, dict
 
 
 def _compressed(data: bytes) -> str:
-    return base64.b64encode(gzip.compress(data, 9, mtime=0)).decode("ascii")
+    return base64.b64encode(gzip.compress(data, 6, mtime=0)).decode("ascii")
 
 
 def _asset(name: str) -> str:

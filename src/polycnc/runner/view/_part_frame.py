@@ -1,4 +1,4 @@
-"""The path as the part sees it: on a machine whose table turns, the tool goes another way than its axes."""
+"""The path as the part sees it: where tables or heads turn, the tool goes another way than the linear axes."""
 
 from __future__ import annotations
 
@@ -7,55 +7,65 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.machine import MachineConfig, RotaryAxis
+from polycnc.machine import MachineConfig, RotaryAxis, ToolConfig
+from polycnc.runner._rotation import turned
 from polycnc.runner.view._track import Track
 
 Floats = npt.NDArray[np.float64]
 
 _PLACES = "XYZ"
-_ABOUT = {"A": 0, "B": 1, "C": 2}
 _STEP_DEG = 3.0  # so far the part turns at most between two points
 _MOST_POINTS = 200_000
 
 
-def tables_of(machine: MachineConfig) -> list[tuple[int, RotaryAxis]]:
-    """Return number and configuration of the axes that turn the part, from the machine to the part."""
+def turning_axes(machine: MachineConfig) -> list[tuple[int, RotaryAxis]]:
+    """Return number and configuration of the axes that turn the part or the tool."""
     return [
         (i, axis)
         for i, axis in enumerate(machine.axes)
-        if isinstance(axis, RotaryAxis) and axis.carries == "part" and axis.name[0] in _ABOUT
+        if isinstance(axis, RotaryAxis) and axis.carries != "nothing"
     ]
 
 
-def on_part(position: Floats, machine: MachineConfig) -> Floats:
-    """Return where the part sees positions [points, axes] of the machine: X, Y, Z [points, 3] at angles of 0.
+def turns(track: Track, machine: MachineConfig) -> bool:
+    """Return whether the part or the tool turns anywhere on a track."""
+    columns = [number for number, _ in turning_axes(machine)]
+    return bool(columns and len(track.t_s) and np.ptp(track.position[:, columns], axis=0).any())
 
-    A table turns the part backwards, so that a positive angle turns the tool forwards about it (ISO 841).
+
+def on_part(position: Floats, machine: MachineConfig, tool: npt.NDArray[np.int64] | None = None) -> Floats:
+    """Return where the part sees the tips of tools [points]: X, Y, Z [points, 3] of the machine at angles of 0.
+
+    `position` [points, axes] are those of the machine's axes: the nose of the spindle, from which a tool hangs by its
+    length. A table turns the part backwards, so that a positive angle turns the tool forwards about it (ISO 841).
     """
     names = machine.axis_names
     place = np.zeros((len(position), 3))
     for column, name in enumerate(_PLACES):
         if name in names:
             place[:, column] = position[:, names.index(name)]
-    for number, axis in tables_of(machine):
-        about = _ABOUT[axis.name[0]]
-        first, second = (about + 1) % 3, (about + 2) % 3
-        angle = np.radians(position[:, number])
-        center = np.array(axis.center_mm)
-        off = place - center
-        place[:, first] = center[first] + off[:, first] * np.cos(angle) - off[:, second] * np.sin(angle)
-        place[:, second] = center[second] + off[:, first] * np.sin(angle) + off[:, second] * np.cos(angle)
+    hangs = np.zeros((len(position), 3))
+    if tool is not None:
+        hangs[:, 2] = -_lengths_mm(machine, tool)
+    axes = turning_axes(machine)
+    for number, axis in reversed(axes):
+        if axis.carries == "tool":
+            hangs = turned(hangs, axis.about, position[:, number], axis.center_mm)
+    place += hangs
+    for number, axis in axes:
+        if axis.carries == "part":
+            place = turned(place, axis.about, position[:, number], axis.center_mm)
     return place
 
 
 def with_part_frame(track: Track, machine: MachineConfig) -> Track:
-    """Return a track with three more columns, the places on the part, and with points wherever the part has turned."""
-    turning = [number for number, _ in tables_of(machine)]
+    """Return a track with three more columns, the places on the part, and with points wherever something has turned."""
+    turning = [number for number, _ in turning_axes(machine)]
     if len(track.t_s) < 2:
-        return replace(track, position=np.column_stack((track.position, on_part(track.position, machine))))
-    turned = np.abs(np.diff(track.position[:, turning], axis=0)).max(axis=1)
-    step = max(_STEP_DEG, float(turned.sum()) / _MOST_POINTS)
-    parts = np.maximum(np.ceil(turned / step).astype(np.int64), 1)
+        return _extended(track, machine)
+    turns = np.abs(np.diff(track.position[:, turning], axis=0)).max(axis=1)
+    step = max(_STEP_DEG, float(turns.sum()) / _MOST_POINTS)
+    parts = np.maximum(np.ceil(turns / step).astype(np.int64), 1)
     begin = np.repeat(np.arange(len(parts)), parts)
     share = (np.arange(len(begin)) - np.repeat(np.cumsum(parts) - parts, parts) + 1) / parts[begin]
 
@@ -65,11 +75,22 @@ def with_part_frame(track: Track, machine: MachineConfig) -> Track:
         inner: Floats = np.where(part >= 1.0, values[begin + 1], values[begin] + part * rise)
         return np.concatenate((values[:1], inner))
 
-    position = between(track.position)
-    return replace(
+    finer = replace(
         track,
         t_s=between(track.t_s),
-        position=np.column_stack((position, on_part(position, machine))),
+        position=between(track.position),
         feed_mm_s=between(track.feed_mm_s),
         rapid=np.concatenate((track.rapid[:1], track.rapid[begin + 1])),
     )
+    return _extended(finer, machine)
+
+
+def _extended(track: Track, machine: MachineConfig) -> Track:
+    tips = on_part(track.position, machine, track.tools())
+    return replace(track, position=np.column_stack((track.position, tips)))
+
+
+def _lengths_mm(machine: MachineConfig, tool: npt.NDArray[np.int64]) -> Floats:
+    numbers, place = np.unique(tool, return_inverse=True)
+    found = [machine.tools.get(number, ToolConfig()) for number in numbers.tolist()]
+    return np.array([each.length_mm + each.wear_length_mm for each in found])[place]

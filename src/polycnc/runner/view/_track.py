@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +9,7 @@ import numpy.typing as npt
 
 from polycnc.kernel import FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.nc import BlockRecords
-from polycnc.runner._blocks import KINDS, ExecutedBlock, Execution, ExecutionCollector
+from polycnc.runner._blocks import Blocks, Execution, ExecutionCollector
 from polycnc.runner._result import Trace
 from polycnc.runner.view._motion import Motion, MotionCollector
 from polycnc.runner.view._thin import Floats, kept_rows
@@ -18,7 +17,7 @@ from polycnc.runner.view._thin import Floats, kept_rows
 MOST_POINTS = 100_000
 _PIECE = 1 << 16  # rows of a trace that are thinned at a time
 _TOLERANCE = {"mm": 0.005, "deg": 0.01}
-_SPEED_MM_S = 1.0  # deviation of the speed that counts as much as a tolerance of position
+_SPEED_MM_S = 0.1  # deviation of the speed that counts as much as a tolerance of position
 
 
 @dataclass(frozen=True)
@@ -34,10 +33,23 @@ class Track:
     rapid: npt.NDArray[np.bool_]
     start_s: Floats  # [executions]
     number: npt.NDArray[np.int64]  # [executions], places in `blocks`
-    blocks: tuple[ExecutedBlock, ...]
+    blocks: Blocks
     tolerance_mm: float
     thinned: bool  # executions are left out too
     motion: Motion
+
+    def block_at(self) -> npt.NDArray[np.int64]:
+        """Return the place in `blocks` of each point's block; the rows before the first block count for it."""
+        at = np.searchsorted(self.start_s, self.t_s - 1e-6, side="left") - 1
+        return self.number[np.maximum(at, 0)] if len(self.number) else np.zeros(len(at), np.int64)
+
+    def tools(self) -> npt.NDArray[np.int64]:
+        """Return the tool in the spindle at each point, 0 where no block is known."""
+        return (
+            self.blocks.tool[self.block_at()].astype(np.int64)
+            if len(self.blocks)
+            else np.zeros(len(self.t_s), np.int64)
+        )
 
 
 class TrackCollector:
@@ -59,7 +71,7 @@ class TrackCollector:
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
         if len(rows):
-            style = _styles(self._executions.table.blocks, self._executions.add(tags, records))
+            style = self._executions.table.styles(self._executions.add(tags, records))
             axes = rows[:, LEADING : LEADING + self._axes]
             self._motion.add(rows[:, TIME_S], axes)
             self._take(np.column_stack((rows[:, TIME_S], rows[:, IS_RAPID], style, axes, rows[:, FEED_MM_S])))
@@ -67,7 +79,7 @@ class TrackCollector:
     def add_trace(self, trace: Trace, execution: Execution) -> None:
         """Take a whole trace."""
         number = np.repeat(execution.number, np.diff(execution.start, append=len(trace)))
-        style = _styles(execution.blocks, number)
+        style = execution.blocks.styles(number)
         for first in range(0, len(trace), _PIECE):
             part = slice(first, first + _PIECE)
             columns = (trace.t_s, trace.rapid, style, trace.setpoint, trace.feed_mm_s)
@@ -129,8 +141,3 @@ class TrackCollector:
             self._missed += self._factor
             points = points[self._kept(points)]
         self._pieces, self._held = [points], len(points)
-
-
-def _styles(blocks: Sequence[ExecutedBlock], number: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Return one integer per row that changes with the tool and the kind of motion."""
-    return np.array([KINDS.index(block.kind) + len(KINDS) * block.tool for block in blocks], np.int64)[number]
