@@ -291,7 +291,7 @@ class RotaryAxis(AxisConfig):
         default="nothing",
         description='What the axis turns: "part" for a table, "tool" for a head; views and plots then show the path on '
         "the part, and a posted program is verified with these places. Tables are listed from the machine to the part, "
-        "heads from the machine to the tool. A positive angle turns the tool by the right-hand rule, as the part sees it.",
+        "heads from the machine to the tool. A positive angle turns the tool by the right-hand rule on the part.",
     )
     center_mm: tuple[Position, Position, Position] = Field(
         default=(0.0, 0.0, 0.0),
