@@ -12,7 +12,9 @@ The names below are loaded when they are first used, so that importing the packa
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from polycnc.on_demand import names_on_demand
 
 __version__ = "0.1.0.dev0"
 
@@ -80,13 +82,7 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
-    for home, names in _HOME.items():
-        if name in names:
-            return getattr(import_module(f"polycnc.{home}"), name)
-    raise AttributeError(f"module 'polycnc' has no attribute '{name}'")
+__getattr__ = names_on_demand(__name__, _HOME)
 
 
 def __dir__() -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import ipaddress
 import re
 from dataclasses import dataclass
@@ -70,6 +69,8 @@ def serve_command(
         raise UsageError(f"{count} controls cannot share {memory}", hint="Serve one control with a memory.")
     if count > 1 and port == 0:
         raise UsageError("several controls on port 0", hint="Say the port; they differ in their addresses.")
+    import asyncio
+
     from polycnc.servers.focas import load_faults, load_profile
 
     wanted = _Wanted(
@@ -120,6 +121,8 @@ def _addresses(first: str, count: int) -> list[str]:
 
 
 async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
+    import asyncio
+
     from polycnc import runner
     from polycnc.controllers.fanuc import PowerMate
     from polycnc.servers.focas import Faults, FocasServer, Keeper, ServedControl

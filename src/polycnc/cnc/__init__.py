@@ -1,44 +1,90 @@
-"""A numerical control without a vendor: its programs, tools, alarms, timers, spindle, PLC and manual motion."""
+"""A numerical control without a vendor: its programs, tools, alarms, timers, spindle, PLC and manual motion.
 
-from polycnc.cnc._alarms import (
-    ALARMS,
-    Alarm,
-    AlarmKind,
-    AlarmList,
-    AlarmRow,
-    AlarmTable,
-    ClearedBy,
-    OperatorMessage,
-    OperatorMessages,
-    PastAlarm,
-)
-from polycnc.cnc._control import PROGRAM_MESSAGE, Control, ControlEvent
-from polycnc.cnc._control_channel import ControlChannel
-from polycnc.cnc._control_data import (
-    AfterManual,
-    ChannelData,
-    ControlData,
-    Mode,
-    OnModeChange,
-    Overrides,
-    Search,
-    Switches,
-)
-from polycnc.cnc._control_snapshot import ControlSnapshot
-from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
-from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
-from polycnc.cnc._program_edit import ProgramEdit
-from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
+Running a program needs no control: what belongs to one is loaded when it is first used.
+"""
+
+from typing import TYPE_CHECKING
+
 from polycnc.cnc._program_run import ProgramRun
-from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
-from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
-from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
-from polycnc.cnc._status_reading import AxisFigures
 from polycnc.cnc._stops import Breakpoint, Step
-from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
-from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 from polycnc.cnc._tool_times import ToolTime
+from polycnc.on_demand import names_on_demand
+
+if TYPE_CHECKING:
+    from polycnc.cnc._alarms import (
+        ALARMS,
+        Alarm,
+        AlarmKind,
+        AlarmList,
+        AlarmRow,
+        AlarmTable,
+        ClearedBy,
+        OperatorMessage,
+        OperatorMessages,
+        PastAlarm,
+    )
+    from polycnc.cnc._control import PROGRAM_MESSAGE, Control, ControlEvent
+    from polycnc.cnc._control_channel import ControlChannel
+    from polycnc.cnc._control_data import (
+        AfterManual,
+        ChannelData,
+        ControlData,
+        Mode,
+        OnModeChange,
+        Overrides,
+        Search,
+        Switches,
+    )
+    from polycnc.cnc._control_snapshot import ControlSnapshot
+    from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
+    from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
+    from polycnc.cnc._program_edit import ProgramEdit
+    from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
+    from polycnc.cnc._refusal import ControlError, Refusal
+    from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
+    from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
+    from polycnc.cnc._status_reading import AxisFigures
+    from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
+    from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
+
+_LATER = {
+    "_alarms": (
+        "ALARMS",
+        "Alarm",
+        "AlarmKind",
+        "AlarmList",
+        "AlarmRow",
+        "AlarmTable",
+        "ClearedBy",
+        "OperatorMessage",
+        "OperatorMessages",
+        "PastAlarm",
+    ),
+    "_control": ("PROGRAM_MESSAGE", "Control", "ControlEvent"),
+    "_control_channel": ("ControlChannel",),
+    "_control_data": (
+        "AfterManual",
+        "ChannelData",
+        "ControlData",
+        "Mode",
+        "OnModeChange",
+        "Overrides",
+        "Search",
+        "Switches",
+    ),
+    "_control_snapshot": ("ControlSnapshot",),
+    "_manual": ("AxisMotion", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
+    "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
+    "_program_edit": ("ProgramEdit",),
+    "_program_memory": ("Found", "MemoryData", "ProgramEntry", "ProgramMemory", "first_comment"),
+    "_refusal": ("ControlError", "Refusal"),
+    "_spindle": ("Spindle", "SpindleMotion", "SpindleState"),
+    "_status": ("AxisStatus", "ChannelStatus", "Emergency", "Feed", "Motion", "Status"),
+    "_status_reading": ("AxisFigures",),
+    "_tables": ("OffsetTable", "Tool", "ToolTable"),
+    "_timers": ("PartCounter", "Parts", "Timer", "Timers", "TimersState"),
+}
 
 __all__ = [
     "ALARMS",
@@ -109,3 +155,5 @@ __all__ = [
     "ToolTime",
     "first_comment",
 ]
+
+__getattr__ = names_on_demand(__name__, _LATER)

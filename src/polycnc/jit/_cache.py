@@ -14,6 +14,7 @@ import numba
 import numpy as np
 from numba.core import compiler, serialize
 from numba.core.caching import _Cache
+from numba.core.runtime import nrt
 
 from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files, Lock
 from polycnc.jit._notice import announce
@@ -28,6 +29,7 @@ FINGERPRINTS = Fingerprints()
 _config: Any = numba.config
 _rebuild: Any = compiler.CompileResult._rebuild
 _dumps: Any = serialize.dumps
+_runtime: Any = nrt.rtsys
 ANY_PROCESSOR = ("generic", "")  # name and features by which numba makes code for every processor of a kind
 _SETTINGS = ("OPT", "DEBUGINFO_DEFAULT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "LLVM_PASS_OPT")
 
@@ -77,7 +79,7 @@ class ContentCache(_Cache):
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the function for these types of arguments; when it is not there, hold others from making it."""
-        target_context.refresh()
+        _runtime.initialize(target_context)  # not `refresh`, which loads all that compiling takes
         if not self._enabled:
             announce()
             return None

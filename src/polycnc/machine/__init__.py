@@ -1,4 +1,9 @@
-"""The simulated machine: configuration and presets, kernel state, I/O image, clock, durable memory."""
+"""The simulated machine: configuration and presets, kernel state, I/O image, clock, durable memory.
+
+A run needs no store and no host: what a device needs besides is loaded when it is first used.
+"""
+
+from typing import TYPE_CHECKING
 
 from polycnc.machine._bounds import (
     LARGEST_POSITION,
@@ -17,23 +22,10 @@ from polycnc.machine._config import (
 )
 from polycnc.machine._config_axis import AnyAxis, AxisConfig, LinearAxis, LinearServo, RotaryAxis, RotaryServo
 from polycnc.machine._config_probe import SurfaceConfig, first_contact
-from polycnc.machine._describe import (
-    AXIS_COLUMNS,
-    axis_rows,
-    describe_machine,
-    machine_file_reference,
-    machine_row,
-)
-from polycnc.machine._device import Device, Timed
-from polycnc.machine._host import Host, HostError
 from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
-from polycnc.machine._pace import Pace, Pacer, Wall
-from polycnc.machine._polling import Polling
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
-from polycnc.machine._store import Area, Entry, History, Store
-from polycnc.machine._store_file import StoreError
 from polycnc.machine._toml import (
     MOST_NESTING,
     StrictModel,
@@ -44,7 +36,34 @@ from polycnc.machine._toml import (
     validate,
 )
 from polycnc.machine._toml_locator import KeyPath, Locator
-from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
+from polycnc.on_demand import names_on_demand
+
+if TYPE_CHECKING:
+    from polycnc.machine._describe import (
+        AXIS_COLUMNS,
+        axis_rows,
+        describe_machine,
+        machine_file_reference,
+        machine_row,
+    )
+    from polycnc.machine._device import Device, Timed
+    from polycnc.machine._host import Host, HostError
+    from polycnc.machine._pace import Pace, Pacer, Wall
+    from polycnc.machine._polling import Polling
+    from polycnc.machine._store import Area, Entry, History, Store
+    from polycnc.machine._store_file import StoreError
+    from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
+
+_LATER = {
+    "_describe": ("AXIS_COLUMNS", "axis_rows", "describe_machine", "machine_file_reference", "machine_row"),
+    "_device": ("Device", "Timed"),
+    "_host": ("Host", "HostError"),
+    "_pace": ("Pace", "Pacer", "Wall"),
+    "_polling": ("Polling",),
+    "_store": ("Area", "Entry", "History", "Store"),
+    "_store_file": ("StoreError",),
+    "_ways": ("Condition", "Elapsed", "Free", "Poll", "RealTime", "Step", "Way", "wait"),
+}
 
 __all__ = [
     "AXIS_COLUMNS",
@@ -119,3 +138,5 @@ __all__ = [
     "validate",
     "wait",
 ]
+
+__getattr__ = names_on_demand(__name__, _LATER)

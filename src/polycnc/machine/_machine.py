@@ -9,6 +9,7 @@ from datetime import datetime
 from enum import IntFlag
 from pathlib import Path
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,9 @@ from polycnc.machine._config import MachineConfig
 from polycnc.machine._config_axis import AnyAxis
 from polycnc.machine._io import IoImage
 from polycnc.machine._snapshot import Array, Snapshot, arrays_of
-from polycnc.machine._store import Store
+
+if TYPE_CHECKING:
+    from polycnc.machine._store import Store
 
 Floats = npt.NDArray[np.float64]
 
@@ -88,8 +91,8 @@ class Machine:
         self.config = config
         self.clock = Clock(config.cycle_s, config.epoch)
         self.io = IoImage(config.io)
-        self._memory_file = None if isinstance(memory, Store) else memory
-        self._memory = memory if isinstance(memory, Store) else None
+        self._memory_file = memory if isinstance(memory, str | Path) else None
+        self._memory = None if isinstance(memory, str | Path) else memory
         self.state: KernelState = make_state(
             len(config.axes),
             cycle_s=config.cycle_s,
@@ -207,6 +210,8 @@ class Machine:
     def memory(self) -> Store:
         """The durable memory, opened when it is first used."""
         if self._memory is None:
+            from polycnc.machine._store import Store
+
             self._memory = Store(self._memory_file)
         return self._memory
 

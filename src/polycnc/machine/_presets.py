@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from difflib import get_close_matches
 from importlib.resources import files
 from pathlib import Path
 
@@ -63,6 +62,8 @@ def _is_path(source: str) -> bool:
 
 
 def _instead(name: str) -> str:
+    from difflib import get_close_matches
+
     close = get_close_matches(name, PRESETS, n=1)
     question = f"did you mean '{close[0]}'? " if close else ""
     return f"{question}presets: {', '.join(PRESETS)}; a machine file is named by its path, like ./mine.toml"

@@ -10,7 +10,6 @@ import re
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args, get_origin
 
@@ -260,6 +259,8 @@ def _without_echoes(problems: list[_Problem]) -> list[_Problem]:
 
 
 def _suggest(key: str, known: Sequence[str]) -> str:
+    from difflib import get_close_matches
+
     if close := get_close_matches(key, known, n=1):
         return f"did you mean '{close[0]}'?"
     return f"known here: {', '.join(known)}" if known else ""

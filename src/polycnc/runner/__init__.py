@@ -3,8 +3,9 @@
 What posting and debugging need is loaded when it is first used.
 """
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from polycnc.on_demand import names_on_demand
 from polycnc.runner._operations import Operation
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._remarks import Remark
@@ -21,13 +22,13 @@ from polycnc.runner._result import (
 from polycnc.runner._run import CheckReport, check, inspect, program_text, run
 from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
 from polycnc.runner._trace_formats import TRACE_FORMATS
-from polycnc.runner._verify import Violation, verify_trace
 from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._schemas import SCHEMAS, json_schema
+    from polycnc.runner._verify import Violation, verify_trace
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
     from polycnc.runner.batches import BatchResult, batch
     from polycnc.runner.comparison import Comparison, PathDeviation, compare
@@ -36,30 +37,16 @@ if TYPE_CHECKING:
     from polycnc.runner.view import TrackCollector, View, check_view_file, open_in_browser, view_program
 
 _LATER = {
-    "PLOT_FORMATS": "plots",
-    "SCHEMAS": "_schemas",
-    "BatchResult": "batches",
-    "Comparison": "comparison",
-    "Debugger": "_debugger",
-    "Deviation": "_verify_post",
-    "PathDeviation": "comparison",
-    "Place": "_debugger",
-    "PostResult": "_post",
-    "PostVerification": "_verify_post",
-    "TrackCollector": "view",
-    "View": "view",
-    "batch": "batches",
-    "check_plot_file": "plots",
-    "check_view_file": "view",
-    "compare": "comparison",
-    "json_schema": "_schemas",
-    "machine_from": "machine_sources",
-    "open_in_browser": "view",
-    "plot": "plots",
-    "plot_track": "plots",
-    "post_file": "_post",
-    "verify_post": "_verify_post",
-    "view_program": "view",
+    "_debugger": ("Debugger", "Place"),
+    "_post": ("PostResult", "post_file"),
+    "_schemas": ("SCHEMAS", "json_schema"),
+    "_verify": ("Violation", "verify_trace"),
+    "_verify_post": ("Deviation", "PostVerification", "verify_post"),
+    "batches": ("BatchResult", "batch"),
+    "comparison": ("Comparison", "PathDeviation", "compare"),
+    "machine_sources": ("machine_from",),
+    "plots": ("PLOT_FORMATS", "check_plot_file", "plot", "plot_track"),
+    "view": ("TrackCollector", "View", "check_view_file", "open_in_browser", "view_program"),
 }
 
 __all__ = [
@@ -113,10 +100,4 @@ __all__ = [
     "view_program",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
-
-    if name in _LATER:
-        return getattr(import_module(f"polycnc.runner.{_LATER[name]}"), name)
-    raise AttributeError(f"module 'polycnc.runner' has no attribute '{name}'")
+__getattr__ = names_on_demand(__name__, _LATER)

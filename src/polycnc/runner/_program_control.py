@@ -6,13 +6,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-from polycnc.cnc import Control, ProgramRun
+from polycnc.cnc import ProgramRun
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Language, ProgramText
 from polycnc.outputs import check_output
+
+if TYPE_CHECKING:
+    from polycnc.cnc import Control
 
 
 class Screen(Protocol):

@@ -1,9 +1,24 @@
 """Custom macros of FANUC controls: variables, expressions, program flow, and calls with arguments."""
 
-from polycnc.nc.macro._calls import Arguments, MacroCalls
-from polycnc.nc.macro._language import MacroLanguage, MacroSource, language_for
-from polycnc.nc.macro._system import SystemVariables
-from polycnc.nc.macro._variables import LARGEST, LEVELS, LOCALS, MacroError, MacroVariables, Value
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from polycnc.nc import Dialect
+from polycnc.on_demand import names_on_demand
+
+if TYPE_CHECKING:
+    from polycnc.nc.macro._calls import Arguments, MacroCalls
+    from polycnc.nc.macro._language import MacroLanguage, MacroSource
+    from polycnc.nc.macro._system import SystemVariables
+    from polycnc.nc.macro._variables import LARGEST, LEVELS, LOCALS, MacroError, MacroVariables, Value
+
+_LATER = {
+    "_calls": ("Arguments", "MacroCalls"),
+    "_language": ("MacroLanguage", "MacroSource"),
+    "_system": ("SystemVariables",),
+    "_variables": ("LARGEST", "LEVELS", "LOCALS", "MacroError", "MacroVariables", "Value"),
+}
 
 __all__ = [
     "LARGEST",
@@ -19,3 +34,14 @@ __all__ = [
     "Value",
     "language_for",
 ]
+
+__getattr__ = names_on_demand(__name__, _LATER)
+
+
+def language_for(dialect: Dialect) -> MacroLanguage | None:
+    """Return the language of a dialect for one run, None if it has none."""
+    if dialect.language != "macro":
+        return None
+    from polycnc.nc.macro._language import MacroLanguage
+
+    return MacroLanguage()

@@ -19,7 +19,6 @@ from polycnc.nc._block_source import (
     WordsBlock,
 )
 from polycnc.nc._channel import Channel
-from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._modal import INCH
 from polycnc.nc.macro._calls import ARGUMENTS_EACH, Arguments, MacroCalls
 from polycnc.nc.macro._compile import Code, compile_program, names
@@ -698,8 +697,3 @@ def _program_number(text: str, offset: int) -> int:
             break
         number += char
     return int(number) if number else 0
-
-
-def language_for(dialect: Dialect) -> MacroLanguage | None:
-    """Return the language of a dialect for one run, None if it has none."""
-    return MacroLanguage() if dialect.language == "macro" else None
