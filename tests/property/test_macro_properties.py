@@ -74,7 +74,9 @@ class Writer:
         value = shallow(self.chance, 3, self.known)
         self.macro.append(f"#{number}=SIN[{value}]*5000")
         self.words.append(f"#{number}=[SIN[{value}]*5000]")
-        self.both(f"#{number}=[ROUND[#{number}]/1000]")  # loops would make much of a difference in the last bit
+        self.both(
+            f"#{number}=[ROUND[#{number}]/1000]"
+        )  # loops would make much of a difference in the last bit
         self.known.append(number)
 
     def condition(self) -> str:
