@@ -5,6 +5,7 @@ What posting and debugging need is loaded when it is first used.
 
 from typing import TYPE_CHECKING, Any
 
+from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._operations import Operation
 from polycnc.runner._plot import PLOT_FORMATS, PlotCollector, check_plot_file, plot
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
@@ -58,6 +59,7 @@ _LATER = {
 }
 
 __all__ = [
+    "LOOP_LIMIT_S",
     "PLOT_FORMATS",
     "SCHEMAS",
     "SCREEN_FORMATS",
