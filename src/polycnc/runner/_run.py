@@ -17,9 +17,18 @@ from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, MAction, ProgramText, Stop, dialect_for, line_of
 from polycnc.nc.macro import language_for
 from polycnc.outputs import keep_inputs
-from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
+from polycnc.runner._execution import (
+    LOOP_LIMIT_S,
+    Floats,
+    Progress,
+    Rows,
+    TaggedRows,
+    run_to_end,
+    totals,
+)
 from polycnc.runner._operations import OperationCollector
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
+from polycnc.runner._rehearsal import rehearsed
 from polycnc.runner._remarks import MachiningWatch, Remark, times_remark
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, TracedResult
 from polycnc.runner._trace import TraceCollector
@@ -55,6 +64,7 @@ def run(
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> TracedResult: ...
 
 
@@ -77,6 +87,7 @@ def run(
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> RunResult: ...
 
 
@@ -98,6 +109,7 @@ def run(
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -113,13 +125,16 @@ def run(
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
     absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
-    `screen` (.txt, .svg or .png).
+    `screen` (.txt, .svg or .png). A loop of its statements may go round for `loop_limit_s` of the machine's time
+    without a block or a WAIT; one that comes back to where it was is an error at once.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
+    if not loop_limit_s > 0.0:
+        raise UsageError(f"a limit of {loop_limit_s:g} s for loops", hint="Give seconds above 0.")
     if not feed_override > 0.0:
         raise UsageError(f"a feed override of {feed_override:g}", hint="Give more than 0, up to 2.")
     text = program_text(program)
@@ -169,7 +184,9 @@ def run(
         control.attach(execution)
         try:
             told = None if every_cycle else progress
-            run_to_end(execution, every_cycle=every_cycle, control=control, progress=told)
+            run_to_end(
+                execution, every_cycle=every_cycle, control=control, progress=told, loop_limit_s=loop_limit_s
+            )
         except ProgramError as error:
             stuck = error
         finally:
@@ -200,12 +217,13 @@ def check(
     `ignore` names G and M codes that count as if they were not there. With `strict` the remarks of `inspect` are errors
     too.
 
-    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run.
+    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run; with `strict`
+    in a copy of that folder.
 
     Raises:
         UsageError: no such file, machine or dialect.
     """
-    report = inspect(program, machine, dialect, root=root, ignore=ignore)
+    report = inspect(program, machine, dialect, root=root, ignore=ignore, rehearse=strict)
     if not strict:
         return report.errors
     return [*report.errors, *map(_as_error, report.remarks)]
@@ -227,11 +245,13 @@ def inspect(
     *,
     root: str | Path | None = None,
     ignore: Iterable[str] = (),
+    rehearse: bool = True,
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
 
     Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut, and
-    program stops; not so of programs that a language like CPL executes.
+    program stops. A program with statements of a language (CPL) that is linked without an error is run in a copy of
+    `root` for that, unless `rehearse` is off or the folder is larger than 500 files or 32 MB.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -241,7 +261,10 @@ def inspect(
     chosen = _dialect_of(text, dialect, ignore)
     control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
     if control is not None and control.has_statements(text):
-        return CheckReport(control.check(text), [])
+        errors = control.check(text)
+        rehearses = rehearse and not errors
+        folder = root_of(program, root)
+        return CheckReport(errors, rehearsed(text, simulated.config, chosen, folder) if rehearses else [])
     options = RunOptions(stands_at_stops=False, collect_errors=True)
     language = language_for(chosen) if control is None else control.language
     config = None if control is None else control.config

@@ -12,8 +12,10 @@ compensate the length of its tool deviates by that length.
 from __future__ import annotations
 
 import gc
+import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -44,7 +46,7 @@ from polycnc.post import (
 from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
 from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
-from polycnc.runner._program_control import Surroundings, control_for, root_of
+from polycnc.runner._program_control import Surroundings, control_for
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run
 
@@ -168,11 +170,12 @@ def verify_post(
         None if carried is not None else np.frombuffer(block_map.line, np.intc),
     )
     path_feed_mm, path_rapid_mm = moves.length_mm()
-    result = run(program, config, read, check=False)
-    gc.collect()  # the machine of that run, before there is another one
-    comparison = _Comparison(moves, block_map, carried, config, read, frame)
-    if result.ok:
-        _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress)
+    with tempfile.TemporaryDirectory(prefix="polycnc-") as root:  # nothing is left beside the program
+        result = run(program, config, read, check=False, root=root)
+        gc.collect()  # the machine of that run, before there is another one
+        comparison = _Comparison(moves, block_map, carried, config, read, frame)
+        if result.ok:
+            _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress, root)
     tool_axis_deg, tool_axis_line = comparison.tool_axis() if result.ok else (0.0, 0)
     return PostVerification(
         tolerance_mm=tolerance_mm,
@@ -231,8 +234,9 @@ def _run_closely(
     distance_mm: float,
     comparison: _Comparison,
     progress: Progress | None,
+    root: str,
 ) -> None:
-    """Run a program with close positions, and compare each."""
+    """Run a program with close positions, and compare each; `root` is the folder of its control."""
     machine = Machine(_with_close_positions(config, distance_mm), record_cycles=_RECORD_CYCLES)
     lines = max(program.content.count(b"\n"), 1)
 
@@ -242,7 +246,7 @@ def _run_closely(
             progress(min(float(rows[-1, BLOCK]) / lines, 1.0))
 
     options = RunOptions(stands_at_stops=False)
-    control = control_for(dialect, program, machine, Surroundings(root_of(program, None)))
+    control = control_for(dialect, program, machine, Surroundings(Path(root)))
     if control is None or not control.has_statements(program):
         execution = ProgramRun(machine, program, dialect, options=options, rows=compare)
         run_to_end(execution, every_cycle=True)
