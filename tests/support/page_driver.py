@@ -32,8 +32,12 @@ def _step(kind: str, what: str, text: str, session: dict[str, Any]) -> int:
     elif kind == "polycnc":
         return _polycnc(what)
     elif kind == "shell":
-        done = subprocess.run(what.split(), capture_output=True, text=True, check=False)
-        print(done.stdout, end="")
+        command, _, target = what.partition(" > ")
+        done = subprocess.run(command.split(), capture_output=True, text=True, check=False)
+        if target:
+            Path(target).write_text(done.stdout, encoding="utf-8")
+        else:
+            print(done.stdout, end="")
         return done.returncode
     else:
         exec(compile(text, what, "exec"), session)
