@@ -64,10 +64,16 @@ def figures(quick: bool) -> list[Figure]:
             main, errors = Linker(host.program).link(lines, "long.npg")
             assert main is not None, errors
 
+        def begin() -> None:
+            main, errors = Linker(host.program).link(lines, "long.npg")
+            assert main is not None, errors
+            Run(main, Linker(host.program), host)
+
         here = STATEMENTS_PER_ROUND * rounds / median_s(run, RUNS)
         found = [
             at_least("CPL loop with a sine, statements", here, "statements/s", FLOOR),
             at_most(f"linking {LINES:,} lines", median_s(link, RUNS), "s", LINK_S),
+            Figure(f"linking {LINES:,} lines and beginning to run them", median_s(begin, RUNS), "s"),
         ]
         command = shutil.which("rs274")
         if command is not None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
+
 import pytest
 
 from polycnc.errors import ProgramError
@@ -221,8 +223,22 @@ def test_running_code_has_no_builtins_but_those_that_are_lent(line: str) -> None
     assert caught.type in (NameError, ImportError)
 
 
-def test_code_that_is_too_deep_for_python_is_a_flaw() -> None:
-    out = Emitter(5)
-    out.put(f"a = {'(' * 300}2{')' * 300}")
+@pytest.mark.parametrize("nested", ["parentheses", "loops"])
+def test_code_that_is_too_deep_for_python_is_a_flaw(nested: str) -> None:
+    out: Emitter[int] = Emitter(5)
+    if nested == "parentheses":
+        out.put(f"a = {'(' * 210}2{')' * 210}")
+    else:
+        with ExitStack() as blocks:
+            for _ in range(21):
+                blocks.enter_context(out.block("while 3:"))
     with pytest.raises(Flaw, match="too long or nested too deeply"):
         out.compile("<deep>")
+
+
+def test_code_that_is_only_looked_at_is_not_compiled() -> None:
+    out: Emitter[int] = Emitter(5)
+    out.put("this is no Python")
+    traced = out.compile("<later>")
+    with pytest.raises(SyntaxError):
+        traced.load({})

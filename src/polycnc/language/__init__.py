@@ -1,7 +1,16 @@
 """Program text to running code, for every language here: source, tokens, expressions, Python that knows its places."""
 
 from polycnc.language._expression import Chain, Infix, Link, Operators, Prefix, Tree, Unary, read_expression
-from polycnc.language._python import Emitter, Frame, Python, Traced, frame_of, infix, prefix
+from polycnc.language._python import (
+    Emitter,
+    Frame,
+    Python,
+    Traced,
+    frame_of,
+    infix,
+    prefix,
+    without_collection,
+)
 from polycnc.language._source import Flaw, Source
 from polycnc.language._tokens import END, Lexicon, Token, Tokens, real_value, whole_value
 
@@ -29,4 +38,5 @@ __all__ = [
     "read_expression",
     "real_value",
     "whole_value",
+    "without_collection",
 ]

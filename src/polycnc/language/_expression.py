@@ -16,7 +16,7 @@ from polycnc.language._tokens import Token, Tokens
 Leaf = TypeVar("Leaf")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Unary(Generic[Leaf]):
     """A sign or another operator before its operand."""
 
@@ -25,7 +25,7 @@ class Unary(Generic[Leaf]):
     operand: Tree[Leaf]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Link(Generic[Leaf]):
     """An operator of a chain, with what stands behind it."""
 
@@ -34,7 +34,7 @@ class Link(Generic[Leaf]):
     operand: Tree[Leaf]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Chain(Generic[Leaf]):
     """Operators of one power between operands, reckoned from left to right."""
 
@@ -87,16 +87,16 @@ def read_expression(
     left: Tree[Leaf]
     if prefix is not None and prefix.power >= least:
         sign = tokens.step()
-        with tokens.nested(sign.at, "operators inside each other"):
-            inner = prefix.power if prefix.repeats else prefix.power + 1
-            left = Unary(sign.at, sign.word, read_expression(tokens, operators, operand, inner))
+        tokens.enter(sign.at, "operators inside each other")
+        inner = prefix.power if prefix.repeats else prefix.power + 1
+        left = Unary(sign.at, sign.word, read_expression(tokens, operators, operand, inner))
+        tokens.leave()
     else:
         left = operand()
-    while True:
-        infix = operators.infix.get(tokens.token.word)
-        if infix is None or infix.power < least:
-            return left
+    infixes = operators.infix
+    while (infix := infixes.get(tokens.token.word)) is not None and infix.power >= least:
         left = Chain(_place(left), left, _links(tokens, operators, operand, infix))
+    return left
 
 
 def _links(

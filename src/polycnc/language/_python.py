@@ -6,9 +6,10 @@ raised in it can be led back to the place in the program that its Python line wa
 
 from __future__ import annotations
 
+import gc
+import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from types import CodeType
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -23,7 +24,22 @@ _INFIX = {
     "<<": 8, ">>": 8, "+": 9, "-": 9, "*": 10, "/": 10, "//": 10, "%": 10,
 }  # fmt: skip
 _PREFIX = {"not": 3, "-": 11, "+": 11, "~": 11}
+_SHORT = 300
+"""Python of lines so short and hardly indented compiles; other lines are compiled at once, to see whether they do."""
+_DEEP = re.compile(" {60}")
 _COMPARISON = 4  # comparisons in a row mean something else in Python, so one never stands bare within another
+
+
+@contextmanager
+def without_collection() -> Iterator[None]:
+    """Keep the collector of cycles away from trees: they hold none, and it would go through them again and again."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
 
 
 class Python(NamedTuple):
@@ -51,13 +67,24 @@ def prefix(operator: str, operand: Python) -> Python:
     return Python(f"{operator}{blank}{operand.within(power)}", power)
 
 
-@dataclass(frozen=True, slots=True)
 class Traced(Generic[Place]):
-    """Compiled Python, its lines, and the place in the program that each of them stems from."""
+    """Python as `name`: its lines, and the place in the program that each of them stems from.
 
-    code: CodeType
-    lines: tuple[str, ...]
-    places: tuple[Place, ...]
+    It is compiled when it is asked for its code, so that a program that is only checked never is.
+    """
+
+    def __init__(self, name: str, lines: tuple[str, ...], places: tuple[Place, ...]) -> None:
+        self.name = name
+        self.lines = lines
+        self.places = places
+        self._code: CodeType | None = None
+
+    @property
+    def code(self) -> CodeType:
+        """The compiled code."""
+        if self._code is None:
+            self._code = compile("\n".join(self.lines), self.name, "exec", dont_inherit=True)
+        return self._code
 
     def load(self, names: Mapping[str, object]) -> dict[str, Any]:
         """Execute it, knowing `names` and nothing else of Python, and return what it defines."""
@@ -81,6 +108,12 @@ class Emitter(Generic[Place]):
             self.lines.append(self._indent + line)
             self.places.append(self.place)
 
+    def take(self, other: Emitter[Place]) -> None:
+        """Add the lines of another one, with their places, at the present indentation."""
+        indent = self._indent
+        self.lines += [indent + line for line in other.lines] if indent else other.lines
+        self.places += other.places
+
     @contextmanager
     def block(self, head: str) -> Iterator[None]:
         """Add a line that ends with a colon; what is put inside belongs to it, `pass` if nothing is."""
@@ -93,18 +126,20 @@ class Emitter(Generic[Place]):
         self._indent = self._indent[:-4]
 
     def compile(self, name: str) -> Traced[Place]:
-        """Return the lines compiled; `name` tells this code from other code in `frame_of`.
+        """Return the lines to be loaded; `name` tells this code from other code in `frame_of`.
 
         Raises:
             Flaw: They are nested too deeply, or too long, for Python.
         """
-        try:
-            code = compile("\n".join(self.lines), name, "exec", dont_inherit=True)
-        except (RecursionError, MemoryError, SyntaxError) as error:
-            raise Flaw(
-                0, "one expression or statement is too long or nested too deeply", "split it"
-            ) from error
-        return Traced(code, tuple(self.lines), tuple(self.places))
+        traced = Traced(name, tuple(self.lines), tuple(self.places))
+        if max(map(len, self.lines), default=0) > _SHORT or any(map(_DEEP.match, self.lines)):
+            try:
+                _ = traced.code
+            except (RecursionError, MemoryError, SyntaxError) as error:
+                raise Flaw(
+                    0, "one expression or statement is too long or nested too deeply", "split it"
+                ) from error
+        return traced
 
 
 class Frame(NamedTuple, Generic[Place]):

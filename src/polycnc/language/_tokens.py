@@ -29,6 +29,9 @@ class Token(NamedTuple):
         return f"'{self.text}'" if len(self.text) <= _SHOWN else f"'{self.text[:_SHOWN]}...'"
 
 
+_NONE = Token("", "", "", 0)
+
+
 class Lexicon:
     """The kinds of tokens of a language, each with its pattern, in the order in which they are tried.
 
@@ -47,8 +50,22 @@ class Lexicon:
     ) -> None:
         self._kinds = (("", False), *((kind, kind in folded) for kind, _ in kinds))
         self._pattern = re.compile(f"(?:{skip})(?:{'|'.join(f'({pattern})' for _, pattern in kinds)})")
+        self._row_pattern = re.compile(f"{self._pattern.pattern}|(?:{skip})[^ \\t]", re.DOTALL)
         self._skip = re.compile(skip)
         self._unfinished = unfinished or {}
+
+    def row(self, text: str, at: int, end: int) -> list[Token]:
+        """Return the tokens from `at` on as far as they follow each other."""
+        tokens: list[Token] = []
+        kinds, new, put = self._kinds, tuple.__new__, tokens.append
+        for found in self._row_pattern.finditer(text, at, end):
+            index = found.lastindex
+            if index is None:  # no token begins here
+                break
+            kind, folded = kinds[index]
+            written = found[index]
+            put(new(Token, (kind, written.upper() if folded else written, written, found.start(index))))
+        return tokens
 
     def read(self, text: str, at: int, end: int) -> tuple[Token, int]:
         """Return the token at or behind `at`, and the offset behind it.
@@ -85,24 +102,31 @@ class Tokens:
         self._nesting = nesting
         self._depth = 0
         self.behind = start  # where the token before the present one ends
-        self.token, self._next = lexicon.read(text, start, self._end)
+        self.token = _NONE
+        self._row: list[Token] = []
+        self._at = 0  # the place of the present token in its row
+        self.jump(start)
 
     @property
     def next_at(self) -> int:
         """Return the offset behind the present token."""
-        return self._next
+        return self.token.at + len(self.token.text)
 
     def step(self) -> Token:
         """Return the token and go to the next one."""
         token = self.token
-        self.behind = self._next
-        self.token, self._next = self._lexicon.read(self._text, self._next, self._end)
+        self.behind = behind = token.at + len(token.text)
+        self._at = at = self._at + 1
+        row = self._row
+        self.token = row[at] if at < len(row) else self._lexicon.read(self._text, behind, self._end)[0]
         return token
 
     def jump(self, at: int) -> None:
         """Go on with the token at an offset."""
         self.behind = at
-        self.token, self._next = self._lexicon.read(self._text, at, self._end)
+        self._row = self._lexicon.row(self._text, at, self._end)
+        self._at = 0
+        self.token = self._row[0] if self._row else self._lexicon.read(self._text, at, self._end)[0]
 
     def take(self, word: str) -> bool:
         """Step over a word or mark if it comes next, and tell whether it did."""
@@ -130,9 +154,8 @@ class Tokens:
         if self.token.kind != END:
             raise Flaw(self.token.at, f"{what} does not go on with {self.token}", hint)
 
-    @contextmanager
-    def nested(self, at: int, what: str = "parentheses inside each other") -> Iterator[None]:
-        """Read something inside something else.
+    def enter(self, at: int, what: str = "parentheses inside each other") -> None:
+        """Begin something inside something else; `leave` ends it.
 
         Raises:
             Flaw: It is nested too deeply.
@@ -140,8 +163,21 @@ class Tokens:
         if self._depth >= self._nesting:
             raise Flaw(at, f"more than {self._nesting} {what}", "split it and keep a part in a variable")
         self._depth += 1
-        yield
+
+    def leave(self) -> None:
+        """End what `enter` has begun."""
         self._depth -= 1
+
+    @contextmanager
+    def nested(self, at: int, what: str = "parentheses inside each other") -> Iterator[None]:
+        """Read something inside something else.
+
+        Raises:
+            Flaw: It is nested too deeply.
+        """
+        self.enter(at, what)
+        yield
+        self.leave()
 
 
 def real_value(token: Token, largest: float = math.inf) -> float:

@@ -73,7 +73,7 @@ class Compiler:
                 )
             elif isinstance(statement, Goto):
                 self._gotos.add(statement.target)
-        self._apart, self._jumps = taken_apart(statements)
+        self._apart, self._jumps = taken_apart(statements, self._gotos)
         self._body(statements)
         if self.flaws:
             return None
@@ -127,11 +127,13 @@ class Compiler:
                 self._copy(segment, whole)
 
     def _copy(self, segment: Emitter[int], whole: Emitter[int]) -> None:
-        for line, place in zip(segment.lines, segment.places, strict=True):
-            whole.place = place
-            whole.put(
-                _LABEL.sub(lambda found: str(self._labels[int(found[1])]), line) if "\x01" in line else line
-            )
+        if self._jumps:
+            labels = self._labels
+            segment.lines = [
+                _LABEL.sub(lambda found: str(labels[int(found[1])]), line) if "\x01" in line else line
+                for line in segment.lines
+            ]
+        whole.take(segment)
 
     # Jumps
 

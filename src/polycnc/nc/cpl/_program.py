@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
-from polycnc.language import Flaw, Source, Traced
+from polycnc.language import Flaw, Source, Traced, without_collection
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, pattern_of
 from polycnc.nc.cpl._compile import Compiler
 from polycnc.nc.cpl._link_table import LinkedCall, LinkTable, LinkTables, NoTables, text_digest
@@ -55,17 +55,24 @@ def compile_program(
 
     The codes of `alone` ("G322") call programs where they stand alone in a block.
     """
-    source = _source(text, file)
+    with without_collection():
+        return _compiled(_source(text, file), text, stepping, alone)
+
+
+def _compiled(
+    source: Source, text: str, stepping: bool, alone: frozenset[str]
+) -> tuple[Program | None, list[ProgramError]]:
     statements, flaws = read_program(source, alone)
-    flaws += target_flaws(statements)
+    whole = list(every(statements))
+    flaws += target_flaws(whole)
     compiler = Compiler(source, stepping=stepping)
-    traced = compiler.compile(statements, f"<cpl {file}>") if not flaws else None
+    traced = compiler.compile(statements, f"<cpl {source.file}>") if not flaws else None
     flaws += compiler.flaws
     if traced is None:
         return None, [source.error(flaw) for flaw in sorted(flaws, key=lambda flaw: flaw.at)]
     calls = tuple(
         LinkedCall(each.at, each.line, each.address, each.name, each.unlinked)
-        for each in every(statements)
+        for each in whole
         if isinstance(each, SubCall)
     )
     plain = all(isinstance(each, NcLine) for each in statements)

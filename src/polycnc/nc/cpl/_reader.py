@@ -43,7 +43,8 @@ class Reader:
         if token.kind != "name" or token.word in RESERVED:
             raise Flaw(token.at, f"{what} is missing before {token}")
         self.tokens.step()
-        return Name(token.at, variable(token), self._indices())
+        indices = self._indices() if self.tokens.token.word == "(" else ()
+        return Name(token.at, variable(token), indices)
 
     def arguments(self, closing: str) -> tuple[tuple[Expression | None, ...], bool]:
         """Read arguments up to the closing bracket; tell whether a semicolon ends them.
@@ -53,16 +54,17 @@ class Reader:
         """
         tokens = self.tokens
         found: list[Expression | None] = []
-        with tokens.nested(tokens.token.at, "brackets inside each other"):
-            outside, self._parentheses = self._parentheses, 0
-            while True:
-                left_out = tokens.token.word in (",", ";", closing)
-                found.append(None if left_out else self.expression())
-                if not tokens.take(","):
-                    break
-            ends_open = tokens.take(";")
-            tokens.expect(closing, f"arguments are separated by commas and closed by {closing}")
-            self._parentheses = outside
+        tokens.enter(tokens.token.at, "brackets inside each other")
+        outside, self._parentheses = self._parentheses, 0
+        while True:
+            left_out = tokens.token.word in (",", ";", closing)
+            found.append(None if left_out else self.expression())
+            if not tokens.take(","):
+                break
+        ends_open = tokens.take(";")
+        tokens.expect(closing, f"arguments are separated by commas and closed by {closing}")
+        self._parentheses = outside
+        tokens.leave()
         if found == [None]:
             found = []
         return tuple(found), ends_open
@@ -95,6 +97,8 @@ class Reader:
 
     def _operand(self) -> Expression:
         token = self.tokens.token
+        if token.kind == "name" and token.word not in RESERVED:
+            return self.name("a value")
         if token.kind == "number":
             self.tokens.step()
             if "." in token.text or len(token.text.lstrip("0")) > _LARGEST_WHOLE_DIGITS:
@@ -111,9 +115,7 @@ class Reader:
         if token.word in _CONSTANTS:
             self.tokens.step()
             return Word(token.at, _CONSTANTS[token.word])
-        if token.word in RESERVED:
-            return self.call()
-        return self.name("a value")
+        return self.call()
 
     def _in_parentheses(self) -> Expression:
         opening = self.tokens.step()
@@ -121,25 +123,25 @@ class Reader:
             hint = f"at most {PARENTHESES} parentheses stand inside each other; keep a part in a variable"
             raise Flaw(opening.at, NESTING_TOO_DEEP.what, hint, code=NESTING_TOO_DEEP.code)
         self._parentheses += 1
-        with self.tokens.nested(opening.at):
-            inner = self.expression()
-            self.tokens.expect(")", "close the parenthesis")
+        self.tokens.enter(opening.at)
+        inner = self.expression()
+        self.tokens.expect(")", "close the parenthesis")
+        self.tokens.leave()
         self._parentheses -= 1
         return Parentheses(opening.at, inner)
 
     def _indices(self) -> tuple[Expression, ...]:
         tokens = self.tokens
-        if tokens.token.word != "(":
-            return ()
         opening = tokens.step()
         found: list[Expression] = []
-        with tokens.nested(opening.at, "brackets inside each other"):
-            outside, self._parentheses = self._parentheses, 0
+        tokens.enter(opening.at, "brackets inside each other")
+        outside, self._parentheses = self._parentheses, 0
+        found.append(self.expression())
+        if tokens.take(","):
             found.append(self.expression())
-            if tokens.take(","):
-                found.append(self.expression())
-            tokens.expect(")", "a field has one index or two, in parentheses")
-            self._parentheses = outside
+        tokens.expect(")", "a field has one index or two, in parentheses")
+        self._parentheses = outside
+        tokens.leave()
         return tuple(found)
 
 

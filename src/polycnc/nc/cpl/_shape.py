@@ -16,6 +16,9 @@ _LOOPS = 15  # Python has 20
 _LEVELS = 40  # Python has 100
 
 
+_STRUCTURES = (If, Case, For, While, Repeat)
+
+
 @dataclass(slots=True)
 class Shape:
     """What stands inside a structure: jumps, places jumped to, parts taken apart; how deep loops and all else nest."""
@@ -37,28 +40,33 @@ class Shape:
 
 def bodies(statement: Statement) -> tuple[list[Statement], ...]:
     """Return the bodies of a structure, none for other statements."""
-    match statement:
-        case If():
-            return (statement.then, statement.otherwise)
-        case Case():
-            return tuple(body for _, body in statement.branches)
-        case For() | While() | Repeat():
-            return (statement.body,)
-    return ()
+    if isinstance(statement, If):
+        return (statement.then, statement.otherwise)
+    if isinstance(statement, Case):
+        return tuple(body for _, body in statement.branches)
+    return (statement.body,) if isinstance(statement, For | While | Repeat) else ()
 
 
 def every(statements: Iterable[Statement]) -> Iterable[Statement]:
     """Yield all statements, those inside structures too."""
-    for statement in statements:
-        yield statement
-        for body in bodies(statement):
-            yield from every(body)
+    left = [iter(statements)]
+    while left:
+        for statement in left[-1]:
+            yield statement
+            if isinstance(statement, _STRUCTURES):
+                left += [iter(body) for body in reversed(bodies(statement))]
+                break
+        else:
+            left.pop()
 
 
-def taken_apart(statements: list[Statement]) -> tuple[set[int], bool]:
-    """Return the ids of the structures that become jumps, and whether there is any jump at all."""
+def taken_apart(statements: list[Statement], targets: set[str]) -> tuple[set[int], bool]:
+    """Return the ids of the structures that become jumps, and whether there is any jump at all.
+
+    `targets` are the places that are jumped to.
+    """
     apart: set[int] = set()
-    shape = _shape(statements, {each.target for each in every(statements) if isinstance(each, Goto)}, apart)
+    shape = _shape(statements, targets, apart)
     return apart, shape.jumps or shape.apart
 
 
@@ -69,7 +77,8 @@ def _shape(statements: list[Statement], used: set[str], apart: set[int]) -> Shap
             whole.jumps = True
         elif isinstance(statement, Target):
             whole.targets |= statement.name in used
-        elif parts := bodies(statement):
+        elif isinstance(statement, _STRUCTURES):
+            parts = bodies(statement)
             inside = Shape()
             for body in parts:
                 inside.take(_shape(body, used, apart))
@@ -85,11 +94,11 @@ def _shape(statements: list[Statement], used: set[str], apart: set[int]) -> Shap
     return whole
 
 
-def target_flaws(statements: list[Statement]) -> list[Flaw]:
-    """Return what is wrong with jumps: a destination that is missing, or stands there twice."""
+def target_flaws(statements: Iterable[Statement]) -> list[Flaw]:
+    """Return what is wrong with the jumps of all statements: a destination that is missing, or stands there twice."""
     places: dict[str, list[int]] = {}
     gotos: list[Goto] = []
-    for statement in every(statements):
+    for statement in statements:
         if isinstance(statement, Target):
             places.setdefault(statement.name, []).append(statement.at)
         elif isinstance(statement, Goto):

@@ -11,7 +11,7 @@ from polycnc.nc.cpl._variables import Variable
 # Expressions
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Number:
     """A constant; whether it has a decimal point is its Python type."""
 
@@ -19,7 +19,7 @@ class Number:
     value: int | float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Text:
     """A character string constant."""
 
@@ -27,7 +27,7 @@ class Text:
     value: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Word:
     """TRUE, FALSE or NUL."""
 
@@ -35,7 +35,7 @@ class Word:
     value: bool | None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Name:
     """A variable, with indices where it is written with some."""
 
@@ -44,7 +44,7 @@ class Name:
     indices: tuple[Expression, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Call:
     """A function or command with its arguments, None for one left out; `open`: a semicolon ends them."""
 
@@ -54,7 +54,7 @@ class Call:
     open: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Parentheses:
     """An expression in parentheses, kept so that their depth can be counted."""
 
@@ -68,7 +68,7 @@ Expression: TypeAlias = Tree[Leaf]
 # Statements
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Assign:
     """``target = value``; a target that is a call is a system value that can be set, or MID$."""
 
@@ -77,7 +77,7 @@ class Assign:
     value: Expression
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Command:
     """A function or command that stands by itself."""
 
@@ -85,7 +85,7 @@ class Command:
     call: Call
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Dim:
     """DIM, or PDIM of a parameter."""
 
@@ -95,7 +95,7 @@ class Dim:
     parameter: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Goto:
     """A jump; `target` is "N20", "120" or ".LABEL"."""
 
@@ -103,7 +103,7 @@ class Goto:
     target: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Target:
     """A place that can be jumped to."""
 
@@ -111,7 +111,7 @@ class Target:
     name: str
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class SubCall:
     """A sub-program call: by CALL, or by an address of an NC block."""
 
@@ -123,7 +123,7 @@ class SubCall:
     unlinked: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Wait:
     """WAIT; `condition` is the IC call of it, `state` what it is compared with."""
 
@@ -186,7 +186,7 @@ class Repeat:
     body: list[Statement] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class NcLine:
     """NC blocks without CPL in them, from line `line` to `last`: the control reads them where they stand."""
 
@@ -195,7 +195,7 @@ class NcLine:
     last: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class NcWord:
     """A word of an NC block: an address with a value; without an address, text or AXP() that gives whole words."""
 
@@ -205,7 +205,7 @@ class NcWord:
     index: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class NcBlock:
     """An NC block with CPL in it."""
 

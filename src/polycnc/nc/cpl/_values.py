@@ -231,9 +231,11 @@ class Values:
         return Python(f"single({typed.python.text})")
 
     def _typed(self, tree: Expression) -> Typed:
+        if isinstance(tree, Name) and tree.variable.kind != "S":  # most of them are variables and numbers
+            return Typed(Python(self._place(tree)), tree.variable.kind, leaf=True)
+        if isinstance(tree, Number):
+            return self._number(tree)
         match tree:
-            case Number():
-                return self._number(tree)
             case Word(value=None):
                 return Typed(Python("None"), "N")
             case Word():
@@ -242,8 +244,6 @@ class Values:
                 return self._typed(tree.inner)
             case Unary():
                 return self._unary(tree)
-            case Name() if tree.variable.kind != "S":
-                return Typed(Python(self._place(tree)), tree.variable.kind, leaf=True)
             case Chain() if not self.is_text(tree):
                 return self._chain(tree)
             case Call() if FUNCTIONS[tree.function].kind != "S":
@@ -263,6 +263,8 @@ class Values:
             ) from None
 
     def _place(self, name: Name) -> str:
+        if not name.indices and name.variable.name not in self.fields:
+            return self._use(name.variable, name.at)
         python, index = self.element(name)
         return f"{python}[{index}]" if index else python
 
@@ -392,9 +394,11 @@ class Values:
         return python
 
     def _has_double(self, tree: object) -> bool:
+        if isinstance(tree, Name):
+            return tree.variable.kind == "D"
+        if isinstance(tree, Number):
+            return False
         match tree:
-            case Name():
-                return tree.variable.kind == "D"
             case Parentheses():
                 return self._has_double(tree.inner)
             case Unary():

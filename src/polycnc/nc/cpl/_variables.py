@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from typing import Literal, NamedTuple, TypeAlias
 
 from polycnc.language import Flaw, Token
@@ -47,10 +48,16 @@ def variable(token: Token) -> Variable:
         Flaw: It is a permanent variable that does not exist or must not be used.
     """
     word = token.word
+    if word[0] == "@":
+        return _permanent(token, word.rstrip("%!?$"), SUFFIXES.get(word[-1], "R"))
+    return _other(word)
+
+
+@lru_cache(maxsize=4096)
+def _other(word: str) -> Variable:
+    """Return the variable of a name that does not begin with @."""
     kind: Kind = SUFFIXES.get(word[-1], "R")
     base = word.rstrip("%!?$")
-    if word[0] == "@":
-        return _permanent(token, base, kind)
     if found := _PARAMETER.fullmatch(base):
         return Variable(f"P{whole(found[1])}{MARKS.get(kind, '')}", "parameter", kind)
     name = base[:_SIGNIFICANT] + MARKS.get(kind, "")
