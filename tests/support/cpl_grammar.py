@@ -56,7 +56,7 @@ rprimary: REAL | RVAR | DVAR | "(" rsum ")" | "SQRT" "(" number ")" -> root | "A
 
 text: piece | text PLUS piece -> joined
 piece: STRING | SVAR | "(" text ")" | "CHR$" "(" number ")" -> character
-     | "MID$" "(" text "," number ("," number)? ")" -> middle
+     | "MID$" "(" (text | _nul) "," number ("," number)? ")" -> middle
 
 AND.2: "AND"
 OR.2: "OR"

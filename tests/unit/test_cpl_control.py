@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 
 from polycnc import runner
 from polycnc.cli._app import app
+from polycnc.errors import UsageError
 from polycnc.nc import ProgramText
 from support.cpl_runs import Root
 from support.programs import MILL
@@ -126,10 +127,43 @@ def test_a_wait_that_cannot_end_is_an_error(root: Root) -> None:
     assert root.error("N5 G1 X5 F6000\n10 WAIT(IC(4)=TRUE)") == "2: the program waits without end"
 
 
-def test_a_loop_that_cannot_end_is_an_error(root: Root, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("polycnc.runner._execution._MOST_ROUNDS", 20)
-    assert root.error("N5 G1 X5 F6000\n10 A%=1\n20 GOTO 10") == "3: the program loops without end"
+@pytest.mark.parametrize(
+    ("loop", "line"),
+    [
+        ("10 A%=1\n20 GOTO 10", 3),
+        ("10 WHILE MPOS(1)<7 DO\n20 A=COS(MPOS(1))\n30 END", 3),
+        ("10 I%=0 : REPEAT\n20 I%=I%+1 : IF I%>7 THEN I%=3 ENDIF\n30 UNTIL IC(3,8)", 4),
+        (
+            '10 DIM F%(9) : DIM T$(9) : F%(3)=1\n20 WHILE TRUE DO\n30 F%(3)=5-F%(3) : T$=STR$("#",F%(3))\n40 END',
+            4,
+        ),
+        ("10 X=1\n20 WHILE X>0 DO\n30 X=X+1\n40 END", 4),  # 2**24 + 1 is 2**24 in single precision
+        ("10 CALL SUB", 3),
+    ],
+)
+def test_a_loop_that_comes_back_to_where_it_was_is_an_error(root: Root, loop: str, line: int) -> None:
+    root.write("SUB", b"1 #I%=5\n2 WHILE #I%=5 DO\n3 @7%=#I%*3\n4 END")
+    alarms = root.run(f"N5 G1 X5 F6000\n{loop}", check=False).alarms
+    assert [(alarm.text, alarm.line) for alarm in alarms] == [("the program loops without end", line)]
+
+
+def test_a_loop_that_does_something_goes_on_up_to_the_limit(root: Root) -> None:
     assert root.run("10 T%=CLOCK\n20 WHILE CLOCK<T%+15 DO\n30 #A%=1\n40 END").variables["#A%"] == 1
+    found = root.run("5 I%=0\n10 WHILE I%<90000 DO\n20 I%=I%+1\n30 END\n40 #I%=I%").variables
+    assert found["#I%"] == 90000
+    counting = "10 X!=1\n20 WHILE X!>0 DO\n30 X!=X!+1\n40 END"
+    text = ProgramText.from_text(counting, str(root.folder / "main.npg"))
+    alarms = runner.run(text, MILL, "bosch", root=root.folder, check=False, loop_limit_s=0.02).alarms
+    assert [alarm.text for alarm in alarms] == ["the program has looped for 0.02 s without a block or a WAIT"]
+    with pytest.raises(UsageError, match="a limit of 0 s for loops"):
+        runner.run(text, MILL, "bosch", root=root.folder, loop_limit_s=0)
+
+
+def test_the_limit_of_loops_is_an_option(root: Root) -> None:
+    root.write("main.npg", b"10 X!=1\n20 WHILE X!>0 DO\n30 X!=X!+1\n40 END\n")
+    result = CliRunner().invoke(app, ["run", str(root.folder / "main.npg"), "--loop-limit", "0.03"])
+    assert "the program has looped for 0.03 s without a block or a WAIT" in result.output
+    assert "--loop-limit" in result.output
 
 
 # ---------------------------------------------------------------------- sub-programs and plain programs

@@ -96,6 +96,13 @@ def run_command(
         Path | None,
         typer.Option(help="Write what the program shows to a .txt, .svg or .png file.", metavar="FILE"),
     ] = None,
+    loop_limit: Annotated[
+        float | None,
+        typer.Option(
+            help="How long a CPL loop may go round without a block or a WAIT (10 s of the machine's time).",
+            metavar="S",
+        ),
+    ] = None,
 ) -> None:
     """Run part programs on a simulated machine and say how long they take and where they go."""
     from polycnc import runner
@@ -141,6 +148,7 @@ def run_command(
                     keys=() if keys is None else runner.read_keys(keys),
                     screen=screen,
                     ignore=codes_of(ignore),
+                    loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
                 )
             if picture is not None and plot is not None:
                 names = tuple((axis.name, axis.unit) for axis in config.axes)

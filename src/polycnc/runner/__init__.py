@@ -6,6 +6,7 @@ What posting and debugging need is loaded when it is first used.
 from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
+from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._operations import Operation
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._remarks import Remark
@@ -50,6 +51,7 @@ _LATER = {
 }
 
 __all__ = [
+    "LOOP_LIMIT_S",
     "PLOT_FORMATS",
     "SCHEMAS",
     "SCREEN_FORMATS",

@@ -22,7 +22,8 @@ _STEP_CYCLES = 1 << 16
 _MOVING_CYCLES = 1 << 8  # what a program asks of the control is seen this often
 _PATIENCE_S = 1.0  # nothing changes the inputs of a run: what does not hold then never will
 _GROWTH = 50  # a wait for an input is looked at ever more rarely
-_MOST_ROUNDS = 10_000  # so often a loop without blocks is asked to go on, a cycle each time
+LOOP_LIMIT_S = 10.0
+"""How long a program may loop without a block or a WAIT, in time of the machine."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,7 @@ def run_to_end(
     every_cycle: bool,
     progress: Progress | None = None,
     control: ProgramControl | None = None,
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> None:
     """Run until the program has ended and everything has stopped, a program stop where it stands, or an alarm.
 
@@ -51,11 +53,11 @@ def run_to_end(
     while the path stands: time passes up to the end of its wait.
 
     Raises:
-        ProgramError: The program waits without end.
+        ProgramError: The program waits or loops without end, or loops for longer than `loop_limit_s`.
     """
     run.start()
     if control is not None:
-        _run_with(control, run, every_cycle=every_cycle, progress=progress)
+        _run_with(control, run, loop_limit_s, every_cycle=every_cycle, progress=progress)
         return
     while run.active:
         if every_cycle:
@@ -68,7 +70,12 @@ def run_to_end(
 
 
 def _run_with(
-    control: ProgramControl, run: ProgramRun, *, every_cycle: bool, progress: Progress | None = None
+    control: ProgramControl,
+    run: ProgramRun,
+    loop_limit_s: float,
+    *,
+    every_cycle: bool,
+    progress: Progress | None = None,
 ) -> None:
     idle, rounds, blocks = 0, 0, -1
     patience = run.machine.clock.cycles_for(_PATIENCE_S)
@@ -82,7 +89,7 @@ def _run_with(
         wakes_s = control.wakes_in_s()
         stands = run.active and run.at_rest and wakes_s is None and run.channel.blocks == blocks
         rounds, blocks = rounds + 1 if stands else 0, run.channel.blocks
-        if rounds > _MOST_ROUNDS and (endless := control.stuck(loops=True)) is not None:
+        if (endless := control.looping(rounds, loop_limit_s)) is not None:
             run.channel.close()
             raise endless
         if wakes_s is None or not run.active or not run.at_rest:

@@ -52,8 +52,11 @@ class ProgramControl(Protocol):
     def wakes_in_s(self) -> float | None:
         """Return when the WAIT of the program ends at the latest (s from now, may be inf), None if it is in none."""
 
-    def stuck(self, *, loops: bool = False) -> ProgramError | None:
-        """Return the error of a program that waits for what will not come, or `loops` for ever."""
+    def stuck(self) -> ProgramError | None:
+        """Return the error of a program that waits for what will not come."""
+
+    def looping(self, cycles: int, limit_s: float) -> ProgramError | None:
+        """Return the error of a program that has looped for `cycles` cycles of standstill, None if it may go on."""
 
     def finish(self) -> None:
         """End everything that does not outlive a program, and keep what does."""

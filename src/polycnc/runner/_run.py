@@ -17,7 +17,15 @@ from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, Event, MAction, ProgramText, Stop, dialect_for, line_of
 from polycnc.nc.macro import language_for
 from polycnc.outputs import keep_inputs
-from polycnc.runner._execution import Floats, Progress, Rows, TaggedRows, run_to_end, totals
+from polycnc.runner._execution import (
+    LOOP_LIMIT_S,
+    Floats,
+    Progress,
+    Rows,
+    TaggedRows,
+    run_to_end,
+    totals,
+)
 from polycnc.runner._operations import OperationCollector
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._remarks import MachiningWatch, Remark, times_remark
@@ -55,6 +63,7 @@ def run(
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> TracedResult: ...
 
 
@@ -77,6 +86,7 @@ def run(
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> RunResult: ...
 
 
@@ -98,6 +108,7 @@ def run(
     keys: Iterable[str] = (),
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
+    loop_limit_s: float = LOOP_LIMIT_S,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -113,13 +124,16 @@ def run(
 
     Where the dialect has a language (CPL), `root` is the folder with the control's files, that of the program if
     absent; `keys` are pressed when the program asks for one, and what it has shown at the end is written to
-    `screen` (.txt, .svg or .png).
+    `screen` (.txt, .svg or .png). A loop of its statements may go round for `loop_limit_s` of the machine's time
+    without a block or a WAIT; one that comes back to where it was is an error at once.
 
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
+    if not loop_limit_s > 0.0:
+        raise UsageError(f"a limit of {loop_limit_s:g} s for loops", hint="Give seconds above 0.")
     if not feed_override > 0.0:
         raise UsageError(f"a feed override of {feed_override:g}", hint="Give more than 0, up to 2.")
     text = program_text(program)
@@ -169,7 +183,9 @@ def run(
         control.attach(execution)
         try:
             told = None if every_cycle else progress
-            run_to_end(execution, every_cycle=every_cycle, control=control, progress=told)
+            run_to_end(
+                execution, every_cycle=every_cycle, control=control, progress=told, loop_limit_s=loop_limit_s
+            )
         except ProgramError as error:
             stuck = error
         finally:

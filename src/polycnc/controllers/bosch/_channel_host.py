@@ -162,15 +162,30 @@ class ChannelHost:
         deadline = source.wait_ends_ms
         return float("inf") if deadline is None else max(deadline / 1000.0 - self._clock.now_s, 0.0)
 
-    def stuck(self, *, loops: bool = False) -> ProgramError | None:
-        """Return the error of a program that waits for what will not come, or `loops` for ever."""
-        if not self.language.running:
-            return None
+    def stuck(self) -> ProgramError | None:
+        """Return the error of a program that waits for what will not come."""
         hint = "give WAIT a duration, or the control the keys that the program asks for"
-        what = "the program waits without end"
-        if loops:
-            what, hint = "the program loops without end", "let the loop end, or put a block or a WAIT into it"
-        return self.language.running[-1].execution.error_here(what, hint)
+        return self._error_here("the program waits without end", hint)
+
+    def looping(self, cycles: int, limit_s: float) -> ProgramError | None:
+        """Return the error of a program that has looped for `cycles` cycles of standstill, None if it may go on.
+
+        It must not come back to a state in which it was, nor loop for longer than `limit_s`.
+        """
+        if not cycles:
+            self.language.moves_on()
+            return None
+        if self.language.loops():
+            hint = "nothing that it does can end the loop: change it, or put a block or a WAIT into it"
+            return self._error_here("the program loops without end", hint)
+        if cycles * self._clock.cycle_s <= limit_s:
+            return None
+        hint = "put a block or a WAIT into the loop, or raise the limit: --loop-limit, loop_limit_s"
+        return self._error_here(f"the program has looped for {limit_s:g} s without a block or a WAIT", hint)
+
+    def _error_here(self, what: str, hint: str) -> ProgramError | None:
+        running = self.language.running
+        return running[-1].execution.error_here(what, hint) if running else None
 
     def finish(self) -> None:
         """End everything that does not outlive a program, and keep the permanent variables.

@@ -11,6 +11,7 @@ from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, Stat
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, CodeWord
 from polycnc.nc.cpl._host import Host, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._link_table import LinkTables
+from polycnc.nc.cpl._loops import LoopWatch, WatchedHost
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
 from polycnc.nc.cpl._run import Arguments, Execution
 from polycnc.nc.text._program import ProgramText
@@ -55,7 +56,8 @@ class CplLanguage:
         """The sources under way, that of the main program first."""
         self.at_line: Callable[[str, int], bool] | None = None
         """What tells a debugger's wish to stand before a line, of programs linked for stepping."""
-        self._host = host
+        self._host = WatchedHost(host)
+        self._loop = LoopWatch()
         self._skip_levels = skip_levels
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
@@ -85,6 +87,18 @@ class CplLanguage:
         source = CplSource(text, execution, self, modal=called.modal)
         self.running.append(source)
         return source
+
+    def loops(self) -> bool:
+        """Tell whether the programs under way are in a loop without end, if nothing else changes what they read.
+
+        To be asked now and then while nothing moves; `moves_on` begins anew.
+        """
+        executions = [source.execution for source in self.running]
+        return self._loop.repeats(self._host.effects, executions, (self.globals, self._host.permanent))
+
+    def moves_on(self) -> None:
+        """Take note that something has happened since `loops` was asked."""
+        self._loop.forget()
 
     def stands(self, file: str, line: int) -> bool:
         """Tell whether preparation waits before a line for the path to come there, so that it can be stopped at."""

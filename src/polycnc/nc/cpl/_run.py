@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from array import array
 from collections.abc import Callable, Container, Sequence
 from typing import Any, NamedTuple, NoReturn
@@ -29,6 +30,8 @@ from polycnc.nc.cpl._host import (
 )
 from polycnc.nc.cpl._program import NESTING, Linker, Program
 from polycnc.nc.cpl._variables import SUFFIXES, Kind
+
+_STATE = re.compile(r"v_|pc\Z|t[0-9]")
 
 
 class Arguments(NamedTuple):
@@ -112,6 +115,14 @@ class Execution:
         values = self._generator.gi_frame.f_locals if self._generator.gi_frame is not None else {}
         local = (each for each in self.program.variables if each.scope in ("local", "parameter"))
         return {each.name: shown(values.get(each.python)) for each in local}
+
+    def state(self) -> dict[str, object]:
+        """Return what it goes on with: its place, variables, and what it is just reckoning; not what counts pauses."""
+        frame = self._generator.gi_frame
+        if frame is None:
+            return {}
+        found = {name: value for name, value in frame.f_locals.items() if _STATE.match(name)}
+        return {**found, "": frame.f_lasti}
 
     def _error(self, call: SubProgram, what: str, hint: str = "") -> ProgramError:
         source = self.program.source
