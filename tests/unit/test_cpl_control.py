@@ -169,6 +169,18 @@ def test_the_limit_of_loops_is_an_option(root: Root) -> None:
 # ---------------------------------------------------------------------- sub-programs and plain programs
 
 
+@pytest.mark.covers("cpl.sub")
+def test_any_part_program_can_be_called_with_its_end(root: Root) -> None:
+    root.write("SP", b"10 PDIM P1$(4) : #A$=P1$\nN20 G1 X3 F6000\nM30\n30 #N%=99")
+    root.write("PLAIN", b"N10 G1 Y5 F6000\nN20 M2\nN30 Y77")
+    found = root.run(
+        '5 #N%=7\nN10 P SP["TEST"]\nN15 P PLAIN\n20 CALL PLAIN\n30 WAIT\n40 #X=MPOS(1) : #Y=MPOS(2)\nM30\n50 #N%=8'
+    )
+    assert [found.variables[name] for name in ("#N%", "#A$", "#X", "#Y")] == [7, "TEST", 3, 5]
+    looped = root.run("10 FOR I%=1 TO 9\n20 #N%=I%\n30 IF I%=4 THEN\nM30\n40 ENDIF\n50 NEXT")
+    assert looped.variables["#N%"] == 4
+
+
 def test_sub_programs_lie_in_the_root(root: Root) -> None:
     root.write("DRILL", b"1 A=P1\nN1 G1 Z[A] F2000\n")
     root.write("P999", b"N1 Y3.5\n")

@@ -257,3 +257,27 @@ def test_a_channel_is_ready_when_a_start_would_begin_or_go_on(panel: Panel) -> N
     panel.pnc.cycle_start()
     assert panel.wait() is RunState.COMPLETED
     assert not panel.pnc.is_ready(1)
+
+
+# ---------------------------------------------------------------------- files of two channels
+
+
+@pytest.mark.covers("cpl.OPENR")
+def test_a_file_that_another_channel_writes_is_open(panel: Panel) -> None:
+    panel.write("SUB", "1 WAIT(,300)")
+    panel.start('1 OPENW(1,"R",200)\n2 PRN#(1,"ONE")\n3 CALL SUB\n4 PRN#(1,"MORE")')
+    panel.pnc.advance(20)
+    found = panel.run(
+        '1 #A%=ERASE("R") : #B%=ERASE("SUB") : DIM #T$(9) : OPENR(2,"R") : INP#(2,#T$) : CLOSE(2)', channel=2
+    )
+    assert (found["#A%"], found["#B%"], found["#T$"]) == (3, 3, "ONE")
+    panel.start('1 OPENW(1,"R",200)', channel=2)
+    panel.pnc.advance(3)
+    run = panel.pnc.control.channels[1].run
+    assert run is not None
+    assert run.error is not None
+    assert run.error.what == "FILE ALREADY OPEN"
+    panel.pnc.reset(channel=2)
+    assert panel.wait() is RunState.COMPLETED
+    panel.run('1 OPENW(1,"R",200) : PRN#(1,"TWO")', channel=2)
+    assert (panel.folder / "R").read_bytes() == b"ONE\nMORE\nTWO\n\x03\n"

@@ -632,7 +632,10 @@ class Channel:
         outcome = self.interpreter.execute(text, block)
         match outcome.control:
             case Control.END:
-                self._end()
+                if self.dialect.sub_program.end_returns and self._calls.depth:
+                    self._leave()
+                else:
+                    self._end()
             case Control.CALL:
                 back = Back(self._here(), self._text_end, block.line, self._calls_within)
                 if self._calls.enter(outcome.program, outcome.repeats, back):

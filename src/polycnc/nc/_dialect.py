@@ -131,6 +131,9 @@ class SubPrograms(StrictModel):
     repeats_in_p: bool = Field(
         default=False, description="P of more than four digits: the last four are the program, the others L."
     )
+    end_returns: bool = Field(
+        default=False, description="An end of program (M2, M30) in a sub-program returns to its caller."
+    )
 
 
 class Cycles(StrictModel):

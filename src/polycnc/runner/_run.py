@@ -28,6 +28,7 @@ from polycnc.runner._execution import (
 )
 from polycnc.runner._operations import OperationCollector
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
+from polycnc.runner._rehearsal import rehearsed
 from polycnc.runner._remarks import MachiningWatch, Remark, times_remark
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, TracedResult
 from polycnc.runner._trace import TraceCollector
@@ -216,12 +217,13 @@ def check(
     `ignore` names G and M codes that count as if they were not there. With `strict` the remarks of `inspect` are errors
     too.
 
-    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run.
+    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run; with `strict`
+    in a copy of that folder.
 
     Raises:
         UsageError: no such file, machine or dialect.
     """
-    report = inspect(program, machine, dialect, root=root, ignore=ignore)
+    report = inspect(program, machine, dialect, root=root, ignore=ignore, rehearse=strict)
     if not strict:
         return report.errors
     return [*report.errors, *map(_as_error, report.remarks)]
@@ -243,11 +245,13 @@ def inspect(
     *,
     root: str | Path | None = None,
     ignore: Iterable[str] = (),
+    rehearse: bool = True,
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
 
     Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut, and
-    program stops; not so of programs that a language like CPL executes.
+    program stops. A program with statements of a language (CPL) that is linked without an error is run in a copy of
+    `root` for that, unless `rehearse` is off or the folder is larger than 500 files or 32 MB.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -257,7 +261,10 @@ def inspect(
     chosen = _dialect_of(text, dialect, ignore)
     control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
     if control is not None and control.has_statements(text):
-        return CheckReport(control.check(text), [])
+        errors = control.check(text)
+        rehearses = rehearse and not errors
+        folder = root_of(program, root)
+        return CheckReport(errors, rehearsed(text, simulated.config, chosen, folder) if rehearses else [])
     options = RunOptions(stands_at_stops=False, collect_errors=True)
     language = language_for(chosen) if control is None else control.language
     config = None if control is None else control.config

@@ -65,7 +65,14 @@ class ChannelHost:
         self.kept = system.kept
         codes = called_codes(system, load_dialect("bosch"), lambda: system.axes.names_in(number))
         self.language = _Language(self, codes, skip_levels=frozenset(skip_levels), stepping=stepping)
-        self.files = FileCommands(self.directory, self._say, self._running_files, warn=self._warn)
+        system.running_files.append(self._running_files)
+        self.files = FileCommands(
+            self.directory,
+            self._say,
+            lambda: set().union(*(each() for each in system.running_files)),
+            warn=self._warn,
+            stored=system.open_files,
+        )
         self.dialog = Dialog(
             Keyboard(keys),
             lambda: self.files.left_justified,

@@ -30,7 +30,7 @@ from polycnc.controllers.bosch._parameters import (
 from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch._shown import Shown
 from polycnc.controllers.bosch._table_files import TableFiles
-from polycnc.controllers.bosch.files import Directory
+from polycnc.controllers.bosch.files import Directory, StoredFile
 from polycnc.controllers.bosch.ncs import Clients, Mode
 from polycnc.controllers.bosch.system import (
     ALL_CHANNELS,
@@ -92,6 +92,9 @@ class BoschSystem:
         self.referenced: Callable[[], frozenset[str]] = lambda: frozenset(config.axis_names)
         self.selected: Callable[[int], str] = lambda number: ""
         self.clients = Clients()
+        self.open_files: dict[Path, StoredFile] = {}
+        self.running_files: list[Callable[[], set[Path]]] = []
+        """What tells the files of the programs that run, of each channel."""
         self._noted: dict[int, tuple[Channel, int]] = {}
         self._store = store
         self.kept = KeptVariables(self.directory, store)

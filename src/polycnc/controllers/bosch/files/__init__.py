@@ -4,5 +4,15 @@ from polycnc.controllers.bosch.files._commands import FileCommands
 from polycnc.controllers.bosch.files._directory import Directory, is_file
 from polycnc.controllers.bosch.files._print import Output, as_output
 from polycnc.controllers.bosch.files._selected_block import CALL, SelectedBlock
+from polycnc.controllers.bosch.files._stored import StoredFile
 
-__all__ = ["CALL", "Directory", "FileCommands", "Output", "SelectedBlock", "as_output", "is_file"]
+__all__ = [
+    "CALL",
+    "Directory",
+    "FileCommands",
+    "Output",
+    "SelectedBlock",
+    "StoredFile",
+    "as_output",
+    "is_file",
+]

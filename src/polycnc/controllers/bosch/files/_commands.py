@@ -23,7 +23,7 @@ class FileCommands:
     """The files that a program has open, and what it can do with files.
 
     `say` puts a text out as a message, `warn` a warning (a message, if absent), `active` holds the paths of the
-    programs that run.
+    programs that run, `stored` the files that any program of the control has opened.
     """
 
     def __init__(
@@ -33,7 +33,9 @@ class FileCommands:
         active: Callable[[], Container[Path]],
         *,
         warn: Callable[[str], None] | None = None,
+        stored: dict[Path, StoredFile] | None = None,
     ) -> None:
+        self._stored = {} if stored is None else stored
         self._warn = warn or say
         self._directory = directory
         self._say = say
@@ -121,10 +123,10 @@ class FileCommands:
         return place
 
     def _file(self, path: Path, *, writing: bool) -> StoredFile:
-        for handle in self._open.values():
-            if handle.file.path == path:
-                return handle.file
-        return StoredFile(path, writing=writing)
+        file = self._stored.get(path)
+        if file is None or not file.in_use:
+            file = self._stored[path] = StoredFile(path, writing=writing)
+        return file
 
     # ------------------------------------------------------------------ writing and reading
 
@@ -221,7 +223,8 @@ class FileCommands:
             return ""
 
     def _is_active(self, path: Path) -> bool:
-        return path in self._active() or any(handle.file.path == path for handle in self._open.values())
+        file = self._stored.get(path)
+        return path in self._active() or (file is not None and file.in_use)
 
     # ------------------------------------------------------------------ within
 

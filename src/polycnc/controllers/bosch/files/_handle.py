@@ -43,7 +43,7 @@ class Handle:
                 self.file.writer = False
             else:
                 self.file.readers -= 1
-            if not self.file.writer and not self.file.readers:
+            if not self.file.in_use:
                 self.file.close()
 
     # ------------------------------------------------------------------ writing

@@ -49,6 +49,11 @@ class StoredFile:
             if writing:
                 self._open(0)
 
+    @property
+    def in_use(self) -> bool:
+        """Whether a program has it open."""
+        return self.writer or self.readers > 0
+
     def begin_writing(self) -> None:
         """Make ready for writing; the last line gets the LF that an editor may have left out.
 
