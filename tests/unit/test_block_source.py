@@ -50,9 +50,12 @@ def span(first: int, after: int) -> TextSpan:
 class Source:
     """A source that a generator gives the items of."""
 
-    def __init__(self, items: Items, closed: Callable[[], None]) -> None:
+    def __init__(
+        self, items: Items, closed: Callable[[], None], failed: Callable[[], None] = lambda: None
+    ) -> None:
         self._items = items
         self._closed = closed
+        self.failed = failed
 
     def next(self) -> SourceItem | None:
         return next(self._items, None)
@@ -70,11 +73,14 @@ class Language:
     def __init__(self, programs: dict[int, Callable[[object], Items]]) -> None:
         self.programs = programs
         self.closed: list[int] = []
+        self.failed: list[int] = []
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> Source | None:
         if line not in self.programs:
             return None
-        return Source(self.programs[line](arguments), lambda: self.closed.append(line))
+        return Source(
+            self.programs[line](arguments), lambda: self.closed.append(line), lambda: self.failed.append(line)
+        )
 
 
 def test_words_reach_the_interpreter_as_values_and_records_point_at_the_line() -> None:
@@ -275,8 +281,9 @@ def test_an_error_of_a_source_is_an_error_of_the_program() -> None:
     assert stands(run) == "ALARM"
     assert run.machine.setpoints["X"] == 4.0
     assert str(run.error).splitlines()[0] == "lang.nc:6:1: the axis is not there"
+    assert (language.failed, language.closed) == ([1], [])
     run.reset()
-    assert language.closed == [1]
+    assert (language.failed, language.closed) == ([1], [1])
 
 
 def test_wrong_words_point_at_their_place() -> None:
@@ -284,12 +291,14 @@ def test_wrong_words_point_at_their_place() -> None:
         offset = line_start(6)
         yield WordsBlock((Word("G", 987.0, offset + 2, True),), 6, offset)
 
-    run = program_run(PROGRAM, language=Language({1: main}))
+    language = Language({1: main})
+    run = program_run(PROGRAM, language=language)
     run.start()
     to_the_end(run)
     assert run.error is not None
     assert run.error.position is not None
     assert (run.error.position.line, run.error.position.column) == (6, 3)
+    assert language.failed == [1]
 
 
 def test_block_delete_holds_for_words_too() -> None:

@@ -281,3 +281,11 @@ def test_a_file_that_another_channel_writes_is_open(panel: Panel) -> None:
     assert panel.wait() is RunState.COMPLETED
     panel.run('1 OPENW(1,"R",200) : PRN#(1,"TWO")', channel=2)
     assert (panel.folder / "R").read_bytes() == b"ONE\nMORE\nTWO\n\x03\n"
+
+
+def test_an_error_in_a_block_closes_the_files_of_its_channel(panel: Panel) -> None:
+    panel.start('1 OPENW(1,"R",200) : PRN#(1,"KEPT";) : X=7\nN2 G987 X[X]', channel=2)
+    assert panel.wait(channel=2) is RunState.ALARM
+    assert (panel.folder / "R").read_bytes() == b"KEPT\n\x03\n"
+    panel.run('1 OPENW(1,"R") : PRN#(1,"MORE")')
+    assert (panel.folder / "R").read_bytes() == b"KEPT\nMORE\n\x03\n"

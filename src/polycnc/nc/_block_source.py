@@ -135,6 +135,10 @@ class BlockSource(Protocol):
         """Leave the innermost program that the source has entered by itself, False if there is none (M99)."""
         ...
 
+    def failed(self) -> None:
+        """Take note that a block has an error, so that nothing more is asked for until the program is left."""
+        ...
+
     def close(self) -> None:
         """Take note that the program has been left."""
         ...

@@ -624,6 +624,8 @@ class Channel:
             self._ended = True
         if not self._collect_errors:
             self._ended = True
+            if (source := self._calls.running.source) is not None:
+                source.failed()
 
     # ------------------------------------------------------------------ where it goes on
 

@@ -105,7 +105,7 @@ class CplLanguage:
         return self.at_line is not None and self.at_line(file, line)
 
     def ended(self) -> None:
-        """Take note that the last program under way has been left."""
+        """Take note that the last program under way has been left, or stopped by an error."""
 
     def skips(self, level: int) -> bool:
         """Tell whether blocks of a level are left out."""
@@ -192,6 +192,10 @@ class CplSource:
     def leave(self) -> bool:
         """Leave returns to the channel, which has entered every sub-program."""
         return False
+
+    def failed(self) -> None:
+        """End what does not outlive the program; its variables can be looked at until it is left."""
+        self._language.ended()
 
     def close(self) -> None:
         """End the program."""

@@ -320,6 +320,9 @@ class MacroSource:
         """Leave nothing: programs that are called are those of the channel."""
         return False
 
+    def failed(self) -> None:
+        """Do nothing: local variables can be looked at until the program is left."""
+
     def close(self) -> None:
         """End the program: its local variables are gone."""
         if self._closed:
