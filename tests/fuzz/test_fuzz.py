@@ -4,7 +4,7 @@ The ordinary run takes about half a minute, uncompiled. Longer ones::
 
     pytest tests/fuzz -m long --fuzz-cases 20000 --fuzz-campaign 7
 
-say how many cases each target gets, and which ones. What failed is shown with its seed; `FAILED` holds what once did.
+say how many cases each target gets, and which ones. What failed is shown with its seed.
 """
 
 from __future__ import annotations

@@ -369,8 +369,11 @@ def test_numbers_that_are_none_do_not_get_in() -> None:
         for wrong in (math.nan, math.inf) if name != "jerkrel" else (math.nan,):
             setattr(axis, name, wrong)
         assert getattr(axis, name) == before
-    axis.slsp = 0.0
-    assert axis.slsp > 0.0
+    for name in ("slsp", "gf"):
+        before = getattr(axis, name)
+        for wrong in (0.0, -3.0, 5e-324, 9e-101):  # the product of the two would be 0
+            setattr(axis, name, wrong)
+            assert getattr(axis, name) == before
     ja(rig.board, (0,), (math.nan,))
     mlr(rig.board, (0,), (1e308,), Speeds(1e308, 1e308), spool=True)
     rig.board.advance(10)

@@ -253,3 +253,10 @@ def test_the_text_names_every_key_once_and_stays_the_same() -> None:
     text = system_file_text(parse_system_file("number_of_axes = 1"))
     assert text.count("jac = 1000.0\n") == text.count("[axis.plant]\n") == text.count("[board]\n") == 1
     assert system_file_text(parse_system_file(text)) == text
+
+
+@pytest.mark.parametrize("key", ["slsp", "gf", "display_factor"])
+@pytest.mark.parametrize("value", ["5e-324", "9e-101", "1.1e100"])
+def test_factors_whose_products_would_be_0_or_infinite_are_refused(key: str, value: str) -> None:
+    with pytest.raises(ConfigurationError, match=f"'{key}' is .* out of range"):
+        parse_system_file(f"[[axis]]\n{key} = {value}\n")

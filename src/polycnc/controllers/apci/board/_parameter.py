@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, overload
 
 from polycnc.controllers.apci.board._motor_command import change_units
+from polycnc.controllers.apci.board._system_axis import LEAST
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci.board._axis import Axis
@@ -15,7 +16,7 @@ class Parameter:
     """A number of the axis' row; `per` says how often the axis' time unit divides it.
 
     On what is marked with `units` the units of interpolations depend. What must be `above_zero` keeps its value when
-    it is given another.
+    it is given less than `LEAST`.
     """
 
     def __init__(self, name: str, per: int = 0, *, units: bool = False, above_zero: bool = False) -> None:
@@ -36,7 +37,7 @@ class Parameter:
 
     def __set__(self, axis: Axis, value: float) -> None:
         """Store the number; one that is none is left out, so that it cannot get into a profile."""
-        if math.isfinite(value) and (value > 0.0 or not self.above_zero):
+        if math.isfinite(value) and (value >= LEAST or not self.above_zero):
             axis.row[self.name] = value / axis.time_unit_s**self.per
             if self.units:
                 change_units(axis)

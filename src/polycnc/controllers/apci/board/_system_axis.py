@@ -14,6 +14,9 @@ PositionUnitName: TypeAlias = Literal["mm", "inch", "m", "rev", "deg", "rad", "c
 TimeUnitName: TypeAlias = Literal["sec", "min", "tsample"]
 LimitFunction: TypeAlias = Literal["none", "TOM", "SMA", "SMD"]
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
+LEAST = 1e-100
+"""What positions are multiplied and divided by is this at least, and at most its inverse: so are its products."""
+Factor: TypeAlias = Annotated[float, Field(ge=LEAST, le=1.0 / LEAST)]
 NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
 Share: TypeAlias = Annotated[float, Field(ge=0, le=1)]
 
@@ -88,9 +91,9 @@ class AxisSetup(StrictModel):
     display_unit: PositionUnitName | None = Field(
         default=None, description="Unit of the positions that rddpd, rdrpd, rdtpd read; absent: `unit`."
     )
-    display_factor: Positive = Field(default=1.0, description="Multiplies positions in the display unit.")
-    slsp: Positive = Field(default=10_000.0, description="Slits or steps per turn of the motor.")
-    gf: Positive = Field(default=0.1, description="Gear factor: turns of the motor per unit of position.")
+    display_factor: Factor = Field(default=1.0, description="Multiplies positions in the display unit.")
+    slsp: Factor = Field(default=10_000.0, description="Slits or steps per turn of the motor.")
+    gf: Factor = Field(default=0.1, description="Gear factor: turns of the motor per unit of position.")
     effradius: NotNegative = Field(
         default=0.0, description="Radius at which a rotary axis works; 0: it counts in its own unit."
     )
