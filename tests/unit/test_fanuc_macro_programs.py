@@ -322,3 +322,37 @@ def test_calls_without_a_block_leave_the_control_its_turn() -> None:
     control.reset()
     control.advance(2)
     assert control.macros.get(500) == counted
+
+
+@pytest.mark.parametrize(
+    ("main", "sub", "left"),
+    [
+        ("M98P9001\nN10#500=7\nN20#501=3\n", "M99P20\n", [None, 3.0]),
+        ("G1X2.F3000\nM98P29001\nN10#500=7\nN20#501=#502\n", "#502=#502+1.5\nM99P20(X)\n", [None, 1.5]),
+        ("G65P9001A4.\nN10#500=7\nN20#501=3\n", "IF[#1EQ4]GOTO5\nM99\nN5M99P20\n", [None, 3.0]),
+        ("#1=9001\nM98P#1\nN10#500=7\nN20#501=3\n", "P20M99\n", [None, 3.0]),
+        ("M98P9001\nN10#500=7\nN20#501=3\n", "M99(P20)\n", [7.0, 3.0]),
+    ],
+)
+def test_a_program_of_the_memory_returns_to_a_block_of_its_caller(
+    main: str, sub: str, left: list[float | None]
+) -> None:
+    control, _ = attached()
+    registered(control, O1=f"\n{main}M30\n", O9001=f"\n{sub}")
+    assert until_over(control) is RunState.COMPLETED
+    assert [control.macros.get(number) for number in (500, 501)] == left
+
+
+def test_a_program_without_statements_is_returned_into_too() -> None:
+    control, handle = attached()
+    registered(
+        control,
+        O1="\nG90G1F5000\nX1.\nM98P9001\nN10X2.\nY7.\nN20Z3.\nM30\n",
+        O9001="\nM99P20\n",
+        O2="\nM98P9002\nN10X4.\nM30\n",
+        O9002="\nM99P77\n",
+    )
+    assert until_over(control) is RunState.COMPLETED
+    assert [axis.machine for axis in control.status().axes.values()] == [1.0, 0.0, 3.0]
+    assert until_over(control, 2) is RunState.ALARM
+    assert alarms(handle) == [(3, 128, "ILLEGAL MACRO SEQUENCE NUMBER")]

@@ -186,6 +186,10 @@ class Channel:
         self._turns = 0  # of a language, since it gave a block
         self._seeking = False
 
+    def sub_program(self, number: int) -> ProgramText | None:
+        """Return the text that a sub-program stands in, None if there is none."""
+        return self._calls.text_of(number)
+
     @property
     def depth(self) -> int:
         """How deep the present program is nested; 0 is the main program."""

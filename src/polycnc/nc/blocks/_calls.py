@@ -179,6 +179,14 @@ class Calls:
             calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
         self._calls = tuple(calls)
 
+    def text_of(self, program: int) -> ProgramText | None:
+        """Return the text that a sub-program stands in, None if there is none."""
+        try:
+            place = self._find(program)
+        except UsageError:
+            return None
+        return None if place is None else place.text
+
     def _find(self, program: int | ProgramText) -> Place | None:
         """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
         if isinstance(program, ProgramText):

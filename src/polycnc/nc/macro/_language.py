@@ -25,7 +25,15 @@ from polycnc.nc.macro._compile import Code, compile_program, names
 from polycnc.nc.macro._functions import asin, atan2, rounded
 from polycnc.nc.macro._output import OutputDevice
 from polycnc.nc.macro._reader import LARGEST_LABEL, LineReader
-from polycnc.nc.macro._shape import RETURNS_TO, Special, extent, parse, shape, special
+from polycnc.nc.macro._shape import (
+    Special,
+    called_programs,
+    extent,
+    parse,
+    returns_to_a_block,
+    shape,
+    special,
+)
 from polycnc.nc.macro._system import SystemVariables
 from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, MacroVariables, Value, checked
 from polycnc.nc.text._program import ProgramText
@@ -105,7 +113,7 @@ class MacroLanguage:
         self.codes_off = 0
         self._channel: Channel | None = None
         self._compiled: dict[tuple[int, int, bool], _Compiled | None] = {}
-        self._returns: dict[int, bool] = {}
+        self._returns: dict[int, tuple[ProgramText, bool]] = {}
         self._latin: dict[int, tuple[ProgramText, str, bytes]] = {}
         self._without: dict[tuple[int, bool], ProgramText] = {}
         self.turns = 0
@@ -195,16 +203,13 @@ class MacroLanguage:
         start: int | None = None,
     ) -> _Compiled | None:
         calls = _PLAIN_CALLS if plain else self.calls
-        if id(text) not in self._latin:
-            if not force and self._is_plain(text, plain, special(calls, restarts=self.main_repeats)):
-                return None
-            decoded, folded = text.content.decode("latin-1"), text.content.upper()
-            self._latin[id(text)] = (text, decoded, folded)
-            found = next(RETURNS_TO.lines(decoded, folded, 0, len(decoded)), None)
-            self._returns[id(text)] = found is not None
-        _, whole, folded = self._latin[id(text)]
-        returns = self._returns[id(text)]
+        returns = self._is_returned_into(text, calls)
         wanted = special(calls, restarts=self.main_repeats, returns=returns)
+        if id(text) not in self._latin:
+            if not force and self._is_plain(text, plain, wanted):
+                return None
+            self._latin[id(text)] = (text, text.content.decode("latin-1"), text.content.upper())
+        _, whole, folded = self._latin[id(text)]
         if not force and next(wanted.lines(whole, folded, offset, len(whole)), None) is None:
             return None
         begin, first_line, end = extent(whole, offset, line)
@@ -221,6 +226,20 @@ class MacroLanguage:
                 code, flaws = compile_program(whole, made, self, increment, name)
         errors = [_error(text, flaw) for flaw in flaws]
         return _Compiled(text, code, errors, name, _program_number(whole, offset))
+
+    def _is_returned_into(self, text: ProgramText, calls: MacroCalls) -> bool:
+        """Tell whether a program of a text, or one that it calls, returns to a block of its caller (M99 P)."""
+        known = self._returns.get(id(text))
+        if known is None:
+            called = [text]
+            numbers = called_programs(text.content, calls)
+            for number in numbers or ():
+                found = self.channel.sub_program(number)
+                if found is not None and found is not text:
+                    called.append(found)
+            returns = numbers is None or any(returns_to_a_block(each.content) for each in called)
+            self._returns[id(text)] = known = text, returns
+        return known[1]
 
     def _is_plain(self, text: ProgramText, plain: bool, wanted: Special) -> bool:
         """Tell whether no line of a text is special; it is looked at in pieces, as most programs are long and plain."""

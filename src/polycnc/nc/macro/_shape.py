@@ -22,6 +22,7 @@ _NEWLINE = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r"\([^)\r\n]*\)")
 _LABEL = re.compile(r"(?:\A|(?<=[\r\n]))[ \t]*(?:/[1-9]?[ \t]*)?N[ \t]*0*([0-9]+)", re.IGNORECASE)
 _NEXT_PROGRAM = re.compile(r"[\r\n][ \t]*(?:%|[Oo:][ \t]*[0-9])")
+_LINE_END = re.compile(rb"[\r\n]")
 _NEAR_END = 4096
 _HEAD = re.compile(r"(?:[ \t]*(?:%[^\r\n]*|\([^)\r\n]*\)[ \t]*)?(?:\r\n|\r|\n))*")
 _NUMBER_LINE = re.compile(r"[ \t]*[Oo:][ \t]*[0-9]+[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:\r\n|\r|\n|\Z)")
@@ -82,8 +83,40 @@ def _written(letter: str, code: float) -> list[str]:
     return [f"{letter}{code:g}", f"{letter}0{code:g}", f"{letter} {code:g}"]
 
 
-RETURNS_TO = Special(re.compile(_RETURN_TO, re.IGNORECASE), tuple(each.encode() for each in _RETURNS))
-"""Lines that return to a block of the calling program."""
+_RETURNS_TO = re.compile(_RETURN_TO, re.IGNORECASE)
+_M99 = re.compile(rb"M[ \t]*0*99(?![0-9.])", re.IGNORECASE)
+_CALLS = re.compile(
+    rb"(?:M[ \t]*0*98|G[ \t]*0*6[56](?:\.1)?)(?![0-9.])[^\r\n]*?P[ \t]*(?:0*([0-9]+)|[#\[])", re.IGNORECASE
+)
+_CALL_NEEDLES = tuple(
+    each.encode() for code in ("M98", "G65", "G66") for each in _written(code[0], int(code[1:]))
+)
+_PROGRAM_DIGITS = 10_000
+
+
+def returns_to_a_block(content: bytes) -> bool:
+    """Tell whether a text has a line that returns to a block of the calling program."""
+    for found in _M99.finditer(content):
+        begin = content.rfind(b"\n", 0, found.start()) + 1
+        begin = max(begin, content.rfind(b"\r", begin, found.start()) + 1)
+        end = _LINE_END.search(content, found.end())
+        line = content[begin : end.start() if end else len(content)].decode("latin-1")
+        if _RETURNS_TO.search(_COMMENT.sub("", line)):
+            return True
+    return False
+
+
+def called_programs(content: bytes, calls: MacroCalls) -> set[int] | None:
+    """Return the numbers of the programs that a text calls, None where it calculates one."""
+    found = {*calls.g.values(), *calls.m.values(), *calls.m_sub.values()}
+    found |= set() if calls.t is None else {calls.t}
+    if any(needle in content or needle.lower() in content for needle in _CALL_NEEDLES):
+        for match in _CALLS.finditer(content):
+            if match[1] is None:
+                return None
+            number = whole(match[1])
+            found |= {number, number % _PROGRAM_DIGITS}  # the digits before are how often
+    return found
 
 
 @dataclass
