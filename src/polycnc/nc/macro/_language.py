@@ -203,11 +203,16 @@ class MacroLanguage:
         start: int | None = None,
     ) -> _Compiled | None:
         calls = _PLAIN_CALLS if plain else self.calls
+        known = id(text) in self._latin or force
+        if not known and self._is_plain(
+            text, plain, special(calls, restarts=self.main_repeats, returns=True)
+        ):
+            return None
         returns = self._is_returned_into(text, calls)
         wanted = special(calls, restarts=self.main_repeats, returns=returns)
+        if not known and not returns and self._is_plain(text, plain, wanted):
+            return None
         if id(text) not in self._latin:
-            if not force and self._is_plain(text, plain, wanted):
-                return None
             self._latin[id(text)] = (text, text.content.decode("latin-1"), text.content.upper())
         _, whole, folded = self._latin[id(text)]
         if not force and next(wanted.lines(whole, folded, offset, len(whole)), None) is None:

@@ -83,10 +83,10 @@ def _written(letter: str, code: float) -> list[str]:
     return [f"{letter}{code:g}", f"{letter}0{code:g}", f"{letter} {code:g}"]
 
 
-_RETURNS_TO = re.compile(_RETURN_TO, re.IGNORECASE)
 _M99 = re.compile(rb"M[ \t]*0*99(?![0-9.])", re.IGNORECASE)
 _CALLS = re.compile(
-    rb"(?:M[ \t]*0*98|G[ \t]*0*6[56](?:\.1)?)(?![0-9.])[^\r\n]*?P[ \t]*(?:0*([0-9]+)|[#\[])", re.IGNORECASE
+    rb"(?:M[ \t]*0*98|G[ \t]*0*6[56](?:\.1)?)(?![0-9.])[^\r\n]{0,200}?P[ \t]*(?:0*([0-9]+)|[#\[])",
+    re.IGNORECASE,
 )
 _CALL_NEEDLES = tuple(
     each.encode() for code in ("M98", "G65", "G66") for each in _written(code[0], int(code[1:]))
@@ -96,12 +96,14 @@ _PROGRAM_DIGITS = 10_000
 
 def returns_to_a_block(content: bytes) -> bool:
     """Tell whether a text has a line that returns to a block of the calling program."""
-    for found in _M99.finditer(content):
-        begin = content.rfind(b"\n", 0, found.start()) + 1
-        begin = max(begin, content.rfind(b"\r", begin, found.start()) + 1)
-        end = _LINE_END.search(content, found.end())
-        line = content[begin : end.start() if end else len(content)].decode("latin-1")
-        if _RETURNS_TO.search(_COMMENT.sub("", line)):
+    at = 0
+    while found := _M99.search(content, at):  # a line once, whatever it repeats
+        begin = content.rfind(b"\n", at, found.start()) + 1 or at
+        begin = content.rfind(b"\r", begin, found.start()) + 1 or begin
+        newline = _LINE_END.search(content, found.end())
+        at = newline.end() if newline else len(content)
+        bare = _COMMENT.sub("", content[begin:at].decode("latin-1")).encode("latin-1")
+        if _M99.search(bare) and b"P" in bare.upper():
             return True
     return False
 
