@@ -57,6 +57,11 @@ def test_dots_in_texts_and_nesting_within_reason_pass() -> None:
     assert data["x"] == "a." * 200
 
 
+@pytest.mark.parametrize("piece", ["M99", "(", "G65", "P1", "N1"])
+def test_a_line_of_many_words_takes_no_hours(piece: str) -> None:
+    assert not runner.run(f"G0 X3\n{piece * 60_000}\nM30\n", None, "fanuc", check=False).ok
+
+
 @pytest.mark.parametrize("name", ["a\0b.toml", "\ud800.toml"])
 def test_names_of_no_file_are_refused(name: str) -> None:
     for read in (load_machine, runner.run, lambda each: runner.post_file(each, "din")):

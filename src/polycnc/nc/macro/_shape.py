@@ -15,14 +15,12 @@ from polycnc.units import whole
 _B = r"[ \t]*"
 _ANYWHERE = r"[#\[\]=]|(?<![A-Z])(?:GOTO|DPRNT|BPRNT|POPEN|PCLOS|SETVN|(?:DO|END)[ \t]*[0-9])"
 _MACRO_CODES = rf"G{_B}0*6[567](?![0-9])|M{_B}0*9[67](?![0-9.])"
-_RETURN_TO = rf"M{_B}0*99(?![0-9.])[^\r\n]*P|P[^\r\n]*M{_B}0*99(?![0-9.])"
 _RETURNS = ("M99", "M099", "M0099", "M 99", "M 099", "M\t99")
 _SUB_CALL = rf"M{_B}0*98(?![0-9.])"
 _NEWLINE = re.compile(r"\r\n|\r|\n")
 _COMMENT = re.compile(r"\([^)\r\n]*\)")
 _LABEL = re.compile(r"(?:\A|(?<=[\r\n]))[ \t]*(?:/[1-9]?[ \t]*)?N[ \t]*0*([0-9]+)", re.IGNORECASE)
 _NEXT_PROGRAM = re.compile(r"[\r\n][ \t]*(?:%|[Oo:][ \t]*[0-9])")
-_LINE_END = re.compile(rb"[\r\n]")
 _NEAR_END = 4096
 _HEAD = re.compile(r"(?:[ \t]*(?:%[^\r\n]*|\([^)\r\n]*\)[ \t]*)?(?:\r\n|\r|\n))*")
 _NUMBER_LINE = re.compile(r"[ \t]*[Oo:][ \t]*[0-9]+[ \t]*(?:\([^)\r\n]*\)[ \t]*)*(?:\r\n|\r|\n|\Z)")
@@ -50,15 +48,15 @@ class Special:
             start = max(text.rfind("\n", at, first) + 1, text.rfind("\r", at, first) + 1, at)
             newline = _NEWLINE.search(text, first, end)
             stop = newline.start() if newline else end
-            bare = _COMMENT.sub(lambda match: " " * len(match[0]), text[start:stop])
-            if self.pattern.search(bare):
+            bare = without_comments(text[start:stop])
+            if self.pattern.search(bare) or _returns_to(bare):
                 yield start, stop
             at = newline.end() if newline else end
 
 
 def special(calls: MacroCalls, *, restarts: bool = False, returns: bool = False) -> Special:
     """Return what makes a line special; with `returns` callers are to be returned into."""
-    codes = [_ANYWHERE, _MACRO_CODES, _RETURN_TO]
+    codes = [_ANYWHERE, _MACRO_CODES]
     needles = ["#", "[", "=", "O", "D", "G6", "G06", "G006", "G 6", "G\t6", *_RETURNS, "M96", "M096", "M 96"]
     needles += ["M97", "M097", "M 97"]
     for code in calls.g:
@@ -83,7 +81,7 @@ def _written(letter: str, code: float) -> list[str]:
     return [f"{letter}{code:g}", f"{letter}0{code:g}", f"{letter} {code:g}"]
 
 
-_M99 = re.compile(rb"M[ \t]*0*99(?![0-9.])", re.IGNORECASE)
+_M99 = re.compile(rf"M{_B}0*99(?![0-9.])", re.IGNORECASE)
 _CALLS = re.compile(
     rb"(?:M[ \t]*0*98|G[ \t]*0*6[56](?:\.1)?)(?![0-9.])[^\r\n]{0,200}?P[ \t]*(?:0*([0-9]+)|[#\[])",
     re.IGNORECASE,
@@ -94,16 +92,27 @@ _CALL_NEEDLES = tuple(
 _PROGRAM_DIGITS = 10_000
 
 
+def without_comments(line: str) -> str:
+    """Return a line with blanks in place of its comments; its cost grows with its length alone."""
+    last = line.rfind(")") + 1
+    return _COMMENT.sub(lambda match: " " * len(match[0]), line[:last]) + line[last:]
+
+
+def _returns_to(bare: str) -> bool:
+    """Tell whether a line without comments returns to a block of the calling program."""
+    return ("P" in bare or "p" in bare) and _M99.search(bare) is not None
+
+
 def returns_to_a_block(content: bytes) -> bool:
     """Tell whether a text has a line that returns to a block of the calling program."""
+    text = content.decode("latin-1")
     at = 0
-    while found := _M99.search(content, at):  # a line once, whatever it repeats
-        begin = content.rfind(b"\n", at, found.start()) + 1 or at
-        begin = content.rfind(b"\r", begin, found.start()) + 1 or begin
-        newline = _LINE_END.search(content, found.end())
-        at = newline.end() if newline else len(content)
-        bare = _COMMENT.sub("", content[begin:at].decode("latin-1")).encode("latin-1")
-        if _M99.search(bare) and b"P" in bare.upper():
+    while found := _M99.search(text, at):  # a line once, whatever it repeats
+        begin = text.rfind("\n", at, found.start()) + 1 or at
+        begin = text.rfind("\r", begin, found.start()) + 1 or begin
+        newline = _NEWLINE.search(text, found.end())
+        at = newline.end() if newline else len(text)
+        if _returns_to(without_comments(text[begin:at])):
             return True
     return False
 
