@@ -21,20 +21,30 @@ VALUES: dict[str, Any] = {
 SET = " : ".join(f"{name}={str(value).upper()}" for name, value in VALUES.items())
 
 
+def both_take(seed: int) -> bool:
+    """Read the program of a seed twice; tell whether it is taken."""
+    chance = random.Random(seed)
+    words = Author(chance, depth=3 if seed % 20 == 0 else 1 + seed % 2).program()
+    if seed % 3:
+        words = changed(words, chance)
+    text = " ".join(words) + " "
+    takes = GRAMMAR.takes(text)
+    _, errors = compile_program(text, "main.cpl")
+    assert takes == (not errors), f"{seed}: {text!r}: {errors[0] if errors else 'taken'}"
+    return takes
+
+
 @pytest.mark.parametrize("count", [300, pytest.param(20_000, marks=pytest.mark.long)])
 def test_a_grammar_takes_the_same_programs(count: int) -> None:
-    taken = 0
-    for seed in range(count):
-        chance = random.Random(seed)
-        words = Author(chance, depth=3 if seed % 20 == 0 else 1 + seed % 2).program()
-        if seed % 3:
-            words = changed(words, chance)
-        text = " ".join(words) + " "
-        takes = GRAMMAR.takes(text)
-        _, errors = compile_program(text, "main.cpl")
-        assert takes == (not errors), f"{seed}: {text!r}: {errors[0] if errors else 'taken'}"
-        taken += takes
+    taken = sum(map(both_take, range(count)))
     assert 0.25 * count < taken < 0.75 * count
+
+
+@pytest.mark.parametrize(
+    ("seed", "taken"), [(1823, True), (2806, False), (5512, False), (6199, False), (18905, True)]
+)
+def test_programs_that_were_read_differently_once(seed: int, taken: bool) -> None:
+    assert both_take(seed) is taken
 
 
 def expected(text: str, values: dict[str, Any], *, truth: bool, double: bool) -> Any:

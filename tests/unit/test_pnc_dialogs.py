@@ -259,6 +259,15 @@ def test_a_channel_is_ready_when_a_start_would_begin_or_go_on(panel: Panel) -> N
     assert not panel.pnc.is_ready(1)
 
 
+@pytest.mark.covers("cpl.nc.G196")
+def test_the_cutting_velocity_is_told_while_g196_holds(panel: Panel) -> None:
+    found = panel.run(
+        "N1 G196 S125 M3\nN2 G1 X3 F600\n3 WAIT\n4 DIM R(2) : V=0 : E%=MCODS(5,-1,V,R,1) : #A=R(1)\nN5 M5\n6 WAIT\n"
+        "7 V=0 : E%=MCODS(5,-1,V,R,1) : #B=R(1)\nN8 G97 S750 M3\n9 WAIT\n10 V=0 : E%=MCODS(5,-1,V,R,1) : #C=R(1)"
+    )
+    assert (found["#A"], found["#B"], found["#C"]) == (125, 0, 750)
+
+
 # ---------------------------------------------------------------------- files of two channels
 
 

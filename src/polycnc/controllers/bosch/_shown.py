@@ -27,10 +27,12 @@ from polycnc.controllers.bosch.ncs import (
 from polycnc.controllers.bosch.system import ToolCompensations, ZeroShifts
 from polycnc.kernel import PIDF, RUNNING, WAIT
 from polycnc.machine import Machine
+from polycnc.nc import Group
 
 _INTERFACE_CHANNELS = 5
 _GROUPS = (range(54, 60), range(154, 160), range(254, 260))
 _FULL = 10000.0
+_CUTTING = ("G96", "G196")
 _SAV = {
     RunState.ACTIVE: Sav.ACTIVE, RunState.HOLD: Sav.ACTIVE, RunState.STOPPED_AT_BLOCK: Sav.READY,
     RunState.PROGRAM_STOP: Sav.READY, RunState.OPTIONAL_STOP: Sav.READY, RunState.ALARM: Sav.ERROR,
@@ -224,9 +226,10 @@ class Shown:
         words = run.modal
         speed = 0.0 if words is None else words.speed
         direction = 0 if words is None else words.spindle_direction
+        cutting = words is not None and words.g.get(Group.SPINDLE_MODE) in _CUTTING
         return Spindle(
             programmed=speed, actual=speed if direction else 0.0, limits=(0.0, top), gear_limits=(0.0, top),
-            motion=_MOTIONS[direction],
+            motion=_MOTIONS[direction], cutting_m_min=(speed if direction else 0.0) if cutting else None,
         )  # fmt: skip
 
 
