@@ -409,7 +409,7 @@ class _Driver:
                 if block_map is not None:
                     block_map.line.extend(range(line + place, line + len(xyz)))
                 blocks = None if block_map is None else block_map.last_block
-                motion.feed_along(course.here, xyz[place:], blocks)
+                motion.feed_along(line + place, course.here, xyz[place:], blocks)
                 course.here = motion.position
                 return
             self._goto(Goto(line + place, x, y, z))
@@ -443,8 +443,11 @@ class _Driver:
             self.motion.circle(act)
 
     def _stands(self, record: From) -> None:
+        before = self.motion.position
         self._take(record)
         self.motion.set_position(self.course.here)
+        if before is not None and before != self.course.here:
+            self.motion.moved_by_macro()
 
     def _cycle(self, record: Cycle) -> None:
         self._take(record)
