@@ -59,3 +59,11 @@ def test_points_off_the_plane_of_a_lathe_are_refused(points: int) -> None:
         post_file(parse_tool_path(text + "GOTO/4,0.25,3\n"), "fanuc-lathe")
     assert caught.value.position is not None
     assert caught.value.position.line == 6 + points
+
+
+@pytest.mark.parametrize("speed", ["SPINDL/SMM,120,CLW", "SPINDL/SFM,400,CCLW"])
+def test_a_mill_without_surface_speed_refuses_it(speed: str) -> None:
+    with pytest.raises(ProgramError, match="a surface speed, and SPINDLE_C") as caught:
+        post_file(parse_tool_path(HEAD.replace("SPINDL/RPM,900,CLW", speed), "part.cl"), "haas-mill")
+    assert caught.value.position is not None
+    assert caught.value.position.line == 2
