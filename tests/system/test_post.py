@@ -14,7 +14,7 @@ import pytest
 from typer.testing import CliRunner
 
 from polycnc.cli._app import app
-from polycnc.post import CONTROLS, load_control, parse_tool_path
+from polycnc.post import CONTROLS, load_control, parse_tool_path, shipped_text
 from polycnc.post.tool_path._cl_words import HANDLERS
 from polycnc.post.tool_path._json_path import DOINGS
 from polycnc.runner import post_file
@@ -98,9 +98,13 @@ def test_post_json(tmp_path: Path) -> None:
 
 
 def test_a_deviation_is_status_1_and_the_program_stays_to_look_at(tmp_path: Path) -> None:
-    # A milled part on the lathe: Y is lost.
-    output = tmp_path / "cover.tap"
-    done = polycnc("post", EXAMPLES / "cover.cl", "-c", "fanuc-lathe", "-o", output, "--verify", status=1)
+    # A control file that writes Y a little too long.
+    output, control = tmp_path / "cover.tap", tmp_path / "mine.toml"
+    shipped = shipped_text("fanuc-mill")
+    wrong = shipped.replace('Y = { format = "Y%.3f"', 'Y = { scale = 1.002, format = "Y%.3f"')
+    assert wrong != shipped
+    control.write_text(wrong)
+    done = polycnc("post", EXAMPLES / "cover.cl", "-c", control, "-o", output, "--verify", status=1)
     assert "deviates: more than 0.001 mm" in done.stdout
     assert output.exists()
 

@@ -178,7 +178,7 @@ def test_names_of_additions_are_free_in_a_strict_control_file() -> None:
         "PROGRAM_START": "<MAXRPM=4321><FIRSTMOTION=77><WORD=5>",
         "STOP": "<S=MAXRPM+FIRSTMOTION+WORD>$S$!M00!",
     }
-    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\nGOTO/1,2,3\nSTOP\n".replace("GOTO", "RAPID\nGOTO")
+    text = "SPINDL/RPM,180,CLW,MAXRPM,2600\nGOTO/1,2,3\nSTOP\n".replace("GOTO", "RAPID\nGOTO")
     blocks, summary = posted(text, control({"strict": True}, macros))
     assert "S4403M00" in blocks
     assert [each.text for each in summary.remarks] == [

@@ -418,8 +418,8 @@ def test_spindle_and_coolant_come_back_after_a_tool_change() -> None:
 
 
 def test_a_highest_speed_is_not_lost() -> None:
-    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\n"
-    assert calls_of(text)[0][2] == ("SPINDLE_CW", {"S": 180.0, "SPINDLEMODE": 96.0, "MAXRPM": 2600.0})
+    text = "SPINDL/RPM,180,CLW,MAXRPM,2600\n"
+    assert calls_of(text)[0][2] == ("SPINDLE_CW", {"S": 180.0, "SPINDLEMODE": 97.0, "MAXRPM": 2600.0})
     found = [remark.text for remark in posted(text, control())[1].remarks]
     assert found == ["the highest speed is not written: SPINDLE_CW of the control file does not use MAXRPM"]
     clamped = control(macros={"SPINDLE_CW": "<R=MAXRPM>\nG50$R$"})

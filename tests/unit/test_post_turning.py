@@ -87,8 +87,9 @@ def test_turning_in_xy_is_the_same_part() -> None:
     result = post_file(parse_tool_path(xy(PART)), control, verify=True)
     assert result.ok
     assert result.text == post_file(parse_tool_path(PART), "fanuc-lathe").text
-    # Without the plane it is another part, which is found.
-    assert not post_file(parse_tool_path(xy(PART)), "fanuc-lathe", verify=True).ok
+    # Without the plane it is another part.
+    with pytest.raises(ProgramError, match="22 mm off the plane: the control file writes no Y"):
+        post_file(parse_tool_path(xy(PART)), "fanuc-lathe")
 
 
 def test_a_retract_to_a_level_says_nothing_there() -> None:
@@ -131,7 +132,6 @@ def test_a_thread_is_cut_with_its_lead() -> None:
         ("PITCH/0.0625,IPR", "F1.5875"),
         ("PITCH/2.25,MMPR", "F2.25"),
         ("FEDRAT/1.25,MMPR", "F1.25"),
-        ("UNITS/INCHES\nPITCH/LEAD,0.05\nUNITS/MM", "F1.27"),
     ],
 )
 def test_leads_are_read_as_they_are_meant(pitch: str, lead: str) -> None:

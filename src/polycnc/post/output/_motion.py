@@ -9,6 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 import numpy.typing as npt
 
+from polycnc.errors import ProgramError
 from polycnc.post.macros._compile import START_WORDS
 from polycnc.post.output._kinematics import Angles, Kinematics
 from polycnc.post.output._output import Output
@@ -22,6 +23,7 @@ from polycnc.post.tool_path._tangency import Tangency
 _TILTED = 1e-6
 _FLAT_MM = 1e-7
 _LARGE_TURN_DEG = 90.0
+_OFF_PLANE_MM = 1e-3
 
 
 class Motion:
@@ -49,6 +51,8 @@ class Motion:
         self.tool_length_mm: float | None = None
         self._has_start = any(output.control.names(word) for word in START_WORDS)
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR", "THREAD")}
+        # A lathe's program has no Y: what the tool path says there would be lost.
+        self._flat = not any(output.control.uses(macro, "Y") for macro in ("RAPID", "LINEAR"))
         self.surface_speed = False
         self._thread: Thread | None = None
 
@@ -94,11 +98,15 @@ class Motion:
             )
         return self.feed
 
-    def feed_along(self, start: Vector, ends: npt.NDArray[np.float64], blocks: array[int] | None) -> None:
+    def feed_along(
+        self, line: int, start: Vector, ends: npt.NDArray[np.float64], blocks: array[int] | None
+    ) -> None:
         """Move straight with the feed to one point after the other, [points, 3], where that is plain.
 
         `blocks` gets how many blocks there are behind each of them.
         """
+        if self._flat and len(off := np.flatnonzero(np.abs(ends[:, 1]) > _OFF_PLANE_MM)):
+            raise self._off_plane(line + int(off[0]), float(ends[off[0], 1]))
         before = np.concatenate((np.array([start]), ends[:-1]))
         ways = ends - before
         lengths = np.sqrt((ways * ways).sum(axis=1))
@@ -121,6 +129,8 @@ class Motion:
             self.move(Straight(line, start, end, axis, False))
             return
         assert self.feed is not None
+        if self._flat and abs(end[1]) > _OFF_PLANE_MM:
+            raise self._off_plane(line, end[1])
         length = math.dist(start, end)
         self.tangency.feed(start, end, length)
         if start == end:
@@ -191,6 +201,8 @@ class Motion:
             return
         self._must_write = False
         x, y, z = end
+        if self._flat and abs(y) > _OFF_PLANE_MM:
+            raise self._off_plane(line, y)
         if start is None:
             start = end
         scale = self._scale
@@ -221,6 +233,13 @@ class Motion:
             self._call("LINEAR", words)
         if self._first:
             self.began()
+
+    def _off_plane(self, line: int, y: float) -> ProgramError:
+        return self._output.fail(
+            line,
+            f"the point lies {y:g} mm off the plane: the control file writes no Y",
+            'A lathe\'s path has X and Z; where it is in X and Y, write turning_plane = "xy" in the parameters.',
+        )
 
     @property
     def has_head(self) -> bool:
@@ -353,6 +372,8 @@ class Motion:
             raise self._output.fail(
                 line, "the tool axis changes with an arc", "Write a GOTO with the new axis before it."
             )
+        if self._flat and abs(act.end[1]) > _OFF_PLANE_MM:
+            raise self._off_plane(line, act.end[1])
         self.tangency.arc(line, act.start, act.end, act.center, act.normal)
         whole = Arc(act.start, act.end, act.center, act.normal, act.angle)
         self.feed_mm += whole.length

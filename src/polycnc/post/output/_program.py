@@ -358,6 +358,14 @@ class _Driver:
                     record.line, "the spindle turns before its speed is known", "Give a speed."
                 )
             speed, surface = before.speed, before.surface
+        macro = "SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW"
+        control = self.output.control
+        if surface and control.has(macro) and not control.uses(macro, "SPINDLEMODE"):
+            raise self.output.fail(
+                record.line,
+                f"a surface speed, and {macro} of the control file does not tell it from revolutions",
+                "Let the CAM system write RPM, or ask for SPINDLEMODE in the macro if the control has G96.",
+            )
         self._turning = Spindle(record.line, "cw" if sense == "on" else sense, speed, surface)
         self.drilling.rpm = 0.0 if surface else speed
         self.motion.surface_speed = surface
@@ -369,7 +377,6 @@ class _Driver:
         if not self.output.parameters.strict:
             words["MAXRPM"] = record.max_rpm
         self.output.keep(SPINDLESTATE=_SPINDLE_STATES[self._turning.sense])
-        macro = "SPINDLE_CCW" if sense == "ccw" else "SPINDLE_CW"
         if record.max_rpm and not self.output.control.uses(macro, "MAXRPM"):
             self.output.remark(
                 record.line,
@@ -409,7 +416,7 @@ class _Driver:
                 if block_map is not None:
                     block_map.line.extend(range(line + place, line + len(xyz)))
                 blocks = None if block_map is None else block_map.last_block
-                motion.feed_along(course.here, xyz[place:], blocks)
+                motion.feed_along(line + place, course.here, xyz[place:], blocks)
                 course.here = motion.position
                 return
             self._goto(Goto(line + place, x, y, z))
@@ -443,8 +450,11 @@ class _Driver:
             self.motion.circle(act)
 
     def _stands(self, record: From) -> None:
+        before = self.motion.position
         self._take(record)
         self.motion.set_position(self.course.here)
+        if before is not None and before != self.course.here:
+            self.motion.moved_by_macro()
 
     def _cycle(self, record: Cycle) -> None:
         self._take(record)

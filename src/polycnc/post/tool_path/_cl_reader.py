@@ -17,7 +17,18 @@ from polycnc.errors import ProgramError
 from polycnc.post.tool_path._cl_reading import ArcAxis, Reading
 from polycnc.post.tool_path._cl_statement import Piece, Statement
 from polycnc.post.tool_path._cl_words import CLSF_WORDS, HANDLERS, HINTS, IGNORED, LEFT_OUT_MOTION, TEXTS
-from polycnc.post.tool_path._records import LARGEST_MM, Circle, End, Goto, Points, Record, Word
+from polycnc.post.tool_path._records import (
+    LARGEST_MM,
+    Circle,
+    Delta,
+    End,
+    Goto,
+    Home,
+    Points,
+    Record,
+    Retract,
+    Word,
+)
 from polycnc.post.tool_path._source import Remarks, Source, decoded
 
 _CREO = re.compile(r"(->\s*)(?=(CUTTER|CSYS)\b)", re.IGNORECASE)
@@ -39,13 +50,18 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
     """
     reading = Reading(remarks, arc_axis)
     pieces: list[Piece] = []
+    end: End | None = None
     for number, raw in _lines(source, reading, pieces):
         if isinstance(raw, Points):
+            if end is not None:
+                raise _behind_the_end(source, number)
             yield raw
             continue
         if not pieces and not reading.resumes and (rest := _behind_goto(raw)):
             point = _point(reading, number, rest)
             if point is not None:
+                if end is not None:
+                    raise _behind_the_end(source, number)
                 yield point
                 continue
         text = decoded(raw)
@@ -56,15 +72,33 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
         if pieces and not continued:
             whole = pieces.copy()
             pieces.clear()
+            if end is not None and whole[0].part.strip().upper() == "FINI":
+                break
             for record in _statement(source, reading, whole):
                 if record.__class__ is End:
                     _check_recognised(source, reading)
-                yield record
-    if pieces:
+                    end = End(record.line)
+                elif end is None:
+                    yield record
+                elif isinstance(record, Goto | Circle | Delta | Home | Retract):
+                    raise _behind_the_end(source, number)
+            if end is not None and whole[0].part.strip().upper() == "FINI":
+                break
+    if pieces and end is None:
         yield from _statement(source, reading, pieces)
     if reading.circle is not None:
         raise reading.circle.statement.fail("an arc without an end point", "Write a GOTO behind it.")
     _check_recognised(source, reading)
+    if end is not None:
+        yield end
+
+
+def _behind_the_end(source: Source, line: int) -> ProgramError:
+    return ProgramError(
+        "a move behind END, which ends the program",
+        position=source.position(line),
+        hint="Take END out, or make a tool path of its own of what stands behind it.",
+    )
 
 
 def _lines(source: Source, reading: Reading, pieces: list[Piece]) -> Iterator[tuple[int, bytes | Points]]:

@@ -102,6 +102,25 @@ class Statement:
             self._next += 1
         return found
 
+    def first_number(self) -> float | None:
+        """Take everything up to the first number that is left, and return that; None if there is none."""
+        for token in self:
+            if (value := token.number) is not None:
+                return self._sane(token, value)
+        return None
+
+    def whole(self, value: float | None, what: str) -> int | None:
+        """Return a number that has to be whole, and not below 0; None stays None.
+
+        Raises:
+            ProgramError: it is another one.
+        """
+        if value is None:
+            return None
+        if not value.is_integer() or value < 0.0:
+            raise self.fail(f"{what} must be a whole number, not {value:g}", "Check it.")
+        return int(value)
+
     def _sane(self, token: Token, value: float) -> float:
         if math.isinf(value):
             raise self.fail(f"the number {token.text:.20} is beyond all others", "Check it.", token)

@@ -88,6 +88,8 @@ HINTS = {
 CLSF_WORDS = frozenset(("TOOLPATH", "TLDATA", "MSYS", "PAINT", "END-OF-PATH"))
 """Words that only the CLSF of NX has; its axes of arcs are for a clockwise direction."""
 
+_HIGHEST_SPEED = 1e6
+
 _FEED_UNITS = {
     "MMPM": (1.0, False),
     "MMPR": (1.0, True),
@@ -131,6 +133,7 @@ def _machine(reading: Reading, statement: Statement) -> Iterator[Record]:
 def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
     reading.units_said = True
+    before = reading.scale
     if words & {"MM", "MILLIMETERS"}:
         reading.scale = 1.0
     elif words & {"INCH", "INCHES", "IN"}:
@@ -139,6 +142,11 @@ def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
         reading.scale = 10.0
     else:
         raise statement.fail(f"{statement.major} without a unit", "Write UNITS/MM or UNITS/INCHES.")
+    if reading.moves and reading.scale != before:
+        raise statement.fail(
+            "the unit changes behind the first move",
+            f"Write {statement.major} before all points, and one tool path for each unit.",
+        )
     return iter(())
 
 
@@ -191,8 +199,8 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
         int(number),
         None,
         None if length is None else length * reading.scale,
-        None if offset is None else int(offset),
-        None if radius is None else int(radius),
+        statement.whole(offset, "the number of an offset"),
+        statement.whole(radius, "the number of an offset"),
     )
     if reading.tool is None or change != reading.tool._replace(line=change.line):
         reading.tool = change
@@ -210,8 +218,10 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     for token in statement:
         if token.text in ("RANGE", "MAXRPM"):  # a number of theirs is no speed
             statement.numbers()
-        elif speed is None:
-            speed = token.number
+        elif speed is None and (speed := token.number) is not None and not 0.0 <= speed <= _HIGHEST_SPEED:
+            raise statement.fail(
+                f"a spindle speed of {speed:g}", "Give a speed from 0 up; CCLW turns it round.", token
+            )
     sense: Literal["cw", "ccw", "off", "on"] = "on"
     if "OFF" in words:
         sense = "off"
@@ -233,7 +243,7 @@ def _feed(reading: Reading, statement: Statement) -> Iterator[Record]:
         return
     if "INVERS" in words:
         raise statement.fail("an inverse time feed", "Let the CAM system write feeds per minute.")
-    value = next((n for token in statement if (n := token.number) is not None), None)
+    value = statement.first_number()
     if value is None:
         raise statement.fail("FEDRAT needs a feed", "Write it like FEDRAT/250,MMPM.")
     if value <= 0.0:
@@ -289,7 +299,7 @@ def _pitch(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
     reading.check_units(statement)
     per_inch = statement.value_of("TPI", "threads per inch") if "TPI" in words else None
-    value = next((n for token in statement if (n := token.number) is not None), None)
+    value = statement.first_number()
     if value is None or value <= 0.0:
         raise statement.fail("PITCH needs a number above 0", "Write it like PITCH/LEAD,1.5 or PITCH/TPI,12.")
     if per_inch is not None:
@@ -333,15 +343,15 @@ def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
         side = "right"
     else:
         raise statement.fail("CUTCOM without a side", "Write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF.")
-    number = next((n for token in statement if (n := token.number) is not None), None)
-    compensation = Compensation(statement.line, side, None if number is None else int(number))
+    number = statement.first_number()
+    compensation = Compensation(statement.line, side, statement.whole(number, "the number of an offset"))
     if side != "off":
         reading.side = compensation
     yield compensation
 
 
 def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:
-    value = next((n for token in statement if (n := token.number) is not None), None)
+    value = statement.first_number()
     if value is None or value < 0.0:
         word = statement.major
         raise statement.fail(

@@ -6,6 +6,7 @@ points. A GOTO in it is a hole; GOHOME and a retraction are moves that leave it 
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple, TypeAlias
 
 from polycnc.errors import ProgramError
@@ -28,6 +29,8 @@ from polycnc.post.tool_path._records import (
     Tool,
     Vector,
 )
+
+_SAME_MM = 1e-4
 
 
 class Straight(NamedTuple):
@@ -91,6 +94,7 @@ class Course:
         self._changed = False  # behind a tool change nobody knows where the machine stands
         self._last: Cycle | None = None
         self._initial: Vector | None = None
+        self._jumped = 0  # the line of a FROM that says the tool is elsewhere than it went
 
     def take(self, record: Record) -> Act | None:
         """Return what a record makes the tool do, None if nothing.
@@ -115,8 +119,13 @@ class Course:
             case Retract():
                 return self._up(record)
             case From():
-                self.here = self._home = (record.x, record.y, record.z)
-                self._changed = False
+                before, self.here = self.here, (record.x, record.y, record.z)
+                self._home = self.here
+                elsewhere = (
+                    before is not None and math.dist(before, self.here) > _SAME_MM and not self._changed
+                )
+                self._jumped = record.line if elsewhere else 0
+                self._changed = elsewhere
                 self.axis = record.axis or self.axis
             case Axis():
                 self.axis = record.axis
@@ -149,7 +158,13 @@ class Course:
     @property
     def is_plain(self) -> bool:
         """Whether the next point is a straight feed move from where the tool is."""
-        return self.here is not None and self.cycle is None and not self._rapid and not self._changed
+        return (
+            self.here is not None
+            and self.cycle is None
+            and not self._rapid
+            and not self._changed
+            and not self._jumped
+        )
 
     def _begin(self, cycle: Cycle) -> None:
         self.cycle = self._last = cycle
@@ -157,6 +172,7 @@ class Course:
 
     def _point(self, line: int, point: Vector) -> Act:
         rapid, self._rapid = self._rapid, False
+        self._arrive(line, rapid or self.cycle is not None)
         start = self._start()
         if self.cycle is None:
             self.here = point
@@ -167,6 +183,20 @@ class Course:
         self.here = (point[0] + levels.out * i, point[1] + levels.out * j, point[2] + levels.out * k)
         return Hole(line, start, point, self.axis, self.cycle, levels)
 
+    def _arrive(self, line: int, by_rapid: bool) -> None:
+        """Know the way that a move begins with: behind a FROM elsewhere it cannot be a feed.
+
+        Raises:
+            CourseError: it is.
+        """
+        jumped, self._jumped = self._jumped, 0
+        if jumped and not by_rapid:
+            raise CourseError(
+                line,
+                f"a feed move from where FROM on line {jumped} says the tool is, but it went elsewhere",
+                "Write RAPID and a GOTO to that point in place of FROM.",
+            )
+
     def _start(self) -> Vector | None:
         """Return where a move begins, None where that is not known."""
         changed, self._changed = self._changed, False
@@ -174,6 +204,7 @@ class Course:
 
     def _straight(self, line: int, end: Vector) -> Straight:
         """Return a rapid that is no hole, whether a cycle holds or not."""
+        self._jumped = 0
         start, self.here, self._rapid = self._start(), end, False
         return Straight(line, start, end, self.axis, True)
 
@@ -198,6 +229,7 @@ class Course:
     def _turn(self, record: Circle) -> Turn:
         if self.cycle is not None:
             raise CourseError(record.line, "an arc within a drilling cycle", "Write CYCLE/OFF before it.")
+        self._arrive(record.line, False)
         start, self._rapid, self._changed = self.here, False, False
         if start is None:
             raise CourseError(record.line, "an arc without a start point", "Write FROM or GOTO before it.")
