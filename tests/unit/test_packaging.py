@@ -67,22 +67,26 @@ def test_the_image_is_made_of_steps_that_can_be_done_without_docker() -> None:
     assert set(extras) <= set(declared)
 
 
-def test_the_workflow_of_the_how_to_installs_what_it_has_checked_out(tmp_path: Path) -> None:
+def test_the_workflow_of_the_how_to_installs_what_its_reader_has_made(tmp_path: Path) -> None:
     yaml: Any = pytest.importorskip("yaml")
     page = REPOSITORY / "docs" / "how-to" / "check-programs-in-ci.md"
     (workflow,) = (fence.text for fence in fences(page) if fence.language == "yaml" and "jobs:" in fence.text)
     steps = yaml.safe_load(workflow)["jobs"]["programs"]["steps"]
-    checked_out: set[str] = set()
+    (built,) = (each.text for each in fences(page) if each.text.startswith("pip wheel"))
+    assert built.split()[:4] == ["pip", "wheel", "--no-deps", "-w"]
+    assert built.split()[4].rpartition("/")[2] == "wheels"
+    checked_out = []
     ran = []
     (tmp_path / "parts").mkdir()
     shutil.copy(REPOSITORY / "examples" / "bracket.nc", tmp_path / "parts" / "a.nc")
     shutil.copy(REPOSITORY / "examples" / "my_machine.toml", tmp_path / "shop.toml")
     for step in steps:
         if step.get("uses", "").startswith("actions/checkout"):
-            checked_out.add(step.get("with", {}).get("path", "."))
+            checked_out.append(step.get("with"))
         run = step.get("run", "")
         if run.startswith("pip install"):
-            assert run.removeprefix("pip install ").removeprefix("./") in checked_out
+            assert run == "pip install wheels/polycnc-*.whl"
+            assert checked_out == [None]  # the reader's own repository, nobody else's
         elif run:
             command = run.replace("polycnc ", f"{sys.executable} -m polycnc.cli ", 1)
             done = subprocess.run(

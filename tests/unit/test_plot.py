@@ -179,6 +179,13 @@ def test_a_program_name_is_no_formula(tmp_path: Path) -> None:
     assert (tmp_path / "plot.svg").stat().st_size > 0
 
 
+def test_names_in_any_script_are_plotted_without_a_warning(tmp_path: Path) -> None:
+    program = tmp_path / "Tëil ✓ 部品.nc"
+    program.write_text("(部品)\nT3 M6\nG1 X5 F100\n", encoding="utf-8")
+    polycnc.run(program, trace=True).plot(tmp_path / "plot.png")  # a warning would be an error
+    assert (tmp_path / "plot.png").stat().st_size > 0
+
+
 def test_what_cannot_be_plotted(tmp_path: Path) -> None:
     result = polycnc.run("G1 X5 F100\n")
     with pytest.raises(polycnc.UsageError, match="the result has no trace"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -70,7 +71,14 @@ def plot_track(
 
         extension = format_of(target, PLOT_FORMATS)
         undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(extension)
-        with complete_or_absent(target) as partial, matplotlib.rc_context({"svg.hashsalt": "polycnc"}):
+        with (
+            complete_or_absent(target) as partial,
+            matplotlib.rc_context({"svg.hashsalt": "polycnc"}),
+            warnings.catch_warnings(),
+        ):
+            warnings.filterwarnings(
+                "ignore", "Glyph .* missing"
+            )  # names in any script; a box stands for a sign
             figure.savefig(partial, dpi=150, metadata=undated, format=extension[1:])
     return figure
 
