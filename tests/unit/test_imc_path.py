@@ -324,14 +324,15 @@ def test_an_axis_that_has_left_the_mapping_takes_a_command_behind_the_joint() ->
     assert _positions(card, 3) == [950, 622, 901]
 
 
-def test_an_axis_cannot_be_in_both_spaces_at_once() -> None:
+@pytest.mark.parametrize(("first", "second"), [(1, 2), (2, 1)])
+def test_an_axis_cannot_be_in_both_spaces_at_once(first: int, second: int) -> None:
     card = ready_card()
     set_now(card, ("stopfilt", 0, 2), ("stopfilt", 0, 3))
-    enable_path(card, 1, 3)
-    line(card, 700, 310, speed=10)
+    enable_path(card, 1, 3, space=first)
+    line(card, 700, 310, speed=10, space=first)
     card.advance(10)
-    enable_path(card, 3, 2, space=2)
-    line(card, 55, 66, speed=10, space=2)
+    enable_path(card, 3, 2, space=second)
+    line(card, 55, 66, speed=10, space=second)
     card.advance(5)
     assert [card.read("error", axis) for axis in range(4)] == [0, 0, 0x1000, 0x1000]
     card.wait()
