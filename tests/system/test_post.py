@@ -98,10 +98,10 @@ def test_post_json(tmp_path: Path) -> None:
 
 
 def test_a_deviation_is_status_1_and_the_program_stays_to_look_at(tmp_path: Path) -> None:
-    # A control file that writes Y a little too long.
+    # A control file that writes Z a little too long.
     output, control = tmp_path / "cover.tap", tmp_path / "mine.toml"
     shipped = shipped_text("fanuc-mill")
-    wrong = shipped.replace('Y = { format = "Y%.3f"', 'Y = { scale = 1.002, format = "Y%.3f"')
+    wrong = shipped.replace('Z = { format = "Z%.3f"', 'Z = { scale = 1.002, format = "Z%.3f"')
     assert wrong != shipped
     control.write_text(wrong)
     done = polycnc("post", EXAMPLES / "cover.cl", "-c", control, "-o", output, "--verify", status=1)
