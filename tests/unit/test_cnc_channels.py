@@ -24,6 +24,7 @@ from polycnc.cnc import (
 )
 from polycnc.errors import UsageError
 from support.cnc_machine import cnc_machine
+from support.programs import AXIS, machine_config, refusal
 
 LONG_S = 100_000
 FIRST = "N10 G1 X42.5 Y7.5 F1500\nN20 X13.5 Y-4.25\nN30 M30\n"
@@ -186,6 +187,35 @@ def test_a_word_for_the_axis_of_another_channel_is_an_error_of_the_program() -> 
     assert places(made)[0] == 20.5
     assert made.channels[1].active
     assert places(made)[2:] == alone(SECOND, 1500)[2:]
+
+
+@pytest.mark.parametrize(
+    ("block", "column", "what"),
+    [
+        ("G43 H1", 4, "tool length compensation along axis Z, which belongs to another channel"),
+        ("G1 X3 G44 H2", 10, "tool length compensation along axis Z, which belongs to another channel"),
+    ],
+)
+def test_a_length_along_the_axis_of_another_channel_is_refused_at_its_word(
+    block: str, column: int, what: str
+) -> None:
+    made = control()
+    made.programs.write("FIRST", f"N1 G49 X20.5 F900\nN2 {block}\nN3 M30\n")
+    made.cycle_start()
+    made.advance(1500)
+    (alarm,) = made.status().alarms
+    assert what in alarm.text
+    assert f"FIRST:2:{column}" in alarm.text
+    assert places(made)[0] == 20.5
+
+
+def test_a_turret_whose_offset_moves_the_axis_of_another_channel_is_refused_at_its_word() -> None:
+    lathe = machine_config(
+        "".join(AXIS.format(name=name, low=-300, high=300) for name in "XZ"),
+        "[tools.3]\nx_mm = 2.5\n[tools.4]\nx_mm = 1.5\nz_mm = -7.25\n",
+    )
+    text = refusal("T0303\nG1 X2 F90 T0304\n", config=lathe, dialect="fanuc-lathe", axes=("X", "(Z)"))
+    assert text == "2:11: offset 4 moves axis Z, which belongs to another channel"
 
 
 def test_an_alarm_in_one_leaves_the_other_alone() -> None:

@@ -77,7 +77,7 @@ class ControlChannel:
         self._file = config
         self.config = self._own(config)
         self.names: Sequence[str] | None = None
-        """Names of the machine's axes for programs, empty for those of others; None: as the machine has them."""
+        """Names of the machine's axes for programs, see `of_another_channel`; None: as the machine has them."""
         self.asks_often = False
         """Whether a language that waits is asked in every cycle."""
         self._library = library

@@ -69,7 +69,7 @@ class ProgramRun:
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
     stands there until `answered`. `before` is the run on this path until now, whose modal state goes on. `axes` are the
-    names of the machine's axes in this channel, empty for those that it does not have.
+    names of the machine's axes in this channel, those of others by `of_another_channel`.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
     The surfaces of the machine file do the same. `on_skip` is told when either is met.

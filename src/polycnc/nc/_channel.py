@@ -102,7 +102,7 @@ class Channel:
     the machine file's times; with `marks` blocks that leave nothing in the queue are noted (see
     `QueueWriter`). `records` tells what block a segment belongs to. `before` is the channel that used the
     path until now: with `keeps_modal` its modal state stays in force. `axes` are the names of the machine's
-    axes in this channel, empty for those that it does not have. With `collect_errors` a refused block
+    axes in this channel, those of others by `of_another_channel`. With `collect_errors` a refused block
     is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
     gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
     it, and once compiling it, takes longer than they do.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
+from polycnc.nc import of_another_channel
 from polycnc.nc.cpl import OMITTED, CharacterField, Fault, Text, text_of
 
 PHYSICAL, OWN = 0, 1
@@ -60,9 +61,12 @@ class SystemAxes:
         return next((channel for channel, axes in self.channels.items() if physical in axes), None)
 
     def names_in(self, channel: int) -> list[str]:
-        """Return the names of the machine's axes in a channel, empty for those that it does not have."""
+        """Return the names of the machine's axes in a channel; no word of a program has those that it does not have."""
         own = self.channels[channel]
-        return [self.logical_name(channel, number) if number in own else "" for number in self.numbers]
+        return [
+            self.logical_name(channel, number) if number in own else of_another_channel(name)
+            for number, name in zip(self.numbers, self.names, strict=True)
+        ]
 
     def move(self, physical: int, channel: int | None) -> None:
         """Give an axis to a channel, or to none; logical indices ascend with physical ones."""

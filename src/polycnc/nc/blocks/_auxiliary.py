@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from polycnc.machine import ToolConfig
 from polycnc.nc.blocks._actions import Action, Group, MAction
-from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import INCH
 from polycnc.nc.blocks._motion import MotionBuilder
@@ -130,6 +130,13 @@ class Auxiliary:
         state.length_tool = offset
         data = self.tool_data(offset)
         axes = {"X": data.x_mm + data.wear_x_mm, "Z": data.z_mm + data.wear_z_mm}
+        for name, shift_mm in axes.items():
+            if shift_mm != 0.0 and of_another_channel(name) in state.axis_names:
+                raise self.fail(
+                    f"offset {offset} moves axis {name}, which belongs to another channel",
+                    "Take another offset, or execute the program in that channel.",
+                    word,
+                )
         letters = state.modal.letter_axis
         state.coordinates.set_tool(
             {int(letters[ord(name) - ord("A")]): value for name, value in axes.items()}, active=offset != 0

@@ -10,7 +10,7 @@ from polycnc.machine import LONGEST_BLOCK_S, ToolConfig
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
-from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import Side
 from polycnc.nc.blocks._coordinates import MACHINE_ZERO, work_group
 from polycnc.nc.blocks._messages import Messages
@@ -194,6 +194,12 @@ class Modes:
         h_word = words.take("H")
         axis = int(self.state.modal.letter_axis[ord("Z") - ord("A")])
         if axis == NO_AXIS:
+            if sign and of_another_channel("Z") in self.state.axis_names:
+                raise self.fail(
+                    "tool length compensation along axis Z, which belongs to another channel",
+                    "Take it out, or execute the program in that channel.",
+                    h_word if g is None else g.word,
+                )
             if sign and g is not None:
                 raise self.fail(
                     "tool length compensation on a machine without a Z axis", "Take it out.", g.word
