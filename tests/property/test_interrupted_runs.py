@@ -20,6 +20,7 @@ ROUNDING = 1.0 + 1e-6
 MOST_COMMANDS = 60
 SHARP = machine_config(LINEAR, SPINDLE, TIMES)
 JERK = machine_config(LINEAR, SPINDLE, TIMES, "[path]\njerkrel = 0.4\n")
+SOFT = machine_config(LINEAR, SPINDLE, TIMES, "[path]\njerk_mm_s3 = 60000\n")
 SHORT = machine_config(LINEAR, SPINDLE, TIMES, "[path]\nlook_ahead_blocks = 7\n")
 ROUND = machine_config(LINEAR, SPINDLE, TIMES, "[path]\npath_tolerance_mm = 0.03\n")
 
@@ -51,17 +52,20 @@ def random_program(rng: np.random.Generator) -> str:
 
 
 def positions(run: ProgramRun, cycles: int) -> list[list[float]]:
-    """Let a run go on cycle by cycle and return the setpoints."""
+    """Let a run go on cycle by cycle and return the setpoints and the path speed."""
     found = []
     for _ in range(cycles):
         if run.advance(1) == 0:
             break
-        found.append(run.machine.state.setpoint.tolist())
+        state = run.machine.state
+        found.append([*state.setpoint.tolist(), float(state.paths.row[0]["speed"])])
     return found
 
 
-def interrupted(program: str, config: MachineConfig, rng: np.random.Generator) -> tuple[Floats, ProgramRun]:
-    """Run a program with random commands and return every setpoint."""
+def interrupted(
+    program: str, config: MachineConfig, rng: np.random.Generator
+) -> tuple[Floats, Floats, ProgramRun]:
+    """Run a program with random commands and return every setpoint and path speed."""
     run = program_run(program, config, blocks_ahead=None if rng.integers(0, 2) else int(rng.integers(1, 9)))
     found: list[list[float]] = []
     run.start()
@@ -87,7 +91,14 @@ def interrupted(program: str, config: MachineConfig, rng: np.random.Generator) -
             run.resume()
         found += positions(run, 1000)
         assert len(found) < 200_000
-    return np.array(found), run
+    rows = np.array(found)
+    return rows[:, :-1], rows[:, -1], run
+
+
+def highest_jerk(speeds: Floats) -> float:
+    """Return the greatest change of the path's acceleration, from rest to rest."""
+    rates = np.diff(np.concatenate([np.zeros(2), speeds, np.zeros(2)])) / CYCLE_S
+    return float(np.abs(np.diff(rates)).max()) / CYCLE_S
 
 
 def overload(points: Floats, config: MachineConfig) -> float:
@@ -125,7 +136,7 @@ def fine_path(program: str, config: MachineConfig) -> Floats:
     return np.array(found)
 
 
-@pytest.mark.parametrize("config", [SHARP, JERK, SHORT], ids=["sharp", "jerk", "short"])
+@pytest.mark.parametrize("config", [SHARP, JERK, SHORT, SOFT], ids=["sharp", "jerk", "short", "soft"])
 @pytest.mark.parametrize("seed", range(8))
 def test_holds_overrides_and_steps_keep_limits_and_the_end(seed: int, config: MachineConfig) -> None:
     rng = np.random.default_rng([seed, 71])
@@ -134,18 +145,20 @@ def test_holds_overrides_and_steps_keep_limits_and_the_end(seed: int, config: Ma
     undisturbed.start()
     while undisturbed.active:
         undisturbed.advance(100_000)
-    points, run = interrupted(program, config, rng)
+    points, speeds, run = interrupted(program, config, rng)
     assert run.machine.setpoints == undisturbed.machine.setpoints
     assert overload(points, config) <= ROUNDING
+    if config.path.jerk_mm_s3 is not None:
+        assert highest_jerk(speeds) <= config.path.jerk_mm_s3 * ROUNDING
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("config", [SHARP, ROUND], ids=["sharp", "round"])
+@pytest.mark.parametrize("config", [SHARP, ROUND, SOFT], ids=["sharp", "round", "soft"])
 def test_every_position_of_an_interrupted_run_lies_on_the_path(seed: int, config: MachineConfig) -> None:
     rng = np.random.default_rng([seed, 73])
     program = random_program(rng)
     path = fine_path(program, config)
-    points, run = interrupted(program, config, rng)
+    points, _, run = interrupted(program, config, rng)
     # Between its points, at most 0.1 mm apart, `path` cuts corners where the run may stand.
     assert farthest(points[::23], path) < 0.03
     assert overload(points, config) <= ROUNDING

@@ -37,6 +37,7 @@ class PathSettings:
     tolerance: float = 0.0
     jerkrel: float = 0.0
     depth: int = 0
+    jerk: float = 0.0
 
 
 def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 4096) -> KernelState:
@@ -46,6 +47,7 @@ def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 40
     state.limits.acceleration[:] = rng.uniform(300.0, 8000.0, AXES)
     row = state.paths.row[0]
     row["tolerance_mm"], row["jerkrel"], row["depth"] = settings.tolerance, settings.jerkrel, settings.depth
+    row["jerk_mm_s3"] = settings.jerk
     give_to_path(state, 0)
     return state
 

@@ -593,6 +593,12 @@ def test_sizes_of_the_io_image_are_bounded() -> None:
         IoConfig(inputs=65537)
 
 
+def test_two_shapes_of_ramps_are_refused() -> None:
+    error = refused(AXIS_X + "[path]\njerk_mm_s3 = 40000\njerkrel = 0.3\n")
+    assert "two shapes for the same ramps" in str(error)
+    assert "m.toml:8" in str(error)
+
+
 def test_two_rules_for_the_same_corners_are_refused() -> None:
     error = refused(AXIS_X + "[path]\njunction_deviation_mm = 0.01\nsquare_corner_mm_s = 5\n")
     assert "two rules for the same corners" in str(error)

@@ -252,6 +252,23 @@ def test_linuxcnc_takes_the_lowest_of_axis_and_joints_in_millimetres(tmp_path: P
     assert free.path.path_tolerance_mm == "free"
 
 
+@pytest.mark.parametrize(
+    ("lines", "jerk"),
+    [
+        ("PLANNER_TYPE = 1\nMAX_LINEAR_JERK = 800", pytest.approx(800 * 25.4)),
+        ("PLANNER_TYPE = 0\nMAX_LINEAR_JERK = 800", None),
+        ("MAX_LINEAR_JERK = 800", None),
+        ("PLANNER_TYPE = 1\nMAX_LINEAR_JERK = 0.5", None),
+        ("PLANNER_TYPE = 1", None),
+    ],
+)
+def test_linuxcnc_limits_the_jerk_with_its_second_planner_only(
+    tmp_path: Path, lines: str, jerk: object
+) -> None:
+    config, _ = made(tmp_path, LINUXCNC.replace("[TRAJ]", f"[TRAJ]\n{lines}"))
+    assert config.path.jerk_mm_s3 == jerk
+
+
 def test_fanuc_ramps_give_the_acceleration_and_corner_steps_the_jump(tmp_path: Path) -> None:
     config, toml = made(tmp_path, FANUC)
     assert axes(config) == {

@@ -6,9 +6,9 @@ around `cycle`, or around its two halves where it has to see or change the setpo
 
 from __future__ import annotations
 
-from polycnc.kernel._interpolate import EVENT, RESTED, path_cycle, settle, skip_path
+from polycnc.kernel._interpolate import path_cycle, settle, skip_path
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._path import IDLE, READY
+from polycnc.kernel._path import EVENT, IDLE, READY, RESTED
 from polycnc.kernel._point_to_point import ADDED, MAIN, place_axis, profile_cycle
 from polycnc.kernel._recorder import is_full, record
 from polycnc.kernel._segments import RAPID

@@ -13,20 +13,19 @@ import math
 
 import numpy as np
 
+from polycnc.kernel._follow import GONE, SPEED_NOW, follow_cycle_along, follows, start_following
 from polycnc.kernel._geometry import segment_point
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lookahead import window_speed
 from polycnc.kernel._path import (
-    FEED_LENGTH,
-    FEED_S,
+    EVENT,
     HELD,
-    RAPID_LENGTH,
-    RAPID_S,
+    INSIDE,
     READY,
+    REST_SLACK,
+    RESTED,
     RUNNING,
-    SEGMENTS,
-    TOP_SPEED,
-    WAIT_S,
+    STILL,
     Paths,
     is_held,
     slot,
@@ -36,7 +35,6 @@ from polycnc.kernel._ramps import (
     LENGTH,
     MOST_SHARE,
     SPEED_OUT,
-    SPEED_PEAK,
     TIME_CRUISE,
     TIME_IN,
     Floats,
@@ -48,45 +46,9 @@ from polycnc.kernel._ramps import (
     ramps_duration,
     set_pieces,
 )
-from polycnc.kernel._segments import RAPID, TURN, WAIT, WAIT_EVENT, Segments
+from polycnc.kernel._segments import WAIT, WAIT_EVENT, Segments
 from polycnc.kernel._segments import WAIT_S as GEO_WAIT_S
-
-REST_SLACK = 1e-9  # part of a cycle by which rounding may make a rest late
-
-# What a sample brought.
-STILL = 0  # no motion: idle, held or nothing queued
-INSIDE = 1  # in motion
-RESTED = 2  # the path came to rest: at the end of a segment, or within it on feed hold
-EVENT = 3  # an event stands at the point of rest
-
-
-@compiled
-def _account_time(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
-    """Add time spent in the segment at `head`, and its highest speed, to the totals."""
-    totals = paths.totals[g]
-    row = seg.row[slot(paths, g, paths.row[g]["head"])]
-    if row["kind"] == WAIT:
-        totals[WAIT_S] += passed_s
-    elif row["flags"] & RAPID:
-        totals[RAPID_S] += passed_s
-    else:
-        totals[FEED_S] += passed_s
-        if not row["flags"] & TURN:
-            totals[TOP_SPEED] = max(totals[TOP_SPEED], paths.ramps[g, SPEED_PEAK])
-
-
-@compiled
-def _leave(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
-    """Go on to the next segment after `passed_s` in this one."""
-    path, totals = paths.row[g], paths.totals[g]
-    row = seg.row[slot(paths, g, path["head"])]
-    _account_time(seg, paths, g, passed_s)
-    totals[SEGMENTS] += 1.0
-    if not row["flags"] & TURN:  # degrees are no path length
-        totals[RAPID_LENGTH if row["flags"] & RAPID else FEED_LENGTH] += row["length"]
-    path["entry_share"] = 0.0
-    path["entry_zone"] = 0.0
-    path["head"] += 1
+from polycnc.kernel._totals import account_time, leave_segment
 
 
 @compiled
@@ -99,7 +61,7 @@ def settle(seg: Segments, paths: Paths, g: int) -> int:
         if is_held(path, seg.row[k]) or seg.row[k]["kind"] != WAIT or seg.geo[k, GEO_WAIT_S] > 0.0:
             break
         event = int(seg.geo[k, WAIT_EVENT])
-        _leave(seg, paths, g, 0.0)
+        leave_segment(seg, paths, g, 0.0)
         if event >= 0:
             path["event"] = event
             return EVENT
@@ -196,11 +158,13 @@ def plan_again(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         if path["hold"] != 0:
             path["state"] = HELD
         return
+    if follows(seg, paths, g):  # it looks anew in every cycle
+        return
     t = path["lead"] + path["cycles"] * dt
     if in_ramp(paths, g, t):
         path["pending"] = 1
     elif ramps_duration(ramps) - t > dt or ends_within(row, ramps):
-        _account_time(seg, paths, g, t)
+        account_time(seg, paths, g, t)
         s, speed = ramps_at(ramps, t, path["jerkrel"])
         s = min(s, row["length"])
         planned = 0.0 if ends_within(row, ramps) else ramps[SPEED_OUT]
@@ -219,14 +183,19 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
             pass  # whoever wants events has settled before, see `advance` and `skip_path`
         if path["head"] >= path["prepared"] or is_held(path, seg.row[slot(paths, g, path["head"])]):
             return STILL
+        if follows(seg, paths, g):
+            start_following(seg, paths, g, dt)
         path["state"] = RUNNING
-        _plan_from(seg, paths, g, 0.0, 0.0, 0.0, math.inf, dt)
+        if not follows(seg, paths, g):
+            _plan_from(seg, paths, g, 0.0, 0.0, 0.0, math.inf, dt)
     elif path["state"] == HELD and not is_held(path, seg.row[slot(paths, g, path["head"])]):
         path["state"] = RUNNING
-        if seg.row[slot(paths, g, path["head"])]["kind"] != WAIT:
+        if seg.row[slot(paths, g, path["head"])]["kind"] != WAIT and not follows(seg, paths, g):
             _plan_from(seg, paths, g, 0.0, ramps[FROM_S] + ramps[LENGTH], 0.0, math.inf, dt)
     elif path["state"] != RUNNING:
         return STILL
+    if follows(seg, paths, g):
+        return follow_cycle_along(seg, paths, g, dt)
     path["cycles"] += 1
     t = path["lead"] + path["cycles"] * dt
     while True:
@@ -243,13 +212,13 @@ def next_sample(seg: Segments, paths: Paths, g: int, dt: float) -> int:
         if speed == 0.0:
             if ends_within(row, ramps):
                 path["state"] = HELD
-                _account_time(seg, paths, g, t)
+                account_time(seg, paths, g, t)
             else:
                 path["state"] = READY
-                _leave(seg, paths, g, t)
+                leave_segment(seg, paths, g, t)
             return RESTED
         share = min(MOST_SHARE, row["yield_after"] * speed)
-        _leave(seg, paths, g, duration)
+        leave_segment(seg, paths, g, duration)
         if path["head"] >= path["prepared"]:  # a prescribed end speed, and nothing to go on with
             path["state"] = READY
             return RESTED
@@ -264,7 +233,9 @@ def place_path(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     path, ramps = paths.row[g], paths.ramps[g]
     count = int(path["head"])
     s, speed = ramps[FROM_S] + ramps[LENGTH], 0.0
-    if path["state"] == RUNNING:
+    if (path["state"] == RUNNING or path["state"] == HELD) and follows(seg, paths, g):
+        s, speed = ramps[GONE], ramps[SPEED_NOW]
+    elif path["state"] == RUNNING:
         s, speed = ramps_at(ramps, path["lead"] + path["cycles"] * dt, path["jerkrel"])
     elif path["state"] == READY:
         count -= 1
@@ -315,7 +286,7 @@ def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int
     while path["head"] < until:
         if path["state"] == READY and settle(seg, paths, g) == EVENT:
             break
-        if path["state"] == RUNNING and path["pending"] == 0:
+        if path["state"] == RUNNING and path["pending"] == 0 and not follows(seg, paths, g):
             taken += _jump_ahead(paths, g, dt)
         if next_sample(seg, paths, g, dt) == STILL:
             break

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._ramps import REGISTERS
+from polycnc.kernel._ramps import ALL_REGISTERS
 from polycnc.kernel._segments import RAPID, WAIT, Floats
 
 Ints = npt.NDArray[np.int64]
@@ -20,6 +20,14 @@ IDLE = 0  # not started
 READY = 1  # started and at rest: the next segment begins with the next cycle
 RUNNING = 2  # the segment at `head` is being gone along
 HELD = 3  # at rest within a segment, until released
+
+# What a sample brought.
+STILL = 0  # no motion: idle, held or nothing queued
+INSIDE = 1  # in motion
+RESTED = 2  # the path came to rest: at the end of a segment, or within it on feed hold
+EVENT = 3  # an event stands at the point of rest
+
+REST_SLACK = 1e-9  # part of a cycle by which rounding may make a rest late
 
 NO_LIMIT = 1 << 62
 
@@ -51,6 +59,7 @@ PATH_ROW = np.dtype(
         ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
         # How far the path may leave a corner between lines appended from now on; EXACT_PATH: it rests there.
         ("tolerance_mm", np.float64),
+        ("jerk_mm_s3", np.float64),  # highest jerk along the path, 0 = any; may change at rest
         ("speed_limit_mm_s", np.float64),  # of the path, whatever its axes allow
         ("accel_limit_mm_s2", np.float64),  # of the path, whatever its axes allow
         ("corner_deviation_mm", np.float64),  # of a corner rule other than AS_AXES_ALLOW
@@ -77,7 +86,7 @@ class Paths(NamedTuple):
     """G paths, each an ordered set of m coordinates mapped to machine axes."""
 
     row: npt.NDArray[np.void]  # [G] of PATH_ROW
-    ramps: Floats  # [G, REGISTERS]
+    ramps: Floats  # [G, ALL_REGISTERS]
     totals: Floats  # [G, TOTALS] of the segments gone along so far
     position: Floats  # [G, m] now
     queued: Floats  # [G, m] end of the last segment appended
@@ -100,7 +109,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
     row["low_water"] = 1024
     return Paths(
         row=row,
-        ramps=np.zeros((paths, REGISTERS)),
+        ramps=np.zeros((paths, ALL_REGISTERS)),
         totals=np.zeros((paths, TOTALS)),
         position=np.zeros((paths, coordinates)),
         queued=np.zeros((paths, coordinates)),

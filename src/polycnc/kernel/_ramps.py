@@ -27,6 +27,7 @@ LEGS_IN = 8  # of each leg its time, and the speed at its far end
 LEGS_OUT = 14  # the same, from the segment's end backwards
 PIECES = 20  # of each piece its length and its acceleration
 REGISTERS = 26
+ALL_REGISTERS = 50  # with those of `_follow`
 
 ROUNDING = 4e-15  # by which a speed that can just be braked to may seem too low, on squares
 MOST_SHARE = 0.75  # of its acceleration is all that a segment gives up

@@ -6,17 +6,22 @@ within the distance that braking takes, because the motion has already been plan
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._follow import GONE, RATE, SPEED_NOW, follows
 from polycnc.kernel._geometry import is_curved
 from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
+from polycnc.kernel._jerk import brake_way, moved
+from polycnc.kernel._jerk_plan import has_limited_jerk, plan_with_jerk
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
-from polycnc.kernel._segments import LINE, RAPID, STOP, WAIT, Floats, Segments, set_wait
+from polycnc.kernel._segments import ASKED, LINE, RAPID, STOP, WAIT, Floats, Segments, set_wait
 
 
 @compiled
@@ -40,6 +45,28 @@ def _next_plan(seg: Segments, paths: Paths, g: int, dt: float) -> tuple[int, flo
 
 
 @compiled
+def _frozen_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> int:
+    """Return what `frozen_until` returns where the jerk is limited."""
+    path, ramps = paths.row[g], paths.ramps[g]
+    first, jerk = int(path["head"]), path["jerk_mm_s3"]
+    rate = max(ramps[RATE], 0.0) + 2.0 * dt * jerk
+    ease_time = rate / jerk
+    way, speed, _ = moved(ramps[SPEED_NOW], rate, -jerk, ease_time)
+    way += 2.0 * dt * speed
+    passed = -ramps[GONE]
+    least = math.inf
+    for count in range(first, int(path["prepared"])):
+        row = seg.row[slot(paths, g, count)]
+        if row["kind"] == WAIT:
+            return count
+        least = min(least, least_accel(row, 0.0))
+        passed += row["length"]
+        if passed >= way + brake_way(speed, 0.0, 0.0, least, jerk):
+            return count
+    return int(path["prepared"])
+
+
+@compiled
 def frozen_until(seg: Segments, paths: Paths, g: int, dt: float) -> int:
     """Return the count of the first segment in which path `g` could come to rest with the least acceleration.
 
@@ -47,6 +74,8 @@ def frozen_until(seg: Segments, paths: Paths, g: int, dt: float) -> int:
     counts in the two cycles around it, so nothing may change in the last two before it.
     """
     path = paths.row[g]
+    if (path["state"] == RUNNING or path["state"] == HELD) and follows(seg, paths, g):
+        return _frozen_with_jerk(seg, paths, g, dt)
     first, s, speed = _next_plan(seg, paths, g, dt)
     if path["state"] != RUNNING and path["state"] != HELD:
         return first
@@ -83,6 +112,14 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
     return tail
 
 
+@compiled
+def _plan(seg: Segments, paths: Paths, g: int, dt: float) -> None:
+    if has_limited_jerk(paths.row[g]):
+        plan_with_jerk(seg, paths, g, dt)
+    else:
+        plan_path(seg, paths, g)
+
+
 @entry
 def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
     """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
@@ -99,7 +136,7 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
         goes_on = False
         first_end = first
     limit_queue(seg, paths, g, limits, dt, first, first_end, work)
-    plan_path(seg, paths, g)
+    _plan(seg, paths, g, dt)
     if goes_on:
         plan_again(seg, paths, g, dt)
 
@@ -107,13 +144,18 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
 @compiled
 def _lower_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> None:
     """Lower the cap of a segment that keeps all else it was planned with; an override of 0 holds it instead."""
+    seg.row[k]["cap"] = _asked_cap(seg, k, limits, path)
+
+
+@compiled
+def _asked_cap(seg: Segments, k: int, limits: AxisLimits, path: np.void) -> float:
+    """Return the cap of a segment, or what feed and override make of it if that is lower."""
     row = seg.row[k]
     if row["flags"] & RAPID:
         cap = overridden_rapid(line_speed(seg, k, limits), path)
     else:
         cap = feed_in_force(row, path)
-    if cap > 0.0:
-        row["cap"] = min(row["cap"], cap)
+    return float(min(row["cap"], cap) if cap > 0.0 else row["cap"])
 
 
 @entry
@@ -155,7 +197,8 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
     accel = seg.row[k]["full_accel"]
-    for count in range(head, min(first, last)):
+    with_jerk = has_limited_jerk(path)
+    for count in range(head, head if with_jerk else min(first, last)):
         passed = slot(paths, g, count)
         seg.row[passed]["bound"] = max(seg.row[passed]["bound"], seg.row[passed]["out"])
         _lower_cap(seg, passed, limits, path)
@@ -164,9 +207,12 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["full_accel"] = accel
-    for count in range(head, min(first, last - 1)):
+    for count in range(head, head if with_jerk else min(first, last - 1)):
         row, after = seg.row[slot(paths, g, count)], seg.row[slot(paths, g, count + 1)]
         row["junction"] = min(row["junction"], row["cap"], after["cap"])
     path["planned"] = head
-    plan_path(seg, paths, g)
+    _plan(seg, paths, g, dt)
+    for count in range(head, min(first, last) if with_jerk else head):
+        k = slot(paths, g, count)
+        seg.geo[k, ASKED] = _asked_cap(seg, k, limits, path)
     plan_again(seg, paths, g, dt)

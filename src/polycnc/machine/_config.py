@@ -83,6 +83,11 @@ class PathConfig(StrictModel):
         description="Share of each ramp that is S-shaped; 0 is a trapezoid. The mean acceleration stays.",
     )
 
+    jerk_mm_s3: Rate | None = Field(
+        default=None,
+        description="Highest jerk along the path, which then goes in S-shaped ramps of up to seven phases; "
+        "absent: any jerk.",
+    )
     speed_limit_mm_s: Rate | None = Field(
         default=None, description="Highest speed along the path; absent: what its axes allow."
     )
@@ -106,6 +111,16 @@ class PathConfig(StrictModel):
                 "'junction_deviation_mm' and 'square_corner_mm_s' are two rules for the same corners",
                 hint="keep one of them",
                 at=("square_corner_mm_s",),
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _one_shape_of_ramps(self) -> PathConfig:
+        if self.jerk_mm_s3 is not None and self.jerkrel > 0.0:
+            raise problem(
+                "'jerkrel' and 'jerk_mm_s3' are two shapes for the same ramps",
+                hint="keep one of them",
+                at=("jerkrel",),
             )
         return self
 

@@ -282,6 +282,7 @@ class Machine:
     def _set_paths(self) -> None:
         path, rows = self.config.path, self.state.paths.row
         rows["jerkrel"] = path.jerkrel
+        rows["jerk_mm_s3"] = path.jerk_mm_s3 or 0.0
         rows["depth"] = path.look_ahead_limit or 0
         rows["speed_limit_mm_s"] = path.speed_limit_mm_s or math.inf
         rows["accel_limit_mm_s2"] = path.acceleration_limit_mm_s2 or math.inf

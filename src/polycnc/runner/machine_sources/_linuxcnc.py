@@ -20,6 +20,7 @@ from polycnc.units import MM_PER_INCH
 CONTROL = "a LinuxCNC configuration"
 INCH = ("inch", "imperial", "in")
 TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)", re.IGNORECASE)
+LEAST_JERK = 1.0  # in the file's unit; with less, or without one, the control takes trapezoids
 LEFT_OUT = {
     "RS274NGC.PARAMETER_FILE": "work offsets and variables are in that file",
     "EMCIO.TOOL_TABLE": "tools are in that file",
@@ -57,6 +58,9 @@ def read(text: str, file: str) -> Facts:
     ):
         if (entry := settings.get(name)) is not None:
             path[key] = entry.positive * to_mm
+    planner, jerk = settings.get("TRAJ.PLANNER_TYPE"), settings.get("TRAJ.MAX_LINEAR_JERK")
+    if planner is not None and planner.text == "1" and jerk is not None and jerk.positive >= LEAST_JERK:
+        path["jerk_mm_s3"] = jerk.positive * to_mm
     path["path_tolerance_mm"] = "free"  # G64 without P
     start = settings.get("RS274NGC.RS274NGC_STARTUP_CODE")
     tolerance = TOLERANCE.search(start.text) if start is not None else None
