@@ -635,6 +635,17 @@ def test_a_sub_program_comes_from_the_memory() -> None:
     assert made.status().axes["Y"].machine == 4.25
 
 
+def test_a_turret_takes_the_offsets_of_the_table() -> None:
+    made = Control("lathe2", dialect="fanuc-lathe")
+    made.tools.set(3, x_mm=7.0, wear_x_mm=0.125, z_mm=-2.5, tip=3)
+    made.programs.create("TURN", "G97 S1000 M3\nT0303\nG0 X20. Z5.\nM30\n")
+    made.select_program("TURN")
+    made.cycle_start()
+    made.advance(100_000, until=ControlEvent.RUN_STATE)
+    axes = made.status().axes
+    assert (axes["X"].machine, axes["Z"].machine) == (17.125, 2.5)  # X20 is a diameter
+
+
 def test_positions_machine_work_and_relative() -> None:
     made = control()
     made.offsets.set("G54", {"X": 2.5})

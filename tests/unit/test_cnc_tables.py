@@ -181,14 +181,14 @@ def test_tools_overlay_the_machine_file_and_last(tmp_path: Path) -> None:
     tools = ToolTable(store, CONFIG)
     assert tools[7] == Tool(83.5, 6.0, description="mill")
     tools.set(7, wear_length_mm=-0.125)
-    tools.set(12, radius_mm=3, orientation=8)
+    tools.set(12, radius_mm=3, tip=8)
     assert tools.revision == 2
     store.close()
     store = Store(tmp_path / "s")
     again = ToolTable(store, CONFIG)
     assert dict(again) == {
         7: Tool(83.5, 6.0, -0.125, description="mill"),
-        12: Tool(radius_mm=3.0, orientation=8),
+        12: Tool(radius_mm=3.0, tip=8),
     }
     again.remove(7)
     assert 7 not in again
@@ -205,8 +205,8 @@ def test_tools_overlay_the_machine_file_and_last(tmp_path: Path) -> None:
         (7, {"wear_radius_mm": float("nan")}),
         (7, {"length_mm": "long"}),
         (7, {"length_mm": True}),
-        (7, {"orientation": 10}),
-        (7, {"orientation": 2.5}),
+        (7, {"tip": 10}),
+        (7, {"tip": 2.5}),
         (7, {"description": 5.0}),
     ],
 )

@@ -20,23 +20,28 @@ _TOOLS = "cnc.tools"
 _OFFSETS = "cnc.offsets"
 _REMOVED = {"removed": True}
 MOST_TOOLS = 99_999_999
-ORIENTATIONS = 9
+_TIPS = 9
 _OFFSET_NAME = re.compile(r"[A-Z][A-Z0-9]{0,7}(\.[A-Z0-9]{1,8})?")
 
 
 @dataclass(frozen=True, slots=True)
 class Tool:
-    """One tool: geometry and wear, which add up, and the orientation of its tip (0 to 9, 0 centred)."""
+    """One tool: geometry and wear, which add up; of a turning tool offsets too, and where its tip lies (0 to 9)."""
 
     length_mm: float = 0.0
     radius_mm: float = 0.0
     wear_length_mm: float = 0.0
     wear_radius_mm: float = 0.0
     description: str = ""
-    orientation: int = 0
+    tip: int = 0
+    x_mm: float = 0.0
+    z_mm: float = 0.0
+    wear_x_mm: float = 0.0
+    wear_z_mm: float = 0.0
 
 
-_NUMBERS = tuple(field.name for field in fields(Tool) if field.name.endswith("_mm"))
+_FIELDS = tuple(field.name for field in fields(Tool))
+_NUMBERS = tuple(name for name in _FIELDS if name.endswith("_mm"))
 
 
 class ToolTable(Mapping[int, Tool]):
@@ -46,7 +51,7 @@ class ToolTable(Mapping[int, Tool]):
         self._area = store.area(_TOOLS, dict)
         self.revision = 0
         self._tools = {
-            number: Tool(**{name: getattr(tool, name) for name in (*_NUMBERS, "description")})
+            number: Tool(**{name: getattr(tool, name) for name in _FIELDS})
             for number, tool in config.tools.items()
         }
         for number, row in self._area.load().items():
@@ -75,11 +80,10 @@ class ToolTable(Mapping[int, Tool]):
             raise ControlError(
                 Refusal.DATA, f"{number} is not a tool number", hint=f"Give 1 to {MOST_TOOLS}."
             )
-        names = [field.name for field in fields(Tool)]
         for name, value in changes.items():
-            if name not in names:
+            if name not in _FIELDS:
                 raise ControlError(
-                    Refusal.DATA, f"a tool has no '{name}'", hint=f"It has {', '.join(names)}."
+                    Refusal.DATA, f"a tool has no '{name}'", hint=f"It has {', '.join(_FIELDS)}."
                 )
             _check_field(name, value)
         values: dict[str, Any] = {
@@ -169,5 +173,5 @@ def _check_field(name: str, value: object) -> None:
         raise ControlError(
             Refusal.DATA, f"the radius {value:g} mm is negative", hint="Give a radius from 0 mm."
         )
-    if name == "orientation" and not (isinstance(value, int) and 0 <= value <= ORIENTATIONS):
-        raise ControlError(Refusal.DATA, f"{value} is not an orientation of a tool tip", hint="Give 0 to 9.")
+    if name == "tip" and not (isinstance(value, int) and 0 <= value <= _TIPS):
+        raise ControlError(Refusal.DATA, f"{value} is no place of a tool's tip", hint="Give 0 to 9.")
