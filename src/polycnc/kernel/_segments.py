@@ -30,7 +30,8 @@ STOP = 2  # flag: come to rest at the end (exact stop)
 CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on in the same direction
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
-GEO = BEZIER_SIZE + 13
+GEO = BEZIER_SIZE
+GEO_WITH_JERK = GEO + 13
 # Geometry of an ARC.
 CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP_RAD = 0, 1, 2, 3, 4
 # Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point behind it.
@@ -79,17 +80,17 @@ class Segments(NamedTuple):
     start: Floats  # [S, n]
     end: Floats  # [S, n]
     plane: npt.NDArray[np.int8]  # [S, 3] axes of an ARC or a SPLINE (first two), or of a CIRCLE3D
-    geo: Floats  # [S, GEO]
+    geo: Floats  # [S, GEO], or [S, GEO_WITH_JERK] where paths may have limited jerk
 
 
-def make_segments(slots: int, axes: int) -> Segments:
-    """Allocate `slots` empty segments of `axes` axes."""
+def make_segments(slots: int, axes: int, *, limited_jerk: bool = False) -> Segments:
+    """Allocate `slots` empty segments of `axes` axes; without `limited_jerk` no path of theirs may have any."""
     return Segments(
         row=np.zeros(slots, SEGMENT_ROW),
         start=np.zeros((slots, axes)),
         end=np.zeros((slots, axes)),
         plane=np.zeros((slots, 3), np.int8),
-        geo=np.zeros((slots, GEO)),
+        geo=np.zeros((slots, GEO_WITH_JERK if limited_jerk else GEO)),
     )
 
 

@@ -73,8 +73,12 @@ def make_state(
     segments: int = 1 << 16,
     record_cycles: int = 0,
     record_actual: bool = False,
+    limited_jerk: bool = True,
 ) -> KernelState:
-    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits."""
+    """Allocate a machine of `axes` axes at rest at 0, all with ideal servos and without limits.
+
+    Without `limited_jerk` its paths take less memory, and none may have a jerk limit.
+    """
     clock = np.zeros(1, CLOCK_ROW)
     clock["dt"] = cycle_s
     clock["axis"] = -1
@@ -87,7 +91,7 @@ def make_state(
         acceleration=np.zeros(axes),
         ptp=make_point_to_point(axes),
         paths=make_paths(paths, segments, axes),
-        seg=make_segments(segments, axes),
+        seg=make_segments(segments, axes, limited_jerk=limited_jerk),
         limits=make_limits(axes),
         servo=make_servo(axes),
         plant=make_plant(axes),

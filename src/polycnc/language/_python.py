@@ -25,6 +25,7 @@ _INFIX = {
 }  # fmt: skip
 _PREFIX = {"not": 3, "-": 11, "+": 11, "~": 11}
 _SHORT = 300
+_FEW_CASES = 500
 """Python of lines so short and hardly indented compiles; other lines are compiled at once, to see whether they do."""
 _DEEP = re.compile(" {60}")
 _COMPARISON = 4  # comparisons in a row mean something else in Python, so one never stands bare within another
@@ -125,6 +126,12 @@ class Emitter(Generic[Place]):
             self.put("pass")
         self._indent = self._indent[:-4]
 
+    def _may_be_refused(self) -> bool:
+        """Tell whether Python may find the lines too long, too deep, or a choice to have too many cases."""
+        if max(map(len, self.lines), default=0) > _SHORT or any(map(_DEEP.match, self.lines)):
+            return True
+        return sum(line.lstrip().startswith("elif ") for line in self.lines) > _FEW_CASES
+
     def compile(self, name: str) -> Traced[Place]:
         """Return the lines to be loaded; `name` tells this code from other code in `frame_of`.
 
@@ -132,7 +139,7 @@ class Emitter(Generic[Place]):
             Flaw: They are nested too deeply, or too long, for Python.
         """
         traced = Traced(name, tuple(self.lines), tuple(self.places))
-        if max(map(len, self.lines), default=0) > _SHORT or any(map(_DEEP.match, self.lines)):
+        if self._may_be_refused():
             try:
                 _ = traced.code
             except (RecursionError, MemoryError, SyntaxError) as error:

@@ -100,6 +100,7 @@ class Machine:
             segments=segments,
             record_cycles=record_cycles,
             record_actual=servo,
+            limited_jerk=config.path.jerk_mm_s3 is not None,
         )
         self._mask = self.state.clock["mask"]
         for index, axis in enumerate(config.axes):
