@@ -196,6 +196,18 @@ def test_tools_overlay_the_machine_file_and_last(tmp_path: Path) -> None:
     assert list(ToolTable(Store(tmp_path / "s"), CONFIG)) == [12]
 
 
+def test_tools_that_an_earlier_version_has_kept_are_read(tmp_path: Path) -> None:
+    store = Store(tmp_path / "s")
+    store.area("cnc.tools", dict)[5] = {
+        "length_mm": 71.25,
+        "radius_mm": 0.4,
+        "description": "old",
+        "orientation": 3,
+    }
+    store.close()
+    assert ToolTable(Store(tmp_path / "s"), CONFIG)[5] == Tool(71.25, 0.4, description="old", tip=3)
+
+
 @pytest.mark.parametrize(
     ("number", "changes"),
     [

@@ -21,6 +21,7 @@ _OFFSETS = "cnc.offsets"
 _REMOVED = {"removed": True}
 MOST_TOOLS = 99_999_999
 _TIPS = 9
+_RENAMED = {"orientation": "tip"}  # fields as stores of earlier versions call them
 _OFFSET_NAME = re.compile(r"[A-Z][A-Z0-9]{0,7}(\.[A-Z0-9]{1,8})?")
 
 
@@ -58,7 +59,7 @@ class ToolTable(Mapping[int, Tool]):
             if row == _REMOVED:
                 self._tools.pop(int(number), None)
             else:
-                self._tools[int(number)] = Tool(**row)
+                self._tools[int(number)] = Tool(**{_RENAMED.get(name, name): row[name] for name in row})
 
     def __getitem__(self, number: int) -> Tool:
         """Return a tool; KeyError if there is none."""
