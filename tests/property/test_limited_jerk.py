@@ -25,14 +25,13 @@ from polycnc.kernel import (
 from support.random_paths import (
     CYCLE_S,
     RECORDED,
-    PathMaker,
     PathSettings,
     is_done,
-    machine,
     overload,
     prepare,
     random_path,
     run_recorded,
+    run_with_changes,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -144,27 +143,7 @@ def test_a_limited_look_ahead_keeps_the_jerk(depth: int) -> None:
 def test_override_hold_and_late_blocks_keep_the_jerk_and_the_end(jerk: float, depth: int) -> None:
     for seed in range(24):
         rng = np.random.default_rng(seed)
-        state = machine(rng, PathSettings(jerk=jerk, depth=depth))
-        maker = PathMaker(state, rng, None if rng.random() < 0.3 else 10.0 ** rng.uniform(-4.0, 1.0))
-        left = int(rng.integers(2, 200))
-        row = state.paths.row[0]
-        state.clock[0]["mask"] = RECORDER_FULL
-        start_path(state.paths, 0)
-        for step in range(60):
-            piece = min(left, int(rng.integers(0, 20))) if seed % 2 else left * (step == 0)
-            maker.append(piece)
-            left -= piece
-            prepare(state, closed=left == 0)
-            if rng.random() < 0.7:
-                row["override"] = rng.choice((0.0, 0.05, 0.5, 1.0, 1.3, 2.0))
-                row["hold"] = rng.choice((0, 0, 1))
-                replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
-            advance(state, int(rng.integers(1, rng.choice((5, 50, 300)))))
-        maker.append(left)
-        prepare(state)
-        row["hold"], row["override"] = 0, 1.0
-        replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
-        run_recorded(state)
+        state = run_with_changes(rng, PathSettings(jerk=jerk, depth=depth), late=bool(seed % 2))
         assert max(overload(state)) <= ROUNDING, f"seed {seed}"
         assert highest_jerk(state) <= jerk * ROUNDING, f"seed {seed}"
         if is_done(state):

@@ -30,6 +30,7 @@ from support.random_paths import (
     prepare,
     random_path,
     run_recorded,
+    run_with_changes,
 )
 
 ROUNDING = 1.0 + 1e-6
@@ -132,27 +133,7 @@ def test_any_override_and_blocks_that_come_late_keep_the_limits_and_the_end(dept
     for seed in range(60):
         rng = np.random.default_rng(seed)
         settings = PathSettings(jerkrel=float(rng.choice((0.0, 0.0, 0.3, 1.0))), depth=depth)
-        state = machine(rng, settings)
-        maker = PathMaker(state, rng, None if rng.random() < 0.3 else 10.0 ** rng.uniform(-4.0, 1.0))
-        left = int(rng.integers(2, 200))
-        row = state.paths.row[0]
-        state.clock[0]["mask"] = RECORDER_FULL
-        start_path(state.paths, 0)
-        for _ in range(60):
-            piece = min(left, int(rng.integers(0, 20)))
-            maker.append(piece)
-            left -= piece
-            prepare(state, closed=left == 0)
-            if rng.random() < 0.7:
-                row["override"] = rng.choice((0.0, 0.05, 0.5, 1.0, 1.3, 2.0))
-                row["hold"] = rng.choice((0, 0, 1))
-                replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
-            advance(state, int(rng.integers(1, rng.choice((5, 50, 300)))))
-        maker.append(left)
-        prepare(state)
-        row["hold"], row["override"] = 0, 1.0
-        replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
-        run_recorded(state)
+        state = run_with_changes(rng, settings)
         assert max(overload(state)) <= ROUNDING, f"seed {seed}"
         if is_done(state):
             assert np.array_equal(state.setpoint, state.paths.queued[0])

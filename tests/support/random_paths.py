@@ -20,6 +20,7 @@ from polycnc.kernel import (
     give_to_path,
     make_state,
     prepare_path,
+    replan_path,
     start_path,
 )
 
@@ -154,6 +155,37 @@ def run_recorded(state: KernelState) -> int:
     while not is_done(state) and state.recorder.filled[0] < RECORDED:
         cycles += advance(state, RECORDED)
     return cycles
+
+
+def replan(state: KernelState) -> None:
+    """Let what was changed of path 0 act on what is ahead."""
+    replan_path(state.seg, state.paths, 0, state.limits, CYCLE_S, state.work)
+
+
+def run_with_changes(rng: np.random.Generator, settings: PathSettings, *, late: bool = True) -> KernelState:
+    """Return a machine that has gone along a random path with overrides and holds; its blocks came late, or at once."""
+    state = machine(rng, settings)
+    maker = PathMaker(state, rng, None if rng.random() < 0.3 else 10.0 ** rng.uniform(-4.0, 1.0))
+    left = int(rng.integers(2, 200))
+    row = state.paths.row[0]
+    state.clock[0]["mask"] = RECORDER_FULL
+    start_path(state.paths, 0)
+    for step in range(60):
+        piece = min(left, int(rng.integers(0, 20))) if late else left * (step == 0)
+        maker.append(piece)
+        left -= piece
+        prepare(state, closed=left == 0)
+        if rng.random() < 0.7:
+            row["override"] = rng.choice((0.0, 0.05, 0.5, 1.0, 1.3, 2.0))
+            row["hold"] = rng.choice((0, 0, 1))
+            replan(state)
+        advance(state, int(rng.integers(1, rng.choice((5, 50, 300)))))
+    maker.append(left)
+    prepare(state)
+    row["hold"], row["override"] = 0, 1.0
+    replan(state)
+    run_recorded(state)
+    return state
 
 
 def overload(state: KernelState) -> tuple[float, float]:
