@@ -169,6 +169,10 @@ def test_a_program_equals_itself_and_its_traces(mill: Path, tmp_path: Path) -> N
     assert (read.deviation_mm, read.cuts_a_from_b, read.tools) == (0.0, None, None)
     assert read.b.time_s == result.time_s
     assert read.b.extents_mm["Z"] == pytest.approx(result.extents_mm["Z"])
+    assert (read.a.top_feed_mm_min, read.b.top_feed_mm_min) == (
+        result.top_feed_mm_min,
+        None,
+    )  # cuts or rapids?
 
 
 def test_a_bulge_is_as_far_as_its_sagitta(mill: Path) -> None:

@@ -239,3 +239,20 @@ def test_results_and_traces_are_short_in_a_notebook() -> None:
     tricky = polycnc.run("(<b>&)\nT1 M6\nG1 X1 F99\n", TIMED)
     assert "&lt;b&gt;&amp;" in tricky._repr_html_()
     assert math.isfinite(result.trace.t_s[-1])
+
+
+# --- nothing at all
+
+
+@pytest.mark.parametrize("text", ["\n", "%\n\n  %\r\n", "\0\n"])
+@pytest.mark.parametrize("dialect", ["din", "fanuc", "bosch"])
+def test_an_empty_program_is_remarked(text: str, dialect: str) -> None:
+    assert remarks(text, dialect=dialect) == [("empty", 1, 1)]
+    messages = [each.text for each in polycnc.run(text, dialect=dialect, check=False).messages]
+    assert messages == ["the program is empty"]
+    assert [error.code for error in polycnc.check(text, dialect=dialect, strict=True)] == ["empty"]
+
+
+@pytest.mark.parametrize("text", ["%\nM30\n%\n", "#100=7\n"])
+def test_a_program_that_only_ends_or_computes_is_not_empty(text: str) -> None:
+    assert remarks(text, dialect="fanuc") == []

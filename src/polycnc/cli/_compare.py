@@ -136,7 +136,9 @@ def _table(found: Comparison) -> list[tuple[str, str, str, str]]:
     rows.append(_row("path [mm]", found.a.path_mm, found.b.path_mm))
     if one is not None and other is not None:
         rows.append(_row("  cutting", one.cutting_path_mm, other.cutting_path_mm))
-    rows.append(_row("top feed [mm/min]", found.a.top_feed_mm_min, found.b.top_feed_mm_min))
+    a_feed, b_feed = found.a.top_feed_mm_min, found.b.top_feed_mm_min
+    if a_feed is not None and b_feed is not None:
+        rows.append(_row("top feed [mm/min]", a_feed, b_feed))
     for axis in [axis for axis in found.a.extents_mm if axis in found.b.extents_mm]:
         (low, high), (other_low, other_high) = found.a.extents_mm[axis], found.b.extents_mm[axis]
         rows += [_row(f"{axis} lowest", low, other_low), _row(f"{axis} highest", high, other_high)]

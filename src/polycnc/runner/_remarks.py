@@ -11,7 +11,7 @@ import numpy.typing as npt
 from polycnc.errors import SourcePosition
 from polycnc.kernel import RAPID, WAIT, WAIT_EVENT
 from polycnc.machine import MachineConfig
-from polycnc.nc import Channel, Dialect, MAction, line_of
+from polycnc.nc import Channel, Dialect, MAction, ProgramText, line_of
 
 Floats = npt.NDArray[np.float64]
 _TURNS = {MAction.SPINDLE_CW: True, MAction.SPINDLE_CCW: True, MAction.SPINDLE_STOP: False}
@@ -160,6 +160,13 @@ def _carried(values: Floats, first: float) -> Floats:
 
 def _number(value: float) -> str:
     return f"{value:.3f}".rstrip("0").rstrip(".")
+
+
+def empty_remark(program: ProgramText) -> Remark | None:
+    """Return what to say of a program in which nothing stands but blanks and the signs of a tape's ends."""
+    if program.content.strip(b"% \t\r\n\0"):
+        return None
+    return Remark("empty", "the program is empty", SourcePosition(program.name, 1, 1, ""))
 
 
 def times_remark(config: MachineConfig, dialect: Dialect, words: list[str]) -> str:

@@ -29,7 +29,7 @@ from polycnc.runner._execution import (
 from polycnc.runner._operations import OperationCollector
 from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
 from polycnc.runner._rehearsal import rehearsed
-from polycnc.runner._remarks import MachiningWatch, Remark, times_remark
+from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark, times_remark
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, TracedResult
 from polycnc.runner._trace import TraceCollector
 
@@ -193,6 +193,8 @@ def run(
             control.finish()
         if screen is not None:
             control.screen.save(Path(screen))
+    if (empty := empty_remark(text)) is not None:
+        execution.channel.messages.note(empty.text, 0)
     if remark := times_remark(config, chosen, [event.word for event in events]):
         execution.channel.messages.note(remark, 0)
     result = _result(execution, events, operations, collector, stuck)
@@ -249,9 +251,10 @@ def inspect(
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
 
-    Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut, and
-    program stops. A program with statements of a language (CPL) that is linked without an error is run in a copy of
-    `root` for that, unless `rehearse` is off or the folder is larger than 500 files or 32 MB.
+    Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut,
+    program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
+    without an error is run in a copy of `root` for that, unless `rehearse` is off or the folder is larger than 500
+    files or 32 MB.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -274,7 +277,8 @@ def inspect(
     watch = MachiningWatch(execution.channel)
     execution.channel.on_filled = watch.look
     run_to_end(execution, every_cycle=False)
-    return CheckReport(execution.channel.errors, watch.remarks)
+    empty = empty_remark(text)
+    return CheckReport(execution.channel.errors, watch.remarks if empty is None else [empty])
 
 
 def _dialect_of(text: ProgramText, dialect: str | Dialect | None, ignore: Iterable[str]) -> Dialect:

@@ -160,7 +160,9 @@ def _comparison() -> Schema:
             "ok": _FLAG,
             "time_s": _time("From the start to the end"),
             "path_mm": _length("The whole path"),
-            "top_feed_mm_min": _number("Highest speed of a cut, mm/min.", low=0.0),
+            "top_feed_mm_min": _or_null(
+                _number("Highest speed of a cut, mm/min; null for a trace file.", low=0.0)
+            ),
             "extents_mm": _EXTENTS,
             "cutting_time_s": _time("Cutting"),
             "cutting_path_mm": _length("All but rapids"),

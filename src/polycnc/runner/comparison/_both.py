@@ -65,7 +65,7 @@ def _result_of(side: Compared) -> RunResult:
         waiting_time_s=0.0,
         cutting_path_mm=side.path_mm,
         rapid_path_mm=0.0,
-        top_feed_mm_min=side.top_feed_mm_min,
+        top_feed_mm_min=side.top_feed_mm_min or 0.0,
         axis_units={},
         end_position_mm={},
         extents_mm=side.extents_mm,

@@ -54,14 +54,17 @@ class PathDeviation:
 
 @dataclass(frozen=True, slots=True)
 class Compared:
-    """What is compared: its name, path and extents, and the result of the run where it was one."""
+    """What is compared: its name, path and extents, and the result of the run where it was one.
+
+    `top_feed_mm_min` is None for a trace from a file, which does not say what was a rapid.
+    """
 
     name: str
     machine: str
     time_s: float
     path_mm: float
     extents_mm: dict[str, tuple[float, float]]
-    top_feed_mm_min: float
+    top_feed_mm_min: float | None
     result: RunResult | None = field(repr=False)
 
     @property
@@ -309,7 +312,7 @@ def _of_trace(trace: Trace, name: str, result: RunResult | None) -> _Taken:
         float(trace.t_s[-1]) if len(trace) else 0.0,
         path.length() if result is None else result.path_mm,
         _extents(trace) if result is None else result.extents_mm,
-        float(np.max(trace.feed_mm_s, initial=0.0)) * 60.0 if result is None else result.top_feed_mm_min,
+        None if result is None else result.top_feed_mm_min,
         result,
     )
     text = None if result is None else result.source
