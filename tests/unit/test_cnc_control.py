@@ -600,6 +600,44 @@ def test_the_machine_lock_executes_without_the_axes_and_only_changes_in_between(
     assert x(made) > 20.0
 
 
+def test_axes_stay_where_they_are_when_the_machine_lock_is_taken_off() -> None:
+    made = control()
+    made.set_switches(machine_lock=True)
+    made.select_program("SLOT")  # ends at X30, and the axes have never left 12.5
+    made.cycle_start()
+    made.advance(300)
+    made.reset()
+    made.advance(300)
+    made.set_switches(machine_lock=False)
+    made.advance(7)
+    assert x(made) == 12.5
+    made.cycle_start()
+    made.advance(1)
+    assert x(made) == pytest.approx(12.5, abs=1e-3)
+    made.advance(10_000)
+    assert x(made) == 30.0
+
+
+@pytest.mark.parametrize("calculate", [False, True])
+@pytest.mark.parametrize("ends", ["another program", "MDI", "reset"])
+def test_a_search_ends_with_another_selection(ends: str, calculate: bool) -> None:
+    made = control()
+    made.select_program("PART")
+    assert made.search(line=3, calculate=calculate) == 3
+    if ends == "another program":
+        made.select_program("SLOT")
+    elif ends == "MDI":
+        made.select_mode(Mode.MDI)
+        made.set_mdi("G1 X14 F600\nX15\nX16\nX17\n")
+    else:
+        made.reset()
+    made.cycle_start()
+    made.advance(10)
+    block = made.status().channel.block
+    assert block is not None
+    assert block.line == {"another program": 1, "MDI": 1, "reset": 2}[ends]  # O7 moves nothing
+
+
 def test_dry_run_and_block_delete_reach_the_program() -> None:
     made = control(ControlData(dry_run_mm_min=1200.0))
     made.programs.create("DRY", "/2 N10 X99 \nN20 G1 X32.5 F60\nM30\n".replace(" X99", " Z-3 F900 G1"))

@@ -235,7 +235,6 @@ class ProgramRun:
         target = block_line(self.program, line, sequence)
         self._replace_channel(self.program, keeps_modal=False)
         self._state = RunState.READY
-        self._approach = None
         if not calculate:
             self.channel.go_to(target)
             return target
@@ -611,15 +610,19 @@ class ProgramRun:
         tool = self.channel.state.tool if self.modal is None else self.modal.tool  # prepared is not changed
         self.channel = self.feed.channel = self._new_channel(program, self.channel, keeps_modal=keeps_modal)
         self.channel.state.tool = tool
+        self._met = self._approach = None  # blocks of the program before
         self.stopper.records = self.channel.records
         self.feed.clear()
 
     def _give_axes(self) -> None:
-        """Let the axes follow the path, or nothing while the machine is locked."""
-        state = self.machine.state
-        for axis in state.paths.axis[self.path]:
-            if axis >= 0 and state.owner[axis] in (self.path, kernel.OTHER_SOURCE):
-                state.owner[axis] = kernel.OTHER_SOURCE if self._locked else self.path
+        """Let the axes follow the path from where they stand, or nothing while the machine is locked."""
+        state, path = self.machine.state, self.path
+        for column, axis in enumerate(state.paths.axis[path]):
+            if axis < 0 or state.owner[axis] not in (path, kernel.OTHER_SOURCE):
+                continue
+            if state.owner[axis] == kernel.OTHER_SOURCE and not self._locked:  # the path went on without it
+                state.paths.position[path, column] = state.paths.queued[path, column] = state.base[axis]
+            state.owner[axis] = kernel.OTHER_SOURCE if self._locked else path
 
     def _seconds(self) -> ToolTime:
         totals = self.machine.state.paths.totals[self.path]
