@@ -17,7 +17,7 @@ from polycnc.runner import post_file
 BLOCKS = 200_000
 RUNS = 5
 BUDGET = 100_000
-POINTS = 100_000
+POINTS = 200_000
 MILLION = 1_000_000
 MEMORY_MB = 330
 _PROVE = """

@@ -128,6 +128,71 @@ def test_a_turret_counts_as_a_change_of_tool() -> None:
     assert [error.code for error in polycnc.check(bare, "lathe2", "fanuc-lathe", strict=True)] == ["no_tool"]
 
 
+# --- tables
+
+
+def table(program: str) -> dict[str, float]:
+    channel = prepare(f"G10 {program}\n", config=LATHE, dialect="fanuc-lathe")
+    assert channel.error is None, channel.error
+    tool = channel.state.tables.tool(3)
+    return {name: getattr(tool, name) for name in type(tool).model_fields if name != "description"}
+
+
+BEFORE = {"radius_mm": 0.8, "tip": 3, "x_mm": 7.0, "z_mm": -2.5, "wear_x_mm": 0.125}
+REST = dict.fromkeys(("length_mm", "wear_length_mm", "wear_radius_mm", "wear_z_mm"), 0.0)
+
+
+@pytest.mark.parametrize(
+    ("program", "changes"),
+    [
+        ("P3 X0.5 Z-0.25", {"wear_x_mm": 0.25, "wear_z_mm": -0.25}),
+        ("P3 U0.5 W-0.25 C-0.125", {"wear_x_mm": 0.375, "wear_z_mm": -0.25, "wear_radius_mm": -0.125}),
+        ("P10003 X-30. Z12.5 R0.4 Q2", {"x_mm": -15.0, "z_mm": 12.5, "radius_mm": 0.4, "tip": 2}),
+        ("P10003 U-30. W1.5 C0.4", {"x_mm": -8.0, "z_mm": -1.0, "radius_mm": 1.2}),
+        ("G20 P10003 X2. C0.01", {"x_mm": 25.4, "radius_mm": 1.054}),
+    ],
+)
+def test_g10_sets_wear_and_geometry_of_turning_tools(program: str, changes: dict[str, float]) -> None:
+    assert table(program) == pytest.approx({**REST, **BEFORE, **changes})
+
+
+def test_an_offset_counts_from_the_next_t_on() -> None:
+    program = "T0303\nG0 X20. Z5.\nG10 P10003 X4. W-1.\nX22.\nT0303\nX24. Z5.\n"
+    found = moves(program, config=LATHE, dialect="fanuc-lathe")
+    assert [each for each in found if each.startswith("rapid")] == [
+        *("rapid X17.125 Z2.5 stop", "rapid X18.125 stop", "rapid X14.125 Z1.5 stop"),
+    ]
+
+
+def test_g10_shifts_the_work_coordinates() -> None:
+    """P0 and L2 P0 count with every work offset, X a diameter; L2 P2 is G55; ways add."""
+    program = "G10 P0 X10. Z-3.\nG0 X20. Z5.\nG10 P0 U4. W1.\nX20. Z5.\n"
+    program += "G10 L2 P2 Z7.\nG10 L2 P2 W2. X1.\nG55 X20. Z5.\n"
+    assert moves(program, config=LATHE, dialect="fanuc-lathe") == [
+        *("rapid X15 Z2 stop", "rapid X17 Z3 stop", "rapid X17.5 Z12 stop")
+    ]
+
+
+@pytest.mark.parametrize(
+    ("program", "text"),
+    [
+        ("G10 X5.", "G10 without P"),
+        ("G10 P3", "G10 P3 without a value"),
+        ("G10 P0", "G10 without an axis"),
+        ("G10 P3 X5. U2.", "U and X both change X"),
+        ("G10 P3 R5. C2.", "R and C both change the radius"),
+        ("G10 P10003 C-2.", "the radius is negative"),
+        ("G10 P10003 Q10", "Q10 is not the place of a tip"),
+        ("G10 P3 Y2.", "G10 P3 without a value"),
+        ("G10 P5000 X1.", "there is no offset P5000"),
+        ("G10 L10 P1 X1.", "G10 L10 is not supported yet"),
+        ("G10 P3 X1. I5.", "'I' cannot stand beside G10"),
+    ],
+)
+def test_g10_that_cannot_be(program: str, text: str) -> None:
+    assert text in refusal(f"{program}\n", config=LATHE, dialect="fanuc-lathe")
+
+
 # --- nose radius
 
 
@@ -229,6 +294,25 @@ def test_a_thread_goes_with_the_spindle() -> None:
     ]
 
 
+def test_the_lead_of_a_thread_grows_with_every_turn() -> None:
+    """F2 and K0.5: after 1, 2 and 3 turns 2.25, 5 and 8.25; the fourth turn is broken off at 10.
+
+    There 2 n + n^2 / 4 is 10: n = sqrt(56) - 4 = 3.4833; the mean lead of that part is 1.75 / 0.4833.
+    """
+    part = math.sqrt(56.0) - 7.0
+    assert turned("G34 W-10. F2. K0.5\n") == [
+        *("line Z-0.25 F2250", "line Z-3 F2750", "line Z-6.25 F3250"),
+        f"line Z-8 F{_text(1750.0 / part)}",
+    ]
+
+
+def test_a_thread_of_changing_lead_takes_the_time_of_its_turns() -> None:
+    """80 long from lead 4 with -0.0625: 4 n - n^2 / 32 = 80 gives 64 - sqrt(1536) turns; 600 rpm are 10 a second."""
+    program = "G97 S600 M3\nG0 X30. Z0\nG34 Z-80. F4. K-0.0625\nM30\n"
+    result = polycnc.run(program, LATHE, "fanuc-lathe")
+    assert result.cutting_time_s == pytest.approx((64.0 - math.sqrt(1536.0)) / 10.0, abs=0.02)
+
+
 def test_a_threading_cycle_leaves_along_45_degrees() -> None:
     """The last lead of 1.5 is the way out."""
     assert turned("G92 X47. Z-30. F1.5\nX46.5\n") == [
@@ -252,6 +336,13 @@ def test_a_threading_cycle_leaves_along_45_degrees() -> None:
         ("G96 S100\nG32 Z-5. F1.5", "a thread with constant surface speed (G96)"),
         ("G98 G32 Z-5. F1.5", "a thread without feed per revolution"),
         ("G32 Z-5.", "a thread without a lead"),
+        ("G34 Z-5. F2.", "a thread of changing lead without K"),
+        ("G34 Z-38. F2. K-0.0625", "the lead of the thread comes down to 0 before its end"),
+        (
+            "G34 Z-38. F2. K20.",
+            "the thread needs 31025 mm/min of axis Z, which has 30000",
+        ),
+        ("G34 Z-38. F0.0001 K0", "a thread of 400000 turns"),
         ("S4000 G32 Z-5. F8.", "the thread needs 32000 mm/min of axis Z, which has 30000"),
     ],
 )
@@ -407,6 +498,39 @@ def test_roughing_along_x() -> None:
     ]
 
 
+def test_a_pocket_is_cut_where_the_first_block_names_both_axes() -> None:
+    """From X50 Z2 at levels 21, 17: in along a slope of 45 degrees, along, out along the other, away by 1.
+
+    The pocket is 8 deep from X40: from (20, -4) by (16, -8) and (16, -14) to (20, -18): at 17 it is -7 and -15.
+    """
+    contour = "N1 G0 X40. W0\nG1 Z-4. F0.1\nX32. Z-8.\nZ-14.\nX40. Z-18.\nN2 X50. W0\n"
+    found = turned(f"G71 U4. R1.\nG71 P1 Q2 U0 W0 F0.3\n{contour}")
+    assert found == [
+        *("rapid X21 stop", "line Z-18 F300", "line X25 F300 stop", "rapid X26 Z-17 stop"),
+        *("rapid Z-4 stop", "rapid X22 stop", "line X20 F300", "line X17 Z-7 F300", "line Z-15 F300"),
+        *("line X20 Z-18 F300", "line X21 F300 stop", "rapid X22 Z-17 stop"),
+        *("rapid X25 stop", "rapid Z2 stop", "rapid X20 stop", "line Z-4 F300", "line X16 Z-8 F300"),
+        *("line Z-14 F300", "line X20 Z-18 F300", "line X25 F300 stop", "rapid Z2 stop"),
+    ]
+
+
+def test_a_pocket_in_a_face_is_cut_along_x() -> None:
+    """The same seen the other way: from X50 Z2 at Z -2 and -6, where the groove lies between X30 and X20."""
+    contour = "N1 G0 Z-3. U0\nG1 X40. F0.1\nX30. Z-7.\nX20.\nX10. Z-3.\nN2 Z2. U0\n"
+    found = turned(f"G72 W4. R1.\nG72 P1 Q2 U0 W0 F0.3\n{contour}")
+    assert found[:4] == ["rapid Z-2 stop", "line X5 F300", "line Z2 F300 stop", "rapid X6 Z3 stop"]
+    assert found[4:8] == ["rapid X20 stop", "rapid Z-1 stop", "line Z-3 F300", "line X16.25 Z-6 F300"]
+    assert found[8] == "line X8.75 F300"
+
+
+def test_one_axis_or_two_in_the_first_block_decide_between_the_types() -> None:
+    head = "G71 U4. R1.\nG71 P1 Q2 U0 W0 F0.3\n"
+    contour = "N1 G0 {}\nG1 Z-4. F0.1\nX32. Z-8.\nX50. Z-18.\nN2 X52.\n"
+    assert wrong(head + contour.format("X40.")).startswith("G71: the contour turns back, and its first block")
+    for both in ("X40. Z2.", "U-10. W0", "X40. W0."):
+        assert "line X17 Z-7 F300" in turned(head + contour.format(both))
+
+
 def test_a_pattern_is_repeated_nearer_and_nearer() -> None:
     """Three passes, 6 out in X (radius) and 4 in Z, 0.5 and 0.1 left: 6.5/4.1, 3.5/2.1, 0.5/0.1."""
     found = turned(f"G73 U6. W4. R3\nG73 P10 Q20 U1. W0.1 F0.3\n{CONTOUR}")
@@ -423,12 +547,12 @@ def test_a_pattern_is_repeated_nearer_and_nearer() -> None:
         (f"G71 U4. R1.\nG71 P9 Q20 U1. F0.3\n{CONTOUR}", "there is no block N9"),
         (f"G71 P10 Q20 U1. F0.3\n{CONTOUR}", "G71: the depth of a cut is not above zero"),
         (
-            "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20. Z1.\nN2 G1 X50. Z-9.",
+            "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X50.\nG1 X20. Z1.\nN2 X50. Z-9.",
             "G71: the first block of the contour moves the axis along which is roughed",
         ),
         (
             "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20.\nG1 Z-9.\nX15. Z-12.\nN2 X50.",
-            "G71: the contour turns back: pockets are not supported yet",
+            "G71: the contour turns back, and its first block names one axis",
         ),
         (
             "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20.\nM98 P5\nN2 G1 X50. Z-3.\nO5\nM99",
@@ -485,7 +609,7 @@ def test_a_whole_part_runs_on_the_lathe_and_keeps_its_limits() -> None:
 def test_the_lathe_dialect_refuses_what_it_does_not_know() -> None:
     dialect = load_dialect("fanuc-lathe")
     assert dialect.g_action(34) is not None
-    for block in ("G34 Z-5. F1. K0.1", "G83 Z-5. F0.1", "G10 P1 X0", "G12.1", "G84 Z-5. F1."):
+    for block in ("G83 Z-5. F0.1", "G36 X5.", "G12.1", "G84 Z-5. F1."):
         assert "is not supported yet" in refusal(f"{block}\n", config=LATHE, dialect="fanuc-lathe")
 
 

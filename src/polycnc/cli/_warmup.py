@@ -56,7 +56,14 @@ def _warm_imc(progress: Progress) -> None:
     compile_entries("polycnc.controllers.imc", [card.state, card.kernel], progress)
 
 
-_JOBS = {"run": _warm_run, "apci": _warm_apci, "imc": _warm_imc}
+def _warm_post(progress: Progress) -> None:
+    import polycnc.post  # noqa: F401  (has the entries)
+    from polycnc.jit import compile_entries
+
+    compile_entries("polycnc.post", [], progress)
+
+
+_JOBS = {"run": _warm_run, "post": _warm_post, "apci": _warm_apci, "imc": _warm_imc}
 
 
 @contextmanager
@@ -74,7 +81,10 @@ def _shown(job: str) -> Iterator[Progress]:
 
 def warmup_command(
     job: Annotated[
-        str, typer.Argument(help="run (part programs), apci, imc or all.", metavar="[JOB]")
+        str,
+        typer.Argument(
+            help="run (part programs), post (long tool paths), apci, imc or all.", metavar="[JOB]"
+        ),
     ] = "all",
 ) -> None:
     """Compile what the job needs, so that its first use does not wait; what is there already is left as it is."""

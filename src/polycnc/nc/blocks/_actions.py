@@ -43,6 +43,7 @@ class Action(IntEnum):
     QUADRATIC_SPLINE = auto()
     MOTION_OFF = auto()
     THREAD = auto()
+    THREAD_CHANGING = auto()
     TURN_CYCLE = auto()
     THREAD_CYCLE = auto()
     FACE_CYCLE = auto()
@@ -153,6 +154,7 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.QUADRATIC_SPLINE,
         Action.MOTION_OFF,
         Action.THREAD,
+        Action.THREAD_CHANGING,
         Action.TURN_CYCLE,
         Action.THREAD_CYCLE,
         Action.FACE_CYCLE,

@@ -69,3 +69,9 @@ def without_compensation(block: Block, dialect: Dialect) -> Block:
         if word.letter != "G" or dialect.g_action(word.value) not in _COMPENSATION
     )
     return dataclasses.replace(block, words=words)
+
+
+def names_x_and_z(block: Block, dialect: Dialect) -> bool:
+    """Tell whether a block names both axes of the contour, by positions or ways."""
+    names = {dialect.incremental.get(word.letter, word.letter) for word in block.words}
+    return {"X", "Z"} <= names

@@ -13,6 +13,7 @@ from polycnc.nc.blocks._frame import Frame, Polar, Rotation
 from polycnc.nc.blocks._modal import ABSOLUTE, AXIS_P, AXIS_Q, NO_AXIS, PLANE, PLANE_LETTERS
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
+from polycnc.nc.blocks._turning_data import TurningData
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord, code_text
 
 LARGEST_FACTOR = 1000.0
@@ -180,6 +181,9 @@ class Frames:
         self.state.coordinates.set_local(values, add=incremental)
 
     def _set_data(self, g: GWord, words: BlockWords) -> None:
+        if self.dialect.tool_word == "turret":
+            TurningData(self.state, self.dialect, self.fail).carry_out(g, words)
+            return
         table_word = words.take("L")
         if table_word is None:
             raise self.fail(f"G{g.code} without L", "Add L2, L20, or L10 to L13.", g.word)

@@ -26,6 +26,7 @@ from polycnc.nc.blocks._contours import (
     ContourTrouble,
     contour_blocks,
     holds_cycle,
+    names_x_and_z,
     numbered_block,
     without_compensation,
 )
@@ -633,7 +634,8 @@ class Interpreter:
         finally:
             self._capturing = False
             state.restore(saved)
-        return self._turning.contour_cycle(g, words, moves, line)
+        both = names_x_and_z(blocks[0], self.dialect) if blocks else False
+        return self._turning.contour_cycle(g, words, moves, line, both_axes=both)
 
     def _refuse_open_corner(self, g: GWord) -> None:
         if (corner := self.state.corner) is not None:

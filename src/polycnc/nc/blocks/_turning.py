@@ -129,6 +129,7 @@ def rough(contour: Sequence[Piece], numbers: Roughing, *, first_rapid: bool) -> 
     if x_way == 0.0 or z_way == 0.0:
         raise TurningError("the contour leaves nothing to rough", "Start away from it.")
     _check_steady(rest, x_way, z_way)
+    check_top(contour, x_way)
     if numbers.depth_mm <= 0.0:
         raise TurningError("the depth of a cut is not above zero", "Give U (G71) or W (G72) above 0.")
     corner = _add(start, numbers.allowance)
@@ -146,37 +147,51 @@ def rough(contour: Sequence[Piece], numbers: Roughing, *, first_rapid: bool) -> 
         steps.append(Step((escape, at - z_way * numbers.escape_mm), rapid=True))
         steps.append(Step((escape, corner[1]), rapid=True))
     steps.append(Step(rest[0].start, rapid=first_rapid))
-    steps += [_along(piece) for piece in rest]
-    return [*steps, *_back(rest[-1].end, start)]
+    steps += [along(piece) for piece in rest]
+    return [*steps, *back(rest[-1].end, start)]
 
 
-def _back(at: Point, start: Point) -> list[Step]:
+def back(at: Point, start: Point) -> list[Step]:
     """Return the way from the end of a contour to the start: along X first."""
     steps = [] if abs(at[0] - start[0]) < SAME_MM else [Step((start[0], at[1]), rapid=True)]
     return steps if abs(at[1] - start[1]) < SAME_MM else [*steps, Step(start, rapid=True)]
 
 
-def _along(piece: Piece) -> Step:
+def along(piece: Piece) -> Step:
+    """Return the step along a piece."""
     return Step(piece.end, arc=None if piece.center is None else piece)
 
 
 def _check_steady(pieces: Sequence[Piece], x_way: float, z_way: float) -> None:
     """Refuse a contour that turns back in one of its axes."""
     for piece in pieces:
-        points = [piece.start, *_extremes(piece), piece.end]
+        points = [piece.start, *extremes(piece), piece.end]
         for before, after in itertools.pairwise(points):
             if (after[0] - before[0]) * x_way > SAME_MM or (after[1] - before[1]) * z_way < -SAME_MM:
                 raise TurningError(
-                    "the contour turns back: pockets are not supported yet",
-                    "Rough the pocket with a contour of its own.",
+                    "the contour turns back, and its first block names one axis",
+                    "Name both in it (add W0 for G71, U0 for G72): then pockets are cut.",
                 )
 
 
-def _extremes(piece: Piece) -> list[Point]:
+def check_top(contour: Sequence[Piece], x_way: float) -> None:
+    """Refuse a contour that goes along Z beyond where the cycle begins: the way back would cross the part.
+
+    Raises:
+        TurningError: It does.
+    """
+    top = contour[0].start[0]
+    for piece in contour:
+        out = min((x - top) * x_way for x, _ in (piece.start, *extremes(piece), piece.end))
+        if out < -SAME_MM and abs(piece.end[1] - piece.start[1]) > SAME_MM:
+            raise TurningError("the contour comes out beyond the start", "Start further away from it.")
+
+
+def extremes(piece: Piece) -> list[Point]:
     """Return the points of an arc where it turns back in an axis, in their order."""
     if piece.center is None:
         return []
-    first = _angle(piece.start, piece.center)
+    first = angle_of(piece.start, piece.center)
     radius = math.dist(piece.start, piece.center)
     way = _sign(piece.sweep_rad)
     found = []
@@ -191,7 +206,7 @@ def _extremes(piece: Piece) -> list[Point]:
     return found
 
 
-def _angle(point: Point, center: Point) -> float:
+def angle_of(point: Point, center: Point) -> float:
     """Return the angle of a point seen from a centre, positive from Z to X."""
     return math.atan2(point[0] - center[0], point[1] - center[1])
 
@@ -233,8 +248,8 @@ def repeat(
         by = allowance[0] + share * relief[0], allowance[1] + share * relief[1]
         steps.append(Step(_add(contour[0].start, by), rapid=True))
         steps.append(Step(_add(contour[0].end, by), rapid=first_rapid))
-        steps += [_along(piece.shifted(by)) for piece in contour[1:]]
-    return [*steps, *_back(_add(contour[-1].end, by), contour[0].start)]
+        steps += [along(piece.shifted(by)) for piece in contour[1:]]
+    return [*steps, *back(_add(contour[-1].end, by), contour[0].start)]
 
 
 # ------------------------------------------------------------------ grooves and holes (G74, G75)

@@ -19,6 +19,8 @@ from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem
 from polycnc.nc.blocks._moves import Point as AxisPoint
 from polycnc.nc.blocks._turning import (
+    MOST_PASSES,
+    SAME_MM,
     Pecking,
     Piece,
     Point,
@@ -33,11 +35,13 @@ from polycnc.nc.blocks._turning import (
     rough,
     threads,
 )
+from polycnc.nc.blocks._turning_pockets import rough_pockets
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 
 MODAL = {
     Action.THREAD: "thread",
+    Action.THREAD_CHANGING: "thread_changing",
     Action.TURN_CYCLE: "turn",
     Action.THREAD_CYCLE: "thread_cycle",
     Action.FACE_CYCLE: "face",
@@ -84,7 +88,8 @@ class TurningBlocks:
             ProgramError: a word is missing, or the spindle is at rest, or a limit would be passed.
         """
         turning = self.state.turning
-        taper_word = words.by_letter.get("R") if turning.motion != "thread" else None
+        is_thread = turning.motion in ("thread", "thread_changing")
+        taper_word = words.by_letter.get("R") if not is_thread else None
         taper = self._length(words, "R") if taper_word is not None else None
         values = self.motion.axis_words()
         if not values and taper is None:
@@ -93,6 +98,8 @@ class TurningBlocks:
         end = self.motion.target(values)
         if turning.motion == "thread":
             return list(self._items([Step(self._plane_point(end), thread=True)], end, line, stops=False))
+        if turning.motion == "thread_changing":
+            return list(self._changing_thread(end, words, line))
         x, z = self._axes()
         corner = tuple(
             end[axis] if axis in values else kept for axis, kept in zip((x, z), turning.corner, strict=True)
@@ -167,9 +174,9 @@ class TurningBlocks:
         self.state.turning = turning
 
     def contour_cycle(
-        self, g: GWord, words: BlockWords, moves: Sequence[Line | Arc], line: int
+        self, g: GWord, words: BlockWords, moves: Sequence[Line | Arc], line: int, *, both_axes: bool
     ) -> list[QueueItem]:
-        """Return the moves of G71, G72 or G73 about a contour.
+        """Return the moves of G71, G72 or G73 about a contour; `both_axes`: its first block names X and Z.
 
         Raises:
             ProgramError: the contour cannot be roughed, a word makes no sense, a limit would be passed.
@@ -182,13 +189,14 @@ class TurningBlocks:
         if not pieces:
             raise self.fail(f"G{g.code}: the contour moves nothing", "Check P and Q.", g.word)
         first_rapid = bool(getattr(moves[0], "rapid", False))
+        cut = rough_pockets if both_axes else rough
         try:
             if g.action is Action.TURN_ROUGH:
-                steps = rough(pieces, Roughing(*turning.rough, allowance), first_rapid=first_rapid)
+                steps = cut(pieces, Roughing(*turning.rough, allowance), first_rapid=first_rapid)
             elif g.action is Action.FACE_ROUGH:
                 turned = [piece.exchanged() for piece in pieces]
                 numbers = Roughing(*turning.face, allowance[::-1])
-                steps = exchanged(rough(turned, numbers, first_rapid=first_rapid))
+                steps = exchanged(cut(turned, numbers, first_rapid=first_rapid))
             else:
                 relief = turning.relief
                 steps = repeat(pieces, relief[:2], relief[2], allowance, first_rapid=first_rapid)
@@ -375,8 +383,48 @@ class TurningBlocks:
         feed = self.motion.feed(start, end, straight=False)
         return Arc(start, end, center, arc.sweep_rad, (z, x, normal), feed, self.motion.exact_stop, line)
 
-    def _thread_feed(self, start: AxisPoint, end: AxisPoint) -> Feed:
+    def _changing_thread(self, end: AxisPoint, words: BlockWords, line: int) -> Iterator[Line]:
+        """Yield a thread whose lead changes by K with each turn of the spindle: a line for each turn.
+
+        After n turns it has come by F n + K n^2 / 2, so the mean lead of a turn is that in its middle.
+
+        Raises:
+            ProgramError: K is missing, the lead comes down to 0 before the end, or what `_thread_feed` says.
+        """
+        growth = self._length(words, "K")
+        if growth is None:
+            raise self.fail(
+                "a thread of changing lead without K", "Add K and the change per turn.", self.motion.place()
+            )
+        self.motion.check_limits(end)
+        start, lead = self.motion.start, self._lead()
+        long = max(abs(b - a) for a, b in zip(start, end, strict=True))
+        square = lead * lead + 2.0 * growth * long
+        if square <= 0.0:
+            raise self.fail(
+                "the lead of the thread comes down to 0 before its end",
+                f"With K{growth:g} it can be {-lead * lead / (2.0 * growth):.6g} mm long at the most.",
+                self.motion.place(),
+            )
+        turns = 2.0 * long / (lead + math.sqrt(square))
+        if turns > MOST_PASSES:
+            raise self.fail(f"a thread of {turns:.0f} turns", "Check F and K.", self.motion.place())
+        at, turned = start, 0.0
+        while at != end:
+            next_turn = min(math.floor(turned + 1.0), turns)
+            if turns - next_turn < SAME_MM:
+                next_turn, to = turns, end
+            else:
+                share = (lead + 0.5 * growth * next_turn) * next_turn / long
+                to = tuple(a + share * (b - a) for a, b in zip(start, end, strict=True))
+            mean = lead + 0.5 * growth * (turned + next_turn)
+            yield Line(at, to, self._thread_feed(at, to, mean), False, False, line)
+            at, turned = to, next_turn
+
+    def _thread_feed(self, start: AxisPoint, end: AxisPoint, lead: float | None = None) -> Feed:
         """Return the feed of a thread: the lead along the axis that goes further, at the speed of the spindle.
+
+        `lead` is the one in force if it is None.
 
         Raises:
             ProgramError: the spindle is at rest, its speed changes with X, or an axis cannot follow it.
@@ -404,7 +452,7 @@ class TurningBlocks:
             )
         ways = [abs(b - a) for a, b in zip(start, end, strict=True)]
         longest = max(range(len(ways)), key=ways.__getitem__)
-        speed = self._lead() * rpm / SECONDS_PER_MINUTE
+        speed = (self._lead() if lead is None else lead) * rpm / SECONDS_PER_MINUTE
         for index, axis in enumerate(self.state.machine.axes):
             wanted = speed * ways[index] / ways[longest]
             if wanted > axis.vmax:

@@ -33,7 +33,10 @@ START_WORDS = ("STARTX", "STARTY", "STARTZ")
 """The words that say where a move starts."""
 
 ARGUMENTS = ("values", "modes", "last", "texts", "number", "write")
-"""What the compiled builder of a macro takes; it returns the macro, and of LINEAR a loop of it, else None."""
+"""What the compiled builder of a macro takes; it returns the macro, and of LINEAR more, else None (see `Built`)."""
+
+ENDS = ("X", "Y", "Z")
+"""The words that say where a move ends."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,9 +82,15 @@ def compile_macro(
     with writer.out.block(f"def build({', '.join(ARGUMENTS)}):"):
         with writer.out.block("def macro():"):
             writer.statements(statements)
+        more = "None, None"
         if name == "LINEAR" and not writer.flaws:
             writer.along(statements)
-        writer.out.put(f"return macro, {'along' if name == 'LINEAR' else None}")
+            more = "along, None"
+            steady = _SteadyWriter(symbols, style, used)
+            if steady.lines_of(statements):
+                writer.out.take(steady.out)
+                more = "along, steady"
+        writer.out.put(f"return macro, {more}")
     if writer.flaws or not sound:
         return None, writer.flaws
     try:
@@ -103,7 +112,7 @@ class _Writer:
 
     def along(self, statements: Sequence[Statement]) -> None:
         """Write the macro as a loop over rows of positions, with the same feed for all."""
-        names = ("X", "Y", "Z", *(START_WORDS if self._used.start_point else ()))
+        names = (*ENDS, *(START_WORDS if self._used.start_point else ()))
         words = ", ".join(f"values[{name!r}]" for name in names)
         with (
             self.out.block("def along(rows, feed, mode):"),
@@ -354,3 +363,67 @@ class _Writer:
         elif not hint:
             hint = f"known here: {', '.join(names)}" if names else f"the control file defines no {what}"
         return Flaw(at, f"there is no {what} {name}", hint)
+
+
+class _SteadyWriter(_Writer):
+    """Write a function that says what a macro writes when nothing but the end of the move changes any more.
+
+    It returns the lines of the branches that are taken, each with whether it is numbered and its pieces: texts with
+    whether they are words, or the name of an axis alone; None where the macro would change anything else.
+    """
+
+    def lines_of(self, statements: Sequence[Statement]) -> bool:
+        """Write it; return whether it can be: no branch and no value hangs on where the move goes."""
+        used = self._used
+        self._varies = used.order or used.start or used.end
+        with self.out.block("def steady():"):
+            self.out.put("lines = []")
+            self.statements(statements)
+            self.out.put("return lines")
+        return not self._varies
+
+    def _line(self, line: Line) -> None:
+        self._temporaries = 0
+        self.out.put("pieces = []")
+        for element in without_margins(line.elements):
+            self.out.place = (line.number, element.at)
+            self._steady(element)
+        self.out.put(f"if pieces: lines.append(({self._is_numbered(line)}, pieces))")
+
+    def _steady(self, element: Element) -> None:
+        match element:
+            case Text(text=text) if text:
+                self.out.put(f"pieces.append(({text!r}, False))")
+            case Code():
+                symbol = self._symbols.codes[element.key]
+                if symbol.group >= 0:
+                    self.out.put(f"if modes[{symbol.group}] != {symbol.number}: return None")
+                is_quiet = element.prefix == "*" or (element.prefix == "-" and symbol.group >= 0)
+                if symbol.text and not is_quiet:
+                    self.out.put(f"pieces.append(({symbol.text!r}, True))")
+            case Word(name=name) if name in ENDS and name in self._symbols.variables:
+                self.out.put(f"pieces.append(({name!r},))")
+            case Word(name=name) if variable := self._symbols.variables.get(name):
+                self.out.put(f"value = {self._value_of(name)}")
+                if variable.modal:
+                    self.out.put(f"if value != last[{variable.memory}]: return None")
+                else:
+                    self.out.put("if value - value: return None")
+                    self.out.put(*variable.format.steps("value", "text_of_it"))
+                    self.out.put("pieces.append((text_of_it, True))")
+            case Word(name=name):
+                self._value_of(name)
+                piece = self._word(element, name)[0].variable
+                self.out.put(f"if {piece}: pieces.append(({piece}, False))")
+            case Assignment() | Initialisation():
+                self.out.put("return None")
+            case _:
+                pass
+
+    def _value(self, name: Name) -> str:
+        self._value_of(name.text)
+        return super()._value(name)
+
+    def _value_of(self, name: str) -> str:
+        self._varies |= name in (*ENDS, *START_WORDS)
+        return self._symbols.use(name)

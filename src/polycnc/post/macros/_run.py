@@ -6,11 +6,15 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, NoReturn
 
+import numpy as np
+import numpy.typing as npt
+
 from polycnc.errors import ProgramError, SourcePosition, UsageError
 from polycnc.language import frame_of
-from polycnc.post.macros._compile import Style, TracedMacro
+from polycnc.post.macros._compile import ENDS, START_WORDS, Style, TracedMacro
 from polycnc.post.macros._events import MACROS
 from polycnc.post.macros._format import decimal, plain
+from polycnc.post.macros._rows import Rows, SteadyLine
 from polycnc.post.macros._symbols import Symbols
 
 Write = Callable[[str], object]
@@ -31,6 +35,9 @@ class MacroRun:
         "_last",
         "_locate",
         "_macros",
+        "_number",
+        "_steady",
+        "_style",
         "_symbols",
         "_texts",
         "_traced",
@@ -47,20 +54,24 @@ class MacroRun:
         self._known = len(self._values)
         self._last: list[float | None] = [None] * len(symbols.variables)
         self._texts: list[str | None] = [None] * len(symbols.variables)
+        self._number = [style.number_start]
+        self._style = style
         state = (
             self._values,
             [0] * len(symbols.groups),
             self._last,
             self._texts,
-            [style.number_start],
+            self._number,
             write,
         )
         self._macros: dict[str, Callable[[], None] | None] = dict.fromkeys(MACROS)
         self._along: dict[str, Callable[[Iterable[Sequence[float]], float, float], Iterator[None]]] = {}
+        self._steady: Callable[[], list[SteadyLine] | None] | None = None
         for name, traced in macros.items():
-            self._macros[name], along = traced.load(_SCOPE)["build"](*state)
+            self._macros[name], along, steady = traced.load(_SCOPE)["build"](*state)
             if along is not None:
                 self._along[name] = along
+                self._steady = steady
 
     def call(self, macro: str, words: Mapping[str, Value] = _NOTHING) -> None:
         """Set the words given, then run a macro; each block goes to `write` with a line feed at its end.
@@ -101,6 +112,39 @@ class MacroRun:
             yield from self._along["LINEAR"](rows, feed, mode)
         except (ArithmeticError, ValueError, TypeError) as error:
             self._explain(error, _NOTHING)
+
+    def rows(self) -> Rows | None:
+        """Return what writes LINEAR for many rows at once, if nothing but where they end would change any more."""
+        try:
+            lines = self._steady() if self._steady is not None else None
+        except (ArithmeticError, ValueError, TypeError):
+            return None  # the macro itself says what is wrong
+        return None if lines is None else Rows.of(lines, self._symbols.variables, self._style)
+
+    def write_rows(
+        self, rows: Rows, ends: npt.NDArray[np.float64], behind: npt.NDArray[np.int64]
+    ) -> tuple[str, int, int]:
+        """Write LINEAR for the rows of `ends`, [rows, 3 or 6], as far as that goes.
+
+        `behind` gets how many blocks there are behind each row, from none.
+
+        Returns:
+            The blocks, their number, and how many rows are done.
+        """
+        lasts = {
+            name: None if self._texts[each.memory] is None else self._last[each.memory]
+            for name, each in rows.variables.items()
+        }
+        text, blocks, done, number = rows.write(ends, lasts, self._number[0], behind)
+        if done:
+            self._number[0] = number
+            self._values.update(zip((*ENDS, *START_WORDS), ends[done - 1].tolist(), strict=False))
+            for name, variable in rows.variables.items():
+                if variable.modal:
+                    value = float(ends[done - 1, ENDS.index(name)])
+                    self._last[variable.memory] = value
+                    self._texts[variable.memory] = self._style.separator + variable.format.text(value)
+        return text, blocks, done
 
     def keep(self, words: Mapping[str, Value]) -> None:
         """Set words for the macros that follow."""

@@ -118,7 +118,7 @@ class Motion:
         first = self._output.blocks
         behind = self._output.call_along(rows[moves] * self._scale, feed, mode, blocks is not None)
         if blocks is not None:
-            counts = np.array([first, *behind], np.intc)
+            counts = np.concatenate((np.array([first], np.intc), behind))
             blocks.frombytes(counts[np.cumsum(moves)].tobytes())
         x, y, z = ends[-1].tolist()
         self.position = (x, y, z)

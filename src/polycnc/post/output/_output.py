@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from polycnc.units import MM_PER_INCH
 
 Words = Mapping[str, float | str]
 _NOTHING: Words = {}
+_MANY = 64
 
 
 class Output:
@@ -45,18 +46,37 @@ class Output:
 
     def call_along(
         self, rows: npt.NDArray[np.float64], feed: float, mode: float, counts: bool
-    ) -> Iterable[int]:
+    ) -> npt.NDArray[np.intc]:
         """Call LINEAR for each row of X, Y, Z, and of where the move starts if the control file wants that.
 
         Returns:
             With `counts` how many blocks there are behind each.
         """
-        calls = self._run.call_along(zip(*rows.T.tolist(), strict=True), feed, mode)
-        if not counts:
-            deque(calls, maxlen=0)
-            return ()
-        before, lines = self._written, self._lines
-        return [before + len(lines) for _ in calls]
+        done, together = 0, self._tool_path.is_long
+        behind = np.zeros(len(rows) if counts else 0, np.intc)
+        while done < len(rows):
+            # One row makes modal what is: then the next ones may differ in nothing but their ends.
+            together = together and len(rows) - done >= _MANY
+            piece = rows[done : done + 1] if together else rows[done:]
+            calls = self._run.call_along(zip(*piece.T.tolist(), strict=True), feed, mode)
+            if counts:
+                behind[done : done + len(piece)] = [self.blocks for _ in calls]
+            else:
+                deque(calls, maxlen=0)
+            done += len(piece)
+            ready = self._run.rows() if together else None
+            if ready is None:
+                together = False
+            else:
+                self.flush()
+                after = np.zeros(len(rows) - done, np.int64)
+                text, blocks, wrote = self._run.write_rows(ready, rows[done:], after)
+                self._out(text)
+                if counts:
+                    behind[done : done + wrote] = self._written + after[:wrote]
+                self._written += blocks
+                done += wrote
+        return behind
 
     def frame(self, macro: str, words: Words = _NOTHING) -> None:
         """Call a macro that a control file may leave out."""

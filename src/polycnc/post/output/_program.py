@@ -403,7 +403,8 @@ class _Driver:
     def points(self, record: Points, block_map: BlockMap | None) -> None:
         """Take many points at once, as far as nothing but their moves comes of them."""
         line, xyz = record
-        for place, (x, y, z) in enumerate(xyz.tolist()):
+        for place in range(len(xyz)):
+            x, y, z = xyz[place].tolist()
             course, motion = self.course, self.motion
             if (
                 self._in_path

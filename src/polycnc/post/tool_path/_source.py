@@ -9,7 +9,8 @@ from typing import BinaryIO
 
 from polycnc.errors import SourcePosition, UsageError
 
-_PIECE_BYTES = 1 << 16
+_PIECE_BYTES = 1 << 18
+_LONG_BYTES = 1 << 21
 
 
 class Source:
@@ -49,13 +50,18 @@ class Source:
             yield _with_line_feeds(self._content)
             return
         with self._content.open("rb") as self._file:
-            while lines := self._file.readlines(_PIECE_BYTES):
-                yield _with_line_feeds(b"".join(lines))
+            while piece := self._file.read(_PIECE_BYTES):
+                yield _with_line_feeds(piece + self._file.readline())
 
     def lines(self) -> Iterator[bytes]:
         """Yield the lines, from the first."""
         for piece in self.pieces():
             yield from piece.splitlines(keepends=True)
+
+    @property
+    def is_long(self) -> bool:
+        """Whether it has two megabytes and more."""
+        return self._size >= _LONG_BYTES
 
     @property
     def part_read(self) -> float:

@@ -82,7 +82,8 @@ def sweep_in_runs(records: Iterable[Record | Points]) -> Iterator[Sweep | Ways]:
 
 def _points(course: Course, record: Points, number: int) -> Iterator[Sweep | Ways]:
     line, xyz = record
-    for place, (x, y, z) in enumerate(xyz.tolist()):
+    for place in range(len(xyz)):
+        x, y, z = xyz[place].tolist()
         if course.here is not None and course.is_plain:
             yield Ways(number + place, line + place, course.here, xyz[place:], course.axis)
             x, y, z = xyz[-1].tolist()

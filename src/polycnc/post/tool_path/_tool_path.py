@@ -39,6 +39,11 @@ class ToolPath:
         return ToolPath(self._source, turned_from_xy(self._read))
 
     @property
+    def is_long(self) -> bool:
+        """Whether it is worth while to compile what takes many of its points at once."""
+        return self._source.is_long
+
+    @property
     def part_read(self) -> float:
         """How far the last iteration is, 0 to 1."""
         return self._source.part_read
