@@ -55,7 +55,13 @@ def walk(seed: int) -> tuple[Floats, float]:
     return np.vstack([np.zeros(3), np.cumsum(steps, axis=0)]) + 3.7, float(rng.uniform(5.0, 150.0))
 
 
-def assert_agrees(seed: int, path: PathConfig, rule: Rule, acceleration: Floats = ACCELERATION) -> None:
+def assert_agrees(
+    seed: int,
+    path: PathConfig,
+    rule: Rule,
+    acceleration: Floats = ACCELERATION,
+    low_acceleration: float = math.inf,
+) -> None:
     points, feed = walk(seed)
     expected, stretches = travel_time(
         points,
@@ -65,6 +71,7 @@ def assert_agrees(seed: int, path: PathConfig, rule: Rule, acceleration: Floats 
         acceleration=acceleration,
         path_speed=path.speed_limit_mm_s or math.inf,
         path_acceleration=path.acceleration_limit_mm_s2 or math.inf,
+        low_acceleration=low_acceleration,
     )
     # Every stretch from rest to rest takes whole cycles.
     time = time_of(points, feed, path, acceleration)
@@ -87,6 +94,47 @@ def test_square_corner_speed_takes_the_time_of_its_formula(speed: float) -> None
     for seed in range(100, 160):
         path = PathConfig(square_corner_mm_s=speed, speed_limit_mm_s=120.0, acceleration_limit_mm_s2=3100.0)
         assert_agrees(seed, path, by_square_corner(speed, 3100.0), even)
+
+
+@pytest.mark.parametrize("share", [0.25, 0.5, 0.9])
+def test_a_minimum_cruise_share_takes_the_time_of_its_formula(share: float) -> None:
+    even = np.array([3100.0, 3100.0, 700.0])
+    for seed in range(200, 260):
+        path = PathConfig(
+            square_corner_mm_s=6.0,
+            speed_limit_mm_s=120.0,
+            acceleration_limit_mm_s2=3100.0,
+            minimum_cruise_share=share,
+        )
+        assert_agrees(seed, path, by_square_corner(6.0, 3100.0), even, 3100.0 * (1.0 - share))
+
+
+@pytest.mark.parametrize("piece", [1, 3, 11])
+def test_cruising_speeds_are_the_same_however_the_path_comes_in(piece: int) -> None:
+    path = PathConfig(square_corner_mm_s=6.0, acceleration_limit_mm_s2=3100.0, minimum_cruise_share=0.6)
+    for seed in range(300, 312):
+        points, feed = walk(seed)
+        found = []
+        for size in (len(points), piece):
+            state = machine(path).state
+            state.paths.queued[0] = state.paths.position[0] = points[0]
+            for tag, point in enumerate(points[1:], 1):
+                append_line(state.seg, state.paths, 0, state.limits, np.asarray(point), feed, 0, tag)
+                if tag % size == 0 and tag + size < len(points):
+                    final = int(state.paths.row[0]["planned"])
+                    before = state.seg.row[:final][["cap", "junction", "out"]].tolist()
+                    prepare_path(state.seg, state.paths, 0, state.limits, 0.001, state.work)
+                    assert state.seg.row[:final][["cap", "junction", "out"]].tolist() == before
+            state.paths.row[0]["closed"] = 1
+            prepare_path(state.seg, state.paths, 0, state.limits, 0.001, state.work)
+            found.append(state.seg.row[: len(points) - 1][["cap", "junction", "out"]].tolist())
+            assert state.paths.row[0]["planned"] == len(points) - 1
+        assert found[0] == found[1]
+
+
+def test_a_minimum_cruise_share_needs_corners_by_their_angle() -> None:
+    with pytest.raises(ValueError, match="passed by their angle"):
+        PathConfig(minimum_cruise_share=0.5)
 
 
 def test_a_right_angle_is_passed_at_the_square_corner_speed() -> None:

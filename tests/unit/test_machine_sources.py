@@ -201,7 +201,27 @@ def test_klipper_limits_the_path_and_passes_corners_by_the_square_corner_speed(t
     }
     path = config.path
     assert (path.speed_limit_mm_s, path.acceleration_limit_mm_s2, path.square_corner_mm_s) == (320, 4100, 6.5)
-    assert "minimum_cruise_ratio" in toml
+    assert path.minimum_cruise_share == 0.5  # its default
+    assert "minimum_cruise" not in "".join(line for line in toml.splitlines() if line.startswith("#"))
+
+
+@pytest.mark.parametrize(
+    ("line", "share"),
+    [
+        ("minimum_cruise_ratio: 0.3", 0.3),
+        ("minimum_cruise_ratio: 0", 0.0),
+        ("max_accel_to_decel: 1025", 0.75),
+        ("max_accel_to_decel: 9000", 0.0),
+    ],
+)
+def test_klipper_keeps_a_part_of_the_way_for_cruising(tmp_path: Path, line: str, share: float) -> None:
+    config, _ = made(tmp_path, KLIPPER.replace("[printer]", f"[printer]\n{line}"))
+    assert config.path.minimum_cruise_share == pytest.approx(share, rel=1e-12)
+
+
+def test_a_cruise_ratio_of_one_is_refused_at_its_place(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"a minimum cruise ratio of 1\.0"):
+        made(tmp_path, KLIPPER.replace("[printer]", "[printer]\nminimum_cruise_ratio: 1.0"))
 
 
 def test_klipper_takes_its_default_corner_speed_and_names_what_lies_elsewhere(tmp_path: Path) -> None:
@@ -250,6 +270,9 @@ def test_linuxcnc_takes_the_lowest_of_axis_and_joints_in_millimetres(tmp_path: P
     assert config.spindle.max_rpm == 9000.0
     free, _ = made(tmp_path, LINUXCNC.replace("G64 P0.013", "G64"))
     assert free.path.path_tolerance_mm == "free"
+    assert (config.path.merge_mm, free.path.merge_mm) == (0.013, 0.0)
+    apart, _ = made(tmp_path, LINUXCNC.replace("G64 P0.013", "G64 P0.013 Q0.07"))
+    assert (apart.path.path_tolerance_mm, apart.path.merge_mm) == (0.013, 0.07)
 
 
 @pytest.mark.parametrize(

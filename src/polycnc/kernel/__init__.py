@@ -10,20 +10,15 @@ from polycnc.kernel._advance import (
     skip,
     sources_cycle,
 )
-from polycnc.kernel._append import (
-    add_line,
-    append_arc,
-    append_circle3d,
-    append_line,
-    append_spline,
-    append_wait,
-)
+from polycnc.kernel._append import append_arc, append_circle3d, append_spline, append_wait
 from polycnc.kernel._axis_limits import AxisLimits, make_limits
 from polycnc.kernel._bezier import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
 from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SQUARE_CORNER
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
 from polycnc.kernel._jit import compiled, entry
+from polycnc.kernel._lines import add_line
 from polycnc.kernel._lookahead import measure_queue
+from polycnc.kernel._merge import NOT_MERGED, append_line, close_line, merge_line
 from polycnc.kernel._path import (
     EXACT_PATH,
     FEED_LENGTH,
@@ -115,6 +110,7 @@ __all__ = [
     "LINE",
     "MAIN",
     "MOST_SPANS",
+    "NOT_MERGED",
     "NO_LIMIT",
     "OTHER_SOURCE",
     "PATH_EVENT",
@@ -162,6 +158,7 @@ __all__ = [
     "append_line",
     "append_spline",
     "append_wait",
+    "close_line",
     "close_profile",
     "compiled",
     "cut_bezier",
@@ -178,6 +175,7 @@ __all__ = [
     "make_segments",
     "make_state",
     "measure_queue",
+    "merge_line",
     "move_to",
     "place_machine",
     "plan_profile",

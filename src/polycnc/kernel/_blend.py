@@ -57,7 +57,7 @@ def blend_corner(
     line = seg.row[k]
     if line["kind"] != LINE or line["flags"] & (RAPID | STOP | CORNER_STOP) or math.isinf(speed_mm_s):
         return False
-    p, q, r = _three_axes(seg, k, limits, end)
+    p, q, r = counting_axes(seg, k, limits, end)
     if p < 0:
         return False
     before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
@@ -124,8 +124,8 @@ def _stop_s(way_mm: float, speed_mm_s: float, accel_mm_s2: float) -> float:
 
 
 @compiled
-def _three_axes(seg: Segments, k: int, limits: AxisLimits, end: Floats) -> tuple[int, int, int]:
-    """Return the first three axes that count, or -1 where another axis moves or there are fewer."""
+def counting_axes(seg: Segments, k: int, limits: AxisLimits, end: Floats) -> tuple[int, int, int]:
+    """Return the first three axes that count; -1 where another moves on line `k` or to `end`, or there are fewer."""
     found = 0
     p, q, r = -1, -1, -1
     for i in range(end.shape[0]):

@@ -33,6 +33,7 @@ NO_LIMIT = 1 << 62
 
 EXACT_PATH = -1.0  # a tolerance: corners are stops, and the path goes on where there is none
 BLEND_COLUMNS = 17  # see `_blend`
+MOST_MERGED = 101  # points that one line takes the place of
 
 # Columns of `totals`.
 RAPID_S, FEED_S, WAIT_S, RAPID_LENGTH, FEED_LENGTH, SEGMENTS, TOP_SPEED = 0, 1, 2, 3, 4, 5, 6
@@ -47,9 +48,11 @@ PATH_ROW = np.dtype(
         ("tail", np.int64),  # count of segments appended
         ("prepared", np.int64),  # segments before this count are in the look-ahead and may run
         ("planned", np.int64),  # segments before this count have their final end speed
+        ("cruising", np.int64),  # segments before this count have their final cap, see `_cruise`
         ("limit", np.int64),  # segments from this count on stay out of the look-ahead: the path rests before
         ("low_water", np.int64),  # planned segments at which QUEUE_LOW is raised, negative never
         ("depth", np.int64),  # look-ahead in segments, 0 = unlimited
+        ("merged", np.int64),  # points of the last line appended while lines may join it, see `_merge`
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
         ("override", np.float64),  # factor of the programmed feeds; 0 holds moves at feed
@@ -59,9 +62,14 @@ PATH_ROW = np.dtype(
         ("jerkrel", np.float64),  # shape of the ramps, see `_ramps`; may change at rest
         # How far the path may leave a corner between lines appended from now on; EXACT_PATH: it rests there.
         ("tolerance_mm", np.float64),
+        (
+            "merge_mm",
+            np.float64,
+        ),  # how far the points of lines may lie off the one that they are merged into, 0: none
         ("jerk_mm_s3", np.float64),  # highest jerk along the path, 0 = any; may change at rest
         ("speed_limit_mm_s", np.float64),  # of the path, whatever its axes allow
         ("accel_limit_mm_s2", np.float64),  # of the path, whatever its axes allow
+        ("low_accel_mm_s2", np.float64),  # with which speeds between corners are found, 0: with all there is
         ("corner_deviation_mm", np.float64),  # of a corner rule other than AS_AXES_ALLOW
         ("lead", np.float64),  # time into the running segment at sample 0
         (
@@ -90,7 +98,7 @@ class Paths(NamedTuple):
     totals: Floats  # [G, TOTALS] of the segments gone along so far
     position: Floats  # [G, m] now
     queued: Floats  # [G, m] end of the last segment appended
-    blend: Floats  # [G, BLEND_COLUMNS] scratch of rounding a corner
+    blend: Floats  # [G, BLEND_COLUMNS + 3 MOST_MERGED + m] scratch of `_blend`, points merged, a point of scratch
     axis: Ints  # [G, m] machine axis of each coordinate, -1 none
 
 
@@ -113,7 +121,7 @@ def make_paths(paths: int, slots: int, coordinates: int) -> Paths:
         totals=np.zeros((paths, TOTALS)),
         position=np.zeros((paths, coordinates)),
         queued=np.zeros((paths, coordinates)),
-        blend=np.zeros((paths, BLEND_COLUMNS)),
+        blend=np.zeros((paths, BLEND_COLUMNS + 3 * MOST_MERGED + coordinates)),
         axis=np.tile(np.arange(coordinates, dtype=np.int64), (paths, 1)),
     )
 

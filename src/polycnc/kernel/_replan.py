@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._cruise import first_open, limit_cruise
 from polycnc.kernel._follow import GONE, RATE, SPEED_NOW, follows
 from polycnc.kernel._geometry import is_curved
 from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
@@ -19,6 +20,7 @@ from polycnc.kernel._jerk_plan import has_limited_jerk, plan_with_jerk
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import feed_in_force, least_accel, line_speed, overridden_rapid
 from polycnc.kernel._lookahead import limit_queue, plan_path
+from polycnc.kernel._merge import close_line, is_open
 from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
 from polycnc.kernel._segments import ASKED, LINE, RAPID, STOP, WAIT, Floats, Segments, set_wait
@@ -100,7 +102,7 @@ def frozen_until(seg: Segments, paths: Paths, g: int, dt: float) -> int:
 
 @compiled
 def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
-    """Return the count up to which segments will not change: a line that may yet be rounded off waits."""
+    """Return the count up to which segments will not change: a line that may yet be rounded off or grow waits."""
     path = paths.row[g]
     tail = int(path["tail"])
     if path["limit"] < tail:
@@ -108,7 +110,7 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
     if tail > path["prepared"] and path["tolerance_mm"] > 0.0 and path["closed"] == 0:
         row = seg.row[slot(paths, g, tail - 1)]
         if row["kind"] == LINE and not row["flags"] & (RAPID | STOP):
-            return tail - 1
+            return max(tail - 2, int(path["prepared"])) if is_open(paths, g) else tail - 1
     return tail
 
 
@@ -118,6 +120,9 @@ def _plan(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         plan_with_jerk(seg, paths, g, dt)
     else:
         plan_path(seg, paths, g)
+    path = paths.row[g]
+    if path["low_accel_mm_s2"] > 0.0:
+        path["planned"] = max(path["head"], min(path["planned"], path["cruising"]))
 
 
 @entry
@@ -128,6 +133,9 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
     path tolerance a line waits for the one after it, or for `closed`.
     """
     path = paths.row[g]
+    if path["closed"] != 0:
+        close_line(seg, paths, g, limits)
+        path["closed"] = 1  # though the line has been appended anew
     head, first = int(path["head"]), int(path["prepared"])
     path["prepared"] = _ready_count(seg, paths, g)
     first_end = max(first - 1, head)
@@ -135,7 +143,9 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
     if goes_on and frozen_until(seg, paths, g, dt) > head:
         goes_on = False
         first_end = first
-    limit_queue(seg, paths, g, limits, dt, first, first_end, work)
+    begin = first_open(path, first)
+    limit_queue(seg, paths, g, limits, dt, begin, min(first_end, max(begin - 1, head)), work)
+    limit_cruise(seg, paths, g, begin, first)
     _plan(seg, paths, g, dt)
     if goes_on:
         plan_again(seg, paths, g, dt)
@@ -173,6 +183,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     path = paths.row[g]
     tag = path["tag"]
     path["tail"] = path["head"]
+    path["merged"] = 0
     for i in range(paths.queued.shape[1]):
         paths.queued[g, i] = paths.position[g, i]
     set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag)  # where it stands
@@ -180,6 +191,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     path["tail"] = path["head"]
     path["prepared"] = path["head"]
     path["planned"] = path["head"]
+    path["cruising"] = path["head"]
     if path["state"] != IDLE:
         path["state"] = READY
     path["entry_share"] = 0.0
@@ -203,6 +215,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         seg.row[passed]["bound"] = max(seg.row[passed]["bound"], seg.row[passed]["out"])
         _lower_cap(seg, passed, limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
+    limit_cruise(seg, paths, g, first, last)
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]

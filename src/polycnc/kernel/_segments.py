@@ -62,6 +62,8 @@ SEGMENT_ROW = np.dtype(
         ("gain", np.float64),  # by how much its ramps can change the squared speed, at the least
         ("out", np.float64),  # planned speed at the end
         ("bound", np.float64),  # earlier planned speed there, if too close to reach a lower one
+        ("reach_in", np.float64),  # squared speeds that its start can have, coming from before, see `_cruise`
+        ("low_in", np.float64),
         ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
         ("kind", np.int8),
         ("flags", np.int8),

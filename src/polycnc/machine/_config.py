@@ -78,6 +78,11 @@ class PathConfig(StrictModel):
         default=0.0,
         description='How far the path may leave a corner, mm: 0 or more, or "free", a quarter of the shorter line.',
     )
+    merge_mm: NotNegative = Field(
+        default=0.0,
+        description="Lines at one feed become one while the points between lie within this distance of it, mm; "
+        "0: none. Only where corners are rounded.",
+    )
     jerkrel: Share = Field(
         default=0.0,
         description="Share of each ramp that is S-shaped; 0 is a trapezoid. The mean acceleration stays.",
@@ -103,6 +108,11 @@ class PathConfig(StrictModel):
         default=None,
         description="The same by the speed through a right angle, sharper corners slower and blunter ones faster.",
     )
+    minimum_cruise_share: Annotated[float, Field(ge=0, lt=1)] = Field(
+        default=0.0,
+        description="Part of the acceleration that is not counted on for the speeds between corners that are close "
+        "together, so that ramps leave a part of the way; with one of the two rules above.",
+    )
 
     @model_validator(mode="after")
     def _one_corner_rule(self) -> PathConfig:
@@ -111,6 +121,13 @@ class PathConfig(StrictModel):
                 "'junction_deviation_mm' and 'square_corner_mm_s' are two rules for the same corners",
                 hint="keep one of them",
                 at=("square_corner_mm_s",),
+            )
+        by_angle = self.junction_deviation_mm is not None or self.square_corner_mm_s is not None
+        if self.minimum_cruise_share > 0.0 and not by_angle:
+            raise problem(
+                "'minimum_cruise_share' needs corners that are passed by their angle",
+                hint="add 'square_corner_mm_s' or 'junction_deviation_mm'",
+                at=("minimum_cruise_share",),
             )
         return self
 

@@ -287,14 +287,16 @@ class Machine:
         rows["depth"] = path.look_ahead_limit or 0
         rows["speed_limit_mm_s"] = path.speed_limit_mm_s or math.inf
         rows["accel_limit_mm_s2"] = path.acceleration_limit_mm_s2 or math.inf
+        highest = path.acceleration_limit_mm_s2 or max(axis.amax for axis in self.config.axes)
         if path.junction_deviation_mm is not None:
             rows["corner_rule"] = kernel.BY_DEVIATION
             rows["corner_deviation_mm"] = path.junction_deviation_mm
         elif path.square_corner_mm_s is not None:
             # The arc through a right angle has the radius deviation / (sqrt(2) - 1) and the highest acceleration.
-            highest = path.acceleration_limit_mm_s2 or max(axis.amax for axis in self.config.axes)
             rows["corner_rule"] = kernel.BY_SQUARE_CORNER
             rows["corner_deviation_mm"] = path.square_corner_mm_s**2 * (math.sqrt(2.0) - 1.0) / highest
+        if path.minimum_cruise_share > 0.0:
+            rows["low_accel_mm_s2"] = highest * (1.0 - path.minimum_cruise_share)
 
     def _set_servo(self, index: int) -> None:
         axis = self.config.axes[index]

@@ -246,6 +246,10 @@ class Dialect(StrictModel):
         default=False,
         description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter line.",
     )
+    merges_lines: bool = Field(
+        default=False,
+        description="G64 P merges lines into one while every point between lies within Q of it, within P without Q.",
+    )
     numbers: Numbers = Field(default=Numbers(), description="See `[numbers]`.")
     arcs: Arcs = Field(default=Arcs(), description="See `[arcs]`.")
     scaling_unit: Annotated[float, Field(gt=0)] = Field(

@@ -59,6 +59,7 @@ class Plain(NamedTuple):
     selected_tool: int
     feed_word: float
     path_tolerance_mm: float
+    merge_mm: float
     side: int
     compensation_tool: int | None
     length_tool: int
@@ -114,10 +115,11 @@ class ChannelState:
     `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
     present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
     0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
-    compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops. `m_codes` are
-    those of the last block that had any. `tables` are the tools and work offsets, `frame` how programmed
-    positions are turned, scaled and mirrored, `placement` where they lie besides, `skip_position` where the
-    last skip move ended (machine coordinates), `probe` the last probing.
+    compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops, `merge_mm` how
+    far points may lie off the line that several are merged into. `m_codes` are those of the last block that had
+    any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and mirrored,
+    `placement` where they lie besides, `skip_position` where the last skip move ended (machine coordinates),
+    `probe` the last probing.
     `spline_way` leads from the end of a cubic spline to its last control point turned about, until anything else moves.
     With `rigid_tap` a tapping cycle turns the spindle itself. `turning` is what turning cycles keep, `tip` where
     the tip of a turning tool lies.
@@ -139,6 +141,7 @@ class ChannelState:
         self.selected_tool = 0
         self.feed_word = 0.0
         self.path_tolerance_mm = machine.path.tolerance_mm
+        self.merge_mm = machine.path.merge_mm
         self.rigid_tap = False
         self.turning = Turning()
         self.tip = TipShift()
@@ -179,6 +182,7 @@ class ChannelState:
             self.selected_tool,
             self.feed_word,
             self.path_tolerance_mm,
+            self.merge_mm,
             self.side,
             self.compensation_tool,
             self.length_tool,

@@ -163,7 +163,7 @@ class Interpreter:
         self.state = state
         self.messages = messages
         self._queue = queue
-        queue.set_tolerance(state.path_tolerance_mm)
+        queue.set_tolerance(state.path_tolerance_mm, state.merge_mm)
         self._call_trouble = call_trouble
         self._reference = reference
         self._last_tag = 0
@@ -207,8 +207,9 @@ class Interpreter:
             if isinstance(error, CompensationError):
                 raise self._placed(error) from None
             raise
-        if self.state.path_tolerance_mm != saved.plain.path_tolerance_mm:
-            self._queue.set_tolerance(self.state.path_tolerance_mm)
+        state, plain = self.state, saved.plain
+        if (state.path_tolerance_mm, state.merge_mm) != (plain.path_tolerance_mm, plain.merge_mm):
+            self._queue.set_tolerance(state.path_tolerance_mm, state.merge_mm)
         self._queue.put_block(items)
         return self._going_on(outcome)
 

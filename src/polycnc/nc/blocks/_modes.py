@@ -269,16 +269,25 @@ class Modes:
             self.messages.add(f"G{ignored.code} has no effect here and is ignored")
 
     def _set_path_tolerance(self, words: BlockWords) -> None:
-        """Take over how far corners may be rounded: P, else what the dialect and the machine allow."""
+        """Take over how far corners may be rounded: P, else what the dialect and the machine allow.
+
+        Where the dialect merges lines, Q is how far their points may be from the one that they become: P without it.
+        """
+        state, dialect = self.state, self.dialect
         tolerance = None if Group.DWELL in words.g else words.take("P")
-        words.take("Q")
-        if tolerance is None or (tolerance.value == 0.0 and self.dialect.free_corners):
-            self.state.path_tolerance_mm = self.dialect.path_tolerance_mm(self.state.machine.path)
-            return
-        if tolerance.value < 0.0:
-            raise self.fail("the path tolerance P is negative", "Write P from 0 up.", tolerance)
-        inch = MM_PER_INCH if self.state.modal.whole[INCH] else 1.0
-        self.state.path_tolerance_mm = tolerance.value * inch
+        merging = words.take("Q")
+        for word, what in ((tolerance, "path"), (merging if dialect.merges_lines else None, "merging")):
+            if word is not None and word.value < 0.0:
+                hint = f"Write {word.letter} from 0 up."
+                raise self.fail(f"the {what} tolerance {word.letter} is negative", hint, word)
+        inch = MM_PER_INCH if state.modal.whole[INCH] else 1.0
+        if dialect.merges_lines:
+            merged = merging or tolerance
+            state.merge_mm = 0.0 if merged is None else merged.value * inch
+        if tolerance is None or (tolerance.value == 0.0 and dialect.free_corners):
+            state.path_tolerance_mm = dialect.path_tolerance_mm(state.machine.path)
+        else:
+            state.path_tolerance_mm = tolerance.value * inch
 
     def radius_compensation(self, words: BlockWords, line: int) -> Callable[[], None] | None:
         """Carry out G40, G41, G42 and D; return what changes the stage, to be called when all else is right.

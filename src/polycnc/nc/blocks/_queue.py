@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from polycnc.kernel import (
+    NOT_MERGED,
     RAPID,
     STOP,
     AxisLimits,
@@ -19,7 +20,9 @@ from polycnc.kernel import (
     append_line,
     append_spline,
     append_wait,
+    close_line,
     free_slots,
+    merge_line,
 )
 from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem, Spline, Stop, Wait
 
@@ -75,9 +78,11 @@ class QueueWriter:
     marks: deque[tuple[int, int]] | None = None
     _next_event: int = 0
 
-    def set_tolerance(self, tolerance_mm: float) -> None:
-        """Set how far the path may leave the corners of lines appended from now on."""
-        self.paths.row[self.path]["tolerance_mm"] = tolerance_mm
+    def set_tolerance(self, tolerance_mm: float, merge_mm: float) -> None:
+        """Set how far the path may leave the corners, and the points, of lines appended from now on."""
+        self._close_line()
+        row = self.paths.row[self.path]
+        row["tolerance_mm"], row["merge_mm"] = tolerance_mm, merge_mm
 
     def put_block(self, items: list[QueueItem]) -> None:
         """Append what a block gives; one that gives nothing after all, a move without length, is marked."""
@@ -87,9 +92,10 @@ class QueueWriter:
             return
         row = self.paths.row[self.path]
         before = int(row["tail"])
+        marked = len(self.marks)
         for item in items:
             self.put(item)
-        if items and row["tail"] == before and not self.backlog:
+        if items and row["tail"] == before and len(self.marks) == marked and not self.backlog:
             self.mark(items[0].tag)
 
     def put(self, item: QueueItem) -> None:
@@ -141,6 +147,8 @@ class QueueWriter:
             self.marks.append((int(self.paths.row[self.path]["tail"]), tag))
 
     def _append(self, item: QueueItem) -> None:
+        if not isinstance(item, Line):
+            self._close_line()
         match item:
             case Line():
                 self._put_line(item)
@@ -152,14 +160,24 @@ class QueueWriter:
                 self._put_wait(item)
 
     def _has_room(self, item: QueueItem) -> bool:
-        """Tell whether there is room: a line with a rounded corner takes two slots, a wait one and one per event."""
-        needed = 1 + (len(item.events) if isinstance(item, Wait) else 1)
+        """Tell whether there is room: a line with a rounded corner takes two slots, a wait one and one per event.
+
+        One more is for the corner of a line that is complete.
+        """
+        needed = 2 + (len(item.events) if isinstance(item, Wait) else 1)
         return free_slots(self.paths, self.path) >= needed
 
     def _put_line(self, item: Line) -> None:
         speed = math.inf if item.rapid else self._speed(item.feed, self._line_length(item))
         flags = (RAPID if item.rapid else 0) | (STOP if item.exact_stop else 0)
-        append_line(self.seg, self.paths, self.path, self.limits, np.array(item.end), speed, flags, item.tag)
+        row, end = self.paths.row[self.path], np.array(item.end)
+        if row["merged"] > 0:
+            before = merge_line(self.seg, self.paths, self.path, self.limits, end, speed, flags, item.tag)
+            if before != NOT_MERGED:
+                if self.marks is not None:
+                    self.marks.append((int(row["tail"]) - 1, before))
+                return
+        append_line(self.seg, self.paths, self.path, self.limits, end, speed, flags, item.tag)
 
     def _put_arc(self, item: Arc) -> None:
         p, q = item.plane[:2]
@@ -206,6 +224,10 @@ class QueueWriter:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
+
+    def _close_line(self) -> None:
+        if self.paths.row[self.path]["merged"] > 0:
+            close_line(self.seg, self.paths, self.path, self.limits)
 
     def _append_wait(self, duration_s: float, event: int, tag: int) -> None:
         append_wait(self.seg, self.paths, self.path, duration_s, event, tag)

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel import (
+    NOT_MERGED,
     RAPID,
     STOP,
     AxisLimits,
@@ -24,8 +25,10 @@ from polycnc.kernel import (
     add_line,
     append_arc,
     append_line,
+    close_line,
     compiled,
     entry,
+    merge_line,
 )
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc._dialect import DialectTables
@@ -209,7 +212,7 @@ def _run(
             if whole[FEED_MODE] != FEED_PER_MINUTE or feed <= 0.0:
                 return block, NOT_PLAIN
         tag = base + int(words.line[block])
-        moves = False
+        moves, joined = False, NOT_MERGED
         circular = seen & (said[_CENTERS] | said[_RADIUS])
         if (seen & said[_AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
@@ -245,7 +248,10 @@ def _run(
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
                     return block, NOT_PLAIN
             elif path[g]["tolerance_mm"] > 0.0:
-                moves = append_line(seg, paths, g, limits, work.target, speed, flags, tag)
+                if path[g]["merged"] > 0:
+                    joined = merge_line(seg, paths, g, limits, work.target, speed, flags, tag)
+                if joined == NOT_MERGED:
+                    moves = append_line(seg, paths, g, limits, work.target, speed, flags, tag)
             else:
                 moves = add_line(
                     seg.row,
@@ -263,8 +269,8 @@ def _run(
             for i in range(work.target.shape[0]):
                 modal.position[i] = work.target[i]
         if not moves and work.marks.shape[0] > 0 and first < after:
-            work.marks[said[_MARKED], 0] = path[g]["tail"]
-            work.marks[said[_MARKED], 1] = tag
+            work.marks[said[_MARKED], 0] = path[g]["tail"] - (joined != NOT_MERGED)
+            work.marks[said[_MARKED], 1] = tag if joined == NOT_MERGED else joined
             said[_MARKED] += 1
         whole[MOTION] = motion
         whole[ABSOLUTE] = said[_ABSOLUTE]
@@ -451,4 +457,6 @@ def _arc(
     reach = radius * abs(sweep) + _reach(modal.position, work.target)
     if reach > LONGEST_BLOCK_S * min(speed, modal.real[SLOWEST_AXIS]):
         return False
+    if paths.row[g]["merged"] > 0:
+        close_line(seg, paths, g, limits)
     return append_arc(seg, paths, g, limits, work.target, p, q, center_p, center_q, sweep, speed, flags, tag)

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from polycnc.errors import ConfigurationError
-from polycnc.runner.machine_sources._facts import AxisFacts, Facts, LeftOut, others
+from polycnc.runner.machine_sources._facts import AxisFacts, Facts, LeftOut, Settings, others
 from polycnc.runner.machine_sources._ini import read_sections, sections_of
 
 CONTROL = "a Klipper configuration"
 SQUARE_CORNER_MM_S = 5.0  # what the control takes where the file says nothing
 CARTESIAN = ("cartesian", "corexy", "corexz", "hybrid_corexy", "hybrid_corexz")
-LEFT_OUT = {
-    "printer.minimum_cruise_ratio": "the control goes slower between corners that are close together; not imitated",
-    "printer.max_accel_to_decel": "the control goes slower between corners that are close together; not imitated",
-}
+CRUISE_RATIO = 0.5  # the same
 
 
 def recognises(text: str) -> bool:
@@ -62,12 +59,8 @@ def read(text: str, file: str) -> Facts:
             f"{file}: a square corner velocity of {corner:g} stops at every corner",
             hint="Write square_corner_velocity above zero.",
         )
-    left = others(settings, LEFT_OUT)
-    if not any(each.name.startswith("printer.m") for each in left):
-        why = (
-            "the control goes slower between corners that are close together (its default 0.5); not imitated"
-        )
-        left = (LeftOut("minimum_cruise_ratio", why), *left)
+    cruise = _cruise_ratio(settings, acceleration)
+    left = others(settings, {})
     for name in sections_of(text):
         if name.startswith("include "):
             left = (
@@ -87,5 +80,16 @@ def read(text: str, file: str) -> Facts:
             "speed_limit_mm_s": speed,
             "acceleration_limit_mm_s2": acceleration,
             "square_corner_mm_s": corner,
+            "minimum_cruise_share": cruise,
         },
     )
+
+
+def _cruise_ratio(settings: Settings, acceleration: float) -> float:
+    """Return the part of the acceleration that speeds between corners leave alone, written in either way."""
+    ratio, older = settings.get("printer.minimum_cruise_ratio"), settings.get("printer.max_accel_to_decel")
+    if ratio is not None:
+        if not 0.0 <= ratio.number < 1.0:
+            raise ratio.error(f"a minimum cruise ratio of {ratio.text}", "Write one from 0 up, below 1.")
+        return ratio.number
+    return CRUISE_RATIO if older is None else max(0.0, 1.0 - older.positive / acceleration)

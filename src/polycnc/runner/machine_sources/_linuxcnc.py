@@ -19,7 +19,7 @@ from polycnc.units import MM_PER_INCH
 
 CONTROL = "a LinuxCNC configuration"
 INCH = ("inch", "imperial", "in")
-TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)", re.IGNORECASE)
+TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)(?:\s*Q\s*([\d.]+))?", re.IGNORECASE)
 LEAST_JERK = 1.0  # in the file's unit; with less, or without one, the control takes trapezoids
 LEFT_OUT = {
     "RS274NGC.PARAMETER_FILE": "work offsets and variables are in that file",
@@ -66,7 +66,9 @@ def read(text: str, file: str) -> Facts:
     tolerance = TOLERANCE.search(start.text) if start is not None else None
     if start is not None and tolerance is not None:
         in_inch = re.search(r"G20\b", start.text) is not None or (to_mm != 1.0 and "G21" not in start.text)
-        path["path_tolerance_mm"] = float(tolerance[1]) * (MM_PER_INCH if in_inch else 1.0)
+        unit_mm = MM_PER_INCH if in_inch else 1.0
+        path["path_tolerance_mm"] = float(tolerance[1]) * unit_mm
+        path["merge_mm"] = float(tolerance[2] or tolerance[1]) * unit_mm
     kinematics = settings.get("KINS.KINEMATICS")
     period = settings.get("EMCMOT.SERVO_PERIOD")
     top = settings.get("SPINDLE_0.MAX_FORWARD_VELOCITY")

@@ -1,0 +1,60 @@
+"""Append lines as they are, and what every segment appended needs. The caller sees to free slots.
+
+Units: see `_segments`.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel._jit import compiled
+from polycnc.kernel._path import slot_of
+from polycnc.kernel._segments import CORNER_STOP, RAPID, STOP, Floats, set_line
+
+Rows: TypeAlias = npt.NDArray[np.void]
+
+
+@compiled
+def appended(ends: Floats, path: Rows, queued: Floats, g: int, k: int) -> None:
+    """Count slot `k` as the last segment of path `g`."""
+    path[g]["closed"] = 0
+    path[g]["tail"] += 1
+    for i in range(ends.shape[1]):
+        queued[g, i] = ends[k, i]
+
+
+@compiled
+def set_ends(row: Rows, path: Rows, g: int, flags: int) -> None:
+    """Let a path come to rest where positioning meets feed motion, and in the corners of an exact path."""
+    if path[g]["tolerance_mm"] < 0.0:
+        row[slot_of(path, g, path[g]["tail"])]["flags"] |= CORNER_STOP
+    if path[g]["tail"] > path[g]["head"]:
+        k = slot_of(path, g, path[g]["tail"] - 1)
+        if (row[k]["flags"] ^ flags) & RAPID:
+            row[k]["flags"] |= STOP
+
+
+@compiled
+def add_line(
+    row: Rows,
+    starts: Floats,
+    ends: Floats,
+    path: Rows,
+    queued: Floats,
+    g: int,
+    feed_axis: npt.NDArray[np.uint8],
+    end: Floats,
+    speed_mm_s: float,
+    flags: int,
+    tag: int,
+) -> bool:
+    """Append a straight line to path `g`, corners as they are, from single columns; False if it has no length."""
+    k = slot_of(path, g, path[g]["tail"])
+    if not set_line(row, starts, ends, k, feed_axis, queued[g], end, speed_mm_s, flags, tag):
+        return False
+    set_ends(row, path, g, flags)
+    appended(ends, path, queued, g, k)
+    return True
