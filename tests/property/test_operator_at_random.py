@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -120,7 +121,7 @@ class Desk:
                 )
             case 10:
                 word = str(rng.choice(["single_block", "optional_stop", "dry_run", "machine_lock"]))
-                on = bool(rng.integers(0, 2))
+                on: Any = bool(rng.integers(0, 2))
                 self.press(
                     f"{word} {on} of {every}", lambda: control.set_switches(**{word: on}, channel=every)
                 )
