@@ -22,6 +22,7 @@ class RecordingControl:
     calls: list[Call] = field(default_factory=list)
     variables: frozenset[str] = frozenset()
     file: str = "recording"
+    write: Any = None
 
     def has(self, macro: str) -> bool:
         """Tell whether there is a macro."""
@@ -33,6 +34,7 @@ class RecordingControl:
 
     def start(self, write: Any) -> RecordingControl:
         """Begin a program."""
+        self.write = write
         return self
 
     def names(self, word: str) -> bool:
@@ -49,6 +51,8 @@ class RecordingControl:
         """Keep a call."""
         if self.has(macro):
             self.calls.append((macro, dict(words)))
+            if macro == "WORK_OFFSET":  # has to write something
+                self.write("")
 
 
 def calls_of(

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from polycnc.errors import ProgramError
-from polycnc.post import ArcAxis, parse_tool_path, sweep_tool_path
+from polycnc.post import ArcAxis, parse_control, parse_tool_path, shipped_text, sweep_tool_path
 from polycnc.post.tool_path._cl_words import CLSF_WORDS
 from polycnc.post.tool_path._records import (
     Circle,
@@ -252,10 +253,18 @@ REFUSED = {
     "TLAXIS/0,0,0": "a direction without a length",
     "SAFPOS/1,2,3": "SAFPOS moves the tool",
     "SET/OFSETL,12": "SET moves the tool",
+    "LATHE/ROUGH,SH1,SH2": "LATHE moves the tool",
+    "LOCAL_ORIGIN, 0.00000, 130.00000, 0.000000": "LOCAL_ORIGIN moves the tool",
+    "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
+    "CYCLE/DRILL,12,2,3,4,5": "the numbers of the cycle from 4 on are not known",
+    "CYCLE/BORE,14.5,0,0,2,85,1,355,ON,0,0,1000": "the numbers of the cycle from 2 on are not known",
+    "CUTCOM/ADJUST,55": "CUTCOM/ADJUST with something else",
+    "CUTCOM/ADJUST,2,PLUS,XAXIS,5": "CUTCOM/ADJUST with something else",
+    "CUTCOM/ADJUST,ON": "ADJUST needs a work offset",
+    "FEDRAT/90\nGOTO/1,2,3\nCUTCOM/ADJUST,2\nGODLTA/0,0,5": "a move by a distance from an unknown point",
+    "GOTO/1,2,3\nCUTCOM/ADJUST,2\nCIRCLE/1,5,3,0,0,1,3\nGOTO/1,8,3": "an arc without a start point",
+    "CLEARP/XYPLAN,5\nCUTCOM/ADJUST,2\nRETRCT": "RETRCT without a clearance plane",
     "UNIT/FURLONG": "UNIT without a unit",
-    "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0,1,0,0,0,0,1": "MSYS changes the coordinate system",
-    "MSYS/0,0,0,1,0,0,0,1,0\nMSYS/0,0,0.5,1,0,0,0,1,0": "MSYS changes the coordinate system",
-    "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,0\n$$-> CSYS / 1,0,0,0, $\n 0,0,1,0, $\n 0,-1,0,0": "CSYS changes",
     "PAINT/PATH\nFEDRAT/IPM,12": "a feed in inches in a CLSF",
     "PAINT/PATH\nCYCLE/DRILL,RAPTO,.1,FEDTO,-1,IPR,.002": "a feed in inches in a CLSF",
     "NURBS/3": "NURBS moves the tool",
@@ -433,3 +442,118 @@ def test_the_way_of_an_arc_is_as_long_as_it_turns() -> None:
     (quarter,) = [s for s in sweep_tool_path(parse_tool_path(text)) if s.angle]
     (rest,) = [s for s in sweep_tool_path(parse_tool_path("PAINT/PATH\n" + text)) if s.angle]
     assert (quarter.angle, rest.angle) == pytest.approx((0.5 * math.pi, 1.5 * math.pi))
+
+
+# --- work offsets, coordinate systems, tools that nothing loads
+
+FRAMES = {
+    "NX": ("MSYS/0,0,0,1,0,0,0,1,0\n", "MSYS/0,0,0.5,1,0,0,0,1,0\n", "MSYS/0,0,0,1,0,0,0,0,1\n"),
+    "Creo": (
+        "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,0\n",
+        "$$-> CSYS / 1,0,0,0, $\n 0,0,1,0, $\n 0,-1,0,0\n",
+        "$$-> CSYS / 1,0,0,0, $\n 0,1,0,0, $\n 0,0,1,7\n",
+    ),
+    "CATIA": tuple(
+        f"$$*CATIA0\n$$ Program.{z}\n$$ 1.0 0.0 0.0 0.0\n$$ 0.0 1.0 0.0 0.0\n$$ 0.0 0.0 1.0 {z}\n"
+        for z in ("0.0", "12.5", "-3.0")
+    ),
+}
+AWAY = "RAPID\nGOTO/4,5,30\nRAPID\nGOTO/4,5,2\nFEDRAT/200,MMPM\nGOTO/4,5,-1\nRAPID\nGOTO/4,5,30\n"
+
+
+@pytest.mark.parametrize("system", FRAMES)
+def test_another_coordinate_system_is_an_error_or_another_work_offset(system: str) -> None:
+    first, second, third = FRAMES[system]
+    text = "LOADTL/3\n" + first + AWAY + first + AWAY + second + AWAY + third + AWAY + first + AWAY
+    shipped = shipped_text("fanuc-mill")
+    with pytest.raises(ProgramError, match="the coordinate system changes within the tool path") as caught:
+        post_file(parse_tool_path(text), "fanuc-mill")
+    assert "coordinate_systems" in caught.value.hint
+    several = shipped.replace("[parameters]", '[parameters]\ncoordinate_systems = "work_offsets"')
+    result = post_file(parse_tool_path(text), parse_control(several, "mine.toml"), verify=True)
+    assert result.ok
+    assert result.text is not None
+    blocks = result.text.splitlines()
+    assert [block for block in blocks if block in ("G54", "G55", "G56", "G57")] == [
+        "G54",
+        "G55",
+        "G56",
+        "G54",
+    ]
+    at = blocks.index("G55")
+    # Z goes home before, X and Y come first behind, then Z with the tool's length.
+    assert blocks[at - 2 : at + 4] == ["G91 G28 Z0.", "G90 G49", "G55", "G00 X4. Y5.", "G43 H03 Z30.", "Z2."]
+    only_one = "LOADTL/3\n" + first + AWAY + first + AWAY
+    assert "G55" not in (post_file(parse_tool_path(only_one), "fanuc-mill").text or "")
+
+
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        *(("fanuc-mill", "G59"), ("haas-mill", "G59"), ("bosch-pnc", "G59"), ("fanuc-5axis", "G59")),
+        ("bosch-pnc-cpl", "G59"),
+    ],
+)
+def test_a_work_offset_of_the_tool_path_is_written_and_proven(name: str, code: str) -> None:
+    text = "LOADTL/3,LENGTH,80\n" + AWAY + "CUTCOM/ADJUST,6\n" + AWAY + "CUTCOM/ADJUST,1\n" + AWAY + "FINI\n"
+    result = post_file(parse_tool_path(text), name, verify=True)
+    assert result.ok, result.verification
+    found = re.findall(r"G5[4-9]", result.text or "")
+    assert found == ["G54", code, "G54"]
+
+
+def test_many_work_offsets_have_numbers_of_their_own() -> None:
+    text = "LOADTL/3\nCUTCOM/ADJUST,9\n" + AWAY
+    assert "G54.1 P3\n" in (post_file(parse_tool_path(text), "fanuc-mill", verify=True).text or "")
+    assert "G154 P3\n" in (post_file(parse_tool_path(text), "haas-mill").text or "")
+    with pytest.raises(
+        ProgramError, match="WORK_OFFSET of the control file writes nothing for work offset 9"
+    ):
+        post_file(parse_tool_path(text), "bosch-pnc")
+    with pytest.raises(
+        ProgramError, match="work offset 9, and no macro of the control file writes WORKOFFSET"
+    ):
+        post_file(parse_tool_path(text), "din")
+
+
+LATHE = """TOOLNO/7,TURN
+TPRINT/DNMG
+FEDRAT/ 0.4000,MMPR
+SPINDL/ 700.0000,RPM
+RAPID
+GOTO / 30.00000, 0.00000, 2.50000
+GOTO / 30.00000, 0.00000, -49.50000
+TOOLNO/7,TURN
+RAPID
+GOTO / 34.00000, 0.00000, 2.50000
+TOOLNO/8,TURN
+LOADTL/8,1
+SPINDL/ 500.0000,RPM
+RAPID
+GOTO / 31.00000, 0.00000, 2.50000
+"""
+
+
+def test_a_tool_that_is_only_described_is_loaded_before_it_moves() -> None:
+    """CATIA writes lathe paths without LOADTL where its table has none; the turret goes home before it turns."""
+    result = post_file(parse_tool_path(LATHE), "fanuc-lathe", verify=True)
+    assert result.ok
+    blocks = (result.text or "").splitlines()
+    changes = [at for at, block in enumerate(blocks) if re.search(r"T0\d0\d", block)]
+    assert [blocks[at].split()[-1] for at in changes] == ["T0707", "T0808"]
+    for at in changes:
+        assert blocks[at - 2 : at] == ["G28 U0.", "G28 W0."]
+        assert blocks[at + 1].startswith(("G97 S", "S"))
+        assert blocks[at + 1].endswith("M03")
+    assert result.summary.tools == 2
+    mill = "TOOLNO/4,MILL,1,0,10\nSPINDL/900,RPM,CLW\nLOADTL/4,1,1\n" + AWAY
+    assert post_file(parse_tool_path(mill), "fanuc-mill").summary.tools == 1
+    points = "TOOLNO/4,MILL,1,0,10\nFEDRAT/90,MMPM\n" + "".join(f"GOTO/{n},2,3\n" for n in range(20))
+    assert (post_file(parse_tool_path(points), "fanuc-mill").text or "").count("T04 M06") == 1
+
+
+def test_a_surface_speed_without_a_highest_speed_is_remarked() -> None:
+    path = "LOADTL/1\nSPINDL/{},CLW\nRAPID\nGOTO/30,0,2\n"
+    for words, expected in (("180,SMM", True), ("180,SMM,MAXRPM,2500", False), ("600,RPM", False)):
+        remarks = post_file(parse_tool_path(path.format(words)), "fanuc-lathe").summary.remarks
+        assert any("nothing limits the spindle" in each.text for each in remarks) == expected

@@ -30,6 +30,9 @@ CIRCLE/10,5,0,0,0,-1,5
 GOTO/10,0,0
 CUTCOM/RIGHT,9
 CUTCOM/OFF
+CUTCOM/ADJUST,2
+RAPID
+GOTO/10,0,0
 COOLNT/MIST
 COOLNT/THRU
 CYCLE/DRILL,DEPTH,5,CLEAR,2
@@ -76,7 +79,7 @@ def test_every_event_calls_its_macro_with_the_words_of_the_table() -> None:
         wanted = set(words_of(macro))
         rotary = {"A", "B", "C", "TOOLI", "TOOLJ", "TOOLK"}
         assert wanted - rotary - {"Q", "P", "PITCH", "S"} <= set(given) <= wanted | {"P", "Q"}, macro
-    assert (summary.records, summary.tools, summary.arcs, summary.holes) == (47, 1, 2, 6)
+    assert (summary.records, summary.tools, summary.arcs, summary.holes) == (50, 1, 2, 6)
 
 
 def test_the_table_names_each_word_and_event_once() -> None:
@@ -169,7 +172,7 @@ def test_a_macro_that_is_missing_is_remarked() -> None:
     calls, summary = calls_of(EVERYTHING, ("COOLANT_MIST", "COMMENT", "PATH_START"))
     assert not {"COOLANT_MIST", "COMMENT", "PATH_START"} & {macro for macro, _ in calls}
     assert [(r.line, r.text) for r in summary.remarks] == [
-        (20, "the control file has no macro COOLANT_MIST, so nothing was written")
+        (23, "the control file has no macro COOLANT_MIST, so nothing was written")
     ]
 
 

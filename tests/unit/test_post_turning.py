@@ -47,7 +47,12 @@ def test_the_machine_can_be_what_reads_diameters() -> None:
     diameters = lathe.model_copy(update={"axes": (x.model_copy(update={"diameter": True}), z)})
     assert isinstance(diameters, MachineConfig)
     text = shipped_text("fanuc-lathe").replace('dialect = "fanuc-lathe"', 'dialect = "din"')
-    for old, new in (("G99", "G95"), ("G98", "G94")):
+    for old, new in (
+        ("G99", "G95"),
+        ("G98", "G94"),
+        ('G28!" U0."', 'G28!" X0."'),
+        ('G28!" W0."', 'G28!" Z0."'),
+    ):
         text = text.replace(old, new)
     control = parse_control(text, "mine.toml")
     part = parse_tool_path(PART)

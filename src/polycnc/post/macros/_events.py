@@ -116,6 +116,7 @@ EVENTS: tuple[EventRow, ...] = (
     EventRow("PROGRAM_END", "frame", "at FINI, or at the end of the tool path"),
     EventRow("PATH_START", "frame", "at the first record of an operation", ("PATHNAME", "PATHNUMBER")),
     EventRow("PATH_END", "frame", "at the end of an operation", ("PATHNAME", "PATHNUMBER")),
+    EventRow("WORK_OFFSET", "frame", "CUTCOM/ADJUST, another coordinate system, `work_offset` in JSON", added=True),
     EventRow("TOOL_CHANGE", "state", "LOADTL, LOAD/TOOL, TOOLNO, TURRET", _TOOL),
     EventRow("SPINDLE_CW", "state", "SPINDL clockwise", _SPINDLE),
     EventRow("SPINDLE_CCW", "state", "SPINDL counter-clockwise", _SPINDLE),

@@ -110,6 +110,11 @@ class MotionParameters(StrictModel):
         description="Plane of turning in the tool path: X is the radius and Z the axis, or with xy, as NX has it, "
         "X the axis and Y the radius.",
     )
+    coordinate_systems: Literal["one", "work_offsets"] = Field(
+        default="one",
+        description="A tool path in several coordinate systems (MSYS, CSYS): an error, or each is a work offset, the "
+        "first one number 1.",
+    )
     units: Literal["mm", "inch"] = Field(default="mm", description="Units in which lengths are written.")
     decimals: Annotated[int, Field(ge=0, le=9)] = Field(
         default=3, description="Decimals of positions; centres of arcs are reckoned from rounded positions."

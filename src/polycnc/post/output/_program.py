@@ -42,6 +42,7 @@ from polycnc.post.tool_path._records import (
     Tool,
     ToolShape,
     Word,
+    WorkOffset,
 )
 from polycnc.post.tool_path._source import Remark
 from polycnc.post.tool_path._tool_path import ToolPath
@@ -191,6 +192,7 @@ class _Driver:
         return {
             Text: self._text,
             Path: self._path_record,
+            WorkOffset: self._work_offset_record,
             ToolShape: self._tool_shape,
             Tool: self._working(self._tool),
             Spindle: self._working(self._spindle),
@@ -273,15 +275,43 @@ class _Driver:
         if self.course.work_offset != before:
             self._work_offset(record.line)
 
+    def _work_offset_record(self, record: WorkOffset) -> None:
+        if record.frame and self.output.parameters.coordinate_systems != "work_offsets":
+            raise self.output.fail(
+                record.line,
+                "the coordinate system changes within the tool path",
+                'Write coordinate_systems = "work_offsets" in the parameters of the control file (the first is G54, '
+                "the next G55), or post each one on its own.",
+            )
+        before = self.course.work_offset
+        self._take(record)
+        if self.course.work_offset != before:
+            self.drilling.close()
+            self._work_offset(record.line)
+
     def _work_offset(self, line: int) -> None:
         """Take another work offset: nothing that was written before says where the tool is in it."""
-        if not self.output.control.names("WORKOFFSET"):
+        control = self.output.control
+        by_event = control.has("WORK_OFFSET")
+        if not by_event and (self._in_path or not control.names("WORKOFFSET")):
             raise self.output.fail(
                 line,
                 f"work offset {self.course.work_offset}, and no macro of the control file writes WORKOFFSET",
-                "Write it in PATH_START, or leave work offsets out of the tool path.",
+                "Write it in the macro WORK_OFFSET, or leave work offsets out of the tool path.",
             )
         self.output.keep(WORKOFFSET=float(self.course.work_offset))
+        if by_event:
+            self._begin()
+            blocks = self.output.blocks
+            self.output.call("WORK_OFFSET", {})
+            if self.output.blocks == blocks:
+                raise self.output.fail(
+                    line,
+                    "the macro WORK_OFFSET of the control file writes nothing for work offset "
+                    f"{self.course.work_offset}",
+                    "Add it there, or leave it out of the tool path.",
+                )
+        self.motion.set_position(None)
         self.output.forget("X", "Y", "Z")
         self.motion.first(2.0)
         self.motion.moved_by_macro()
@@ -377,6 +407,11 @@ class _Driver:
         if not self.output.parameters.strict:
             words["MAXRPM"] = record.max_rpm
         self.output.keep(SPINDLESTATE=_SPINDLE_STATES[self._turning.sense])
+        if surface and not record.max_rpm and self.output.control.uses(macro, "MAXRPM"):
+            self.output.remark(
+                record.line,
+                "a surface speed without a highest speed (SPINDL/...,MAXRPM,n): nothing limits the spindle",
+            )
         if record.max_rpm and not self.output.control.uses(macro, "MAXRPM"):
             self.output.remark(
                 record.line,

@@ -27,6 +27,8 @@ _KINDS: dict[str, CycleKind] = {
     "BORE": "bore",
     "REAM": "bore",
 }
+_TURNING = ("TURN", "ROUGH", "FINISH", "GROOVE", "THREAD", "PROFIL", "CONTUR", "AREA", "LATHE", "TURNIN")
+_PASSES = "Let the CAM system write each pass as points (GOTO, RAPID), not a cycle of the control."
 _PECKS = ("STEP", "INCR")
 _NUMBERED = ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RETURN", "RTRCTO", "DWELL", *_PECKS)
 
@@ -44,7 +46,7 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
         first = statement.peek()
         raise statement.fail(
             f"the cycle '{first.text}' is not known" if first else "a cycle without a kind",
-            f"Known are {', '.join(_KINDS)}.",
+            _PASSES if first and first.text in _TURNING else f"Known are {', '.join(_KINDS)}.",
             first,
         )
     kind = "tap" if "tap" in named else named[-1] if named[0] == "drill" else named[0]
@@ -81,6 +83,11 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
     if kind in ("deep", "chip_break") and not peck > 0.0:
         raise statement.fail(
             "a cycle with pecks that does not say how deep they are", "Write STEP and a length."
+        )
+    if bare:
+        raise statement.fail(
+            f"the numbers of the cycle from {bare[0] / scale:g} on are not known by their places",
+            "Let the CAM system write them by name, like CYCLE/DRILL,DEPTH,10,MMPM,100,CLEAR,2.",
         )
     bottom = abs(depth)
     if not start > -bottom:

@@ -156,18 +156,9 @@ def _level(reading: Reading, statement: Statement) -> float:
 
 
 def coordinate_system(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read MSYS or CSYS: the first one is that of the program, another one is refused."""
-    numbers = tuple(statement.numbers())
-    if reading.frame is None or not numbers:
-        reading.frame = numbers or reading.frame
-    elif len(numbers) != len(reading.frame) or any(
-        abs(a - b) > 1e-6 for a, b in zip(numbers, reading.frame, strict=True)
-    ):
-        raise statement.fail(
-            f"{statement.major} changes the coordinate system within the tool path",
-            "Post each coordinate system on its own, or let the CAM system write all operations in one.",
-        )
-    return iter(())
+    """Read MSYS or CSYS: the first one is that of the program, another one is another work offset."""
+    if numbers := tuple(statement.numbers()):
+        yield from reading.take_frame(statement.line, numbers)
 
 
 def circle(reading: Reading, statement: Statement) -> Iterator[Record]:

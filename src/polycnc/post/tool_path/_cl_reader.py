@@ -31,6 +31,11 @@ from polycnc.post.tool_path._records import (
 )
 from polycnc.post.tool_path._source import Remarks, Source, decoded
 
+_MOVES = frozenset(
+    ("GOTO", "GODLTA", "GOHOME", "RETRCT", "CIRCLE", "MOVARC", "INDIRV", "TLON,GOFWD", "CYCLE", "RAPID")
+)
+_CATIA_FRAME = re.compile(r"\$\$\s*\*CATIA\d", re.IGNORECASE)
+_MATRIX = 12
 _CREO = re.compile(r"(->\s*)(?=(CUTTER|CSYS)\b)", re.IGNORECASE)
 
 
@@ -57,7 +62,7 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
                 raise _behind_the_end(source, number)
             yield raw
             continue
-        if not pieces and not reading.resumes and (rest := _behind_goto(raw)):
+        if not pieces and not reading.waits and (rest := _behind_goto(raw)):
             point = _point(reading, number, rest)
             if point is not None:
                 if end is not None:
@@ -67,6 +72,8 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
         text = decoded(raw)
         part = _statement_of(text).rstrip()
         continued = part.endswith("$")
+        if not part.strip():
+            yield from _frame_in_remarks(reading, number, text)
         if part.strip() or pieces:
             pieces.append(Piece(number, text, part[:-1] if continued else part))
         if pieces and not continued:
@@ -110,7 +117,7 @@ def _lines(source: Source, reading: Reading, pieces: list[Piece]) -> Iterator[tu
     for text in source.pieces():
         at = look_from = 0
         while at < len(text):
-            waits = pieces or reading.resumes or reading.circle is not None
+            waits = pieces or reading.waits or reading.circle is not None
             if at >= look_from and not waits and (found := _POINTS.match(text, at)) is not None:
                 points = reading.points(number, _numbers(found[0]))
                 if points is not None:
@@ -153,6 +160,21 @@ def _statement_of(text: str) -> str:
     return before
 
 
+def _frame_in_remarks(reading: Reading, line: int, text: str) -> Iterator[Record]:
+    """Read the coordinate system that CATIA writes in remarks: `$$*CATIA0`, then three rows of four numbers."""
+    text = text.strip()
+    if _CATIA_FRAME.match(text):
+        reading.matrix = []
+    elif reading.matrix is not None and text.startswith("$$"):
+        try:
+            reading.matrix += map(float, text[2:].split())
+        except ValueError:
+            return  # the name of the program stands before the numbers
+        if len(reading.matrix) >= _MATRIX:
+            numbers, reading.matrix = tuple(reading.matrix[:_MATRIX]), None
+            yield from reading.take_frame(line, numbers)
+
+
 def _behind_goto(raw: bytes) -> bytes:
     """Return what stands behind GOTO/, nothing if the line is another statement."""
     if raw.startswith(b"GOTO/"):
@@ -187,6 +209,8 @@ def _statement(source: Source, reading: Reading, pieces: list[Piece]) -> Iterato
     handler = HANDLERS.get(major)
     if reading.resumes and major != "CUTCOM":
         yield reading.resume(statement)
+    if reading.announced is not None and (major in _MOVES or (major == "SPINDL" and reading.is_lathe)):
+        yield from reading.load(statement.line)
     if major in CLSF_WORDS and not reading.clsf_word:
         if reading.right_handed and reading.arc_axis == "auto":
             raise statement.fail(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -22,11 +22,15 @@ from polycnc.post.tool_path._records import (
     Record,
     Tool,
     Vector,
+    WorkOffset,
 )
 from polycnc.post.tool_path._source import Remarks
 
 ArcAxis: TypeAlias = Literal["auto", "counterclockwise", "clockwise"]
 """What the axis of CIRCLE/ is for: arcs by the right-hand rule, or against it; "auto" by the kind of file."""
+
+
+_SAME_FRAME = 1e-6
 
 
 @dataclass(slots=True)
@@ -54,8 +58,14 @@ class Reading:
     """The first word that only the CLSF of NX has, empty if there was none."""
     right_handed: int = 0
     """The line of the first CIRCLE/ that was read by the right-hand rule because nothing said otherwise, 0 if none."""
-    frame: tuple[float, ...] | None = None
-    """The coordinate system as it was first given (MSYS, CSYS)."""
+    frames: list[tuple[float, ...]] = field(default_factory=list)
+    """The coordinate systems in the order in which they were first given (MSYS, CSYS)."""
+    frame: int = 0
+    """The number of the one in force, 0 for none."""
+    matrix: list[float] | None = None
+    """The numbers of a coordinate system that stands in remarks, while they come."""
+    announced: Tool | None = None
+    """A tool that was described and not loaded yet."""
     clearance_z: float | None = None
     side: Compensation | None = None
     """The last CUTCOM with a side, for CUTCOM/ON."""
@@ -74,6 +84,14 @@ class Reading:
     unknown: int = 0
     moves: int = 0
 
+    is_lathe: bool = False
+    """Whether the tool that was described last is one for turning."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether something comes before the next point: a CUTCOM/ON its side, a tool its change."""
+        return self.resumes or self.announced is not None
+
     def resume(self, statement: Statement) -> Compensation:
         """Return the compensation that CUTCOM/ON takes up again.
 
@@ -86,6 +104,31 @@ class Reading:
                 "CUTCOM/ON without a side before or behind it", "Write CUTCOM/LEFT or CUTCOM/RIGHT."
             )
         return self.side._replace(line=statement.line)
+
+    def load(self, line: int) -> Iterator[Tool]:
+        """Yield the change to the tool that was described, where nothing else has loaded it."""
+        announced, self.announced = self.announced, None
+        if announced is not None and (self.tool is None or self.tool.number != announced.number):
+            self.tool = announced._replace(line=line)
+            self.threads = self.cycle_on = False
+            yield self.tool
+
+    def take_frame(self, line: int, numbers: tuple[float, ...]) -> Iterator[WorkOffset]:
+        """Yield the change to a coordinate system, if it is another one than that in force; the first is 1."""
+        place = next((at for at, each in enumerate(self.frames, 1) if _same_frame(each, numbers)), 0)
+        if not place:
+            self.frames.append(numbers)
+            place = len(self.frames)
+        before, self.frame = self.frame, place
+        if before and before != place:
+            self.forget_position()
+            yield WorkOffset(line, place, frame=True)
+
+    def forget_position(self) -> None:
+        """Know that positions count from another zero: nothing says where the tool is."""
+        self.position = None
+        self.clearance_z = None
+        self.cycle_on = False
 
     def check_units(self, statement: Statement) -> None:
         """Refuse a feed in inches in a CLSF that does not say the unit of its lengths, which would be read as mm.
@@ -154,6 +197,11 @@ class Reading:
             raise statement.fail(f"an arc of {turns} turns", f"Write at most {MOST_TURNS} turns in one arc.")
         self.position = end
         return Circle(statement.line, *end, circle.center, circle.normal, turns)
+
+
+def _same_frame(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    same = len(one) == len(other)
+    return same and all(abs(a - b) <= _SAME_FRAME for a, b in zip(one, other, strict=True))
 
 
 Handler: TypeAlias = Callable[[Reading, Statement], Iterator[Record]]

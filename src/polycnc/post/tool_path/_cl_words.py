@@ -26,6 +26,7 @@ from polycnc.post.tool_path._records import (
     Thread,
     Tool,
     ToolShape,
+    WorkOffset,
 )
 from polycnc.units import MM_PER_INCH
 
@@ -69,18 +70,27 @@ LEFT_OUT_MOTION = frozenset(
             "SCURV",
             "MATRIX",
         ),
+        *("LATHE", "LOCAL_ORIGIN", "PROFIL", "SCRUB", "CONTUR", "AREA", "FMILL", "AMILL", "RMILL", "SMILL"),
     )
 )
 """Words that move the tool or its coordinates and are not known: leaving them out would cut another part."""
+
+_OFFSETS = "Write a length offset with the tool, like LOADTL/3,ADJUST,13, and a work offset as CUTCOM/ADJUST,2 (G55)."
+_PASSES = "Let the CAM system write each pass as points (GOTO, RAPID), not a cycle of the control."
 
 HINTS = {
     "NURBS": "In NX set 'Motion Output' of the operation to 'Line' or to 'Circular'.",
     "SPLINE": "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead.",
     "SAFPOS": "Write the way to the safe position as RAPID and GOTO.",
     "HOMEPT": "Write FROM/x,y,z, or give the point with GOHOME/x,y,z.",
-    "SET": "Write the number of the length offset with the tool, like LOADTL/3,ADJUST,13.",
-    "OFSTNO": "Write the number of the length offset with the tool, like LOADTL/3,ADJUST,13.",
-    "OFSETL": "Write the number of the length offset with the tool, like LOADTL/3,ADJUST,13.",
+    "SET": _OFFSETS,
+    "OFSTNO": _OFFSETS,
+    "OFSETL": _OFFSETS,
+    "LATHE": _PASSES,
+    "PROFIL": _PASSES,
+    "CONTUR": _PASSES,
+    "AREA": _PASSES,
+    "LOCAL_ORIGIN": "Let the CAM system write all operations in one coordinate system.",
     "CALSUB": "Let the CAM system write out what the sub-program does.",
 }
 """What to do instead, where it is something else than points and arcs."""
@@ -89,6 +99,7 @@ CLSF_WORDS = frozenset(("TOOLPATH", "TLDATA", "MSYS", "PAINT", "END-OF-PATH"))
 """Words that only the CLSF of NX has; its axes of arcs are for a clockwise direction."""
 
 _HIGHEST_SPEED = 1e6
+_FIRST_G_CODE = 54  # from here on a number may be meant as a G code
 
 _FEED_UNITS = {
     "MMPM": (1.0, False),
@@ -184,7 +195,11 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
             f"a tool number must be a whole number, not {number:g}", "Write it like LOADTL/3."
         )
     if statement.major == "TOOLNO" and (kind := statement.peek()) is not None and kind.text in _TOOL_KINDS:
-        return  # CATIA describes the tool; LOADTL changes it
+        # CATIA describes the tool; LOADTL changes it, or nothing does before it moves.
+        reading.announced = Tool(statement.line, int(number))
+        reading.is_lathe = kind.text in ("TURN", "LATHE")
+        return
+    reading.announced = None
     length = statement.value_of("LENGTH", "a length")
     more = statement.numbers()
     offset = statement.value_of("ADJUST", "an offset number")
@@ -264,7 +279,7 @@ def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
             yield CycleOff(statement.line)
     elif "OFF" in words or "NOMORE" in words:
         yield CycleOff(statement.line)
-    elif "ON" in words:
+    elif alone and first is not None and first.text == "ON":
         yield CycleOff(statement.line, on=True)
     else:
         reading.check_units(statement)
@@ -331,6 +346,9 @@ def _coolant(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    if "ADJUST" in words:
+        yield from _work_offset(reading, statement)
+        return
     side: Literal["left", "right", "off"] = "off"
     reading.resumes = words == {"ON"}
     if reading.resumes:
@@ -348,6 +366,18 @@ def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
     if side != "off":
         reading.side = compensation
     yield compensation
+
+
+def _work_offset(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read CUTCOM/ADJUST,n: the work offset."""
+    number = statement.whole(statement.value_of("ADJUST", "a work offset"), "a work offset") or 0
+    if statement.words() != {"ADJUST"} or not 1 <= number < _FIRST_G_CODE:
+        raise statement.fail(
+            "CUTCOM/ADJUST with something else than the number of a work offset",
+            "Write CUTCOM/ADJUST,1 for the first one (G54), CUTCOM/ADJUST,2 for the second one (G55).",
+        )
+    reading.forget_position()
+    yield WorkOffset(statement.line, number)
 
 
 def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:

@@ -28,6 +28,7 @@ from polycnc.post.tool_path._records import (
     Retract,
     Tool,
     Vector,
+    WorkOffset,
 )
 
 _SAME_MM = 1e-4
@@ -135,8 +136,9 @@ class Course:
                 self.cycle = None
             case Tool():
                 self.cycle, self._changed = None, True
-            case Path(work_offset=int(number)) if number != self.work_offset:
+            case Path(work_offset=int(number)) | WorkOffset(number=number) if number != self.work_offset:
                 self.work_offset, self._changed = number, True
+                self.cycle = self.here = self._initial = self._home = None
             case CycleOff(on=True):
                 if self._last is None:
                     raise CourseError(

@@ -41,6 +41,17 @@ class Path(NamedTuple):
     work_offset: int | None = None
 
 
+class WorkOffset(NamedTuple):
+    """Positions count from another zero from here on; nothing says where the tool is in it.
+
+    `frame`: it comes of a coordinate system of the tool path, the first of which is 1.
+    """
+
+    line: int
+    number: int
+    frame: bool = False
+
+
 class ToolShape(NamedTuple):
     """Name and size of the tool that comes next, or that is at work; None where it is not said."""
 
@@ -247,8 +258,8 @@ class End(NamedTuple):
 
 
 Record: TypeAlias = (
-    Text | Path | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis | Circle
-    | Cycle | CycleOff | Thread | Coolant | Compensation | Dwell | Stop | Word | End
+    Text | Path | WorkOffset | ToolShape | Tool | Spindle | Feed | Rapid | From | Goto | Delta | Home | Retract | Axis
+    | Circle | Cycle | CycleOff | Thread | Coolant | Compensation | Dwell | Stop | Word | End
 )  # fmt: skip
 
 
