@@ -90,10 +90,12 @@ def draw() -> None:
     for plot, unit in zip(plots, ("speed, mm/s", "acceleration, mm/s²", "jerk, mm/s³"), strict=True):
         plot.set_ylabel(unit)
         plot.grid(alpha=0.3)
-    plots[0].legend(loc="upper right", fontsize="small")
+    figure.legend(
+        *plots[0].get_legend_handles_labels(), loc="upper center", ncols=3, frameon=False, fontsize="small"
+    )
     plots[2].set_xlabel("time, s")
     figure.align_ylabels()
-    figure.tight_layout()
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.96))
     figure.savefig(TARGET, metadata={"Software": None})
 
 

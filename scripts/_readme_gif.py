@@ -77,7 +77,7 @@ def main() -> None:
     palette = found[len(found) // 2].quantize(COLOURS)
     frames = [each.quantize(COLOURS, palette=palette, dither=Image.Dither.NONE) for each in found]
     frames[0].save(TARGET, save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0, optimize=True)
-    found[len(found) // 2].save(Path(tempfile.gettempdir()) / "readme-gif-middle.png")
+    found[len(found) // 2].save(Path(tempfile.gettempdir()) / "readme_gif-middle.png")
     print(f"wrote {TARGET}, {TARGET.stat().st_size // 1024} kB")
 
 
