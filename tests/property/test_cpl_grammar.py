@@ -14,6 +14,7 @@ from polycnc.nc.cpl import compile_program
 from support.cpl_grammar import Author, Reading, changed
 from support.cpl_host import Ran
 
+LONG = (pytest.mark.long, pytest.mark.timeout(0))
 GRAMMAR = Reading()
 VALUES: dict[str, Any] = {
     "I%": 7, "J3%": -13, "K2%": 5, "Q1": 2.5, "S22": -0.1, "R7": 1234.567, "D!": 0.7, "B?": True, "C1?": False,
@@ -34,7 +35,7 @@ def both_take(seed: int) -> bool:
     return takes
 
 
-@pytest.mark.parametrize("count", [300, pytest.param(20_000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [300, pytest.param(20_000, marks=LONG)])
 def test_a_grammar_takes_the_same_programs(count: int) -> None:
     taken = sum(map(both_take, range(count)))
     assert 0.25 * count < taken < 0.75 * count
@@ -67,7 +68,7 @@ def found(text: str, target: str, nul: str) -> Any:
         return None
 
 
-@pytest.mark.parametrize("count", [400, pytest.param(20_000, marks=pytest.mark.long)])
+@pytest.mark.parametrize("count", [400, pytest.param(20_000, marks=LONG)])
 @pytest.mark.parametrize("truth", [False, True])
 def test_expressions_are_worth_what_an_evaluator_makes_of_them(truth: bool, count: int) -> None:
     worth = 0

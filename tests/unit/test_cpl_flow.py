@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from typing import Any
 
 import pytest
 
@@ -549,6 +550,52 @@ def test_functions_of_the_control_get_their_arguments_and_set_variables() -> Non
     assert (ran["#ERROR%"], ran["#P%"], ran["#N%"], ran["#L%"], ran["#E%"][1, 1]) == (1, 7, 2, 1, 1938)  # type: ignore[index]
     assert host.set == [("IC", True, 80, 0, 1), ("FXC", 80, 2, 54, 1)]
     assert at_run_time("10 #A=APOS(1)").what == "the control has no APOS"
+
+
+@pytest.mark.parametrize(
+    ("statement", "happened"),
+    [
+        ("P UP[GETERR(1,6,#A%)+5,8]", "UP 12.0 1938"),
+        ("20 CALL UP[GETERR(1,6,#A%)]", "UP 7.0 1938"),
+        ("20 WAIT(,GETERR(1,6,#A%)*100)", 700),
+        ("20 IC(5,GETERR(1,6,#A%),3)=TRUE", ("IC", True, 5, 7, 3)),
+        ('20 MID$(T$,GETERR(1,6,#A%),2)="xy"', "ABCDEFxyI"),
+        ("20 F(GETERR(1,6,#A%)-4)=41", 41),
+        ("20 F(GETERR(1,6,#A%)-4)=GETERR(1,6,#B%)*3", 21),
+    ],
+)
+def test_a_function_sets_a_variable_wherever_it_stands(statement: str, happened: object) -> None:
+    def geterr(channel: int, category: int, found: Any) -> int:
+        found.value = 1938
+        return 7
+
+    host = RecordingHost({"GETERR": geterr, "IC": lambda *_: True}, {"UP": "1 #P=P1 : #SEEN%=#A%"})
+    ran = Ran(
+        f'10 DIM F(5) : DIM T$(9) : T$="ABCDEFGHI"\n{statement}\n30 #F=F(3) : DIM #T$(9) : #T$=T$', host
+    )
+    assert ran["#A%"] == 1938
+    waits = [event.duration_ms for event in ran.events if isinstance(event, Waiting)]
+    called = f"UP {ran.run.globals.get('#P')} {ran.run.globals.get('#SEEN%')}"
+    assert happened in (called, *waits, *host.set, ran["#T$"].text, ran["#F"])  # type: ignore[attr-defined]
+
+
+def test_the_index_of_a_variable_that_is_set_sets_no_other_one() -> None:
+    found = errors("10 DIM F(5)\n20 A%=GETERR(1,6,F(GETERR(1,6,B%)))")
+    assert found == ["2:18 the index of a variable that is set sets another one"]
+
+
+def test_a_choice_of_many_branches_and_a_sum_of_many_texts_are_not_too_long() -> None:
+    labels = "\n".join(f"{label} LABEL {label} : #F%={label * 3}" for label in range(20, 3020))
+    ran = Ran(f"10 X%=2917\n15 CASE X% OF\n{labels}\n4000 OTHERWISE #F%=-1\n4010 ENDCASE\n4020 #G%=#F%+1")
+    assert (ran["#F%"], ran["#G%"]) == (8751, 8752)
+    texts = "+".join(f'"{number % 7}"' for number in range(500))
+    ran = Ran(f"10 DIM #A$(600) : #A$={texts}")
+    assert ran["#A$"].text == "".join(str(number % 7) for number in range(500))  # type: ignore[attr-defined]
+
+
+def test_names_in_messages_are_not_longer_than_a_line() -> None:
+    assert errors(f"10 GOTO .{'A' * 5000}") == [f"1:9 there is no jump destination .{'A' * 29}..."]
+    assert errors(f"10 CALL {'B' * 5000}") == [f"1:4 there is no sub-program {'B' * 100}..."]
 
 
 def test_a_function_that_waits_lets_time_pass() -> None:

@@ -12,7 +12,7 @@ from polycnc.language._python import (
     without_collection,
 )
 from polycnc.language._source import Flaw, Source
-from polycnc.language._tokens import END, Lexicon, Token, Tokens, real_value, whole_value
+from polycnc.language._tokens import END, Lexicon, Token, Tokens, clipped, real_value, whole_value
 
 __all__ = [
     "END",
@@ -32,6 +32,7 @@ __all__ = [
     "Traced",
     "Tree",
     "Unary",
+    "clipped",
     "frame_of",
     "infix",
     "prefix",

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Generic, TypeAlias, TypeVar, Union
 
 from polycnc.language._source import Flaw
-from polycnc.language._tokens import Token, Tokens
+from polycnc.language._tokens import Tokens
 
 Leaf = TypeVar("Leaf")
 
@@ -103,7 +103,8 @@ def _links(
     tokens: Tokens, operators: Operators, operand: Callable[[], Tree[Leaf]], infix: Infix
 ) -> tuple[Link[Leaf], ...]:
     links: list[Link[Leaf]] = []
-    while _power(operators, tokens.token) == infix.power:
+    infixes, power = operators.infix, infix.power
+    while (found := infixes.get(tokens.token.word)) is not None and found.power == power:
         sign = tokens.step()
         if links and infix.single:
             raise Flaw(sign.at, f"a second {sign} in a row", "write parentheses around the first one")
@@ -111,13 +112,8 @@ def _links(
             raise Flaw(
                 sign.at, f"more than {operators.longest} operands in a row", "keep a part in a variable"
             )
-        links.append(Link(sign.at, sign.word, read_expression(tokens, operators, operand, infix.power + 1)))
+        links.append(Link(sign.at, sign.word, read_expression(tokens, operators, operand, power + 1)))
     return tuple(links)
-
-
-def _power(operators: Operators, token: Token) -> int:
-    infix = operators.infix.get(token.word)
-    return -1 if infix is None else infix.power
 
 
 def _place(tree: object) -> int:

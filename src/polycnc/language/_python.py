@@ -7,9 +7,8 @@ raised in it can be led back to the place in the program that its Python line wa
 from __future__ import annotations
 
 import gc
-import re
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from types import CodeType
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -27,7 +26,7 @@ _PREFIX = {"not": 3, "-": 11, "+": 11, "~": 11}
 _SHORT = 300
 _FEW_CASES = 500
 """Python of lines so short and hardly indented compiles; other lines are compiled at once, to see whether they do."""
-_DEEP = re.compile(" {60}")
+_DEEP = "\n" + 60 * " "
 _COMPARISON = 4  # comparisons in a row mean something else in Python, so one never stands bare within another
 
 
@@ -58,7 +57,9 @@ def infix(left: Python, operator: str, right: Python) -> Python:
     """Return two expressions with a Python operator between them."""
     power = _INFIX[operator]
     least = power + 1 if power == _COMPARISON else power
-    return Python(f"{left.within(least)} {operator} {right.within(power + 1)}", power)
+    before = left.text if left.power >= least else f"({left.text})"
+    behind = right.text if right.power > power else f"({right.text})"
+    return Python(f"{before} {operator} {behind}", power)
 
 
 def prefix(operator: str, operand: Python) -> Python:
@@ -94,6 +95,19 @@ class Traced(Generic[Place]):
         return scope
 
 
+class _Inside:
+    """The inside of blocks: `leave` ends the innermost one. Contexts made of generators take several times as long."""
+
+    def __init__(self, leave: Callable[[], None]) -> None:
+        self._leave = leave
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *error: object) -> None:
+        self._leave()
+
+
 class Emitter(Generic[Place]):
     """Collect lines of Python; each gets the place that was set last."""
 
@@ -102,6 +116,8 @@ class Emitter(Generic[Place]):
         self.lines: list[str] = []
         self.places: list[Place] = []
         self._indent = ""
+        self._heads: list[int] = []  # how many lines there were when each open block began
+        self._inside = _Inside(self._leave)
 
     def put(self, *lines: str) -> None:
         """Add lines at the present indentation."""
@@ -115,22 +131,24 @@ class Emitter(Generic[Place]):
         self.lines += [indent + line for line in other.lines] if indent else other.lines
         self.places += other.places
 
-    @contextmanager
-    def block(self, head: str) -> Iterator[None]:
+    def block(self, head: str) -> AbstractContextManager[None]:
         """Add a line that ends with a colon; what is put inside belongs to it, `pass` if nothing is."""
         self.put(head)
-        before = len(self.lines)
         self._indent += "    "
-        yield
-        if len(self.lines) == before:
+        self._heads.append(len(self.lines))
+        return self._inside
+
+    def _leave(self) -> None:
+        if len(self.lines) == self._heads.pop():
             self.put("pass")
         self._indent = self._indent[:-4]
 
     def _may_be_refused(self) -> bool:
         """Tell whether Python may find the lines too long, too deep, or a choice to have too many cases."""
-        if max(map(len, self.lines), default=0) > _SHORT or any(map(_DEEP.match, self.lines)):
+        if max(map(len, self.lines), default=0) > _SHORT:
             return True
-        return sum(line.lstrip().startswith("elif ") for line in self.lines) > _FEW_CASES
+        whole = "\n".join(self.lines)
+        return _DEEP in whole or whole.count("elif ") > _FEW_CASES
 
     def compile(self, name: str) -> Traced[Place]:
         """Return the lines to be loaded; `name` tells this code from other code in `frame_of`.

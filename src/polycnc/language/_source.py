@@ -43,10 +43,14 @@ class Source:
         """Return the offset of the first character of a line."""
         return self._begins[line - 1]
 
+    def end(self, line: int) -> int:
+        """Return the offset at which a line ends."""
+        end = self._begins[line] - 1 if line < len(self._begins) else len(self.text)
+        return end - 1 if self.text.endswith("\r", self._begins[line - 1], end) else end
+
     def line(self, line: int) -> str:
         """Return a line without its end."""
-        end = self._begins[line] - 1 if line < len(self._begins) else len(self.text)
-        return self.text[self._begins[line - 1] : end].removesuffix("\r")
+        return self.text[self._begins[line - 1] : self.end(line)]
 
     def line_of(self, at: int) -> int:
         """Return the number of the line that holds an offset."""

@@ -15,6 +15,11 @@ END = "end"
 _SHOWN = 30
 
 
+def clipped(text: str, most: int = _SHOWN) -> str:
+    """Return a text as a message shows it, without the end of a long one."""
+    return text if len(text) <= most else f"{text[:most]}..."
+
+
 class Token(NamedTuple):
     """A piece of text: its kind, how it is written, and its offset. `word` is what it is compared by."""
 
@@ -26,7 +31,7 @@ class Token(NamedTuple):
     def __str__(self) -> str:
         if self.kind == END:
             return "the end"
-        return f"'{self.text}'" if len(self.text) <= _SHOWN else f"'{self.text[:_SHOWN]}...'"
+        return f"'{clipped(self.text)}'"
 
 
 _NONE = Token("", "", "", 0)
@@ -55,16 +60,18 @@ class Lexicon:
         self._unfinished = unfinished or {}
 
     def row(self, text: str, at: int, end: int) -> list[Token]:
-        """Return the tokens from `at` on as far as they follow each other."""
+        """Return the tokens from `at` on as far as they follow each other; the last is END if nothing else is left."""
         tokens: list[Token] = []
         kinds, new, put = self._kinds, tuple.__new__, tokens.append
         for found in self._row_pattern.finditer(text, at, end):
             index = found.lastindex
             if index is None:  # no token begins here
-                break
+                return tokens
             kind, folded = kinds[index]
             written = found[index]
-            put(new(Token, (kind, written.upper() if folded else written, written, found.start(index))))
+            word = written.upper() if folded else written
+            put(new(Token, (kind, word, written, found.end() - len(written))))
+        put(new(Token, (END, "", "", end)))
         return tokens
 
     def read(self, text: str, at: int, end: int) -> tuple[Token, int]:
@@ -101,11 +108,13 @@ class Tokens:
         self._end = len(text) if end is None else end
         self._nesting = nesting
         self._depth = 0
-        self.behind = start  # where the token before the present one ends
-        self.token = _NONE
-        self._row: list[Token] = []
-        self._at = 0  # the place of the present token in its row
+        self._before = self.token = _NONE
         self.jump(start)
+
+    @property
+    def behind(self) -> int:
+        """Return the offset at which the token before the present one ends."""
+        return self._before.at + len(self._before.text)
 
     @property
     def next_at(self) -> int:
@@ -114,19 +123,15 @@ class Tokens:
 
     def step(self) -> Token:
         """Return the token and go to the next one."""
-        token = self.token
-        self.behind = behind = token.at + len(token.text)
-        self._at = at = self._at + 1
-        row = self._row
-        self.token = row[at] if at < len(row) else self._lexicon.read(self._text, behind, self._end)[0]
+        self._before = token = self.token
+        self.token = next(self._row, None) or self._lexicon.read(self._text, self.behind, self._end)[0]
         return token
 
     def jump(self, at: int) -> None:
         """Go on with the token at an offset."""
-        self.behind = at
-        self._row = self._lexicon.row(self._text, at, self._end)
-        self._at = 0
-        self.token = self._row[0] if self._row else self._lexicon.read(self._text, at, self._end)[0]
+        self._before = tuple.__new__(Token, ("", "", "", at))
+        self._row = iter(self._lexicon.row(self._text, at, self._end))
+        self.token = next(self._row, None) or self._lexicon.read(self._text, at, self._end)[0]
 
     def take(self, word: str) -> bool:
         """Step over a word or mark if it comes next, and tell whether it did."""

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 
 from polycnc.language import Chain, Emitter, Flaw, Link, Python, Source, Traced
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
 from polycnc.nc.cpl._reader import single
-from polycnc.nc.cpl._shape import every, taken_apart
+from polycnc.nc.cpl._shape import taken_apart
 from polycnc.nc.cpl._syntax import (
     Assign,
     Call,
@@ -40,6 +39,7 @@ SLICE = 20_000
 """How often a program jumps back before it lets time pass."""
 _GROUP = 32
 _LABEL = re.compile("\x01([0-9]+)\x01")  # no text constant holds it: repr() writes it otherwise
+_NUMBER = "+-0123456789"
 _CONVERSIONS = {"I": "to_integer", "R": "to_real", "D": "to_double", "B": "to_boolean"}
 
 
@@ -49,6 +49,7 @@ class Compiler:
     def __init__(self, source: Source, *, stepping: bool = False) -> None:
         self.flaws: list[Flaw] = []
         self.variables: dict[Variable, int] = {}
+        self._pythons: dict[Variable, str] = {}
         self._source = source
         self._stepping = stepping
         self._hosts: dict[str, tuple[str, int]] = {}
@@ -64,9 +65,11 @@ class Compiler:
         self._jumps = False
         self._loops = 0
 
-    def compile(self, statements: list[Statement], name: str) -> Traced[int] | None:
-        """Return the program compiled, None if something is wrong with it."""
-        for statement in every(statements):
+    def compile(
+        self, statements: list[Statement], whole: Iterable[Statement], name: str
+    ) -> Traced[int] | None:
+        """Return the program compiled, None if something is wrong with it; `whole` are the inner statements too."""
+        for statement in whole:
             if isinstance(statement, Dim):
                 self._values.fields[statement.variable.name] = len(statement.sizes) * (
                     not statement.parameter
@@ -159,12 +162,11 @@ class Compiler:
     # Names
 
     def _use(self, variable: Variable, at: int) -> str:
-        self.variables.setdefault(variable, at)
-        if variable.scope == "global":
-            return f"G[{variable.name!r}]"
-        if variable.scope == "permanent":
-            return f"M[{variable.name!r}]"
-        return variable.python
+        python = self._pythons.get(variable)
+        if python is None:
+            self.variables[variable] = at
+            self._pythons[variable] = python = variable.python
+        return python
 
     def _host(self, name: str, at: int, door: str = "function") -> str:
         python = f"{door}_{name.replace('#', '_n').replace('$', '_s')}"
@@ -180,12 +182,10 @@ class Compiler:
         self._count += 1
         return f"t{self._count}"
 
-    @contextmanager
-    def _boxed(self) -> Iterator[list[tuple[str, Name]]]:
-        """Collect the variables that functions set in what is written inside."""
-        outside, self._boxes = self._boxes, []
-        yield self._boxes
-        self._boxes = outside
+    def _new_boxes(self) -> list[tuple[str, Name]]:
+        """Return where the variables are collected that functions set in what is turned into Python next."""
+        self._boxes = []
+        return self._boxes
 
     def _open_boxes(self, boxes: list[tuple[str, Name]]) -> None:
         for python, name in boxes:
@@ -217,11 +217,10 @@ class Compiler:
     def _statement(self, statement: Statement) -> None:
         match statement:
             case Assign():
-                with self._boxed() as boxes:
-                    self._assign(statement, boxes)
+                self._assign(statement, self._new_boxes())
             case Command():
-                with self._boxed() as boxes:
-                    text = self._values.host_call(statement.call)
+                boxes = self._new_boxes()
+                text = self._values.host_call(statement.call)
                 self._open_boxes(boxes)
                 self._out.put(text)
                 self._close_boxes(boxes)
@@ -245,13 +244,21 @@ class Compiler:
             case Dim():
                 self._dim(statement)
             case SubCall():
-                arguments = "".join(f"{self._passed(tree)}, " for tree in statement.arguments)
-                line, address, name = statement.line, statement.address, statement.name
-                self._out.put(
-                    f"yield SubProgram({line}, {address!r}, {name!r}, ({arguments}), {statement.unlinked})"
-                )
+                self._sub_call(statement)
             case Wait():
                 self._wait(statement)
+
+    def _sub_call(self, statement: SubCall) -> None:
+        boxes = self._new_boxes()
+        arguments = f"({''.join(f'{self._passed(tree)}, ' for tree in statement.arguments)})"
+        if boxes:
+            self._open_boxes(boxes)
+            values = self._temporary()
+            self._out.put(f"{values} = {arguments}")
+            self._close_boxes(boxes)
+            arguments = values
+        line, address, name = statement.line, statement.address, statement.name
+        self._out.put(f"yield SubProgram({line}, {address!r}, {name!r}, {arguments}, {statement.unlinked})")
 
     def _lines(self, statement: NcLine) -> None:
         if self._stepping:
@@ -263,14 +270,18 @@ class Compiler:
     def _assign(self, statement: Assign, boxes: list[tuple[str, Name]]) -> None:
         target = statement.target
         if isinstance(target, Call):
-            self._set_system(statement, target)
+            text = self._set_system(statement, target)
+            self._open_boxes(boxes)
+            self._out.put(text)
+            self._close_boxes(boxes)
             return
         if target.variable.kind == "S":
             self._assign_text(target, statement.value, boxes)
             return
         typed = self._values.value(statement.value, target.variable.kind)
+        place = self._values.element(target) if target.indices else None
         self._open_boxes(boxes)
-        self._store(target, typed)
+        self._store(target, typed, place)
         self._close_boxes(boxes)
 
     def _assign_text(self, target: Name, value: Expression, boxes: list[tuple[str, Name]]) -> None:
@@ -286,7 +297,7 @@ class Compiler:
         self._out.put(f"{place} = {'put_new' if new else 'put'}({place}, {stored})")
         self._close_boxes(boxes)
 
-    def _set_system(self, statement: Assign, target: Call) -> None:
+    def _set_system(self, statement: Assign, target: Call) -> str:
         if target.function == "MID$":
             first, *others = target.arguments
             if not isinstance(first, Name) or first.variable.kind != "S" or None in others:
@@ -294,37 +305,36 @@ class Compiler:
             places = [self._values.integer(tree) for tree in others if tree is not None]
             start, number = (*places, "None")[:2]
             field, text = self._values.stored(first), self._values.text(statement.value)
-            self._out.put(f"put_part({field}, {start}, {number}, {text})")
-            return
+            return f"put_part({field}, {start}, {number}, {text})"
         value = self._passed(statement.value)
         setter = self._host(target.function, target.at, "setter")
-        self._out.put(f"{setter}({', '.join((value, *self._values.arguments(target)))})")
+        return f"{setter}({', '.join((value, *self._values.arguments(target)))})"
 
-    def _store(self, target: Name, typed: Typed) -> None:
-        """Assign a value to a variable that is no text."""
+    def _store(self, target: Name, typed: Typed, place: tuple[str, str] | None = None) -> None:
+        """Assign a value to a variable that is no text; `place` is its element where that is known."""
         kind, given = target.variable.kind, typed.kind
         if kind == "S":
-            python, index = self._values.element(target)
-            place = f"{python}[{index}]" if index else python
-            self._out.put(f"{place} = put({place}, {typed.python.text})")
+            python, index = place or self._values.element(target)
+            whole = f"{python}[{index}]" if index else python
+            self._out.put(f"{whole} = put({whole}, {typed.python.text})")
             return
         if given == "S" or ((given == "B") != (kind == "B") and given not in ("X", "N")):
             raise Flaw(
                 target.at, INVALID_ASSIGNMENT.what, f"{target.variable.name} takes no {KIND_NAMES[given]}"
             )
-        python, index = self._values.element(target)
+        python, index = place or self._values.element(target)
         if index:
             key = self._temporary()
             self._out.put(f"{key} = {index}", f"{python}[{key}]")  # so that a wrong index is found first
             index = key
-        place = f"{python}[{index}]" if index else python
+        whole = f"{python}[{index}]" if index else python
         if target.variable.scope == "permanent":
             if given == "N":
                 raise Flaw(target.at, INVALID_ASSIGNMENT.what, "a permanent variable cannot be deleted")
             if typed.leaf:
                 typed = typed._replace(python=Python(f"kept({typed.python.text})"))
         direct = target.variable.scope in ("local", "parameter") and not index
-        self._put_value(place, direct, kind, typed)
+        self._put_value(whole, direct, kind, typed)
 
     def _put_value(self, place: str, direct: bool, kind: str, typed: Typed) -> None:
         put, text, given = self._out.put, typed.python.text, typed.kind
@@ -378,6 +388,7 @@ class Compiler:
         if statement.condition is None and statement.duration_ms is None:
             self._out.put(f"yield Waiting({statement.line}, None, None)")
             return
+        boxes = self._new_boxes()
         condition = "None"
         if statement.condition is not None:
             state = "True" if statement.state is None else self._values.condition(statement.state)
@@ -385,22 +396,24 @@ class Compiler:
             condition = f"ic_condition({state}, {statement.negated}, {', '.join(asked)})"
         duration = "None" if statement.duration_ms is None else self._values.integer(statement.duration_ms)
         answer = self._temporary()
+        self._open_boxes(boxes)
         self._out.put(f"{answer} = yield Waiting({statement.line}, {condition}, {duration})")
+        self._close_boxes(boxes)
         if statement.result is not None:
             if statement.result.variable.kind != "I":
                 raise Flaw(statement.result.at, "the result variable of WAIT is INTEGER")
             self._store(statement.result, Typed(Python(answer), "X", leaf=True))
 
     def _nc_block(self, statement: NcBlock) -> None:
-        with self._boxed() as boxes:
-            words = "".join(f"{self._word(word)}, " for word in statement.words)
+        boxes = self._new_boxes()
+        first = self._source.begin(statement.line) - 1
+        words = "".join([f"{self._word(word, word.at - first)}, " for word in statement.words])
         self._open_boxes(boxes)
         fixed = f"{statement.line}, {statement.number}, {statement.skip}"
         self._out.put(f"yield NcValues({fixed}, ({words}), {statement.message!r})")
         self._close_boxes(boxes)
 
-    def _word(self, word: NcWord) -> str:
-        column = word.at - self._source.begin(self._source.line_of(word.at)) + 1
+    def _word(self, word: NcWord, column: int) -> str:
         if isinstance(word.value, float):
             return f"BlockWord({word.address!r}, {word.index}, {word.value!r}, {column})"
         if not word.address:
@@ -429,8 +442,8 @@ class Compiler:
 
     def _tested(self, make: Callable[[], str]) -> str:
         """Write what a condition needs before it, and return it."""
-        with self._boxed() as boxes:
-            text = make()
+        boxes = self._new_boxes()
+        text = make()
         if not boxes:
             return text
         self._open_boxes(boxes)
@@ -493,8 +506,8 @@ class Compiler:
 
     def _for(self, statement: For) -> None:
         counter, step, at = statement.counter, statement.step, statement.at
-        with self._boxed() as boxes:
-            start = self._values.value(statement.start, counter.variable.kind)
+        boxes = self._new_boxes()
+        start = self._values.value(statement.start, counter.variable.kind)
         self._open_boxes(boxes)
         self._store(counter, start)
         self._close_boxes(boxes)
@@ -510,8 +523,8 @@ class Compiler:
         def next_one() -> None:
             self._out.place = at
             total: Expression = Chain(at, counter, (Link(at, "+", increment),))
-            with self._boxed() as boxes:
-                value = self._values.value(total, counter.variable.kind)
+            boxes = self._new_boxes()
+            value = self._values.value(total, counter.variable.kind)
             self._open_boxes(boxes)
             self._store(counter, value)
             self._close_boxes(boxes)
@@ -534,8 +547,8 @@ class Compiler:
             self._jump(begin)
             self._mark(end)
             return
-        with self._boxed() as boxes:
-            text = condition()
+        boxes = self._new_boxes()
+        text = condition()
         with self._out.block("while True:" if boxes else f"while {text}:"):
             if boxes:
                 with self._out.block(f"if not ({self._tested(condition)}):"):
@@ -584,6 +597,8 @@ def _fits(kind: str, typed: Typed, constant: float | None) -> bool:
 
 
 def _constant(text: str) -> float | None:
+    if text[0] not in _NUMBER:  # most of what is stored begins with a name
+        return None
     try:
         return float(text)
     except ValueError:

@@ -13,7 +13,6 @@ _HEAD = re.compile(r"[ \t]*(?:/[ \t]*([1-9]?)[ \t]*)?(?:[Nn][ \t]*([0-9]+)[ \t]*
 _WAIT = re.compile(r"WAIT[ \t]*(\()?", re.IGNORECASE)
 _REMARK = re.compile(r"\([^)]*\)?")
 _MESSAGE = re.compile(r"\([ \t]*MSG[ \t]*,(.*)\)[ \t]*\Z", re.IGNORECASE)
-_BLANKS = re.compile(r"[ \t]*")
 _CALL_NAME = re.compile(r"[Pp][ \t]*([A-Za-z_][^\s\[\](),:;]*)[ \t]*")
 _CALL_NUMBER = re.compile(r"([GgMmPp])[ \t]*([0-9]+)(?=\[)")
 _CALL_ALONE = re.compile(r"([GgMmPp])[ \t]*([0-9]+)[ \t]*(?:\([^)\n]*\)[ \t]*)*\r?\Z")
@@ -22,6 +21,7 @@ _WORD = re.compile(
     r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*([+-]?)[ \t]*([0-9]+\.?[0-9]*|\.[0-9]+)(?![0-9]*\])"
 )
 _BRACKET = re.compile(r'\[(?:[^\]"]|"[^"]*")*\]')
+_CALLING = frozenset("GMP")
 _DIN = re.compile(r"[ \t]*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*DIN[ \t]*\)", re.IGNORECASE)
 _TYP2 = re.compile(r"\s*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*TYP2[ \t]*\)", re.IGNORECASE)
 
@@ -52,17 +52,20 @@ def read_nc_line(
     """
     head = _HEAD.match(text, begin, end)
     at = head.end() if head else begin
-    if wait := _WAIT.match(text, at, end):
+    letter = text[at : min(at + 1, end)].upper()
+    if letter == "W" and (wait := _WAIT.match(text, at, end)):
         if wait[1] is not None or text[wait.end() : end].strip(" \t\r"):
             raise Flaw(
                 at, "WAIT in an NC block stands alone", "parameters of WAIT need a CPL block: 20 WAIT(,1000)"
             )
         return Wait(at, line)
-    named, numbered = _CALL_NAME.match(text, at, end), _CALL_NUMBER.match(text, at, end)
-    if named or numbered:
-        return _sub_call(text, at, end, line, named, numbered)
+    calls = letter in _CALLING
+    if calls:
+        named, numbered = _CALL_NAME.match(text, at, end), _CALL_NUMBER.match(text, at, end)
+        if named or numbered:
+            return _sub_call(text, at, end, line, named, numbered)
     if not has_bracket(text[at:end]):
-        if (code := _CALL_ALONE.match(text[at:end])) and _is_call(code, alone):
+        if calls and (code := _CALL_ALONE.match(text[at:end])) and _is_call(code, alone):
             return SubCall(at, line, code[1].upper(), code[2].lstrip("0") or "0")
         return NcLine(begin, line, line)
     words, message = _Words(text, at, end).read()
@@ -78,7 +81,7 @@ def _is_call(code: re.Match[str], alone: frozenset[str]) -> bool:
 
 def has_bracket(text: str) -> bool:
     """Tell whether CPL stands in a block, outside of its remarks."""
-    return "[" in text and "[" in _REMARK.sub("", text)
+    return "[" in text and ("(" not in text or "[" in _REMARK.sub("", text))
 
 
 def _sub_call(
@@ -121,8 +124,8 @@ class _Words:
         """Return the words, and the text of a message."""
         words: list[NcWord] = []
         while True:
-            blanks = _BLANKS.match(self._text, self._at, self._end)
-            self._at = blanks.end() if blanks else self._at
+            while self._at < self._end and self._text[self._at] in " \t":
+                self._at += 1
             if self._at >= self._end or self._text[self._at] == "\r":
                 return words, ""
             if self._text[self._at] == "(":

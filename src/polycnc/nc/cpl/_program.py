@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
-from polycnc.language import Flaw, Source, Traced, without_collection
+from polycnc.language import Flaw, Source, Traced, clipped, without_collection
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, pattern_of
 from polycnc.nc.cpl._compile import Compiler
 from polycnc.nc.cpl._link_table import LinkedCall, LinkTable, LinkTables, NoTables, text_digest
@@ -19,6 +19,7 @@ from polycnc.nc.cpl._variables import Variable
 
 NESTING = 7
 """How deep sub-programs may be nested (Manual 003, 2.1)."""
+_LONGEST_NAME = 100
 Find = Callable[[str, str], "tuple[str, str] | None"]
 _CALL = rb"P[ \t]*(?:[A-Z_]|[0-9]+[ \t]*(?:\(.*)?\r?$)"
 _CPL = re.compile(rb"(?mi)^[ \t]*[0-9]|\[|^[ \t]*(?:N[ \t]*[0-9]+)?[ \t]*(?:WAIT|%b|\([ \t]*DIN)" % _CALL)
@@ -66,7 +67,7 @@ def _compiled(
     whole = list(every(statements))
     flaws += target_flaws(whole)
     compiler = Compiler(source, stepping=stepping)
-    traced = compiler.compile(statements, f"<cpl {source.file}>") if not flaws else None
+    traced = compiler.compile(statements, whole, f"<cpl {source.file}>") if not flaws else None
     flaws += compiler.flaws
     if traced is None:
         return None, [source.error(flaw) for flaw in sorted(flaws, key=lambda flaw: flaw.at)]
@@ -207,7 +208,7 @@ class Linker:
     ) -> tuple[Flaw | None, bool]:
         """Return what is wrong with a call, and whether what it calls is right."""
         found = self._found(call.address, call.name)
-        shown = f"{call.address}{call.name}" if call.address in ("G", "M") else call.name
+        shown = shown_call(call.address, call.name)
         if found is None:
             hint = "write it into a file of this name"
             return Flaw(call.at, f"there is no sub-program {shown}", hint), False
@@ -223,6 +224,11 @@ class Linker:
             return None, self._check(file, text, table.calls, stack, errors)
         program = self._compiled(text, file, errors)
         return None, program is not None and self._check(file, text, program.calls, stack, errors)
+
+
+def shown_call(address: str, name: str) -> str:
+    """Return a sub-program as messages name it."""
+    return f"{address}{name}" if address in ("G", "M") else clipped(name, _LONGEST_NAME)
 
 
 def _source(text: str, file: str) -> Source:

@@ -53,8 +53,7 @@ def read_program(source: Source, alone: frozenset[str] = frozenset()) -> tuple[l
     """
     reader = _ProgramReader(source, alone)
     for line in range(1, source.line_count + 1):
-        begin = source.begin(line)
-        reader.line(line, begin, begin + len(source.line(line)))
+        reader.line(line, source.begin(line), source.end(line))
     for opened in (
         () if reader.flaws else reader.open
     ):  # else it may be a line that could not be read that closes it
@@ -84,20 +83,22 @@ class _ProgramReader:
         }  # fmt: skip
 
     def line(self, number: int, begin: int, end: int) -> None:
-        text = self._text[begin:end]
-        if not text.strip(" \t"):
+        found = _NUMBERED.match(self._text, begin, end)
+        if found is None and not self._text[begin:end].strip(" \t"):
             return
         self._line = number
         goes_on, self._goes_on = self._goes_on, False
         try:
-            if found := _NUMBERED.match(text):
+            if found:
                 self._in_block = 0
-                self._target(begin + found.start(1), found[1].lstrip("0") or "0")
-                self._cpl(begin + found.end(), end)
+                if self._jumps:
+                    self._target(found.start(1), found[1].lstrip("0") or "0")
+                self._cpl(found.end(), end)
             elif goes_on:
                 self._cpl(begin, end)
             else:
-                self._target(begin, sequence_number(text))
+                if self._jumps:
+                    self._target(begin, sequence_number(self._text[begin:end]))
                 self._nc(begin, end, number)
         except Flaw as flaw:
             self.flaws.append(flaw)

@@ -28,7 +28,7 @@ from polycnc.nc.cpl._host import (
     Waiting,
     wait_for,
 )
-from polycnc.nc.cpl._program import NESTING, Linker, Program
+from polycnc.nc.cpl._program import NESTING, Linker, Program, shown_call
 from polycnc.nc.cpl._variables import SUFFIXES, Kind
 
 _STATE = re.compile(r"v_|pc\Z|t[0-9]")
@@ -99,8 +99,8 @@ class Execution:
         """
         program = self._linker.sub_program(call.address, call.name)
         if program is None:
-            shown = f"{call.address}{call.name}" if call.address in ("G", "M") else call.name
-            raise self._error(call, f"there is no sub-program {shown}", "write it into a file of this name")
+            what = f"there is no sub-program {shown_call(call.address, call.name)}"
+            raise self._error(call, what, "write it into a file of this name")
         if len(running) > NESTING:
             raise self._error(call, f"sub-programs are nested more than {NESTING} deep")
         if program in running:

@@ -9,14 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from polycnc.language import Flaw
+from polycnc.language import Flaw, clipped
 from polycnc.nc.cpl._syntax import Case, For, Goto, If, Repeat, Statement, Target, While
 
 _LOOPS = 15  # Python has 20
 _LEVELS = 40  # Python has 100
+_BRANCHES = 200  # Python has a thousand or so
 
 
-_STRUCTURES = (If, Case, For, While, Repeat)
+_LOOPING = (For, While, Repeat)
+_STRUCTURES = (If, Case, *_LOOPING)
 
 
 @dataclass(slots=True)
@@ -44,7 +46,7 @@ def bodies(statement: Statement) -> tuple[list[Statement], ...]:
         return (statement.then, statement.otherwise)
     if isinstance(statement, Case):
         return tuple(body for _, body in statement.branches)
-    return (statement.body,) if isinstance(statement, For | While | Repeat) else ()
+    return (statement.body,) if isinstance(statement, _LOOPING) else ()
 
 
 def every(statements: Iterable[Statement]) -> Iterable[Statement]:
@@ -78,15 +80,16 @@ def _shape(statements: list[Statement], used: set[str], apart: set[int]) -> Shap
         elif isinstance(statement, Target):
             whole.targets |= statement.name in used
         elif isinstance(statement, _STRUCTURES):
-            parts = bodies(statement)
             inside = Shape()
-            for body in parts:
-                inside.take(_shape(body, used, apart))
-            loop = isinstance(statement, For | While | Repeat)
+            for body in bodies(statement):
+                if body:
+                    inside.take(_shape(body, used, apart))
+            loop = isinstance(statement, _LOOPING)
             inside.loops += loop
             inside.levels += 1
             deep = inside.loops > _LOOPS or inside.levels > _LEVELS
-            if inside.targets or inside.apart or deep or (loop and inside.jumps):
+            wide = isinstance(statement, Case) and len(statement.branches) > _BRANCHES
+            if inside.targets or inside.apart or deep or wide or (loop and inside.jumps):
                 apart.add(id(statement))
                 inside.apart = True
                 inside.loops = inside.levels = 0
@@ -105,13 +108,11 @@ def target_flaws(statements: Iterable[Statement]) -> list[Flaw]:
             gotos.append(statement)
     flaws = []
     for goto in gotos:
-        found = len(places.get(goto.target, ()))
+        found, shown = len(places.get(goto.target, ())), clipped(goto.target)
         if not found:
-            flaws.append(
-                Flaw(goto.at, f"there is no jump destination {goto.target}", "spell it exactly alike")
-            )
+            flaws.append(Flaw(goto.at, f"there is no jump destination {shown}", "spell it exactly alike"))
         elif found > 1:
             flaws.append(
-                Flaw(goto.at, f"{found} jump destinations are called {goto.target}", "give each its own name")
+                Flaw(goto.at, f"{found} jump destinations are called {shown}", "give each its own name")
             )
     return flaws

@@ -276,15 +276,16 @@ def number(text: str | None) -> int | float | None:
     return int(f"{sign}{digits or '0'}")
 
 
-def added(left: str | None, right: str | None) -> str:
-    """Return two texts as one.
+def added(*texts: str | None) -> str:
+    """Return texts as one.
 
     Raises:
         Fault: One of them is NUL.
     """
-    if left is None or right is None:
+    found = [text for text in texts if text is not None]
+    if len(found) < len(texts):
         raise not_assigned()
-    return left + right
+    return "".join(found)
 
 
 def _no_room() -> Fault:

@@ -53,6 +53,8 @@ class Values:
         self._box = box
         self.fields: dict[str, int] = {}
         """Local variables that a DIM makes a field, with the number of their indices."""
+        self._known: dict[Variable, Typed] = {}
+        self._numbers: dict[tuple[float, str], Typed] = {}
         self._double = False
 
     def value(self, tree: Expression, wanted: Kind | None = None) -> Typed:
@@ -61,7 +63,7 @@ class Values:
         Raises:
             Flaw: Its types do not go together.
         """
-        outside, self._double = self._double, wanted == "D" or self._has_double(tree)
+        outside, self._double = self._double, wanted == "D" or _has_double(tree)
         try:
             return self._typed(tree)
         finally:
@@ -173,7 +175,7 @@ class Values:
                 what = f"{variable.name} has {wanted} indices, not {len(indices)}"
                 hint = "a field is dimensioned with DIM before" if not dimensions else ""
                 raise Flaw(name.at, what, hint)
-        return python, ", ".join(self.integer(index) for index in indices)
+        return python, ", ".join([self.integer(index) for index in indices])
 
     def host_call(self, call: Call) -> str:
         """Return the call of a function of the control."""
@@ -222,6 +224,10 @@ class Values:
         dimensions = self.fields.get(tree.variable.name, 0)
         if dimensions and not tree.indices:
             return self._use(tree.variable, tree.at)
+        if any(map(_sets, tree.indices)):  # which is reckoned more than once
+            raise Flaw(
+                tree.at, "the index of a variable that is set sets another one", "keep it in a variable"
+            )
         return self._box(tree)
 
     def rounded(self, typed: Typed) -> Python:
@@ -232,7 +238,12 @@ class Values:
 
     def _typed(self, tree: Expression) -> Typed:
         if isinstance(tree, Name) and tree.variable.kind != "S":  # most of them are variables and numbers
-            return Typed(Python(self._place(tree)), tree.variable.kind, leaf=True)
+            if tree.indices or tree.variable.name in self.fields:
+                return Typed(Python(self._place(tree)), tree.variable.kind, leaf=True)
+            if (known := self._known.get(tree.variable)) is None:
+                python = Python(self._use(tree.variable, tree.at))
+                self._known[tree.variable] = known = Typed(python, tree.variable.kind, leaf=True)
+            return known
         if isinstance(tree, Number):
             return self._number(tree)
         match tree:
@@ -251,6 +262,12 @@ class Values:
         return Typed(Python(self.text(tree)), "S", leaf=True)
 
     def _number(self, tree: Number) -> Typed:
+        key = (tree.value, "I" if isinstance(tree.value, int) else "D" if self._double else "R")
+        if (known := self._numbers.get(key)) is None:
+            self._numbers[key] = known = self._new_number(tree)
+        return known
+
+    def _new_number(self, tree: Number) -> Typed:
         if isinstance(tree.value, int):
             return Typed(Python(repr(tree.value)), "I")
         if self._double:
@@ -386,31 +403,44 @@ class Values:
             stored = self.stored(part, depth)
             return stored if self.makes_text(part) else f"text_of({stored})"
 
-        python = text(tree.first)
+        parts = [text(tree.first)]
         for link in tree.links:
             if link.operator != "+":
                 raise Flaw(link.at, f"texts are joined by +, not by {link.operator}")
-            python = f"added({python}, {text(link.operand)})"
-        return python
+            parts.append(text(link.operand))
+        return f"added({', '.join(parts)})"
 
-    def _has_double(self, tree: object) -> bool:
-        if isinstance(tree, Name):
-            return tree.variable.kind == "D"
-        if isinstance(tree, Number):
-            return False
-        match tree:
-            case Parentheses():
-                return self._has_double(tree.inner)
-            case Unary():
-                return self._has_double(tree.operand)
-            case Chain():
-                return self._has_double(tree.first) or any(
-                    self._has_double(link.operand) for link in tree.links
-                )
-            case Call():
-                function = FUNCTIONS[tree.function]
-                return function.kind == "D" or (function.own and any(map(self._has_double, tree.arguments)))
-        return False
+
+def _has_double(tree: Expression | None) -> bool:
+    if isinstance(tree, Name):
+        return tree.variable.kind == "D"
+    if isinstance(tree, Chain):
+        for link in tree.links:
+            if _has_double(link.operand):
+                return True
+        return _has_double(tree.first)
+    if isinstance(tree, Call):
+        function = FUNCTIONS[tree.function]
+        return function.kind == "D" or (function.own and any(map(_has_double, tree.arguments)))
+    if isinstance(tree, Parentheses):
+        return _has_double(tree.inner)
+    return isinstance(tree, Unary) and _has_double(tree.operand)
+
+
+def _sets(tree: Expression | None) -> bool:
+    """Tell whether a function in an expression sets a variable."""
+    match tree:
+        case Call():
+            return bool(FUNCTIONS[tree.function].results) or any(map(_sets, tree.arguments))
+        case Name():
+            return any(map(_sets, tree.indices))
+        case Parentheses():
+            return _sets(tree.inner)
+        case Unary():
+            return _sets(tree.operand)
+        case Chain():
+            return _sets(tree.first) or any(_sets(link.operand) for link in tree.links)
+    return False
 
 
 def _logical(left: Typed, operator: str, right: Typed, at: int) -> Typed:

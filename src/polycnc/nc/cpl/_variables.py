@@ -37,7 +37,11 @@ class Variable(NamedTuple):
 
     @property
     def python(self) -> str:
-        """Return the Python name that a local variable has."""
+        """Return the variable as Python."""
+        if self.scope == "global":
+            return f"G[{self.name!r}]"
+        if self.scope == "permanent":
+            return f"M[{self.name!r}]"
         return f"v_{self.kind}_{self.name.rstrip('%!?$')}"
 
 
