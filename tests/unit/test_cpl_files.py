@@ -42,6 +42,17 @@ def test_an_opened_file_is_appended_to_unless_rewritten(root: Root) -> None:
     assert root.read("P5") == b"3\n" + END
 
 
+def test_a_program_that_a_program_has_written_runs(root: Root) -> None:
+    root.run(
+        '1 OPENW(1,"MADE")\n2 PRN#(1,"N1 G0 X37")\n3 PRN#(1,"2 WAIT")\n4 PRN#(1,"3 #X=MPOS(1)")\n5 CLOSE(1)'
+    )
+    made = root.read("MADE")
+    assert made.endswith(END)
+    assert root.run(made.decode("ascii")).variables["#X"] == 37
+    assert root.run("N5 P MADE").variables["#X"] == 37
+    assert root.run("N1 G0 X29\nM30\n\x03\n").end_position_mm["X"] == 29
+
+
 def test_a_file_from_an_editor_is_continued_on_a_new_line(root: Root) -> None:
     root.write("P5", b"N10 X5\nN20 M30")
     root.run('1 OPENW(1,"P5")\n2 PRN#(1,"N30")\n3 CLOSE(1)')

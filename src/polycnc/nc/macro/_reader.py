@@ -40,7 +40,7 @@ COMPARISONS = {"EQ": "==", "NE": "!=", "GT": ">", "LT": "<", "GE": ">=", "LE": "
 _LARGEST_NUMBER = 1e15
 _FORMAT = "PS0114"
 _STATEMENT = "PS0125"
-_BLANKS = r"[ \t\x00\x0b\x0c\x11-\x14\x1a\x7f]"
+_BLANKS = r"[ \t\x00\x03\x0b\x0c\x11-\x14\x1a\x7f]"
 _WORDS = (
     "WHILE", "GOTO", "THEN", "IF", "DO", "END", "DPRNT", "BPRNT", "POPEN", "PCLOS", "SETVN", "POW", "ADP", "PRM",
     *COMPARISONS, "AND", "XOR", "OR", "MOD", *sorted(FUNCTIONS, key=len, reverse=True),

@@ -35,8 +35,8 @@ NO_TROUBLE = -1
 # What a byte can be; everything else is OTHER.
 OTHER, BLANK, NEWLINE, LETTER, DIGIT, SIGN, POINT, OPEN, SEMICOLON, SLASH, COLON, PERCENT_SIGN = range(12)
 
-BLANK_BYTES = b" \t\v\f\0\x11\x12\x13\x14\x1a\x7f"
-"""Blanks, and the tape and transmission controls that machines skip: NUL, DC1 to DC4, SUB, DEL."""
+BLANK_BYTES = b" \t\v\f\0\x03\x11\x12\x13\x14\x1a\x7f"
+"""Blanks, and the tape and transmission controls that machines skip: NUL, ETX, DC1 to DC4, SUB, DEL."""
 
 _LIMIT = 1 << 53  # whole numbers up to here are exact doubles
 _EASY_DIGITS = 15  # so many digits stay below that limit whatever they are
