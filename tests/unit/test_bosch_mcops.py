@@ -302,7 +302,7 @@ def test_another_program_waits_until_the_active_one_is_left_or_replaced() -> Non
     assert (rig.channel.program, rig.channel.programmed_feed) == ("sect.cnc", 0.0)
 
 
-@covers("MCOPS.4.code.32", "ncs.8", "ncs.2", "ex.3202")
+@covers("MCOPS.4", "MCOPS.4.code.32", "ncs.8", "ncs.2", "ex.3202")
 def test_a_manual_block_needs_its_mode_and_is_started_by_the_next_call() -> None:
     rig = Rig()
     assert rig(4, 2, "F1000G1X500", OMITTED, OMITTED, 32) == 8
@@ -371,7 +371,7 @@ def test_axes_move_by_hand_only_after_the_selection_for_it(mode: int, code: int,
     assert axis.referenced == (mode == 2)
 
 
-@covers("MCOPS.4.code.4096", "MCODS.32.sav.12", "ncs.26")
+@covers("MCOPS.4", "MCOPS.4.code.4096", "MCODS.32.sav.12", "ncs.26")
 def test_blocks_are_entered_while_others_are_executed() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "G1 X10\nX20", OMITTED, OMITTED, 32 + 4096) == 0
@@ -413,7 +413,7 @@ def test_axes_without_reference_points_keep_a_channel_from_starting() -> None:
     assert rig(6, 2) == 0
 
 
-@covers("ncs.18", "MCOPS")
+@covers("ncs.18", "MCOPS", "MCOPS.4")
 @pytest.mark.parametrize(
     "call",
     [(7, 2), (7, 2, 3), (7, 2, 0), (7, 2, 5, 1), (8, 2, 1), (8, 2, 4, 1), (8, 2, 1, 0), (6, 2, 1),

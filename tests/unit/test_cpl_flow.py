@@ -593,6 +593,11 @@ def test_a_choice_of_many_branches_and_a_sum_of_many_texts_are_not_too_long() ->
     assert ran["#A$"].text == "".join(str(number % 7) for number in range(500))  # type: ignore[attr-defined]
 
 
+def test_a_sum_too_long_for_python_is_refused_where_it_stands() -> None:
+    text = f"10 B=2.5\n20 A=B{'+B' * 450}\n30 C=B"
+    assert errors(text) == ["2:4 one expression or statement is too long or nested too deeply"]
+
+
 def test_names_in_messages_are_not_longer_than_a_line() -> None:
     assert errors(f"10 GOTO .{'A' * 5000}") == [f"1:9 there is no jump destination .{'A' * 29}..."]
     assert errors(f"10 CALL {'B' * 5000}") == [f"1:4 there is no sub-program {'B' * 100}..."]

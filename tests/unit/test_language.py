@@ -226,14 +226,19 @@ def test_running_code_has_no_builtins_but_those_that_are_lent(line: str) -> None
 @pytest.mark.parametrize("nested", ["parentheses", "loops"])
 def test_code_that_is_too_deep_for_python_is_a_flaw(nested: str) -> None:
     out: Emitter[int] = Emitter(5)
+    out.put("b = 2")
+    out.place = 37
     if nested == "parentheses":
         out.put(f"a = {'(' * 210}2{')' * 210}")
     else:
         with ExitStack() as blocks:
             for _ in range(21):
                 blocks.enter_context(out.block("while 3:"))
-    with pytest.raises(Flaw, match="too long or nested too deeply"):
+    out.place = 41
+    out.put("c = 4")
+    with pytest.raises(Flaw, match="too long or nested too deeply") as caught:
         out.compile("<deep>")
+    assert caught.value.at == 37
 
 
 def test_code_that_is_only_looked_at_is_not_compiled() -> None:

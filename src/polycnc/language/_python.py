@@ -150,6 +150,14 @@ class Emitter(Generic[Place]):
         whole = "\n".join(self.lines)
         return _DEEP in whole or whole.count("elif ") > _FEW_CASES
 
+    def _offset(self, error: Exception) -> int:
+        """Return the place that Python has refused, as far as that is an offset; else that of the longest line."""
+        line = getattr(error, "lineno", None)
+        if line is None:
+            line = 1 + max(range(len(self.lines)), key=lambda index: len(self.lines[index]))
+        place = self.places[line - 1]
+        return place if isinstance(place, int) else 0
+
     def compile(self, name: str) -> Traced[Place]:
         """Return the lines to be loaded; `name` tells this code from other code in `frame_of`.
 
@@ -161,9 +169,8 @@ class Emitter(Generic[Place]):
             try:
                 _ = traced.code
             except (RecursionError, MemoryError, SyntaxError) as error:
-                raise Flaw(
-                    0, "one expression or statement is too long or nested too deeply", "split it"
-                ) from error
+                what = "one expression or statement is too long or nested too deeply"
+                raise Flaw(self._offset(error), what, "split it") from error
         return traced
 
 
