@@ -151,7 +151,7 @@ def copied(run: ProgramRun | None, keep: Iterable[object]) -> ProgramRun | None:
     if run is None:
         return None
     # Rows of the kernel's arrays are views: the copy has to look at the same array.
-    memo: dict[int, Any] = {id(each): each for each in (*keep, run._row, run.feed.row)}
+    memo: dict[int, Any] = {id(each): each for each in (*keep, run.feed.row)}
     try:
         return copy.deepcopy(run, memo)
     except TypeError as error:

@@ -1,0 +1,386 @@
+"""What a program run does along its path: lets it go, meets what stands on it, and brings it to a stand.
+
+Nothing here changes where the path leads; see `ProgramRun`, which has the commands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc import kernel
+from polycnc.cnc._axis_alarms import axis_alarm
+from polycnc.cnc._path_feed import PathFeed
+from polycnc.cnc._path_overrides import PathOverrides
+from polycnc.cnc._probing import Probing, delete_rest, positions
+from polycnc.cnc._run_moment import RunMoment
+from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
+from polycnc.cnc._stops import Step, Stopper
+from polycnc.cnc._tool_times import ToolTime
+from polycnc.machine import Machine, Reason
+from polycnc.nc import LINE_MASK, Channel, Event, Stop
+
+Floats: TypeAlias = npt.NDArray[np.float64]
+Rows: TypeAlias = Callable[[Floats, npt.NDArray[np.int64]], None]
+OnEvent: TypeAlias = Callable[[Event], bool | None]
+Until: TypeAlias = Reason | Callable[[], bool]
+
+_MASK = (
+    kernel.QUEUE_LOW
+    | kernel.RECORDER_FULL
+    | kernel.PATH_EVENT
+    | kernel.PATH_RESTED
+    | kernel.FOLLOWING_ERROR
+    | kernel.SWITCH_EDGE
+)
+_GOING = (RunState.ACTIVE, RunState.HOLD)
+_STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
+_MOST_MARKS = 1000
+
+
+class Conduct:
+    """Conduct one path of a machine along what its channel prepares, as `moment` says.
+
+    `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes. `rows`, `on_event` and
+    `on_skip` are told what happens, see `ProgramRun`.
+    """
+
+    def __init__(
+        self, machine: Machine, channel: Channel, options: RunOptions, moment: RunMoment, *, ahead: int | None
+    ) -> None:
+        self.machine = machine
+        self.path = channel.path
+        self.options = options
+        self.moment = moment
+        self.rows: Rows | None = None
+        self.on_event: OnEvent | None = None
+        self.on_skip: Callable[[], None] | None = None
+        self.stopper = Stopper(channel.records, Step.INTO if moment.single_block else Step.RUN)
+        self.feed = PathFeed(machine, channel, ahead, self.stopper)
+        self.row = self.feed.row
+        self.overrides = PathOverrides(
+            self.row,
+            self.feed.replan,
+            dry_run_mm_s=options.dry_run_mm_s,
+            rapid_f0_mm_s=options.rapid_f0_mm_s,
+        )
+
+    @property
+    def channel(self) -> Channel:
+        """The channel that prepares the program."""
+        return self.feed.channel
+
+    @channel.setter
+    def channel(self, channel: Channel) -> None:
+        self.feed.channel = channel
+        self.stopper.records = channel.records
+
+    # ------------------------------------------------------------------ where it is
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the path stands."""
+        return bool(self.row["state"] != kernel.RUNNING)
+
+    @property
+    def executed_tag(self) -> int:
+        """The tag of the block that is executed, or was last."""
+        row, met = self.row, self.moment.met
+        if met is not None and row["state"] == kernel.READY and row["head"] == met[0]:
+            return met[1]
+        return int(row["tag"])
+
+    @property
+    def path_times(self) -> ToolTime:
+        """How long the path has cut and positioned so far, with whatever tool."""
+        totals = self.machine.state.paths.totals[self.path]
+        return ToolTime(float(totals[kernel.FEED_S]), float(totals[kernel.RAPID_S]))
+
+    @property
+    def to_go(self) -> Floats:
+        """What is left to the end of the executed block, by the place of the axis; 0 where none is being executed."""
+        row = self.row
+        here = self.machine.state.paths.position[self.path]
+        if row["state"] not in (kernel.RUNNING, kernel.HELD):
+            return np.zeros_like(here)
+        last = self.feed.block_end(int(row["head"])) - 1
+        k = int(row["base"]) + last % int(row["capacity"])
+        left: Floats = self.machine.state.seg.end[k] - here
+        return left
+
+    # ------------------------------------------------------------------ time
+
+    def advance(self, cycles: int, *, until: Until | None = None) -> int:
+        """Let up to `cycles` cycles pass; return how many did.
+
+        It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
+        `until` when one of those reasons was met or the condition holds after a cycle.
+        """
+        clock = self.machine.state.clock[0]
+        condition = until if callable(until) and not isinstance(until, Reason) else None
+        reasons = int(until) if isinstance(until, Reason) else 0
+        done = 0
+        while done < cycles:
+            moving = self.moment.state in _GOING
+            clock["mask"] = reasons
+            most = self.before_cycles(cycles - done) or cycles - done
+            if moving and self.moment.state not in _GOING:
+                break
+            ran = self.machine.advance(1 if condition is not None else most, until=int(clock["mask"]))
+            done += ran
+            self.after_cycles(ran)
+            if moving and self.moment.state not in _GOING:
+                break
+            if int(clock["raised"]) & reasons or (condition is not None and condition()):
+                break
+        return done
+
+    def skip(self) -> int:
+        """Go along what is planned in closed form, to the next thing to be done; return the cycles.
+
+        For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
+        """
+        self._tidy()
+        self.feed.feed()
+        self.take_suppressed()
+        target = self.feed.target()
+        done = 0
+        while self.moment.state is RunState.ACTIVE and self.row["head"] < target:
+            if self.moment.probing is not None:
+                return done + self.advance(1)
+            cycles = self.machine.skip(self.path, target)
+            done += cycles
+            if self.row["event"] >= 0:
+                self._meet_event()
+            elif cycles == 0:
+                break
+        if done == 0 and self.row["head"] >= self.row["tail"] and not self.channel.done:
+            done = self.advance(1)  # the program itself waits for something
+        self.look()
+        return done
+
+    def before_cycles(self, cycles: int) -> int:
+        """Make ready for up to `cycles` cycles; return how many may pass before `after_cycles`, 0 for any number.
+
+        What must end `machine.advance` early is put into the clock's mask, beside what is there.
+        """
+        if self.moment.dropping or (self.moment.state is RunState.HOLD and self.at_rest):
+            return 0 if self.at_rest else cycles
+        if self.moment.state not in _GOING:
+            return 0
+        self._tidy()
+        self.feed.feed()
+        self.take_suppressed()
+        self.look()
+        self.machine.state.clock[0]["mask"] |= _MASK
+        often = self.moment.probing is not None or (
+            self.options.asks_often and self.at_rest and not self.channel.done
+        )
+        return min(cycles, 1) if often else cycles
+
+    def after_cycles(self, cycles: int) -> None:
+        """Do what the last `cycles` cycles ask for."""
+        raised = int(self.machine.state.clock[0]["raised"])
+        if self.moment.probing is not None:
+            self._probe(self.moment.probing)
+        if raised & kernel.PATH_EVENT and self.row["event"] >= 0:
+            self._meet_event()
+        if raised & kernel.RECORDER_FULL:
+            self.drain()
+        if (found := axis_alarm(self.machine, raised, self.path)) is not None:
+            self._stop_by(*found)
+        self.look()
+
+    def drain(self) -> None:
+        """Hand the recorded rows on and empty the recorder."""
+        recorder = self.machine.state.recorder
+        count = int(recorder.filled[0])
+        if self.rows is not None and count:
+            rows = recorder.rows[:count]
+            tags = rows[:, kernel.BLOCK].astype(np.int64)
+            rows[:, kernel.BLOCK] = tags & LINE_MASK
+            self.rows(rows, tags)
+        recorder.filled[0] = 0
+
+    # ------------------------------------------------------------------ going and standing
+
+    def hold(self, *, at_once: bool = False) -> None:
+        """Brake and stand, now or when the program lets it."""
+        moment = self.moment
+        if moment.state is RunState.ACTIVE and moment.suppressed.hold and not at_once:
+            moment.held_back = True
+        elif moment.state is RunState.ACTIVE:
+            moment.hold = True
+            moment.state = RunState.HOLD
+            self.set_hold()
+
+    def stands_at(self, stop: Stop) -> bool:
+        """Tell whether the program would stand at such a stop now."""
+        return self.options.stands_at_stops and (stop is Stop.PROGRAM or self.moment.optional_stop)
+
+    def go(self, step: Step) -> None:
+        """Go on from where the program stands, as far as `step` says."""
+        within = self.moment.state is RunState.HOLD and self.row["state"] in (kernel.RUNNING, kernel.HELD)
+        record = self.executed_tag
+        self._pass_stop()
+        self.moment.hold = False
+        self.moment.state = RunState.ACTIVE
+        stopper = self.stopper
+        stopper.step = Step.RUN
+        self.feed.go_on()
+        self.feed.feed()
+        following = self.feed.next_tag()
+        depth_of = record if within or following is None else following
+        stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
+        if not within and self._stand_at_marks():
+            self.set_hold()
+            return
+        self.feed.look_again()
+        self.set_hold()
+        self.look()
+
+    @property
+    def step_of_switch(self) -> Step:
+        """How far a start goes as the switch of single blocks says, and the program lets it."""
+        return Step.INTO if self.moment.single_block and not self.moment.suppressed.single_block else Step.RUN
+
+    def _tidy(self) -> None:
+        """Forget records that nobody can ask for any more."""
+        if self.channel.records.crowded:
+            self.drain()  # rows refer to records
+            self.feed.forget_records(self.executed_tag)
+
+    def set_hold(self) -> None:
+        """Hold the path while anything holds it; take it over where it moves."""
+        stands = (
+            self.moment.state is RunState.STOPPED_AT_BLOCK
+        )  # before a segment that is in the look-ahead already
+        met = self.moment.probing is not None and self.moment.probing.met and self.moment.probing.deletes
+        hold = self.moment.hold or stands or met or self.moment.stop is not None or self.moment.unanswered
+        if bool(self.row["hold"]) != hold:
+            self.row["hold"] = hold
+            if self.row["state"] == kernel.RUNNING:
+                self.feed.replan()
+
+    def _stand_at_marks(self) -> bool:
+        """Carry out the blocks without segments that come next; return whether the program stops behind one."""
+        for _ in range(_MOST_MARKS):  # a loop may have no other blocks
+            if (tag := self.feed.take_mark()) is None:
+                break
+            self.moment.met = int(self.row["head"]), tag
+            following = self.feed.next_tag()
+            if following is None:
+                self.feed.feed()
+                following = self.feed.next_tag()
+            if following is not None and self.stopper.stops_before(following):
+                self.moment.state = RunState.STOPPED_AT_BLOCK
+                return True
+        return False
+
+    def _meet_event(self) -> None:
+        number = int(self.row["event"])
+        event = self.channel.writer.events.pop(number)
+        self.moment.met = int(self.row["head"]), event.tag
+        self.moment.tool_times = self.moment.tool_times.changed(
+            self.channel.records.tool(event.tag), self.path_times
+        )
+        if event.word and self.on_event is not None:
+            self.moment.unanswered = bool(self.on_event(event)) and not self.moment.suppressed.answers
+            self.set_hold()
+        if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
+            self.moment.probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
+        elif event.stop is Stop.DRAIN:
+            if self.moment.probing is not None:
+                self.moment.probing = None
+                self.feed.keep_box()
+                self.set_hold()
+            self.channel.go_on()
+        elif event.stop is not None and self.stands_at(event.stop):
+            self.moment.stop = event
+            self.moment.state = _STOP_STATES[event.stop]
+            self.set_hold()
+        elif event.stop is not None and self.options.stands_at_stops:
+            self.channel.go_on()
+
+    def _probe(self, probing: Probing) -> None:
+        """Look for the contact of a probing move; what is left of the move is dropped once the axes stand."""
+        if not probing.met:
+            if probing.look(self.machine, self.channel, signal=self.moment.skip_signal) and probing.deletes:
+                self.set_hold()
+                if self.on_skip is not None and self.channel.state.skip_position is not None:
+                    self.on_skip()
+        elif probing.deletes and self.at_rest and self.moment.state is RunState.ACTIVE:
+            delete_rest(self.machine, self.channel, self.feed)
+            self.moment.probing = None
+            self.set_hold()
+
+    def _pass_stop(self) -> None:
+        if self.moment.stop is not None:
+            self.moment.stop = None
+            self.channel.go_on()
+
+    def take_suppressed(self) -> None:
+        """Let what the program suppresses act no more, and what it did until now act again."""
+        was, now = self.moment.suppressed, self.channel.suppressed
+        if now == was:
+            return
+        self.moment.suppressed = now
+        self.overrides.suppress_feed(now.override)
+        if now.single_block is not was.single_block and self.moment.single_block:
+            self.stopper.step = self.step_of_switch
+            self.feed.let_pass()
+            self.feed.look_again()
+        if self.moment.held_back and not now.hold:
+            self.moment.held_back = False
+            self.hold()
+
+    def look(self) -> None:
+        """See whether the path has come to an end, or to the end of a block."""
+        row = self.row
+        if self.moment.dropping:
+            if self.at_rest:
+                self._drop()
+        elif (
+            self.moment.state is RunState.ACTIVE
+            and row["state"] == kernel.READY
+            and not self.moment.unanswered
+        ):
+            if row["head"] >= row["limit"]:
+                self._stop_at_block()
+            elif row["head"] >= row["tail"] and self.channel.done:
+                self.moment.state = RunState.COMPLETED if self.channel.error is None else RunState.ALARM
+
+    def _stop_at_block(self) -> None:
+        """Stand at the end of a block; blocks without segments before the one to stop at are carried out."""
+        self.feed.pass_marks()
+        while self.feed.at_mark:
+            following = self.feed.next_tag()
+            if following is None or self.stopper.stops_before(following):
+                break
+            tag = self.feed.take_mark()
+            assert tag is not None
+            self.moment.met = int(self.row["head"]), tag
+        self.moment.state = RunState.STOPPED_AT_BLOCK
+
+    def _drop(self) -> None:
+        """Drop what is still queued; the path stands."""
+        state = self.machine.state
+        kernel.drop_queue(state.seg, state.paths, self.path)
+        self.channel.writer.clear()
+        self.feed.clear()
+        self.moment.dropping = False
+        self.moment.hold = False
+        self.moment.stop = None
+        self.moment.unanswered = False
+        self.moment.probing = None
+        self.moment.met = None
+        self.set_hold()
+
+    def _stop_by(self, text: str, code: str) -> None:
+        self.moment.alarm = RunAlarm(text, code, self.executed_tag, self.machine.clock.cycles)
+        self.moment.state = RunState.ALARM
+        self.moment.hold = True
+        self.set_hold()

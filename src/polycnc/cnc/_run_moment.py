@@ -1,0 +1,43 @@
+"""What a program run holds at one cycle, besides its channel, what feeds its path, and its machine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+from polycnc.cnc._probing import Probing
+from polycnc.cnc._run_state import RunAlarm, RunState
+from polycnc.cnc._tool_times import ToolTimes
+from polycnc.nc import Event, Suppressed
+
+
+@dataclass(slots=True)
+class RunMoment:
+    """What a run is doing, what is switched on for it, and what it has met on the path.
+
+    `hold` is a feed hold; a stop holds the path as well. `held_back` is one that comes when the program lets it.
+    `stop` is the stop at which the program stands, `met` the segment count and the tag of the event at which the path
+    rests, `unanswered` an auxiliary function at which it stands. `approach` is where a searched block begins, and its
+    line. `suppressed` is what the program keeps from acting now.
+    """
+
+    block_delete: frozenset[int] = frozenset()
+    single_block: bool = False
+    optional_stop: bool = False
+    skip_signal: bool = False
+    locked: bool = False
+    state: RunState = RunState.READY
+    alarm: RunAlarm | None = None
+    hold: bool = False
+    held_back: bool = False
+    stop: Event | None = None
+    met: tuple[int, int] | None = None
+    unanswered: bool = False
+    dropping: bool = False
+    suppressed: Suppressed = field(default_factory=Suppressed)
+    tool_times: ToolTimes = field(default_factory=ToolTimes)
+    approach: tuple[tuple[float, ...], int] | None = None
+    probing: Probing | None = None
+
+    def copy(self) -> RunMoment:
+        """Return a moment that changes no more with this one."""
+        return replace(self, probing=None if self.probing is None else replace(self.probing))
