@@ -11,11 +11,13 @@ from polycnc.language._python import (
     prefix,
     without_collection,
 )
+from polycnc.language._resume import INNER, inner_of, line_of, names_of, resumed
 from polycnc.language._source import Flaw, Source
 from polycnc.language._tokens import END, Lexicon, Token, Tokens, clipped, real_value, whole_value
 
 __all__ = [
     "END",
+    "INNER",
     "Chain",
     "Emitter",
     "Flaw",
@@ -35,9 +37,13 @@ __all__ = [
     "clipped",
     "frame_of",
     "infix",
+    "inner_of",
+    "line_of",
+    "names_of",
     "prefix",
     "read_expression",
     "real_value",
+    "resumed",
     "whole_value",
     "without_collection",
 ]

@@ -75,11 +75,13 @@ class Traced(Generic[Place]):
     It is compiled when it is asked for its code, so that a program that is only checked never is.
     """
 
-    def __init__(self, name: str, lines: tuple[str, ...], places: tuple[Place, ...]) -> None:
+    def __init__(
+        self, name: str, lines: tuple[str, ...], places: tuple[Place, ...], code: CodeType | None = None
+    ) -> None:
         self.name = name
         self.lines = lines
         self.places = places
-        self._code: CodeType | None = None
+        self._code = code
 
     @property
     def code(self) -> CodeType:
