@@ -229,7 +229,7 @@ def test_m99_in_the_main_program_repeats_it() -> None:
     assert (control.macros.get(500) or 0.0) >= 5.0
 
 
-def test_a_snapshot_of_plain_programs_is_kept_and_one_of_macros_refused() -> None:
+def test_a_snapshot_keeps_a_program_under_way_and_its_variables() -> None:
     control, _ = attached()
     registered(
         control,
@@ -251,10 +251,17 @@ def test_a_snapshot_of_plain_programs_is_kept_and_one_of_macros_refused() -> Non
     control.restore(taken)
     assert until_rest(control) is RunState.COMPLETED
     assert control.macros.get(500) == 5.0  # read in the channel that was put back
-    registered(control, O4="\n#500=1\nG4X1.\n#501=#5041\nM30\n")
-    running(control, 4, lambda: control.status().channel.run_state is RunState.ACTIVE)
-    with pytest.raises(SnapshotError):
-        control.snapshot()
+    registered(control, O4="\n#500=1\n#101=#500*3\nG4X1.\n#501=#101+#5041\n#500=#500+2\nM30\n")
+    running(control, 4, lambda: control.status().time_s > 0.5)
+    taken = control.snapshot()
+    assert until_rest(control) is RunState.COMPLETED
+    assert [control.macros.get(number) for number in (101, 500, 501)] == [3.0, 3.0, 8.0]
+    control.macros.set(500, 9.0)
+    control.macros.set(101, None)
+    control.restore(taken)
+    assert [control.macros.get(number) for number in (101, 500)] == [3.0, 1.0]
+    assert until_rest(control) is RunState.COMPLETED
+    assert [control.macros.get(number) for number in (101, 500, 501)] == [3.0, 3.0, 8.0]
 
 
 def test_a_snapshot_of_something_else_is_refused_and_none_goes_to_a_file() -> None:

@@ -6,6 +6,7 @@ Running a program needs no control: what belongs to one is loaded when it is fir
 from typing import TYPE_CHECKING
 
 from polycnc.cnc._program_run import ProgramRun
+from polycnc.cnc._run_snapshot import RunSnapshot
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.cnc._tool_times import ToolTime
@@ -138,6 +139,7 @@ __all__ = [
     "Request",
     "RunAlarm",
     "RunOptions",
+    "RunSnapshot",
     "RunState",
     "Script",
     "Search",

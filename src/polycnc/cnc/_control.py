@@ -34,13 +34,14 @@ from polycnc.cnc._control_data import (
     Switches,
     check_channels,
 )
-from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot, copied, nested
+from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import PlcModel, Script
 from polycnc.cnc._program_edit import ProgramEdit, ProgramEdits
 from polycnc.cnc._program_memory import ProgramMemory
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.cnc._run_snapshot import file_text
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import AxisStatus, Emergency, Status
@@ -687,17 +688,20 @@ class Control:
         """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.
 
         Raises:
-            SnapshotError: A program is under way whose language cannot be copied.
+            SnapshotError: A program is under way whose language cannot tell where it stands.
         """
-        under_way = any(channel.programs or not channel.at_rest for channel in self.channels)
-        runs = tuple(copied(channel.run, self._shared()) for channel in self.channels)
-        return ControlSnapshot.of(self._made_from, self.machine.snapshot(), self._moment(), runs, under_way)
+        runs = tuple(
+            None if channel.run is None else channel.run.snapshot(find=self._text)
+            for channel in self.channels
+        )
+        return ControlSnapshot.of(self._made_from, self.machine.snapshot(), self._moment(), runs)
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot of this control, or without a program under way of one made alike.
+        """Go back to a snapshot of this control, or of one made alike.
 
         Raises:
-            SnapshotError: It is of something else, or damaged; nothing has changed.
+            SnapshotError: It is of something else, of programs that have been changed since, or damaged; nothing has
+                changed.
         """
         if not isinstance(snapshot, ControlSnapshot):
             raise SnapshotError(
@@ -706,33 +710,22 @@ class Control:
             )
         snapshot.check("control", self._made_from, ())
         moment: ControlMoment = snapshot.moment()
-        if any(run is not None and run.machine is not self.machine for run in snapshot.runs):
-            raise SnapshotError(
-                "a program under way was part of another control", hint="restore it where it was taken"
-            )
-        runs = tuple(copied(run, self._shared()) for run in snapshot.runs) or (None,) * len(self.channels)
+        runs = snapshot.runs or (None,) * len(self.channels)
+        if len(runs) != len(self.channels) or len(moment.channels) != len(self.channels):
+            raise SnapshotError("the snapshot of a control is damaged", hint="use another one")
+        back = [channel.way_back(run, self._text) for channel, run in zip(self.channels, runs, strict=True)]
         self.machine.restore(snapshot.machine)
         self._edits.close_all()
-        self._put_back(moment, runs)
+        self._put_back(moment, tuple(each() for each in back))
 
     @property
     def _made_from(self) -> str:
         shares = tuple(channel.data for channel in self.channels)
         return f"{self.machine.config.model_dump_json()} {self.dialect!r} {shares!r} {self.data!r}"
 
-    def _shared(self) -> list[object]:
-        """Return what the copy of a run shares with it."""
-        return [
-            self,
-            self.machine,
-            self.dialect,
-            self.machine.config,
-            self.tools,
-            self.offsets,
-            *(channel.config for channel in self.channels),
-            *nested(self.machine.state),
-            *(channel.language for channel in self.channels if channel.language is not None),
-        ]
+    def _text(self, name: str) -> ProgramText | None:
+        """Return the present text of a program, of the memory or of a file."""
+        return self.programs.text(name) if name in self.programs else file_text(name)
 
     def _moment(self) -> ControlMoment:
         return ControlMoment(

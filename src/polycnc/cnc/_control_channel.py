@@ -12,14 +12,14 @@ from polycnc.cnc._control_snapshot import ChannelMoment, KeptText
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.cnc._run_snapshot import FindText
 from polycnc.cnc._run_state import RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
-from polycnc.machine import Machine, MachineConfig
+from polycnc.machine import Machine, MachineConfig, Snapshot
 from polycnc.nc import (
     BlockRecord,
-    BoundLanguage,
     Dialect,
     Event,
     Language,
@@ -226,20 +226,24 @@ class ControlChannel:
     def _load(self, text: ProgramText, *, mdi: bool) -> None:
         if self.run is None or self._changed:
             self._changed = False
-            self.run = ProgramRun(
-                self._machine,
-                text,
-                self._dialect,
-                path=self.path,
-                options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s, asks_often=self.asks_often),
-                config=self.config,
-                library=self._library,
-                language=self.language,
-                axes=self.names,
-                on_event=lambda event: self._on_event(self, event),
-            )
+            self.run = self._new_run(text)
         else:
             self.run.load(text, keeps_modal=mdi)
+
+    def _new_run(self, text: ProgramText, *, attaches: bool = True) -> ProgramRun:
+        return ProgramRun(
+            self._machine,
+            text,
+            self._dialect,
+            path=self.path,
+            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s, asks_often=self.asks_often),
+            config=self.config,
+            library=self._library,
+            language=self.language,
+            axes=self.names,
+            on_event=lambda event: self._on_event(self, event),
+            attaches=attaches,
+        )
 
     def go_on(self, after_manual: AfterManual, step: Step) -> None:
         """Let an interrupted program go on; axes that were moved by hand go back first, if the control does that.
@@ -381,6 +385,26 @@ class ControlChannel:
             waiting=tuple(waiting),
         )
 
+    def way_back(self, run: Snapshot | None, find: FindText) -> Callable[[], ProgramRun | None]:
+        """Return what makes a run that goes back to a snapshot, when it is certain that it can be done.
+
+        Raises:
+            SnapshotError: It cannot.
+        """
+        if run is None:
+            return lambda: None
+        row = self._machine.state.paths.row[self.path]
+        tolerance_mm = row["tolerance_mm"]
+        made = self._new_run(ProgramText("", b""), attaches=False)
+        row["tolerance_mm"] = tolerance_mm
+        back = made.way_back(run, find=find)
+
+        def go_back() -> ProgramRun:
+            back()
+            return made
+
+        return go_back
+
     def put_back(self, moment: ChannelMoment, run: ProgramRun | None) -> None:
         """Go back to a moment, with a run that nobody else has."""
         self.mode = moment.mode
@@ -395,9 +419,9 @@ class ControlChannel:
         self._lent = moment.lent
         self.run = run
         if run is not None:
+            self._changed = False
             run.on_skip = self.on_skip
-        if run is not None and isinstance(self.language, BoundLanguage):
-            self.language.attach(run.channel)
+            run.stopper.breakpoints = self.breakpoints
 
     # ------------------------------------------------------------------ lent axes
 

@@ -1,14 +1,8 @@
-"""The state of a control at one cycle: the machine's arrays, plain data, and copies of programs under way.
-
-A program under way is an interpreter in the middle of its text, so its copy lives in this process only: a snapshot
-taken then can be restored, but not written to a file.
-"""
+"""The state of a control at one cycle: the machine's arrays, plain data, and where programs under way stand."""
 
 from __future__ import annotations
 
-import copy
-from collections.abc import Iterable
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from typing import Any, Self
 
 from pydantic import TypeAdapter, ValidationError
@@ -17,7 +11,7 @@ from polycnc.cnc._alarms import Alarm, OperatorMessage
 from polycnc.cnc._control_data import Mode, Overrides, Search, Switches
 from polycnc.cnc._manual import ManualState
 from polycnc.cnc._plc import PlcState
-from polycnc.cnc._program_run import ProgramRun
+from polycnc.cnc._run_snapshot import RunSnapshot
 from polycnc.cnc._spindle import SpindleMotion
 from polycnc.cnc._status import Emergency
 from polycnc.cnc._timers import TimersState
@@ -72,27 +66,21 @@ _MOMENT = TypeAdapter(ControlMoment)
 
 @dataclass(frozen=True, slots=True)
 class ControlSnapshot(Snapshot):
-    """The snapshot of a control; `runs` are copies of its channels' runs, none at all if it comes from a file."""
+    """The snapshot of a control; `runs` are those of its channels' runs, None where a channel has had none."""
 
     machine: Snapshot
-    runs: tuple[ProgramRun | None, ...] = field(default=(), compare=False)
-    under_way: bool = False
+    runs: tuple[Snapshot | None, ...] = ()
 
     @classmethod
     def of(
-        cls,
-        made_from: str,
-        machine: Snapshot,
-        moment: ControlMoment,
-        runs: tuple[ProgramRun | None, ...],
-        under_way: bool,
+        cls, made_from: str, machine: Snapshot, moment: ControlMoment, runs: tuple[Snapshot | None, ...]
     ) -> Self:
-        """Keep a moment; `under_way` says that a program is being executed or interrupted."""
+        """Keep a moment."""
         data = asdict(moment)
         for kept in data["channels"]:
             kept["switches"]["block_delete"] = sorted(kept["switches"]["block_delete"])
         plain = Snapshot.take(DEVICE, made_from, machine.cycle, (), data)
-        return cls(DEVICE, plain.made_from, plain.cycle, (), plain.beside, machine, runs, under_way)
+        return cls(DEVICE, plain.made_from, plain.cycle, (), plain.beside, machine, runs)
 
     def moment(self, name: str = "") -> Any:
         """Return the moment, or a date and time of this name.
@@ -110,17 +98,9 @@ class ControlSnapshot(Snapshot):
             ) from error
 
     def to_bytes(self) -> bytes:
-        """Return the snapshot as the contents of a file; which block was the last of an ended program is not in it.
-
-        Raises:
-            SnapshotError: A program was under way.
-        """
-        if self.under_way:
-            raise SnapshotError(
-                "a snapshot with a program under way cannot be written to a file",
-                hint="take it when no program is being executed or interrupted",
-            )
-        data = {"moment": self.beside, "machine": self.machine.to_bytes()}
+        """Return the snapshot as the contents of a file."""
+        runs = [None if run is None else run.to_bytes() for run in self.runs]
+        data = {"moment": self.beside, "machine": self.machine.to_bytes(), "runs": runs}
         whole = Snapshot.take(DEVICE, "", self.cycle, (), data)
         return Snapshot(DEVICE, self.made_from, self.cycle, (), whole.beside).to_bytes()
 
@@ -133,38 +113,12 @@ class ControlSnapshot(Snapshot):
         """
         whole = Snapshot.from_bytes(content)
         data = whole.data()
-        if whole.device != DEVICE or set(data) != {"moment", "machine"}:
+        runs = data.pop("runs", [])
+        if whole.device != DEVICE or set(data) != {"moment", "machine"} or not isinstance(runs, list):
             raise SnapshotError(
                 f"this is a snapshot of {whole.device}, not of a control",
                 hint="restore it where it was taken",
             )
         machine = Snapshot.from_bytes(data["machine"])
-        return cls(DEVICE, whole.made_from, whole.cycle, (), data["moment"], machine)
-
-
-def copied(run: ProgramRun | None, keep: Iterable[object]) -> ProgramRun | None:
-    """Return a copy of a run that shares the objects of `keep` with it.
-
-    Raises:
-        SnapshotError: A language holds state in it that cannot be copied.
-    """
-    if run is None:
-        return None
-    # Rows of the kernel's arrays are views: the copy has to look at the same array.
-    memo: dict[int, Any] = {id(each): each for each in (*keep, run.feed.row)}
-    try:
-        return copy.deepcopy(run, memo)
-    except TypeError as error:
-        raise SnapshotError(
-            "the program under way cannot be kept: its language cannot tell where it stands",
-            hint="take the snapshot when it has ended, or of a program without statements of a language",
-        ) from error
-
-
-def nested(value: object) -> list[object]:
-    """Return nested tuples and everything in them."""
-    found: list[object] = [value]
-    if isinstance(value, tuple):
-        for item in value:
-            found += nested(item)
-    return found
+        made = tuple(None if run is None else RunSnapshot.from_bytes(run) for run in runs)
+        return cls(DEVICE, whole.made_from, whole.cycle, (), data["moment"], machine, made)

@@ -40,6 +40,7 @@ class FeedSnapshot(NamedTuple):
     low: Floats
     high: Floats
     left: int = _NEVER
+    box: tuple[Floats, Floats] | None = None
 
 
 class PathFeed:
@@ -285,8 +286,9 @@ class PathFeed:
 
     def snapshot(self) -> FeedSnapshot:
         """Return what is known of the path besides its queue, to go back to."""
+        box = None if self._box is None else (self._box[0].copy(), self._box[1].copy())
         return FeedSnapshot(
-            tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy(), self._left
+            tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy(), self._left, box
         )
 
     def restore(self, saved: FeedSnapshot) -> None:
@@ -294,6 +296,7 @@ class PathFeed:
         self._ends = deque(saved.ends)
         self._seen, self._met_at, self._left = saved.seen, saved.met_at, saved.left
         self.low[:], self.high[:] = saved.low, saved.high
+        self._box = None if saved.box is None else (saved.box[0].copy(), saved.box[1].copy())
 
     def clear(self) -> None:
         """Forget what was prepared; the queue has been dropped."""

@@ -7,7 +7,6 @@ along, within every axis' limits, so a run that is interrupted ends where the un
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
 
 from polycnc import kernel
 from polycnc.cnc._block_search import block_line, calculate_to
@@ -15,12 +14,12 @@ from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._run_conduct import Conduct, Floats, OnEvent, Rows, Until
 from polycnc.cnc._run_moment import RunMoment
-from polycnc.cnc._run_snapshot import RunSnapshot
+from polycnc.cnc._run_snapshot import DEVICE, FindText, RunSnapshot, SavedRun, file_text
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import Machine, MachineConfig
+from polycnc.machine import Machine, MachineConfig, Snapshot, SnapshotError
 from polycnc.nc import (
     BlockRecord,
     Call,
@@ -35,6 +34,7 @@ from polycnc.nc import (
     load_dialect,
 )
 
+_MDI = "MDI"
 _STANDING = {
     RunState.STOPPED_AT_BLOCK,
     RunState.PROGRAM_STOP,
@@ -55,6 +55,8 @@ class ProgramRun:
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
     The surfaces of the machine file do the same. `on_skip` is told when either is met.
 
+    Without `attaches` it is made to go back to a snapshot: only then it takes its language over.
+
     `advance` lets the machine run. Who runs several paths of one machine calls `before_cycles` of each, then
     `machine.advance`, then `after_cycles` of each instead.
     """
@@ -74,6 +76,7 @@ class ProgramRun:
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
         before: ProgramRun | None = None,
+        attaches: bool = True,
     ) -> None:
         options = options or RunOptions()
         self.machine = machine
@@ -86,7 +89,9 @@ class ProgramRun:
         self._config = config
         self._library = library
         moment = RunMoment(options.block_delete, options.single_block, options.optional_stop)
-        channel = self._new_channel(program, None if before is None else before.channel, options.block_delete)
+        channel = self._new_channel(
+            program, None if before is None else before.channel, options.block_delete, attaches=attaches
+        )
         ahead = self.dialect.blocks_ahead if options.blocks_ahead is None else options.blocks_ahead
         self._conduct = Conduct(machine, channel, options, moment, ahead=ahead)
         self._conduct.rows = rows
@@ -99,6 +104,7 @@ class ProgramRun:
         skip_levels: frozenset[int],
         *,
         keeps_modal: bool = True,
+        attaches: bool = True,
     ) -> Channel:
         return Channel(
             program,
@@ -116,6 +122,7 @@ class ProgramRun:
             before=before,
             keeps_modal=keeps_modal,
             collect_errors=self._options.collect_errors,
+            attaches=attaches,
         )
 
     # ------------------------------------------------------------------ what it is made of
@@ -209,7 +216,7 @@ class ProgramRun:
         Raises:
             UsageError: a program is being executed, or there is an alarm.
         """
-        self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
+        self.load(ProgramText.from_text(text, _MDI), keeps_modal=True)
         self.start()
 
     def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
@@ -496,37 +503,72 @@ class ProgramRun:
         """Hand the recorded rows on and empty the recorder."""
         self._conduct.drain()
 
-    def snapshot(self) -> RunSnapshot:
-        """Return everything that this run holds, to go back to with `restore`.
+    def snapshot(self, *, find: FindText = file_text) -> RunSnapshot:
+        """Return everything that this run holds, to go back to with `restore`, in a process of any time.
 
-        The machine has a snapshot of its own: take and restore both together.
+        The machine has a snapshot of its own: take and restore both together. `find` gives the present text of a
+        program; the programs that it finds must be the same when the run goes back.
 
         Raises:
-            UsageError: a language executes the program; where that stands cannot be kept.
+            SnapshotError: a language executes the program, and cannot tell where it stands.
         """
-        conduct = self._conduct
-        return RunSnapshot(
+        saved = SavedRun(
             self.program,
-            self.channel,
             self.channel.snapshot(),
             self.feed.snapshot(),
-            replace(self.stopper),
+            self.stopper.step,
+            self.stopper.depth,
             self.overrides.kept,
-            conduct.moment.copy(),
+            self._moment.copy(),
         )
+        return RunSnapshot.of(self._made_from, self.machine.clock.cycles, saved, self._language, find)
 
-    def restore(self, saved: RunSnapshot) -> None:
-        """Go back to a snapshot of this run."""
-        conduct, stopper = self._conduct, self.stopper
+    def restore(self, snapshot: Snapshot) -> None:
+        """Go back to a snapshot of this run, or of one that was made alike; breakpoints stay as they are.
+
+        Raises:
+            SnapshotError: It is of something else, of a program that has been changed since, or damaged; nothing has
+                changed.
+        """
+        self.way_back(snapshot)()
+
+    def way_back(self, snapshot: Snapshot, *, find: FindText = file_text) -> Callable[[], None]:
+        """Return what `restore` does, when it is certain that it can be done.
+
+        Raises:
+            SnapshotError: As `restore`.
+        """
+        snapshot.check(DEVICE, self._made_from, ())
+        saved = RunSnapshot.of_any(snapshot).saved(self._language, find)
+        mine, kept = self.program, saved.program
+        if mine.name == kept.name != _MDI and mine.content != kept.content:
+            raise SnapshotError(
+                f"{mine.name} is another program than the one of the snapshot",
+                hint="give the same one, or use another snapshot",
+            )
+        row = self._conduct.row
+        tolerance_mm = row["tolerance_mm"]
+        channel = self._new_channel(kept, None, saved.moment.block_delete, attaches=False)
+        row["tolerance_mm"] = tolerance_mm
+        back = channel.way_back(saved.channel)
+        return lambda: self._go_back(saved, channel, back)
+
+    def _go_back(self, saved: SavedRun, channel: Channel, back: Callable[[], None]) -> None:
+        conduct = self._conduct
+        back()
         self.program = saved.program
-        conduct.channel = saved.channel
-        self.channel.restore(saved.prepared)
-        self.feed.restore(saved.feed)
-        stopper.step, stopper.depth = saved.stopper.step, saved.stopper.depth
-        stopper.breakpoints = saved.stopper.breakpoints
-        self.overrides.kept = saved.override_kept
+        conduct.channel = channel
+        conduct.feed.restore(saved.feed)
+        conduct.stopper.step, conduct.stopper.depth = saved.step, saved.depth
+        conduct.overrides.kept = saved.override_kept
         conduct.moment = saved.moment.copy()
-        self.channel.skip_levels = self.block_delete
+
+    @property
+    def _made_from(self) -> str:
+        axes = None if self._axes is None else tuple(self._axes)
+        return (
+            f"{self.machine.config.model_dump_json()} {self.path} {self.dialect!r} {self._options!r} {axes!r}"
+        )
 
     # ------------------------------------------------------------------ within
 

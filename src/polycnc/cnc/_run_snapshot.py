@@ -1,22 +1,128 @@
-"""Everything that a program run holds at one cycle, to go back to."""
+"""Everything that a program run holds at one cycle, as plain data: to compare, to write to a file, to go back to."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple, Self, TypeAlias
 
 from polycnc.cnc._path_feed import FeedSnapshot
+from polycnc.cnc._probing import Probing
 from polycnc.cnc._run_moment import RunMoment
-from polycnc.cnc._stops import Stopper
-from polycnc.nc import Channel, ChannelSnapshot, ProgramText
+from polycnc.cnc._run_state import RunAlarm, RunState
+from polycnc.cnc._stops import Step
+from polycnc.cnc._tool_times import ToolTime, ToolTimes
+from polycnc.errors import UsageError
+from polycnc.machine import Snapshot, SnapshotError, Values
+from polycnc.nc import (
+    CHANNEL_CLASSES,
+    ChannelSnapshot,
+    Language,
+    LastingLanguage,
+    ProgramText,
+    Texts,
+)
+
+DEVICE = "program run"
+FindText: TypeAlias = Callable[[str], ProgramText | None]
+"""What gives the present text of a program of a name, None where there is none."""
 
 
-class RunSnapshot(NamedTuple):
-    """What a run holds; its machine has a snapshot of its own."""
+class SavedRun(NamedTuple):
+    """What a run holds; its machine has a snapshot of its own, breakpoints are the operator's."""
 
     program: ProgramText
-    channel: Channel
-    prepared: ChannelSnapshot
+    channel: ChannelSnapshot
     feed: FeedSnapshot
-    stopper: Stopper
+    step: Step
+    depth: int
     override_kept: float | None
     moment: RunMoment
+
+
+_CLASSES = (
+    *CHANNEL_CLASSES,
+    FeedSnapshot,
+    Probing,
+    RunAlarm,
+    RunMoment,
+    RunState,
+    SavedRun,
+    Step,
+    ToolTime,
+    ToolTimes,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class RunSnapshot(Snapshot):
+    """The snapshot of a program run: where program and language stand, with the texts of the programs under way."""
+
+    @classmethod
+    def of(
+        cls, made_from: str, cycle: int, saved: SavedRun, language: Language | None, find: FindText
+    ) -> Self:
+        """Keep what a run holds; `find` tells which of its texts can be found where it was made.
+
+        Raises:
+            SnapshotError: Something of it cannot be kept.
+        """
+        texts = Texts()
+        run = _values(texts, language).plain(saved)
+        kept = [[text.name, text.content, _is_found(text, find)] for text in texts.all]
+        return cls.take(DEVICE, made_from, cycle, (), {"texts": kept, "run": run})
+
+    @classmethod
+    def of_any(cls, snapshot: Snapshot) -> Self:
+        """Return a snapshot as that of a run."""
+        return cls(snapshot.device, snapshot.made_from, snapshot.cycle, snapshot.blocks, snapshot.beside)
+
+    def saved(self, language: Language | None, find: FindText) -> SavedRun:
+        """Return what the run held.
+
+        Raises:
+            SnapshotError: It is damaged, of another language, or a program has been changed since.
+        """
+        data = self.data()
+        try:
+            rows: Sequence[Any] = data["texts"]
+            texts = [ProgramText(str(name), bytes(content)) for name, content, _ in rows]
+            changes = [
+                str(name) for name, content, found in rows if found and _is_changed(name, content, find)
+            ]
+            plain = data["run"]
+        except (LookupError, TypeError, ValueError) as error:
+            raise SnapshotError(f"the snapshot is damaged: {error}", hint="use another one") from error
+        if changes:
+            raise SnapshotError(
+                f"{changes[0]} has been changed since the snapshot was taken",
+                hint="put the program back as it was, or use another snapshot",
+            )
+        saved = _values(Texts(texts), language).value(plain)
+        if not isinstance(saved, SavedRun) or not saved.channel.calls:
+            raise SnapshotError("the snapshot is damaged: there is no run in it", hint="use another one")
+        return saved
+
+
+def file_text(name: str) -> ProgramText | None:
+    """Return the program that lies in a file."""
+    try:
+        return ProgramText.from_path(name) if Path(name).is_file() else None
+    except (UsageError, OSError, ValueError):
+        return None
+
+
+def _values(texts: Texts, language: Language | None) -> Values:
+    more = language.classes if isinstance(language, LastingLanguage) else ()
+    return Values((*_CLASSES, *more), texts.forms())
+
+
+def _is_found(text: ProgramText, find: FindText) -> bool:
+    found = find(text.name)
+    return found is not None and found.content == text.content
+
+
+def _is_changed(name: str, content: bytes, find: FindText) -> bool:
+    found = find(name)
+    return found is not None and found.content != content

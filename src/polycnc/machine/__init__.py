@@ -36,6 +36,7 @@ from polycnc.machine._toml import (
     validate,
 )
 from polycnc.machine._toml_locator import KeyPath, Locator
+from polycnc.machine._values import Form, Values
 from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
@@ -84,6 +85,7 @@ __all__ = [
     "Device",
     "Elapsed",
     "Entry",
+    "Form",
     "Free",
     "History",
     "Host",
@@ -119,6 +121,7 @@ __all__ = [
     "Timed",
     "TimesConfig",
     "ToolConfig",
+    "Values",
     "Wall",
     "Way",
     "arrays_of",

@@ -16,13 +16,15 @@ from polycnc.nc._block_source import (
     Drain,
     EndSource,
     Language,
+    LastingLanguage,
     Pause,
     SourceItem,
     Statement,
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel import Channel, ChannelSnapshot, Suppressed
+from polycnc.nc._channel import Channel
+from polycnc.nc._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Suppressed, Texts
 from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._calls import Library
@@ -36,6 +38,7 @@ from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 __all__ = [
+    "CHANNEL_CLASSES",
     "CONTEXT_SHIFT",
     "DEFAULT_DIALECT",
     "DIALECTS",
@@ -57,6 +60,7 @@ __all__ = [
     "Event",
     "Group",
     "Language",
+    "LastingLanguage",
     "Library",
     "MAction",
     "Message",
@@ -72,6 +76,7 @@ __all__ = [
     "Suppressed",
     "TextRules",
     "TextSpan",
+    "Texts",
     "Word",
     "WordsBlock",
     "dialect_for",

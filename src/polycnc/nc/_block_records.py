@@ -143,6 +143,14 @@ class _Replay(NamedTuple):
 _Key: TypeAlias = tuple[ProgramText, tuple[Call, ...], ModalSnapshot, tuple[int, int] | None]
 
 
+class SavedRecords(NamedTuple):
+    """Hold contexts by their numbers, the number of the next one, and how many are enough, to go back to."""
+
+    contexts: dict[int, _Key]
+    next: int
+    enough: int
+
+
 @dataclass(slots=True)
 class _Context:
     text: ProgramText
@@ -268,16 +276,17 @@ class BlockRecords:
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return None if context is None else context.text.name
 
-    def snapshot(self) -> tuple[dict[int, object], int]:
+    def snapshot(self) -> SavedRecords:
         """Return all contexts, to go back to."""
-        return dict(self._contexts), self._next
+        contexts = {number: context.key() for number, context in self._contexts.items()}
+        return SavedRecords(contexts, self._next, self._enough)
 
-    def restore(self, saved: tuple[dict[int, object], int]) -> None:
+    def restore(self, saved: SavedRecords) -> None:
         """Go back to a snapshot."""
-        contexts, self._next = saved
-        self._contexts = {n: each for n, each in contexts.items() if isinstance(each, _Context)}
+        self._contexts = {number: _Context(*key) for number, key in saved.contexts.items()}
+        self._next, self._enough = saved.next, saved.enough
         self._read.clear()
-        self._known = {context.key(): n for n, context in self._contexts.items()}
+        self._known = {key: number for number, key in saved.contexts.items()}
         self._last = None, 0
 
     # ------------------------------------------------------------------ keeping few of them

@@ -32,6 +32,7 @@ the program of a source is left, however that comes about; local variables end t
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING, Protocol, TypeAlias, runtime_checkable
@@ -167,6 +168,39 @@ class SearchingLanguage(Language, Protocol):
 
         Raises:
             ProgramError: the program cannot be translated, or cannot begin there.
+        """
+        ...
+
+
+Returning: TypeAlias = Callable[[], Sequence[tuple[object, BlockSource | None]]]
+"""What puts a language back to where it stood; it returns arguments and source of each program under way."""
+
+
+@runtime_checkable
+class LastingLanguage(Language, Protocol):
+    """A language that can tell where its programs stand, and go on from there.
+
+    What it tells is a value of `classes` and of plain ones.
+    """
+
+    @property
+    def classes(self) -> Sequence[type]:
+        """The dataclasses, named tuples and enumerations in what `save` returns."""
+        ...
+
+    def save(self, under_way: Sequence[tuple[object, BlockSource | None]]) -> object:
+        """Return all that it holds, with each program under way: its arguments and its source, the main one first.
+
+        Raises:
+            SnapshotError: What a program does now cannot be kept.
+        """
+        ...
+
+    def way_back(self, channel: Channel, saved: object) -> Returning:
+        """Return what goes back to a state, for a channel that it is attached to by then; nothing changes yet.
+
+        Raises:
+            SnapshotError: The programs of the state cannot go on from there.
         """
         ...
 

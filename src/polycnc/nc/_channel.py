@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
-from polycnc.machine import Machine, MachineConfig
+from polycnc.machine import Machine, MachineConfig, SnapshotError
 from polycnc.nc._block_records import BlockRecords, Call
 from polycnc.nc._block_source import (
     BoundLanguage,
@@ -20,18 +19,21 @@ from polycnc.nc._block_source import (
     Drain,
     EndSource,
     Language,
+    LastingLanguage,
     Pause,
+    Returning,
     SearchingLanguage,
     SourceItem,
     Statement,
     TextSpan,
     WordsBlock,
 )
+from polycnc.nc._channel_snapshot import ChannelSnapshot, Suppressed
 from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._calls import Back, Calls, Library, Place, Running
-from polycnc.nc.blocks._channel_state import ChannelState, SavedState
+from polycnc.nc.blocks._calls import Back, Calls, Library, Place
+from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._interpreter import Control, Interpreter, Trouble
-from polycnc.nc.blocks._messages import Message, Messages
+from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import (
     LINEAR_AXIS,
     MODULO_AXIS,
@@ -41,7 +43,7 @@ from polycnc.nc.blocks._modal import (
     set_diameters,
 )
 from polycnc.nc.blocks._moves import Feed, Line
-from polycnc.nc.blocks._queue import QueueWriter, WriterSnapshot
+from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import (
@@ -66,32 +68,6 @@ _WORDS_ONLY = COMMENT | LABEL
 _START_OFFSET = "G54"
 
 
-class Suppressed(NamedTuple):
-    """What a program keeps from acting (#3003, #3004): single block, waits for functions, feed hold, feed override."""
-
-    single_block: bool = False
-    answers: bool = False
-    hold: bool = False
-    override: bool = False
-
-
-class ChannelSnapshot(NamedTuple):
-    """Hold where a channel stood, to go back to."""
-
-    state: SavedState
-    calls: tuple[Running, ...]
-    place: Place
-    text_end: int
-    calls_within: tuple[Call, ...]
-    blocks: int
-    errors: tuple[ProgramError, ...]
-    messages: dict[str, Message]
-    flags: tuple[bool, bool]
-    writer: WriterSnapshot
-    records: tuple[dict[int, object], int]
-    interpreter: tuple[int, ProgramText]
-
-
 class Channel:
     """Prepare one program for one path of a machine.
 
@@ -105,7 +81,8 @@ class Channel:
     axes in this channel, those of others by `of_another_channel`. With `collect_errors` a refused block
     is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
     gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
-    it, and once compiling it, takes longer than they do.
+    it, and once compiling it, takes longer than they do. Without `attaches` the channel is made to go back to a
+    snapshot: only then it takes its language over.
     """
 
     def __init__(
@@ -127,6 +104,7 @@ class Channel:
         keeps_modal: bool = True,
         collect_errors: bool = False,
         ordinary_blocks: float = ORDINARY_BLOCKS,
+        attaches: bool = True,
     ) -> None:
         self.dialect = dialect
         self.machine = machine
@@ -180,7 +158,7 @@ class Channel:
         self.writer.stands_at_stops = stands_at_stops
         self.writer.answers = answers
         self.writer.marks = deque() if marks else None
-        if isinstance(language, BoundLanguage):
+        if attaches and isinstance(language, BoundLanguage):
             language.attach(self)
         self._begun = False
         self._turns = 0  # of a language, since it gave a block
@@ -331,10 +309,11 @@ class Channel:
         The queue itself belongs to the machine.
 
         Raises:
-            UsageError: a language executes a program.
+            SnapshotError: a language executes a program, and cannot tell where it stands.
         """
         return ChannelSnapshot(
             self.state.save(),
+            self.state.tables.save(),
             self._calls.snapshot(),
             self._here(),
             self._text_end,
@@ -343,25 +322,61 @@ class Channel:
             tuple(self.errors),
             self.messages.snapshot(),
             (self._ended, self._begun),
+            self._turns,
+            self.suppressed,
             self.writer.snapshot(),
             self.records.snapshot(),
             self.interpreter.snapshot(),
+            self._language_state(),
         )
 
-    def restore(self, saved: ChannelSnapshot) -> None:
-        """Go back to a snapshot of this channel."""
+    def _language_state(self) -> object:
+        under_way = [(each.arguments, each.source) for each in self._calls.under_way]
+        if isinstance(self._language, LastingLanguage):
+            return self._language.save(under_way)
+        if any(source is not None for _, source in under_way):
+            raise SnapshotError(
+                "a program with statements is under way, whose language cannot tell where it stands",
+                hint="Take the snapshot before or after it.",
+            )
+        return None
+
+    def way_back(self, saved: ChannelSnapshot) -> Callable[[], None]:
+        """Return what goes back to a snapshot of this channel, or of one that was made alike; nothing changes yet.
+
+        Raises:
+            SnapshotError: a program of it cannot go on from there.
+        """
+        language = self._language
+        returning: Returning | None = None
+        if isinstance(language, LastingLanguage):
+            returning = language.way_back(self, saved.language)
+        elif saved.language is not None:
+            raise SnapshotError(
+                "the program under way needs its language", hint="Restore it where it was taken."
+            )
+        return lambda: self._go_back(saved, returning)
+
+    def _go_back(self, saved: ChannelSnapshot, returning: Returning | None) -> None:
+        if isinstance(self._language, BoundLanguage):
+            self._language.attach(self)
         self.state.restore(saved.state)
-        self._calls.restore(saved.calls)
+        self.state.tables.restore(saved.tables)
+        self._calls.restore(saved.calls, (key[0] for key in saved.records.contexts.values()))
         self._calls_within = saved.calls_within
         self.blocks = saved.blocks
         self.errors[:] = saved.errors
         self._known_errors = {str(error) for error in saved.errors}
         self.messages.restore(saved.messages)
         self._ended, self._begun = saved.flags
+        self._turns, self.suppressed = saved.turns, saved.suppressed
         self.writer.restore(saved.writer)
         self.records.restore(saved.records)
         self.interpreter.restore(saved.interpreter)
         self._jump(saved.place, saved.text_end)
+        if returning is not None:
+            for running, (arguments, source) in zip(self._calls.under_way, returning(), strict=True):
+                running.arguments, running.source = arguments, source
 
     def close(self) -> None:
         """Give up the program: what a language holds for it ends."""

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from polycnc.errors import UsageError
 from polycnc.nc._block_records import Call
@@ -61,6 +61,16 @@ class Running:
     source: BlockSource | None = None
 
 
+class SavedCall(NamedTuple):
+    """Hold a program under way, to go back to, without what its language knows of it."""
+
+    begin: Place
+    repeats: int
+    back: Back | None
+    begun: bool
+    round: int
+
+
 class Calls:
     """Keep the stack of running programs, the main program at the bottom."""
 
@@ -72,6 +82,7 @@ class Calls:
         self._calls: tuple[Call, ...] = ()
         self._labels: dict[str, dict[int, Place]] = {}
         self._files: dict[tuple[Path, int], Place | None] = {}
+        self._texts: dict[str, ProgramText] = {}
 
     @property
     def running(self) -> Running:
@@ -147,21 +158,29 @@ class Calls:
         self._note_calls()
         return running.back
 
-    def snapshot(self) -> tuple[Running, ...]:
-        """Return the programs under way, to go back to.
+    @property
+    def under_way(self) -> tuple[Running, ...]:
+        """The programs under way, the main program first."""
+        return tuple(self._stack)
 
-        Raises:
-            UsageError: a language executes one of them; where it stands cannot be kept.
+    def snapshot(self) -> tuple[SavedCall, ...]:
+        """Return the programs under way, to go back to."""
+        return tuple(
+            SavedCall(each.begin, each.repeats, each.back, each.begun, each.round) for each in self._stack
+        )
+
+    def restore(self, stack: tuple[SavedCall, ...], texts: Iterable[ProgramText]) -> None:
+        """Go back to a snapshot; `texts` are those that were read until then.
+
+        What a language knows of the programs is put into `under_way` by who knows it.
         """
-        if any(running.source is not None for running in self._stack):
-            raise UsageError(
-                "a program with statements is under way", hint="Take the snapshot before or after it."
-            )
-        return tuple(replace(running) for running in self._stack)
-
-    def restore(self, stack: tuple[Running, ...]) -> None:
-        """Go back to a snapshot."""
-        self._stack = [replace(running) for running in stack]
+        self._stack = [Running(each.begin, each.repeats, each.back, each.begun, each.round) for each in stack]
+        self._main = stack[0].begin.text
+        self._labels.clear()
+        self._files.clear()
+        self._texts = {text.name: text for text in texts} | {
+            each.begin.text.name: each.begin.text for each in stack
+        }
         self._note_calls()
 
     def close(self) -> None:
@@ -199,7 +218,7 @@ class Calls:
         if self._library is not None:
             found = self._library(program)
             if found is not None:
-                return Place(found)
+                return Place(self._known(found))
         main = Path(self._main.name)
         if not main.is_file():
             return None  # a text from elsewhere has no folder
@@ -214,8 +233,16 @@ class Calls:
             for extension in dict.fromkeys((main.suffix, "", *self._dialect.extensions)):
                 path = main.parent / f"{name}{extension}"
                 if path.is_file():
-                    return Place(ProgramText.from_path(path))
+                    return Place(self._known(ProgramText.from_path(path)))
         return None
+
+    def _known(self, text: ProgramText) -> ProgramText:
+        """Return a text as one object: the one that is known already where it says the same."""
+        known = self._texts.get(text.name)
+        if known is not None and (known is text or known.content == text.content):
+            return known
+        self._texts[text.name] = text
+        return text
 
 
 def _labels(text: ProgramText) -> dict[int, Place]:

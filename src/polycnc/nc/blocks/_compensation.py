@@ -11,7 +11,7 @@ import copy
 import math
 from dataclasses import replace
 from enum import Enum, IntEnum
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from polycnc.errors import ConfigurationError, ProgramError
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
@@ -100,6 +100,20 @@ class _Mode(Enum):
     LEAVING = "leaving"
 
 
+class SavedCompensation(NamedTuple):
+    """Hold a stage that is active: what it does, and what it holds back."""
+
+    mode: str
+    plane: tuple[int, int, int]
+    offset: float
+    hold: tuple[Move | Wait, ...]
+    move: Move | None
+    leg: Leg | None
+    pending: bool
+    lead_in: bool
+    at: XY | None
+
+
 class RadiusCompensation:
     """Shift plane moves by the tool radius, one stream of queue items in, one out.
 
@@ -153,6 +167,31 @@ class RadiusCompensation:
         other = copy.copy(self)
         other._hold = self._hold.copy()
         return other
+
+    def saved(self) -> SavedCompensation:
+        """Return what this stage does and holds back."""
+        return SavedCompensation(
+            self._mode.value,
+            self._plane,
+            self._offset,
+            tuple(self._hold),
+            self._move,
+            self._leg,
+            self._pending,
+            self._lead_in,
+            self._at,
+        )
+
+    @classmethod
+    def of(cls, saved: SavedCompensation) -> RadiusCompensation:
+        """Return a stage that does and holds back what one did."""
+        made = cls()
+        made._mode = _Mode(saved.mode)
+        made._plane, made._offset = saved.plane, saved.offset
+        made._hold = list(saved.hold)
+        made._move, made._leg = saved.move, saved.leg
+        made._pending, made._lead_in, made._at = saved.pending, saved.lead_in, saved.at
+        return made
 
     def start(self, side: Side, radius_mm: float, plane: tuple[int, int, int], line: int = 0) -> None:
         """Start compensation (G41, G42); the next plane move is the lead-in.

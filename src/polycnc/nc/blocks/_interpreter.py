@@ -366,13 +366,14 @@ class Interpreter:
         self._last_tag = tag
         return tag
 
-    def snapshot(self) -> tuple[int, ProgramText]:
+    def snapshot(self) -> tuple[int, ProgramText, ProgramText]:
         """Return what one block leaves for the next besides the state, to go back to."""
-        return self._last_tag, self._held_text
+        return self._last_tag, self._held_text, self._text
 
-    def restore(self, saved: tuple[int, ProgramText]) -> None:
+    def restore(self, saved: tuple[int, ProgramText, ProgramText]) -> None:
         """Go back to a snapshot."""
-        self._last_tag, self._held_text = saved
+        self._last_tag, self._held_text, self._text = saved
+        self._block = None
 
     @property
     def last_tag(self) -> int:

@@ -58,12 +58,13 @@ class Messages:
                 self._found[text] = old
         self._undo.clear()
 
-    def snapshot(self) -> dict[str, Message]:
-        """Return all messages, to go back to."""
-        return dict(self._found)
+    def snapshot(self) -> tuple[dict[str, Message], str]:
+        """Return all messages and the one shown last, to go back to."""
+        return dict(self._found), self.latest
 
-    def restore(self, found: dict[str, Message]) -> None:
+    def restore(self, saved: tuple[dict[str, Message], str]) -> None:
         """Go back to a snapshot."""
+        found, self.latest = saved
         self._found = dict(found)
         self._undo.clear()
 

@@ -6,7 +6,7 @@ Where the machine's tables can be set themselves (those of a control), what a pr
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from polycnc.machine import MachineConfig, ToolConfig
 from polycnc.nc.blocks._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, Modal
@@ -20,6 +20,14 @@ ADDITIONAL_OFFSETS = 300
 def additional_offset(number: int) -> str:
     """Return the name of an additional work offset (G54.1 P)."""
     return f"G54.P{number}"
+
+
+class SavedTables(NamedTuple):
+    """Hold what a program has set, to go back to: fields of tools, and work offsets."""
+
+    tools: dict[int, dict[str, float]]
+    offsets: dict[str, tuple[float, ...]]
+    changes: int
 
 
 class ProgramTables:
@@ -36,6 +44,19 @@ class ProgramTables:
         """How often the tables of work offsets have been changed."""
         tables = self._machine.offsets, self._machine.tools
         return self._changes + sum(int(getattr(table, "revision", 0)) for table in tables)
+
+    def save(self) -> SavedTables:
+        """Return what the program has set; what it has set in the machine's tables is there."""
+        tools = {number: dict(tool.__dict__) for number, tool in self._tools.items()}
+        return SavedTables(tools, dict(self._offsets), self._changes)
+
+    def restore(self, saved: SavedTables) -> None:
+        """Go back to what the program had set."""
+        self._tools = {
+            number: ToolConfig.model_construct(**dict[str, Any](each)) for number, each in saved.tools.items()
+        }
+        self._offsets = dict(saved.offsets)
+        self._changes = saved.changes
 
     def has_tool(self, number: int) -> bool:
         """Tell whether there is a tool."""

@@ -9,13 +9,15 @@ from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
     from polycnc.nc.macro._calls import Arguments, MacroCalls
-    from polycnc.nc.macro._language import MacroLanguage, MacroSource
+    from polycnc.nc.macro._language import MacroLanguage
+    from polycnc.nc.macro._macro_source import MacroSource
     from polycnc.nc.macro._system import SystemVariables
     from polycnc.nc.macro._variables import LARGEST, LEVELS, LOCALS, MacroError, MacroVariables, Value
 
 _LATER = {
     "_calls": ("Arguments", "MacroCalls"),
-    "_language": ("MacroLanguage", "MacroSource"),
+    "_language": ("MacroLanguage",),
+    "_macro_source": ("MacroSource",),
     "_system": ("SystemVariables",),
     "_variables": ("LARGEST", "LEVELS", "LOCALS", "MacroError", "MacroVariables", "Value"),
 }

@@ -35,6 +35,14 @@ class OutputDevice:
         self._channel = channel
         self.is_open = False
 
+    def saved(self) -> tuple[bool, int]:
+        """Return whether it is open and how many lines messages have told, to go back to."""
+        return self.is_open, self._told
+
+    def put_back(self, saved: tuple[bool, int]) -> None:
+        """Be open or closed as it was; nothing is put out for that."""
+        self.is_open, self._told = saved
+
     def switch(self, on: bool) -> None:
         """Open or close the device (POPEN, PCLOS)."""
         self.is_open = on

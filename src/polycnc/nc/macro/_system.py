@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from datetime import datetime
 
 from polycnc.machine import Clock
@@ -18,6 +19,7 @@ from polycnc.nc.blocks._modal import (
     STOPS_SUPPRESSED,
 )
 from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
+from polycnc.nc.macro._macro_state import SavedSystem
 from polycnc.nc.macro._variables import MacroError, Value, no_variable
 
 _AXES = 8
@@ -66,6 +68,31 @@ class SystemVariables:
         for number in _SUPPRESSING:
             self._stored.pop(number, None)
         self.program_number = self.sequence_number = 0
+
+    @contextmanager
+    def seen_from(self, channel: Channel) -> Iterator[None]:
+        """Tell meanwhile which variables there are for programs of another channel."""
+        before, self._channel = self._channel, channel
+        try:
+            yield
+        finally:
+            self._channel = before
+
+    def saved(self) -> SavedSystem:
+        """Return what it holds by itself, to go back to."""
+        return SavedSystem(
+            dict(self._stored),
+            dict(self._timers),
+            self.modal_call,
+            self.program_number,
+            self.sequence_number,
+        )
+
+    def put_back(self, saved: SavedSystem) -> None:
+        """Go back to what it held."""
+        self._stored, self._timers = dict(saved.stored), dict(saved.timers)
+        self.modal_call = saved.modal_call
+        self.program_number, self.sequence_number = saved.program_number, saved.sequence_number
 
     @property
     def channel(self) -> Channel:

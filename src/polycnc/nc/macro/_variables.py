@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Final, Literal, TypeAlias
+from typing import Final, Literal, NamedTuple, TypeAlias
 
 from polycnc.machine import Store
 
@@ -36,6 +36,15 @@ class MacroError(Exception):
         self.what = what
         self.hint = hint
         self.code = code
+
+
+class SavedVariables(NamedTuple):
+    """Hold variables to go back to: those of each level, the common ones, and `lasting` those from #500 on, or None."""
+
+    levels: tuple[tuple[Value, ...], ...]
+    common: tuple[Value, ...]
+    lasting: tuple[Value, ...] | None
+    names: dict[int, str]
 
 
 class MacroVariables:
@@ -180,6 +189,42 @@ class MacroVariables:
     def leave_all(self) -> None:
         """Leave all macros; the local variables of the main program stay."""
         del self._levels[1:]
+
+    def level_of(self, values: list[Value]) -> int | None:
+        """Return the level of local variables, None if they are of none any more."""
+        return next((n for n, each in enumerate(self._levels) if each is values), None)
+
+    def saved(self, *, lasting: bool) -> SavedVariables:
+        """Return all variables, to go back to; those that a store keeps only with `lasting`."""
+        keeps = lasting or self._store is None
+        return SavedVariables(
+            tuple(map(tuple, self._levels)),
+            tuple(self.common[:_FIRST_PERMANENT]),
+            tuple(self.common[_FIRST_PERMANENT:]) if keeps else None,
+            dict(self.names),
+        )
+
+    @staticmethod
+    def fits(saved: SavedVariables) -> bool:
+        """Tell whether there are as many variables as these."""
+        sizes = {len(each) for each in saved.levels}
+        lasting = saved.lasting is None or len(saved.lasting) == _SIZE - _FIRST_PERMANENT
+        return (
+            sizes == {LOCALS + 1}
+            and len(saved.levels) <= LEVELS + 1
+            and len(saved.common) == _FIRST_PERMANENT
+            and lasting
+        )
+
+    def put_back(self, saved: SavedVariables) -> None:
+        """Go back to variables; a store keeps those from #500 on."""
+        self._levels[:] = [list(each) for each in saved.levels]
+        self.common[:_FIRST_PERMANENT] = saved.common
+        if saved.lasting is not None:
+            self.common[_FIRST_PERMANENT:] = saved.lasting
+            self.save()
+        self.names = dict(saved.names)
+        self.revision += 1
 
     def permanent(self) -> dict[int, float]:
         """Return the variables from #500 on that are not vacant, to be kept."""

@@ -431,7 +431,7 @@ class PowerMate:
         return self.control.status()
 
     def snapshot(self) -> PowerMateSnapshot:
-        """Return the state of the present cycle; what is durable is not in it."""
+        """Return the state of the present cycle; of what is durable, the variables of a program under way are in it."""
         control = self.control.snapshot()
         return PowerMateSnapshot(
             device=DEVICE,
@@ -457,10 +457,11 @@ class PowerMate:
         )
 
     def restore(self, snapshot: Snapshot) -> None:
-        """Go back to a snapshot; what is durable stays as it is.
+        """Go back to a snapshot; what is durable stays as it is, but for the variables of a program under way.
 
         Raises:
-            SnapshotError: It is of another control, or axes have other limits now; nothing has changed.
+            SnapshotError: It is of another control, axes have other limits now, or a program under way has been
+                edited since; nothing has changed.
         """
         if not isinstance(snapshot, PowerMateSnapshot):
             raise SnapshotError(

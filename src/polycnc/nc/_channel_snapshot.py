@@ -1,0 +1,113 @@
+"""What a channel holds at one cycle, as a value to go back to, and the classes that such values are made of."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from polycnc.errors import ProgramError, SourcePosition
+from polycnc.machine import Form
+from polycnc.nc._block_records import Call, SavedRecords
+from polycnc.nc.blocks._calls import Back, Place, SavedCall
+from polycnc.nc.blocks._channel_state import Cycle, ModalSnapshot, Plain, SavedState, Spindle
+from polycnc.nc.blocks._compensation import RadiusCompensation, SavedCompensation
+from polycnc.nc.blocks._corners import Corner
+from polycnc.nc.blocks._cycles import CycleWords
+from polycnc.nc.blocks._frame import Frame, Polar, Rotation
+from polycnc.nc.blocks._messages import Message
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Spline, Stop, Wait
+from polycnc.nc.blocks._offset_geometry import Leg
+from polycnc.nc.blocks._placement import Placement
+from polycnc.nc.blocks._probe import Probe
+from polycnc.nc.blocks._queue import Event, WriterSnapshot
+from polycnc.nc.blocks._tables import SavedTables
+from polycnc.nc.blocks._tip import TipShift
+from polycnc.nc.blocks._turning import Turning
+from polycnc.nc.text._program import ProgramText
+
+
+class Suppressed(NamedTuple):
+    """What a program keeps from acting (#3003, #3004): single block, waits for functions, feed hold, feed override."""
+
+    single_block: bool = False
+    answers: bool = False
+    hold: bool = False
+    override: bool = False
+
+
+class ChannelSnapshot(NamedTuple):
+    """Hold where a channel stood, to go back to; `language` is what its language says of itself."""
+
+    state: SavedState
+    tables: SavedTables
+    calls: tuple[SavedCall, ...]
+    place: Place
+    text_end: int
+    calls_within: tuple[Call, ...]
+    blocks: int
+    errors: tuple[ProgramError, ...]
+    messages: tuple[dict[str, Message], str]
+    flags: tuple[bool, bool]
+    turns: int
+    suppressed: Suppressed
+    writer: WriterSnapshot
+    records: SavedRecords
+    interpreter: tuple[int, ProgramText, ProgramText]
+    language: object
+
+
+CHANNEL_CLASSES: Sequence[type] = (
+    Arc, Back, Call, ChannelSnapshot, Corner, Cycle, CycleWords, Event, Feed, Frame, Leg, Line, Message, ModalSnapshot,
+    Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation, SavedRecords, SavedState,
+    SavedTables, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
+)  # fmt: skip
+"""The classes of which a snapshot of a channel is made, beside those of its language."""
+
+
+class Texts:
+    """The program texts of a snapshot: each once, and named by its place among them."""
+
+    def __init__(self, texts: Sequence[ProgramText] = ()) -> None:
+        self.all = list(texts)
+        self._places = {id(text): n for n, text in enumerate(self.all)}
+
+    def forms(self) -> Mapping[type, Form]:
+        """Return how texts and errors are kept."""
+        return {
+            ProgramText: Form(self._place, self._text),
+            ProgramError: Form(_taken, _error),
+            RadiusCompensation: Form(lambda stage: (stage.saved(),), RadiusCompensation.of),
+        }
+
+    def _place(self, text: ProgramText) -> tuple[int]:
+        found = self._places.get(id(text))
+        if found is None:
+            found = next(
+                (
+                    n
+                    for n, each in enumerate(self.all)
+                    if each.name == text.name and each.content == text.content
+                ),
+                len(self.all),
+            )
+            if found == len(self.all):
+                self.all.append(text)
+            self._places[id(text)] = found
+        return (found,)
+
+    def _text(self, place: int) -> ProgramText:
+        if not 0 <= place < len(self.all):
+            raise ValueError(f"there is no text {place}")
+        return self.all[place]
+
+
+def _taken(error: ProgramError) -> tuple[object, ...]:
+    return error.what, error.code, error.position, error.hint, error.limit
+
+
+def _error(
+    what: str, code: str, position: SourcePosition | None, hint: str, limit: tuple[str, bool] | None
+) -> ProgramError:
+    made = ProgramError(what, code=code, position=position, hint=hint)
+    made.limit = limit
+    return made
