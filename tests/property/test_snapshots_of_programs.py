@@ -218,7 +218,7 @@ def mutated(plain: Any, chance: random.Random) -> Any:
     if isinstance(plain, list | dict) and plain and chance.random() < 0.97:
         place = chance.choice(list(plain)) if isinstance(plain, dict) else chance.randrange(len(plain))
         changed = dict(plain) if isinstance(plain, dict) else list(plain)
-        changed[place] = mutated(plain[place], chance)  # type: ignore[index, call-overload]
+        changed[place] = mutated(plain[place], chance)
         return changed
     return chance.choice(
         [None, True, -7, 3, 1e300, "X", [], ["()"], ["{}", ["()"]], ["Stop", 3], ["()", 1, 2], {}]
