@@ -731,8 +731,13 @@ def test_a_snapshot_in_the_middle_of_a_program_goes_on_as_the_undisturbed_one() 
     first, second = (end.axes for _, end in ends)
     assert first == second
     assert made.status().emergency is Emergency.OFF
-    with pytest.raises(SnapshotError, match="under way"):
-        saved.to_bytes()
+    elsewhere = control(script=script)
+    elsewhere.restore(ControlSnapshot.from_bytes(saved.to_bytes()))
+    assert elsewhere.snapshot() == saved
+    elsewhere.advance(77)
+    elsewhere.set_overrides(feed=1.7)
+    assert elsewhere.advance(100_000, until=ControlEvent.RUN_STATE) == ends[0][0]
+    assert elsewhere.status().axes == first
     made.advance(100_000, until=ControlEvent.RUN_STATE)
     ended, status = made.snapshot(), made.status()
     made.reset()
@@ -770,7 +775,6 @@ def test_the_snapshot_of_another_thing_is_refused_before_anything_changes() -> N
         Control("mill3").snapshot(),
         Control(cnc_machine(cycle_s=0.002)).snapshot(),
         Control(cnc_machine(), dialect="fanuc").snapshot(),
-        started().snapshot(),  # alike, but its program is under way elsewhere
         made.machine.snapshot(),
     )
     before = made.status()

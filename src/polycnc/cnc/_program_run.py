@@ -34,7 +34,6 @@ from polycnc.nc import (
     load_dialect,
 )
 
-_MDI = "MDI"
 _STANDING = {
     RunState.STOPPED_AT_BLOCK,
     RunState.PROGRAM_STOP,
@@ -80,7 +79,7 @@ class ProgramRun:
     ) -> None:
         options = options or RunOptions()
         self.machine = machine
-        self.program = program
+        self.program = self._first = program
         self.dialect = load_dialect(dialect)
         self.path = path
         self._options = options
@@ -216,7 +215,7 @@ class ProgramRun:
         Raises:
             UsageError: a program is being executed, or there is an alarm.
         """
-        self.load(ProgramText.from_text(text, _MDI), keeps_modal=True)
+        self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
         self.start()
 
     def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
@@ -541,7 +540,7 @@ class ProgramRun:
         snapshot.check(DEVICE, self._made_from, ())
         saved = RunSnapshot.of_any(snapshot).saved(self._language, find)
         mine, kept = self.program, saved.program
-        if mine.name == kept.name != _MDI and mine.content != kept.content:
+        if mine is self._first and mine.name == kept.name and mine.content != kept.content:
             raise SnapshotError(
                 f"{mine.name} is another program than the one of the snapshot",
                 hint="give the same one, or use another snapshot",
