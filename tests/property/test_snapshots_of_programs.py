@@ -7,6 +7,7 @@ import pickle
 import random
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,10 @@ import pytest
 from polycnc.cnc import ProgramRun, RunOptions, RunSnapshot, RunState
 from polycnc.machine import Machine, Snapshot, SnapshotError, load_machine
 from polycnc.nc import ProgramText, load_dialect
+from polycnc.nc.cpl import CplLanguage
 from polycnc.nc.macro import MacroLanguage
+from support.cpl_host import RecordingHost
+from support.cpl_programs import cpl_programs
 from support.macro_programs import macro_programs
 from support.runs import program_run
 
@@ -78,6 +82,52 @@ class Rig:
         )
 
 
+class CplRig(Rig):
+    """A run of CPL programs that a host keeps; it answers from the machine."""
+
+    def __init__(self, programs: dict[str, str]) -> None:
+        functions: dict[str, Callable[..., object]] = {
+            "MPOS": self.position,
+            "CLOCK": self.clock,
+            "IC": self.interface,
+        }
+        self.printed = bytearray()
+        self.machine = Machine(load_machine(None), segments=256)
+        self.host = RecordingHost(functions, programs)
+        self.cpl = CplLanguage(self.host)
+        self.run = ProgramRun(
+            self.machine,
+            ProgramText.from_text(programs["main.cpl"], "main.cpl"),
+            load_dialect("bosch"),
+            options=RunOptions(asks_often=True),
+            language=self.cpl,
+        )
+
+    def position(self, axis: int) -> float:
+        return self.machine.setpoints["XYZ"[axis - 1]]
+
+    def clock(self) -> int:
+        return round(self.machine.clock.cycles * self.machine.clock.cycle_s * 1000)
+
+    def interface(self, bit: int) -> bool:
+        return self.machine.setpoints["X"] > bit
+
+    def end(self) -> tuple[object, ...]:
+        while self.run.active:
+            self.go(100_000)
+        self.run.feed.pass_marks()
+        return (
+            self.run.state,
+            str(self.run.error),
+            self.machine.clock.cycles,
+            self.machine.snapshot(),
+            self.run.snapshot(),
+            dict(self.host.permanent),
+            dict(self.cpl.globals),
+            self.run.channel.messages.all(),
+        )
+
+
 def written(folder: Path, seed: int) -> Path:
     for name, text in macro_programs(seed).items():
         (folder / name).write_text(text)
@@ -109,6 +159,35 @@ def test_a_macro_program_goes_on_from_any_cycle(tmp_path: Path, seeds: range) ->
             assert printed[:before] + bytes(other.printed) == printed
     assert within > len(seeds)
     assert stops > len(seeds) / 3
+
+
+@pytest.mark.parametrize("seeds", [range(14), pytest.param(range(14, 500), marks=pytest.mark.long)])
+def test_a_cpl_program_goes_on_from_any_cycle(seeds: range) -> None:
+    within = waits = 0
+    for seed in seeds:
+        programs, chance = cpl_programs(seed), random.Random(seed)
+        rig = CplRig(programs)
+        rig.run.start()
+        taken = []
+        pieces: list[int] = []
+        while rig.run.active:
+            pieces.append(chance.randrange(1, 90))
+            rig.go(pieces[-1])
+            if rig.cpl.running:  # permanent variables are durable, and in a snapshot only as long
+                taken.append((rig.kept(), len(pieces)))
+            within += bool(rig.run.stack)
+            waits += any(source.waits for source in rig.cpl.running)
+        wanted = rig.end()
+        assert rig.run.state is RunState.COMPLETED, f"seed {seed}: {rig.run.error}"
+        for kept, passed in chance.sample(taken, min(6, len(taken))):
+            other = CplRig(programs)
+            other.put_back(kept)
+            assert other.kept() == kept
+            for cycles in pieces[passed:]:  # how far is planned ahead depends on how often somebody looks
+                other.go(cycles)
+            assert other.end() == wanted, f"seed {seed}"
+    assert within > len(seeds) / 2
+    assert waits > len(seeds) / 2
 
 
 MAIN = """POPEN

@@ -11,7 +11,7 @@ from polycnc.cnc import ControlError, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import Signals
-from polycnc.machine import Host, SnapshotError
+from polycnc.machine import Host
 
 LINEAR = "vmax_mm_s = 500\namax_mm_s2 = 5000\n"
 ROTARY = 'kind = "rotary"\nvmax_deg_s = 100\namax_deg_s2 = 400\n'
@@ -351,7 +351,7 @@ def test_what_is_permanent_is_there_after_switching_on_again(example: Example) -
     assert [found[name] for name in ("#A%", "#B", "#C%", "#D")] == [17, 30, 4711, 3.5]
 
 
-def test_snapshots_are_taken_between_cpl_programs(example: Example) -> None:
+def test_snapshots_are_taken_between_cpl_programs_and_in_them(example: Example) -> None:
     example.run("N1 G0 X5")
     snapshot = example.pnc.snapshot()
     example.run("N1 G0 X9")
@@ -359,8 +359,10 @@ def test_snapshots_are_taken_between_cpl_programs(example: Example) -> None:
     assert example.pnc.axes["X"].setpoint == 5
     example.start("10 WAIT(,500)\n20 #A=1")
     example.pnc.advance(5)
-    with pytest.raises(SnapshotError):
-        example.pnc.snapshot()
+    snapshot = example.pnc.snapshot()
+    assert example.pnc.advance(20_000, until=lambda: example.pnc.run_state(1) is RunState.COMPLETED) == 496
+    example.pnc.restore(snapshot)
+    assert example.pnc.advance(20_000, until=lambda: example.pnc.run_state(1) is RunState.COMPLETED) == 496
 
 
 # ---------------------------------------------------------------------- what another channel sees

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -18,7 +18,7 @@ from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, r
 from polycnc.controllers.bosch.system import Category
 from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
-from polycnc.nc import ProgramText, load_dialect
+from polycnc.nc import BlockSource, Channel, ProgramText, Returning, load_dialect
 from polycnc.nc.cpl import (
     OMITTED,
     CodeCalls,
@@ -128,6 +128,14 @@ class ChannelHost:
         code = f"{address}{name}"
         drilling = self.system.program_of(DRILLING[code]) if code in DRILLING else None
         return drilling or self.system.program(code)
+
+    def under_way(self) -> str:
+        """Return what of the control is under way and no snapshot keeps; empty if nothing is."""
+        if self.files.any_open:
+            return "a file is open"
+        if self.dialog.is_open:
+            return "a dialog is open"
+        return "the coupling has not answered" if self.coupling.is_waiting else ""
 
     # ------------------------------------------------------------------ for who runs it
 
@@ -305,6 +313,17 @@ class _Language(CplLanguage):
                 self._host_of.note(remark)
         self.used = self.used or source is not None
         return source
+
+    def way_back(self, channel: Channel, saved: object) -> Returning:
+        """Return what goes back to a state, with the variables of its programs."""
+        back = super().way_back(channel, saved)
+
+        def go_back() -> Sequence[tuple[object, BlockSource | None]]:
+            found = back()
+            self.used = self.used or bool(self.running)
+            return found
+
+        return go_back
 
     def ended(self) -> None:
         """End what does not outlive the program."""

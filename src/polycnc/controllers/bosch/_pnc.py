@@ -142,7 +142,7 @@ class Pnc:
         """Return the whole state; what is durable is not in it.
 
         Raises:
-            SnapshotError: A CPL program is under way.
+            SnapshotError: A CPL program is under way and has a file or a dialog open, or waits for an answer.
         """
         return self._control.snapshot()
 

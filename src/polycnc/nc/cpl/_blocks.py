@@ -3,19 +3,45 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from polycnc.errors import ProgramError
-from polycnc.nc._block_source import CallProgram, Drain, Pause, SourceItem, Statement, TextSpan, WordsBlock
+from polycnc.language import Traced, resumed
+from polycnc.machine import SnapshotError
+from polycnc.nc._block_source import (
+    BlockSource,
+    CallProgram,
+    Drain,
+    Pause,
+    Returning,
+    SourceItem,
+    Statement,
+    TextSpan,
+    WordsBlock,
+)
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, CodeWord
-from polycnc.nc.cpl._host import Host, Lines, NcValues, Step, SubProgram, Waiting
+from polycnc.nc.cpl._cpl_state import (
+    CPL_CLASSES,
+    MadeObjects,
+    Objects,
+    SavedCalled,
+    SavedCpl,
+    SavedProgram,
+    damaged,
+    kept_names,
+    put_back,
+)
+from polycnc.nc.cpl._host import Host, KeepingHost, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._link_table import LinkTables
 from polycnc.nc.cpl._loops import LoopWatch, WatchedHost
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
-from polycnc.nc.cpl._run import Arguments, Execution
+from polycnc.nc.cpl._run import Arguments, Execution, undeclared
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word, scan_block
+
+if TYPE_CHECKING:
+    from polycnc.nc._channel import Channel
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
 _STATEMENT = re.compile(r"[ \t]*[0-9.@#](?![0-9]*[ \t]*WAIT)")
@@ -29,6 +55,16 @@ class _Called(NamedTuple):
     program: Program
     arguments: Arguments
     modal: bool = False
+
+
+class _Standing(NamedTuple):
+    """A program that is to stand where another one stood."""
+
+    saved: SavedProgram
+    program: Program
+    called: tuple[object, ...]
+    names: dict[str, object]
+    traced: Traced[int] | None
 
 
 class CplLanguage:
@@ -56,6 +92,7 @@ class CplLanguage:
         """The sources under way, that of the main program first."""
         self.at_line: Callable[[str, int], bool] | None = None
         """What tells a debugger's wish to stand before a line, of programs linked for stepping."""
+        self._control = host
         self._host = WatchedHost(host)
         self._loop = LoopWatch()
         self._skip_levels = skip_levels
@@ -87,6 +124,109 @@ class CplLanguage:
         source = CplSource(text, execution, self, modal=called.modal)
         self.running.append(source)
         return source
+
+    # Where it stands
+
+    @property
+    def classes(self) -> Sequence[type]:
+        """The classes of which its state is made."""
+        return CPL_CLASSES
+
+    def save(self, under_way: Sequence[tuple[object, BlockSource | None]]) -> SavedCpl:
+        """Return its state; permanent variables are in it while a program is under way.
+
+        Raises:
+            SnapshotError: A program waits for an answer, or the control has something under way.
+        """
+        objects = Objects()
+        if self.running and isinstance(self._control, KeepingHost) and (what := self._control.under_way()):
+            raise SnapshotError(f"a CPL program is under way and {what}", hint="take the snapshot later")
+        permanent = self._host.permanent if self.running else {}
+        plain = objects.plain
+        programs = tuple(
+            (
+                _saved_call(arguments, objects),
+                source.saved(objects) if isinstance(source, CplSource) else None,
+            )
+            for arguments, source in under_way
+        )
+        shared, kept = (
+            {name: plain(value) for name, value in variables.items()}
+            for variables in (self.globals, permanent)
+        )
+        return SavedCpl(objects.all(), shared, kept, self.modal, programs)
+
+    def way_back(self, channel: Channel, saved: object) -> Returning:
+        """Return what goes back to a state; nothing changes yet.
+
+        Raises:
+            SnapshotError: A program of the state has been changed since, or cannot go on from there.
+        """
+        if not isinstance(saved, SavedCpl):
+            raise damaged("it is of another language")
+        made = MadeObjects(saved.objects)
+        values = made.values(saved.globals), made.values(saved.permanent)
+        names = set(values[1])
+        if names and names != set(self._host.permanent):
+            raise SnapshotError("the control has other permanent variables now", hint="declare the same ones")
+        standing = [None if each is None else self._standing(each, made) for _, each in saved.under_way]
+        return lambda: self._go_back(saved, values, standing)
+
+    def _standing(self, saved: SavedProgram, made: MadeObjects) -> _Standing:
+        found = self._control.program("", saved.file.rpartition("/")[2])
+        text = _decoded(saved.text.content)
+        if found is not None and found[0] == saved.file and found[1] != text:
+            raise SnapshotError(
+                f"{saved.file} has been changed since the snapshot was taken",
+                hint="put the program back as it was, or use another snapshot",
+            )
+        program = self.linker.program(text, saved.file)
+        fits = (
+            program is not None
+            and not undeclared(program, self._host.permanent)
+            and len(saved.wait) <= 1
+            and (not saved.wait or bool(saved.place))
+        )
+        if program is None or not fits:
+            raise damaged(f"{saved.file} cannot stand there")
+        names = made.values(saved.names)
+        called = tuple(made.value(each) for each in saved.called.values)
+        if not saved.place:
+            return _Standing(saved, program, called, names, None)
+        try:
+            traced = resumed(program.traced, saved.place, names, again=bool(saved.wait))
+        except (ValueError, RecursionError, MemoryError, SyntaxError) as error:
+            raise damaged(f"{saved.file} cannot stand there") from error
+        return _Standing(saved, program, called, names, traced)
+
+    def _go_back(
+        self,
+        saved: SavedCpl,
+        values: tuple[dict[str, object], dict[str, object]],
+        standing: Sequence[_Standing | None],
+    ) -> list[tuple[object, BlockSource | None]]:
+        """Go back to a state; return the programs under way."""
+        put_back(self.globals, values[0])
+        if values[1]:
+            put_back(self._host.permanent, values[1])
+        self.modal = saved.modal
+        self.moves_on()
+        self.running = []
+        found: list[tuple[object, BlockSource | None]] = []
+        for (called, _), each in zip(saved.under_way, standing, strict=True):
+            if each is None:
+                found.append((None, None))
+                continue
+            arguments = Arguments(each.called, each.saved.called.linked)
+            execution = Execution(each.program, self.linker, self._host, self.globals, arguments)
+            source = CplSource(each.saved.text, execution, self, modal=each.saved.called.modal)
+            source.go_to(each.saved, each.traced, each.names)
+            self.running.append(source)
+            handed = None if called is None else _Called(each.program, arguments, each.saved.called.modal)
+            found.append((handed, source))
+        return found
+
+    # Loops
 
     def loops(self) -> bool:
         """Tell whether the programs under way are in a loop without end, if nothing else changes what they read.
@@ -125,7 +265,8 @@ class CplSource:
         self.execution = execution
         self.is_modal = modal
         """Whether its moves are followed by no modal call: it is that call."""
-        self._items: Iterator[SourceItem] = iter(())
+        self._behind: tuple[CodeWord, ...] | None = None  # words behind which a modal call may come
+        self._left: tuple[int, int] | None = None  # plain blocks that are given one by one
         self._text = text
         self._language = language
         self._starts = [0, *(found.end() for found in _LINE_END.finditer(text.content)), len(text.content)]
@@ -150,7 +291,7 @@ class CplSource:
             ProgramError: A statement cannot be executed.
         """
         while True:
-            if (item := next(self._items, None)) is not None:
+            if (item := self._left_over()) is not None:
                 return item
             if self._waiting is not None:
                 self._answer = self._waiting.answer()
@@ -164,11 +305,12 @@ class CplSource:
                 case Lines(first=first, last=last):
                     if self._language.modal is None or self._in_modal:
                         return self._span(first, last)
-                    self._items = self._lines(first, last)
+                    self._left = first, last
                 case NcValues() as block:
                     if not self._language.skips(block.skip):
-                        words = [CodeWord(each.address, each.extension, each.value) for each in block.words]
-                        self._items = self._calls_behind(words)
+                        self._behind = tuple(
+                            CodeWord(each.address, each.extension, each.value) for each in block.words
+                        )
                         return self._words(block)
                 case SubProgram() as call:
                     modal = f"{call.address}{call.name}" in self._language.codes.modal
@@ -188,6 +330,45 @@ class CplSource:
                     return Statement(step.line) if self._statements % _STATEMENTS else Pause.PAUSE
                 case _:
                     return Pause.PAUSE
+
+    def saved(self, objects: Objects) -> SavedProgram:
+        """Return where the program stands.
+
+        Raises:
+            SnapshotError: It waits for the answer of a function.
+        """
+        execution = self.execution
+        place = execution.place
+        return SavedProgram(
+            self._text,
+            execution.program.file,
+            SavedCalled(
+                tuple(map(objects.plain, execution.arguments.values)),
+                execution.arguments.linked,
+                self.is_modal,
+            ),
+            execution.line,
+            place,
+            kept_names(execution.names(), objects) if place else {},
+            self._statements,
+            () if self._waiting is None else (self._waiting.began_ms,),
+            self._answer if isinstance(self._answer, int) else None,
+            self._behind,
+            self._left,
+        )
+
+    def go_to(self, saved: SavedProgram, traced: Traced[int] | None, names: dict[str, object]) -> None:
+        """Stand where another one stood; `traced` is code that stands there, None for the beginning and the end."""
+        self._statements, self._answer = saved.statements, saved.answer
+        self._behind, self._left = saved.behind, saved.left
+        self.execution.line = saved.line
+        if traced is None:
+            if saved.place is None:
+                self.execution.close()
+            return
+        event = self.execution.go_to(traced, names)
+        if saved.wait and isinstance(event, Waiting):
+            self._waiting = _Wait(event, self._language.milliseconds, began_ms=saved.wait[0])
 
     def leave(self) -> bool:
         """Leave returns to the channel, which has entered every sub-program."""
@@ -212,31 +393,42 @@ class CplSource:
     def _span(self, first: int, last: int) -> TextSpan:
         return TextSpan(self._starts[first - 1], first, self._starts[last])
 
-    def _lines(self, first: int, last: int) -> Iterator[SourceItem]:
-        """Give plain blocks one by one, each with the call behind its move, as long as there is one."""
-        for line in range(first, last + 1):
-            if self._language.modal is None:
-                yield self._span(line, last)
-                return
-            yield self._span(line, line)
-            try:
-                block = scan_block(self._text, self._starts[line - 1], line, self._language.codes.rules)
-            except ProgramError:
-                continue  # the channel says so
-            if not (block.skip_level and self._language.skips(block.skip_level)):
-                yield from self._calls_behind(
-                    [CodeWord(word.letter, word.index, word.value) for word in block.words]
-                )
+    def _left_over(self) -> SourceItem | None:
+        """Return what a block or plain lines have left to give: the modal call behind a move, the next line."""
+        while self._behind is not None or self._left is not None:
+            if self._behind is None:
+                return self._next_line()
+            words, self._behind = self._behind, None
+            if (call := self._call_behind(words)) is not None:
+                return call
+        return None
 
-    def _calls_behind(self, words: list[CodeWord]) -> Iterator[SourceItem]:
-        """Give the modal call behind a block that moves, or end it."""
+    def _next_line(self) -> SourceItem:
+        """Return the next of plain blocks that are given one by one; all of them once there is no modal call."""
+        assert self._left is not None
+        line, last = self._left
+        if self._language.modal is None:
+            self._left = None
+            return self._span(line, last)
+        self._left = (line + 1, last) if line < last else None
+        try:
+            block = scan_block(self._text, self._starts[line - 1], line, self._language.codes.rules)
+        except ProgramError:
+            return self._span(line, line)  # the channel says what is wrong
+        if not (block.skip_level and self._language.skips(block.skip_level)):
+            self._behind = tuple(CodeWord(word.letter, word.index, word.value) for word in block.words)
+        return self._span(line, line)
+
+    def _call_behind(self, words: Sequence[CodeWord]) -> SourceItem | None:
+        """Return the modal call behind a block that moves, or end it."""
         language = self._language
         if language.modal is None or self._in_modal:
-            return
+            return None
         if language.codes.cancels_modal(words):
             language.modal = None
         elif language.codes.moves(words):
-            yield self._call(language.modal, modal=True)
+            return self._call(language.modal, modal=True)
+        return None
 
     def _words(self, block: NcValues) -> WordsBlock:
         begin, end = self._starts[block.line - 1 : block.line + 1]
@@ -259,34 +451,44 @@ class CplSource:
 class _Wait:
     """A WAIT with a condition or a duration, from when the queue has been drained."""
 
-    def __init__(self, wait: Waiting, milliseconds: Callable[[], int]) -> None:
+    def __init__(
+        self, wait: Waiting, milliseconds: Callable[[], int], *, began_ms: int | None = None
+    ) -> None:
         self._wait = wait
         self._milliseconds = milliseconds
-        self._began: int | None = None
+        self.began_ms = began_ms
+        """When the queue had been drained, None before."""
 
     @property
     def begun(self) -> bool:
         """Whether the queue has been drained."""
-        return self._began is not None
+        return self.began_ms is not None
 
     @property
     def ends_ms(self) -> int | None:
         """When it ends at the latest; None if it has no duration or has not begun."""
-        if self._began is None or self._wait.duration_ms is None:
+        if self.began_ms is None or self._wait.duration_ms is None:
             return None
-        return self._began + self._wait.duration_ms
+        return self.began_ms + self._wait.duration_ms
 
     def answer(self) -> int | None:
         """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet."""
         wait = self._wait
-        first = self._began is None
-        if self._began is None:
-            self._began = self._milliseconds() if wait.duration_ms is not None else 0
+        first = self.began_ms is None
+        if self.began_ms is None:
+            self.began_ms = self._milliseconds() if wait.duration_ms is not None else 0
         if wait.condition is not None and wait.condition():
             return 0 if first else 2
-        if wait.duration_ms is not None and self._milliseconds() - self._began >= wait.duration_ms:
+        if wait.duration_ms is not None and self._milliseconds() - self.began_ms >= wait.duration_ms:
             return 1
         return None
+
+
+def _saved_call(arguments: object, objects: Objects) -> SavedCalled | None:
+    if not isinstance(arguments, _Called):
+        return None
+    given = arguments.arguments
+    return SavedCalled(tuple(map(objects.plain, given.values)), given.linked, arguments.modal)
 
 
 def _decoded(content: bytes) -> str:

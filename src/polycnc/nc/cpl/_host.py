@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, MutableMapping
 from dataclasses import dataclass
-from typing import Any, Final, NamedTuple, Protocol, TypeAlias
+from typing import Any, Final, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from polycnc.nc.cpl._variables import Kind
 
@@ -145,6 +145,15 @@ class Host(Protocol):
 
     def program(self, address: str, name: str) -> tuple[str, str] | None:
         """Return name of file and text of a sub-program, None if there is none."""
+
+
+@runtime_checkable
+class KeepingHost(Protocol):
+    """A control that says what of it is under way and cannot be kept in a snapshot."""
+
+    def under_way(self) -> str:
+        """Return what is, as "a file is open"; empty if nothing is."""
+        ...
 
 
 def wait_for(function: Callable[..., object], *arguments: object, **named: object) -> Any:

@@ -139,6 +139,10 @@ class Linker:
             raise errors[0]
         return program
 
+    def program(self, text: str, file: str) -> Program | None:
+        """Return the program of a text as it runs, None if something is wrong with it."""
+        return self._compiled(text, file, [])
+
     def refuse(self, program: Program) -> None:
         """Forget that a program was linked: the control refuses it."""
         self._tables.drop(program.file)

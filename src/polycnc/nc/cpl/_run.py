@@ -8,7 +8,8 @@ from collections.abc import Callable, Container, Sequence
 from typing import Any, NamedTuple, NoReturn
 
 from polycnc.errors import PolycncError, ProgramError
-from polycnc.language import Flaw, frame_of
+from polycnc.language import Flaw, Traced, frame_of, inner_of, line_of, names_of
+from polycnc.machine import SnapshotError
 from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
 from polycnc.nc.cpl._fields import dimension_field
@@ -54,8 +55,10 @@ class Execution:
         self.line = 0
         """The line of the last event."""
         self._linker = linker
+        self.arguments = arguments
+        self._given = variables, host.permanent, host, arguments
         make = program.traced.load(_SCOPE)["program"]
-        self._generator = make(variables, host.permanent, host, arguments)
+        self._generator = make(*self._given)
 
     def step(self, answer: object = None) -> Event | None:
         """Return the next event, None at the end; `answer` is that to the last one (WAIT: 0, 1 or 2).
@@ -72,6 +75,31 @@ class Execution:
         if not isinstance(event, Pause):
             self.line = event[0]
         return event
+
+    @property
+    def place(self) -> int | None:
+        """The line of its Python at which it stands: 0 before the first, None behind the last.
+
+        Raises:
+            SnapshotError: It waits for the answer of a function, in the middle of a statement.
+        """
+        if inner_of(self._generator) is not None:
+            raise SnapshotError(
+                "the CPL program waits for the answer of a function",
+                hint="take the snapshot when it has come",
+            )
+        return line_of(self._generator)
+
+    def names(self) -> dict[str, Any]:
+        """Return the names of its Python."""
+        return names_of(self._generator)
+
+    def go_to(self, traced: Traced[int], names: dict[str, object]) -> object:
+        """Stand where the code of `traced` stands (see `resumed`); return what it gives there."""
+        self._generator.close()
+        make = traced.load(_SCOPE)["program"]
+        self._generator = make(*self._given, names)
+        return next(self._generator)
 
     @property
     def statement_line(self) -> int:

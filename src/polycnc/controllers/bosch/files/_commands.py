@@ -52,6 +52,11 @@ class FileCommands:
         }  # fmt: skip
 
     @property
+    def any_open(self) -> bool:
+        """Whether the program has a file open."""
+        return bool(self._open)
+
+    @property
     def left_justified(self) -> bool:
         """Whether LJUST is in force."""
         return self._left

@@ -69,6 +69,11 @@ class Coupling:
         self._magic = magic
         self._under_way: tuple[tuple[object, ...], Iterator[None]] | None = None
 
+    @property
+    def is_waiting(self) -> bool:
+        """Whether an order of the program has not been answered."""
+        return self._under_way is not None
+
     def mcods(self, *arguments: object) -> object:
         """Read data of the control into a variable; return the answer's code, or BLOCKED until data are new.
 

@@ -76,6 +76,11 @@ class Dialog:
             "BMP": self._bmp,
         }  # fmt: skip
 
+    @property
+    def is_open(self) -> bool:
+        """Whether the program has opened a dialog."""
+        return self._in_dialog
+
     def finish(self) -> None:
         """End the program: softkeys go, the font is the default one again."""
         self.surface.softkeys = ()
