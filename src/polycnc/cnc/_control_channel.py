@@ -393,10 +393,7 @@ class ControlChannel:
         """
         if run is None:
             return lambda: None
-        row = self._machine.state.paths.row[self.path]
-        tolerance_mm = row["tolerance_mm"]
         made = self._new_run(ProgramText("", b""), attaches=False)
-        row["tolerance_mm"] = tolerance_mm
         back = made.way_back(run, find=find)
 
         def go_back() -> ProgramRun:

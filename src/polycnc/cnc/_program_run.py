@@ -545,10 +545,7 @@ class ProgramRun:
                 f"{mine.name} is another program than the one of the snapshot",
                 hint="give the same one, or use another snapshot",
             )
-        row = self._conduct.row
-        tolerance_mm = row["tolerance_mm"]
         channel = self._new_channel(kept, None, saved.moment.block_delete, attaches=False)
-        row["tolerance_mm"] = tolerance_mm
         back = channel.way_back(saved.channel)
         return lambda: self._go_back(saved, channel, back)
 

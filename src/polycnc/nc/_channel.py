@@ -82,7 +82,8 @@ class Channel:
     is noted in `errors` and left out; else preparation ends there with `error`. The ordinary interpreter
     gives the same queue as the compiled kernel, which takes over after the first `ordinary_blocks`: loading
     it, and once compiling it, takes longer than they do. Without `attaches` the channel is made to go back to a
-    snapshot: only then it takes its language over.
+    snapshot: only then it
+    takes path and language over.
     """
 
     def __init__(
@@ -158,6 +159,8 @@ class Channel:
         self.writer.stands_at_stops = stands_at_stops
         self.writer.answers = answers
         self.writer.marks = deque() if marks else None
+        if attaches:
+            self.writer.set_tolerance(self.state.path_tolerance_mm, self.state.merge_mm)
         if attaches and isinstance(language, BoundLanguage):
             language.attach(self)
         self._begun = False

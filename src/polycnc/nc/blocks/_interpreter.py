@@ -163,7 +163,6 @@ class Interpreter:
         self.state = state
         self.messages = messages
         self._queue = queue
-        queue.set_tolerance(state.path_tolerance_mm, state.merge_mm)
         self._call_trouble = call_trouble
         self._reference = reference
         self._last_tag = 0
