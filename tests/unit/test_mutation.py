@@ -35,6 +35,11 @@ def test_share():
 
 def test_broken():
     assert share(6.0, -4.0) == (2.5, False)
+
+
+def test_slow():
+    while share(6.0, -4.0):
+        pass
 """
 
 
@@ -106,8 +111,8 @@ def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> Non
         ("dropped", 14): "unreached",
     }
     with Session(repository) as session:
-        reach = session.reach([module], tests)
-        assert reach.failed == ["tests/unit/test_thing.py::test_broken"]
+        reach = session.reach([module], tests, slowest_s=0.5)
+        assert reach.failed == [f"tests/unit/test_thing.py::test_{each}" for each in ("broken", "slow")]
         verdicts = {
             place: session.outcome(module, each, reach).verdict
             for each in mutants_of(MODULE)
