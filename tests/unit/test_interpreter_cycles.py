@@ -96,6 +96,14 @@ def test_incremental_levels_and_holes() -> None:
         "rapid X15 Y21 stop",
         *HOLE[1:],
     ]
+    # From X4 Y-6: the ways of both axes are the block's, not the way from zero.
+    steps = drill("X4 Y-6\nG91 G81 X5 Y7 Z-5 R-8 L3\n")
+    assert [each for each in steps if "X" in each] == [
+        "rapid X4 Y-6 stop",
+        "rapid X9 Y1 stop",
+        "rapid X14 Y8 stop",
+        "rapid X19 Y15 stop",
+    ]
 
 
 @pytest.mark.parametrize("word", ["L", "K"])
