@@ -101,7 +101,7 @@ def test_what_was_done_is_done_anew_when_it_is_asked_for_again() -> None:
     rig = Rig()
     other = Coupling(rig.server)
     for _ in range(2):
-        assert rig(4, 2, "sect.cnc", cycles=1) == 0
+        assert rig(4, 2, "sect.cnc", OMITTED, OMITTED, 2) == 0
         assert rig.channel.program == "sect.cnc"
         while other.mcops(2, 2, 2) is BLOCKED:
             rig.partner.advance(1)

@@ -58,7 +58,9 @@ class Choice:
             self.note(len(self.tests) - 1)
 
     @pytest.hookimpl(wrapper=True)
-    def pytest_runtest_call(self) -> Generator[None, Any, Any]:
+    def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        if hasattr(getattr(item, "obj", None), "hypothesis"):  # which cannot be interrupted and reported
+            return (yield)
         signal.signal(signal.SIGPROF, lambda *_: pytest.fail("slower than the slowest that is wanted"))
         signal.setitimer(signal.ITIMER_PROF, self.slowest_s)
         try:
