@@ -591,7 +591,7 @@ def test_a_pattern_is_repeated_nearer_and_nearer() -> None:
         ),
         (  # the arc begins and ends at 10 and 14 of X, with its top at 15 between
             "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20.\nG1 Z-9.\nG3 X28. Z-17. I0 K-5.\nN2 G1 X50.",
-            "G71: the contour turns back: pockets are not supported yet",
+            "G71: the contour turns back, and its first block names one axis",
         ),
         (
             "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20.\nM98 P5\nN2 G1 X50. Z-3.\nO5\nM99",
