@@ -89,7 +89,7 @@ def test_the_unit_is_that_of_the_block_that_runs() -> None:
     rig.partner.programs["sect.cnc"] = "N10 G70 F800\nN20 G1 X4\nN30 G71 F70\nN40 X9\nM30"
     assert rig(4, 2, "sect.cnc", cycles=1) == 0
     assert rig(6, 2) == 0
-    seen = []
+    seen: list[tuple[bool, float]] = []
     for _ in range(12):
         if not seen or seen[-1] != (rig.channel.inch, rig.channel.programmed_feed):
             seen.append((rig.channel.inch, rig.channel.programmed_feed))
