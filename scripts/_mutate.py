@@ -9,7 +9,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from support.mutation import Mutant, Session, candidate_tests, mutants_of
+from support.mutation import Mutant, Outcome, Session, candidate_tests, mutants_of
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -22,10 +22,22 @@ def arguments() -> argparse.Namespace:
         epilog="The status is 0 when everything was noticed, 1 when something survived, 2 for a wrong call.",
     )
     parser.add_argument("modules", nargs="+", type=Path, help="modules or folders below src/polycnc")
-    parser.add_argument("--sample", type=int, metavar="N", help="take N changes at random instead of all")
+    parser.add_argument(
+        "--sample", type=int, metavar="N", help="take N changes of each at random instead of all"
+    )
     parser.add_argument("--seed", type=int, default=1, help="which sample (default 1)")
     parser.add_argument(
         "--tests", nargs="+", type=Path, metavar="FILE", help="test files instead of those that fit"
+    )
+    parser.add_argument(
+        "--slowest",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="leave out tests that take more processor time",
+    )
+    parser.add_argument(
+        "--limit", type=float, default=120.0, metavar="S", help="of tests for one change (default 120)"
     )
     parser.add_argument("--lines", metavar="A-B", help="only changes in these lines")
     parser.add_argument("--kinds", nargs="+", metavar="KIND", help="only changes of these kinds")
@@ -35,15 +47,12 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
-def modules_of(given: list[Path]) -> list[Path]:
-    found: list[Path] = []
-    for each in given:
-        path = each.resolve()
-        files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
-        if not files or any(not file.is_file() or ROOT / "src" not in file.parents for file in files):
-            sys.exit(f"scripts/mutate: {each} is no module below src\nName modules or folders there.")
-        found += files
-    return found
+def modules_of(given: Path) -> list[Path]:
+    path = given.resolve()
+    files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
+    if not files or any(not file.is_file() or ROOT / "src" not in file.parents for file in files):
+        sys.exit(f"scripts/mutate: {given} is no module below src\nName modules or folders there.")
+    return files
 
 
 def chosen(options: argparse.Namespace, modules: list[Path]) -> list[tuple[Path, Mutant]]:
@@ -60,52 +69,60 @@ def chosen(options: argparse.Namespace, modules: list[Path]) -> list[tuple[Path,
     return pool
 
 
+def said(session: Session, module: Path, mutant: Mutant, outcome: Outcome, *, verbose: bool) -> str:
+    place = f"{module.relative_to(ROOT)}:{mutant.lines[0]} {mutant.kind}"
+    if not outcome.noticed:
+        return f"{outcome.verdict}: {place} ({outcome.tests} tests)\n{mutant.diff(session.source(module))}"
+    return f"{outcome.verdict}: {place} {outcome.by}" if verbose else ""
+
+
+def summary(found: Counter[str]) -> str:
+    noticed, count = found["killed"] + found["timeout"] + found["crash"], found.total()
+    return (
+        ", ".join(f"{each} {verdict}" for verdict, each in sorted(found.items()))
+        + f"; kill rate {100 * noticed / max(1, count):.1f} %, "
+        f"of those reached {100 * noticed / max(1, count - found['unreached']):.1f} %"
+    )
+
+
 def main() -> int:
     options = arguments()
-    modules = modules_of(options.modules)
-    pool = chosen(options, modules)
+    modules = {given: modules_of(given) for given in options.modules}
+    pools = {given: chosen(options, files) for given, files in modules.items()}
+    count = sum(map(len, pools.values()))
     if options.list:
-        for module, mutant in pool:
-            print(
-                f"{module.relative_to(ROOT)}:{mutant.lines[0]} {mutant.kind}\n{mutant.diff(module.read_bytes())}"
-            )
-        print(f"{len(pool)} changes")
+        for pool in pools.values():
+            for module, mutant in pool:
+                print(f"{module.relative_to(ROOT)}:{mutant.lines[0]} {mutant.kind}")
+                print(mutant.diff(module.read_bytes()))
+        print(f"{count} changes")
         return 0
-    tests = [path.resolve() for path in options.tests] if options.tests else candidate_tests(ROOT, modules)
+    everything = [module for files in modules.values() for module in files]
+    tests = [path.resolve() for path in options.tests] if options.tests else candidate_tests(ROOT, everything)
     begun = time.monotonic()
+    survived = False
     with Session(ROOT, jit=options.jit) as session:
         try:
-            reach = session.reach(modules, tests)
+            reach = session.reach(everything, tests, slowest_s=options.slowest, limit_s=options.limit)
         except RuntimeError as error:
             sys.exit(f"scripts/mutate: {error}\nRun scripts/test first.")
         print(
-            f"{len(pool)} changes, {len(reach.times_s)} tests in {len(tests)} files, "
+            f"{count} changes, {len(reach.times_s)} tests in {len(tests)} files, "
             f"{time.monotonic() - begun:.0f} s to see what they reach",
             flush=True,
         )
         for test in reach.failed:
-            print(f"left out, it fails with nothing changed: {test}", flush=True)
-        found = Counter[str]()
-        for module, mutant in pool:
-            outcome = session.outcome(module, mutant, reach)
-            found[outcome.verdict] += 1
-            if outcome.noticed and options.verbose:
-                print(
-                    f"{time.monotonic() - begun:.0f} s {outcome.verdict} {mutant.lines[0]} {outcome.by}",
-                    flush=True,
-                )
-            if not outcome.noticed:
-                place = f"{module.relative_to(ROOT)}:{mutant.lines[0]}"
-                print(f"{outcome.verdict}: {place} {mutant.kind} ({outcome.tests} tests)", flush=True)
-                print(mutant.diff(session.source(module)), flush=True)
-    noticed = found["killed"] + found["timeout"] + found["crash"]
-    reached = len(pool) - found["unreached"]
-    print(", ".join(f"{count} {verdict}" for verdict, count in sorted(found.items())))
-    print(
-        f"kill rate {100 * noticed / max(1, len(pool)):.1f} %, "
-        f"of those reached {100 * noticed / max(1, reached):.1f} %, {time.monotonic() - begun:.0f} s"
-    )
-    return 0 if noticed == len(pool) else 1
+            print(f"left out, it fails or is too slow with nothing changed: {test}", flush=True)
+        for given, pool in pools.items():
+            found = Counter[str]()
+            for module, mutant in pool:
+                outcome = session.outcome(module, mutant, reach)
+                found[outcome.verdict] += 1
+                survived |= not outcome.noticed
+                if text := said(session, module, mutant, outcome, verbose=options.verbose):
+                    print(text, flush=True)
+            print(f"{given}: {summary(found)}, {time.monotonic() - begun:.0f} s", flush=True)
+    return 1 if survived else 0
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ import pytest
 
 from polycnc.kernel import append_line, give_to_path, prepare_path, skip, start_path
 from polycnc.machine import LinearAxis, Machine, MachineConfig, PathConfig
+from support.random_paths import seeds
 from support.sender_planner import Rule, by_junction_deviation, by_square_corner, travel_time
 
 Floats = npt.NDArray[np.float64]
@@ -80,7 +81,7 @@ def assert_agrees(
 
 @pytest.mark.parametrize("deviation", [0.002, 0.01, 0.13])
 def test_junction_deviation_takes_the_time_of_its_formula(deviation: float) -> None:
-    for seed in range(60):
+    for seed in seeds(0, 60):
         assert_agrees(
             seed,
             PathConfig(junction_deviation_mm=deviation),
@@ -91,7 +92,7 @@ def test_junction_deviation_takes_the_time_of_its_formula(deviation: float) -> N
 @pytest.mark.parametrize("speed", [1.0, 5.0, 23.0])
 def test_square_corner_speed_takes_the_time_of_its_formula(speed: float) -> None:
     even = np.array([3100.0, 3100.0, 700.0])
-    for seed in range(100, 160):
+    for seed in seeds(100, 160):
         path = PathConfig(square_corner_mm_s=speed, speed_limit_mm_s=120.0, acceleration_limit_mm_s2=3100.0)
         assert_agrees(seed, path, by_square_corner(speed, 3100.0), even)
 

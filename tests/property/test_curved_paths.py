@@ -27,7 +27,16 @@ from polycnc.kernel import (
     start_path,
 )
 from polycnc.kernel._segments import CIRCLE3D
-from support.random_paths import CYCLE_S, is_done, overload, prepare, run_recorded, stop_everywhere
+from support.random_paths import (
+    CYCLE_S,
+    blocks,
+    is_done,
+    overload,
+    prepare,
+    run_recorded,
+    seeds,
+    stop_everywhere,
+)
 
 Floats = npt.NDArray[np.float64]
 
@@ -95,10 +104,10 @@ def append_random(state: KernelState, rng: np.random.Generator, ride_along: bool
 
 @pytest.mark.parametrize("ride_along", [False, True])
 def test_every_axis_keeps_its_limits_and_the_end_is_exact(ride_along: bool) -> None:
-    for seed in range(40):
+    for seed in seeds(0, 40):
         rng = np.random.default_rng(seed)
         state = curve_machine(rng, ride_along)
-        for tag in range(1, 25):
+        for tag in range(1, blocks(25)):
             assert append_random(state, rng, ride_along, tag), f"seed {seed}"
         prepare(state)
         start_path(state.paths, 0)
@@ -113,12 +122,12 @@ def test_every_axis_keeps_its_limits_and_the_end_is_exact(ride_along: bool) -> N
 @pytest.mark.parametrize("ride_along", [False, True])
 def test_going_on_is_never_slower_than_stopping_at_every_block(ride_along: bool) -> None:
     saved = 0
-    for seed in range(200, 260):
+    for seed in seeds(200, 260):
         cycles = []
         for stops in (False, True):
             rng = np.random.default_rng(seed)
             state = curve_machine(rng, ride_along)
-            for tag in range(1, int(rng.integers(3, 40))):
+            for tag in range(1, int(rng.integers(3, blocks(40)))):
                 assert append_random(state, rng, ride_along, tag), f"seed {seed}"
             if stops:
                 stop_everywhere(state)

@@ -32,6 +32,7 @@ from support.random_paths import (
     random_path,
     run_recorded,
     run_with_changes,
+    seeds,
 )
 
 Floats = npt.NDArray[np.float64]
@@ -74,7 +75,7 @@ def least_time(way: float, speed: float, acceleration: float, jerk: float) -> fl
 
 def test_lines_take_the_least_time_within_two_cycles() -> None:
     rng = np.random.default_rng(11)
-    for _ in range(120):
+    for _ in seeds(0, 120):
         way, feed = 10.0 ** rng.uniform(-3.0, 2.3), 10.0 ** rng.uniform(0.7, 2.8)
         acceleration, jerk = 10.0 ** rng.uniform(2.0, 4.0), 10.0 ** rng.uniform(3.7, 7.0)
         least = least_time(way, feed, acceleration, jerk)
@@ -107,7 +108,7 @@ def test_random_paths_keep_the_jerk_and_are_never_slower_than_stopping(
 ) -> None:
     settings = PathSettings(jerk=jerk)
     saved = 0
-    for seed in range(12):
+    for seed in seeds(0, 12):
         most = 120 if seed % 2 else 8
         state = random_path(seed, settings, length, most=most)
         cycles = run_recorded(state)
@@ -132,7 +133,7 @@ def test_random_paths_keep_the_jerk_and_are_never_slower_than_stopping(
 
 @pytest.mark.parametrize("depth", [2, 16])
 def test_a_limited_look_ahead_keeps_the_jerk(depth: int) -> None:
-    for seed in range(10):
+    for seed in seeds(0, 10):
         state = random_path(seed, PathSettings(jerk=2e5, depth=depth), most=60)
         run_recorded(state)
         assert max(overload(state)) <= ROUNDING, f"seed {seed}"
@@ -141,7 +142,7 @@ def test_a_limited_look_ahead_keeps_the_jerk(depth: int) -> None:
 
 @pytest.mark.parametrize(("jerk", "depth"), [(1e4, 0), (1e5, 0), (1e6, 0), (1e5, 3)])
 def test_override_hold_and_late_blocks_keep_the_jerk_and_the_end(jerk: float, depth: int) -> None:
-    for seed in range(24):
+    for seed in seeds(0, 24):
         rng = np.random.default_rng(seed)
         state = run_with_changes(rng, PathSettings(jerk=jerk, depth=depth), late=bool(seed % 2))
         assert max(overload(state)) <= ROUNDING, f"seed {seed}"
@@ -177,7 +178,7 @@ def test_a_hold_in_any_phase_comes_to_rest_and_goes_on_to_the_same_end() -> None
 
 
 def test_any_jerk_takes_the_time_of_trapezoids() -> None:
-    for seed in range(10):
+    for seed in seeds(0, 10):
         with_jerk = random_path(seed, PathSettings(jerk=1e9), 1.0, most=60)
         without = random_path(seed, PathSettings(), 1.0, most=60)
         tail = int(without.paths.row[0]["tail"])

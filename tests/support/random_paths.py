@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,6 +30,20 @@ CYCLE_S = 0.001
 RECORDED = 1 << 16
 FEEDS = (5.0, 50.0, 200.0, 600.0, 2000.0)
 TURNS = (0.0, 0.0, 1e-7, 1e-3, 0.05, 0.3, 1.5, math.pi)
+
+# A hundred times slower: a few short paths, as scripts/mutate runs them.
+INTERPRETED = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
+FEW, SHORT = 3, 16
+
+
+def seeds(first: int, behind: int) -> range:
+    """Return the seeds of the paths that a test goes along."""
+    return range(first, min(behind, first + FEW) if INTERPRETED else behind)
+
+
+def blocks(most: int) -> int:
+    """Return how many blocks such a path has at most."""
+    return min(most, SHORT) if INTERPRETED else most
 
 
 @dataclass(frozen=True)
@@ -135,7 +150,7 @@ def random_path(
     """
     rng = np.random.default_rng(seed)
     state = machine(rng, settings)
-    PathMaker(state, rng, length).append(int(rng.integers(2, most)))
+    PathMaker(state, rng, length).append(int(rng.integers(2, blocks(most))))
     if stops:
         stop_everywhere(state)
     prepare(state)
@@ -166,7 +181,7 @@ def run_with_changes(rng: np.random.Generator, settings: PathSettings, *, late: 
     """Return a machine that has gone along a random path with overrides and holds; its blocks came late, or at once."""
     state = machine(rng, settings)
     maker = PathMaker(state, rng, None if rng.random() < 0.3 else 10.0 ** rng.uniform(-4.0, 1.0))
-    left = int(rng.integers(2, 200))
+    left = int(rng.integers(2, blocks(200)))
     row = state.paths.row[0]
     state.clock[0]["mask"] = RECORDER_FULL
     start_path(state.paths, 0)

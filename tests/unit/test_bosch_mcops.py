@@ -84,6 +84,31 @@ def covers(*rows: str) -> pytest.MarkDecorator:
     "MCODS.32.ipo.1",
     "MCODS.32.ipo.3",
 )
+def test_the_unit_is_that_of_the_block_that_runs() -> None:
+    rig = Rig()
+    rig.partner.programs["sect.cnc"] = "N10 G70 F800\nN20 G1 X4\nN30 G71 F70\nN40 X9\nM30"
+    assert rig(4, 2, "sect.cnc", cycles=1) == 0
+    assert rig(6, 2) == 0
+    seen: list[tuple[bool, float]] = []
+    for _ in range(12):
+        if not seen or seen[-1] != (rig.channel.inch, rig.channel.programmed_feed):
+            seen.append((rig.channel.inch, rig.channel.programmed_feed))
+        rig.partner.advance(1)
+    assert [each for each in seen if each[1]] == [(True, 800.0), (False, 70.0)]
+
+
+def test_what_was_done_is_done_anew_when_it_is_asked_for_again() -> None:
+    rig = Rig()
+    other = Coupling(rig.server)
+    for _ in range(2):
+        assert rig(4, 2, "sect.cnc", OMITTED, OMITTED, 2) == 0
+        assert rig.channel.program == "sect.cnc"
+        while other.mcops(2, 2, 2) is BLOCKED:
+            rig.partner.advance(1)
+        rig.partner.advance(1)
+        assert rig.channel.program == ""
+
+
 def test_a_program_is_selected_started_and_executed() -> None:
     rig = Rig()
     assert rig.state() == (1, 3)

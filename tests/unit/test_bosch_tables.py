@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
+from polycnc.controllers.bosch._live_tables import LiveTools
 from polycnc.controllers.bosch.system import Column, ShiftTable, ToolCompensations, ToolTable, ZeroShifts
 from polycnc.errors import ProgramError
 from support.cpl_host import Ran, RecordingHost
@@ -147,6 +148,13 @@ def test_without_a_table_the_active_one_is_meant_and_the_axis_alone_gives_the_su
     assert control.value('FXC("X")') == 4021.5
     control.shifts.inch = True
     assert control.value("FXC(1)") == pytest.approx(4021.5 / 25.4)
+    # A table in inch, of which a rotary axis has degrees all the same.
+    control.shifts.active = "INCH"
+    control.run("FXC(1,54)=2.5", "FXC(1,155)=0.75", "FXC(2,54)=33")
+    assert control.value("FXC(1)") == pytest.approx(3.25 + 4000 / 25.4)
+    assert control.value("FXC(2)") == 33.0
+    control.shifts.inch = False
+    assert control.value("FXC(1)") == pytest.approx(3.25 * 25.4 + 4000)
     for line in ("A=FXC(9,54)", "A=FXC(0,54)", "A=FXC(1,60)", 'A=FXC("Q",54)', 'A=FXC(1,54,"NONE")', "A=FXC(1,54,4)",
                  "FXC(1,53)=1"):  # fmt: skip
         assert control.refuses(line)
@@ -276,6 +284,14 @@ def test_general_compensations_have_lengths_and_angles(selection: int, length: b
     assert control.value(f"TC({selection},347,0)") == pytest.approx(4.0)
     control.tools.groups = {"general": 347}
     assert control.value(f"TC({selection})") == pytest.approx(4.0)
+
+
+def test_compensations_that_nobody_has_set_shift_nothing() -> None:
+    tools = ToolCompensations()
+    tools.values = {(847, 1): 0.25, (847, 3): -4.5, (245, 1): 7.0, (245, 2): 1.5}
+    assert LiveTools(tools).shift([847, 345]) == [0.25, -4.5, 0.0]
+    assert LiveTools(tools).shift([245, 747]) == [7.0, 0.0, 0.0]
+    assert LiveTools(tools).radius([245, 345]) == 1.5
 
 
 @pytest.mark.covers("cpl.TC.sel.6")

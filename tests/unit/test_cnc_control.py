@@ -475,6 +475,20 @@ def test_a_function_that_fails_is_an_alarm(answer: Answer, limit_s: float | None
     made.cycle_start()
 
 
+def test_the_time_of_a_tool_is_what_it_cut() -> None:
+    """X 12.5 to 42.5 at 50 mm/s with tool 4: 0.6 s and a ramp of 50/700 s; the other way without a tool."""
+    made = control()
+    made.programs.create("CHANGE", "G1 X42.5 F3000\nT4 M6\nG1 X12.5\nG0 X20\nM30\n")
+    for program, tools in (("PART", ()), ("CHANGE", (4,))):
+        made.select_program(program)
+        made.cycle_start()
+        made.advance(20_000, until=ControlEvent.RUN_STATE)
+        made.advance(20)
+        assert made.timers.tools == tools
+    assert made.timers.tool_seconds(4) == pytest.approx(0.6 + 50.0 / 700.0, abs=2e-3)
+    assert made.timers.seconds(Timer.CUTTING) == pytest.approx(4 * (0.6 + 50.0 / 700.0), abs=0.01)
+
+
 def test_the_spindle_follows_the_program_and_stops_with_a_reset() -> None:
     made = control()
     made.programs.create("TURN", "S1500 M3\nG1 X42.5 F60\nM5\nM30\n")

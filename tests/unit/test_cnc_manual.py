@@ -112,6 +112,20 @@ def test_an_override_of_0_holds_a_jog_and_lets_it_go_on() -> None:
     assert rig.at("X") == here
 
 
+def test_each_override_stays_when_the_other_is_set() -> None:
+    rig = Rig()
+    rig.manual.set_overrides(rapid=0.35)
+    rig.manual.set_overrides(feed=0.25)
+    speeds = []
+    for rapid in (True, False):
+        rig.manual.jog("X", 1, rapid=rapid)
+        rig.run(300)
+        speeds.append(rig.machine.state.velocity[0])
+        rig.manual.jog("X", None)
+        rig.run(300)
+    assert speeds == pytest.approx([0.35 * 120.0, 0.25 * 24.0])
+
+
 def test_increments_are_exact_and_stop_at_the_limit() -> None:
     rig = Rig()
     rig.manual.increment("Z", -1, 0.125)

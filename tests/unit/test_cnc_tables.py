@@ -190,8 +190,10 @@ def test_tools_overlay_the_machine_file_and_last(tmp_path: Path) -> None:
         7: Tool(83.5, 6.0, -0.125, description="mill"),
         12: Tool(radius_mm=3.0, tip=8),
     }
+    before = again.revision
     again.remove(7)
     assert 7 not in again
+    assert again.revision == before + 1  # a program under way asks for it
     store.close()
     assert list(ToolTable(Store(tmp_path / "s"), CONFIG)) == [12]
 

@@ -6,6 +6,7 @@ import math
 import struct
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from polycnc.errors import UsageError
@@ -144,6 +145,13 @@ def test_a_dialog_shows_its_texts_and_takes_numbers(tmp_path: Path) -> None:
     assert shown.globals["#WI"] == pytest.approx(123.567, abs=1e-4)
     assert shown.globals["#DP"] is None
     assert shown[10] == "   MAX. CUTTING DEPTH: ###.### MM"
+
+
+def test_a_text_without_a_number_is_shown_and_not_asked_for(tmp_path: Path) -> None:
+    text = '30 DLG\n40 PRN(8,4,"WIDTH: ###.###",#WI)\n50 PRN(10,4,"IN MM",)\n60 INP(#WI)\n70 ENDDLG'
+    shown = Shown(text.replace(",)", ")"), tmp_path, *"3.5", "ENTER")
+    assert shown.globals["#WI"] == 3.5
+    assert (shown[8], shown[10]) == ("   WIDTH:   3.500", "   IN MM")
 
 
 # ---------------------------------------------------------------------- colours, fonts, clearing
@@ -445,9 +453,14 @@ def test_the_screen_is_written_as_text_and_as_drawing(tmp_path: Path) -> None:
     assert "&lt;</text>" in drawing
     assert "M0 374h" in drawing
     assert 'y="18" width="8" height="9" fill="#ff00ff"' in drawing
-    pytest.importorskip("matplotlib")
-    root.run(program, screen="screen.png")
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    root.run('1 COL(,,5) : DSP(3,11," ")', screen="screen.png")
     assert root.read("screen.png").startswith(b"\x89PNG")
+    image = pyplot.imread(tmp_path / "screen.png")
+    rows, columns = np.nonzero(np.all(np.abs(image[:, :, :3] - [1.0, 0.0, 1.0]) < 0.1, axis=2))
+    # The third line from above, the eleventh column; cells are 8 wide and 9 high.
+    assert (rows.min(), columns.min()) == pytest.approx((18, 80), abs=2)
+    assert (rows.max(), columns.max()) == pytest.approx((26, 87), abs=2)
 
 
 @pytest.mark.parametrize(

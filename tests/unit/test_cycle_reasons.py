@@ -30,6 +30,7 @@ from polycnc.kernel import (
     give_to_point_to_point,
     make_state,
     move_to,
+    place_machine,
     prepare_path,
     start_path,
     stop_axis,
@@ -136,6 +137,8 @@ def test_events_stop_the_run_at_their_point_one_by_one() -> None:
         cycles = run_until(state, PATH_EVENT)
         found.append((cycles, int(state.paths.row[0]["event"]), float(state.setpoint[0])))
     assert found == [(0, 7, 0.0), (150, 8, 5.0), (0, 9, 5.0)]
+    advance(state, 3)
+    assert state.paths.row[0]["event"] == -1  # told once
 
 
 def test_a_wait_takes_whole_cycles_at_rest() -> None:
@@ -187,6 +190,26 @@ def test_a_following_error_above_its_limit_is_told() -> None:
     assert state.clock[0]["axis"] == 0
 
 
+def test_an_axis_is_in_position_only_where_no_source_moves_it() -> None:
+    state = state_of()
+    state.servo.row["in_position_window"] = 0.02
+    move(state, 1, 3.7)
+    advance(state, 30)
+    assert state.servo.row["in_position"].tolist() == [1, 0]
+    run_until(state, PROFILE_ENDED)
+    advance(state, 2)
+    assert state.servo.row["in_position"].tolist() == [1, 1]
+
+
+def test_an_axis_is_placed_and_no_other() -> None:
+    state = state_of(3)
+    place_machine(state, 0, 4.25)
+    place_machine(state, 2, -2.75)
+    assert state.setpoint.tolist() == state.servo.actual.tolist() == [4.25, 0.0, -2.75]
+    advance(state, 5)
+    assert state.setpoint.tolist() == state.servo.actual.tolist() == [4.25, 0.0, -2.75]
+
+
 def test_a_full_recorder_is_told() -> None:
     state = state_of(record_cycles=25)
     assert run_until(state, RECORDER_FULL) == 25
@@ -223,11 +246,15 @@ def test_the_cycle_may_be_that_of_another_controller() -> None:
 def test_an_arc_stays_on_its_circle_and_ends_on_its_point() -> None:
     state = state_of(record_cycles=4000)
     give_to_path(state, 0)
-    end = np.array([10.0, 10.0])
-    append_arc(state.seg, state.paths, 0, state.limits, end, 0, 1, 0.0, 10.0, math.pi / 2, 40.0, 0, 1)
+    append_line(state.seg, state.paths, 0, state.limits, np.array([3.0, -2.0]), 40.0, 0, 1)
+    end = np.array([13.0, 8.0])
+    append_arc(state.seg, state.paths, 0, state.limits, end, 0, 1, 3.0, 8.0, math.pi / 2, 40.0, 0, 2)
     finish(state)
     run_until(state, PATH_RESTED)
-    rows = state.recorder.rows[: int(state.recorder.filled[0]), 4:6]
-    radius = np.hypot(rows[:, 0], rows[:, 1] - 10.0)
-    assert np.max(np.abs(radius - 10.0)) <= 1e-9 * 10.0
-    assert state.setpoint.tolist() == [10.0, 10.0]
+    rows = state.recorder.rows[: int(state.recorder.filled[0])]
+    x, y = rows[rows[:, 1] == 2.0][:, 4:6].T
+    assert len(x) > 300
+    assert np.max(np.abs(np.hypot(x - 3.0, y - 8.0) - 10.0)) <= 1e-9 * 10.0
+    assert np.all(x >= 3.0 - 1e-12)
+    assert np.all(y <= 8.0 + 1e-12)
+    assert state.setpoint.tolist() == [13.0, 8.0]

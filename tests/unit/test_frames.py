@@ -10,6 +10,7 @@ from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.machine import Machine, load_machine
 from polycnc.nc import Channel, ProgramText, load_dialect
 from polycnc.nc.macro import language_for
+from support.programs import moves
 
 ROOT = math.sqrt(3.0)
 
@@ -40,6 +41,9 @@ def run(text: str) -> ProgramRun:
         ("G0 X7 Y3\nG91 G68 R90\nG0 X5", (7, 8, 0)),
         ("G68 X0 Y0 R90\nG0 X10 Y0\nG3 X6 Y4 I-4 J0\nG69", (-4, 6, 0)),
         ("G18 G68 X2 Z1 R90\nG0 X2 Z8", (9, 0, 1)),
+        # Without a coordinate the centre is where the tool stands in it.
+        ("G0 X4 Z9\nG18 G68 X1 R90\nG0 X1 Z11", (3, 0, 9)),
+        ("G0 X4 Z9\nG18 G68 Z2.5 R90\nG0 X6 Z2.5", (4, 0, 0.5)),
         # Scaling: without a point a factor counts thousandths.
         ("G51 X10 Y20 P1500\nG1 X30 Y40", (40, 50, 0)),
         ("G51 X10 Y20 I500 J2.5 K1000\nG1 X30 Y40 Z7\nG50\nG91 X1", (21, 70, 7)),
@@ -76,6 +80,26 @@ def test_positions(text: str, expected: tuple[float, float, float]) -> None:
     made = run(text)
     assert made.error is None, str(made.error)
     assert list(made.position.values()) == pytest.approx(list(expected), abs=1e-9)
+
+
+ARC = "G1 X20 Y10\nG2 X26 Y16 I6 J0\n"  # from the left of its centre to above it
+
+
+@pytest.mark.parametrize(
+    ("frame", "expected"),
+    [
+        ("G51 X3 Y7 P500", ["line X11.5 Y8.5", "arc X14.5 Y11.5 about X14.5 Y8.5 by -90"]),
+        ("G51 X3 Y7 P1500", ["line X28.5 Y11.5", "arc X37.5 Y20.5 about X37.5 Y11.5 by -90"]),
+        ("G51.1 X15", ["line X10 Y10", "arc X4 Y16 about X4 Y10 by 90"]),
+        ("G51.1 Y-2", ["line X20 Y-14", "arc X26 Y-20 about X26 Y-14 by 90"]),
+        ("G51.1 X15 Y-2", ["line X10 Y-14", "arc X4 Y-20 about X4 Y-14 by -90"]),
+        ("G51 X3 Y7 I-500 J500", ["line X-5.5 Y8.5", "arc X-8.5 Y11.5 about X-8.5 Y8.5 by 90"]),
+        ("G68 X4 Y7 R90", ["line X1 Y23", "arc X-5 Y29 about X1 Y29 by -90"]),
+    ],
+)
+def test_arcs_are_scaled_turned_and_turned_over(frame: str, expected: list[str]) -> None:
+    found = moves(f"F500 {frame}\n{ARC}", dialect="fanuc")
+    assert found == [f"{each} F500" for each in expected]
 
 
 @pytest.mark.parametrize(

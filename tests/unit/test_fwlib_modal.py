@@ -54,6 +54,14 @@ def test_program_of_the_manual() -> None:
     assert library.cnc_modal(handle, 103, 0)[1].modal.aux.aux_data == 3000
 
 
+@pytest.mark.parametrize("inch", [False, True])
+def test_the_unit_at_power_on_is_that_of_the_setting(inch: bool) -> None:
+    library, handle, control = executing("G1 X1. F40.", "G1", inch_input=inch)
+    assert g(library, handle, 5, 0) == (0 if inch else 1)
+    control.reset()
+    assert g(library, handle, 5, 0) & 0x7F == (0 if inch else 1)
+
+
 CODES = [
     (0, 0, "G0 X20.", "G0"),
     (0, 1, "G1 X20. F900", "G1"),

@@ -147,6 +147,8 @@ def test_software_of_the_control() -> None:
     library, handle = at(control)
     code, system = library.cnc_sysconfig(handle)
     assert (code, list(system.soft_id[:2])) == (0, [0x40, 0xFF])
+    found = system.drmmin, system.srmmin, system.sicmin, system.posmin, system.hdiio
+    assert found == (3, 3, 0, 0, 0)
     memory = bytes(system)
     assert memory[96:101] == b"8880\0"
     assert memory[176:181] == b"0014\0"

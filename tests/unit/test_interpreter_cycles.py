@@ -96,6 +96,14 @@ def test_incremental_levels_and_holes() -> None:
         "rapid X15 Y21 stop",
         *HOLE[1:],
     ]
+    # From X4 Y-6: the ways of both axes are the block's, not the way from zero.
+    steps = drill("X4 Y-6\nG91 G81 X5 Y7 Z-5 R-8 L3\n")
+    assert [each for each in steps if "X" in each] == [
+        "rapid X4 Y-6 stop",
+        "rapid X9 Y1 stop",
+        "rapid X14 Y8 stop",
+        "rapid X19 Y15 stop",
+    ]
 
 
 @pytest.mark.parametrize("word", ["L", "K"])
@@ -284,3 +292,11 @@ def test_a_machine_without_the_axes() -> None:
     assert refusal("F1 G81 X1 Z-1 R1\n", config=config) == (
         "1:4: G81 needs the axes X, Y, Z here, and the machine lacks one of them"
     )
+
+
+@pytest.mark.parametrize("plane", ["G20 X0 Y0", "G20 Y0 X0"])
+def test_a_cycle_drills_along_the_third_axis_whatever_comes_first_in_the_plane(plane: str) -> None:
+    program = f"F500 {plane}\nS500 M3\nG81 X5 Y7 Z-3 R2\nG80\n"
+    assert moves(program, dialect="bosch")[1:] == [
+        *("rapid Z2 stop", "rapid X5 Y7 stop", "line Z-3 F500 stop", "rapid Z2 stop"),
+    ]

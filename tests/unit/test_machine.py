@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 from polycnc.errors import UsageError
-from polycnc.machine import Free, Machine, Reason, Step, load_machine
+from polycnc.machine import (
+    Free,
+    LinearAxis,
+    LinearServo,
+    Machine,
+    MachineConfig,
+    Reason,
+    Step,
+    load_machine,
+)
 
 
 def test_a_move_takes_its_closed_form_time_and_ends_on_the_target() -> None:
@@ -37,6 +46,27 @@ def test_a_new_target_on_the_way_is_taken_without_a_step_of_the_velocity() -> No
     acceleration = np.diff(positions, 2) / machine.config.cycle_s**2
     assert np.max(np.abs(acceleration)) <= amax * (1.0 + 1e-9)
     assert positions[-1] == -20.0
+
+
+def test_the_servos_follow_as_they_are_described() -> None:
+    """A lag-free drive at a speed v: kp is v over the following error, and kfcv 1 leaves none."""
+    axes = (
+        LinearAxis(name="X", vmax_mm_s=90, amax_mm_s2=900, servo=LinearServo(kind="pidf", kp=35.0)),
+        LinearAxis(
+            name="Y",
+            vmax_mm_s=90,
+            amax_mm_s2=900,
+            servo=LinearServo(kind="pidf", kp=50.0, kfcv=0.4, following_error_limit_mm=0.8),
+        ),
+        LinearAxis(name="Z", vmax_mm_s=90, amax_mm_s2=900, servo=LinearServo(kind="pidf", kp=20.0, kfcv=1.0)),
+    )
+    machine = Machine(MachineConfig(name="three", axis=axes), servo=True)
+    for name in "XYZ":
+        machine.move(name, 500.0)
+    Step(3000).run(machine)
+    error = machine.state.setpoint - machine.state.servo.actual
+    assert error == pytest.approx([90.0 / 35.0, 90.0 * (1.0 - 0.4) / 50.0, 0.0], rel=0.05, abs=0.02)
+    assert machine.state.servo.error_tripped.tolist() == [0, 1, 0]
 
 
 def test_the_same_steps_from_a_snapshot_are_the_same_to_the_last_bit() -> None:

@@ -14,7 +14,7 @@ from polycnc.nc.macro import MacroCalls, MacroError, MacroLanguage, MacroVariabl
 
 
 def run(
-    text: str, language: MacroLanguage | None = None, **options: object
+    text: str, language: MacroLanguage | None = None, dialect: str = "fanuc", **options: object
 ) -> tuple[ProgramRun, MacroVariables]:
     """Run a program to its end."""
     language = language or MacroLanguage()
@@ -24,7 +24,7 @@ def run(
     made = ProgramRun(
         machine,
         program,
-        load_dialect("fanuc"),
+        load_dialect(dialect),
         language=language,
         options=RunOptions(stands_at_stops=False, **options),  # type: ignore[arg-type]
     )
@@ -255,6 +255,48 @@ def test_offsets_are_variables() -> None:
     )
     assert made.error is None
     assert [variables.get(n) for n in range(100, 105)] == [33.0, 33.0, 66.0, 12.5, 13.5]
+
+
+@pytest.mark.parametrize(
+    ("variable", "name", "axis"),
+    [
+        (5203, "EXT", 2), (5222, "G54", 1), (5301, "G58", 0), (5323, "G59", 2), (2500, "EXT", 0), (2703, "G56", 2),
+        (7002, "G54.P1", 1), (7063, "G54.P4", 2), (7941, "G54.P48", 0), (14001, "G54.P1", 0), (19983, "G54.P300", 2),
+    ],
+)  # fmt: skip
+def test_each_number_of_an_offset_is_that_of_its_group_and_axis(variable: int, name: str, axis: int) -> None:
+    made, variables = run(f"#{variable}=-7.25\n#100=#{variable}\nM30\n")
+    assert made.error is None, str(made.error)
+    assert variables.get(100) == -7.25
+    offset = made.channel.state.tables.work_offset(name)
+    assert [place for place, value in enumerate(offset) if value == -7.25] == [axis]
+
+
+@pytest.mark.parametrize("code", [73, 74, 76, 81, 82, 83, 84, 85, 86, 87, 88, 89])
+def test_a_cycle_is_the_modal_code_of_its_group(code: int) -> None:
+    turn, levels = "M4" if code == 74 else "M3", "Z4 R-1" if code == 87 else "Z-4 R1"
+    made, variables = run(
+        f"G0 Z10\n{turn} S500\nG{code} X2 Y3 {levels} Q.5 P100 F500\n#101=#4009\nG80\n#102=#4009\nM5\nM30\n"
+    )
+    assert made.error is None, str(made.error)
+    assert [variables.get(n) for n in (101, 102)] == [code, 80.0]
+
+
+def test_a_control_with_other_codes_of_cycles_tells_its_own() -> None:
+    cycles = (
+        "G87 X2 Y3 Z-4 R1 F500\n#101=#4009\nG80\nG88 X5 Z-4 R1\n#102=#4009\nG77 Z4 R-1 Q.5\n#103=#4009\nG80\n"
+    )
+    made, variables = run(f"G0 Z10\nM3 S500\n{cycles}M5\nM30\n", dialect="haas")
+    assert made.error is None, str(made.error)
+    assert [variables.get(n) for n in (101, 102, 103)] == [87.0, 88.0, 77.0]
+
+
+def test_mirrored_axes_are_bits() -> None:
+    made, variables = run(
+        "#100=#3007\nG51.1 X4\n#101=#3007\nG51.1 Z2\n#102=#3007\nG50.1 X0\n#103=#3007\nG50.1 Z0\nM30\n"
+    )
+    assert made.error is None, str(made.error)
+    assert [variables.get(n) for n in range(100, 104)] == [0.0, 1.0, 5.0, 4.0]
 
 
 def test_an_alarm_comes_when_the_blocks_before_have_been_run() -> None:

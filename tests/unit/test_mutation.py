@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from support.mutation import Session, candidate_tests, mutants_of
+from support.mutation import Reach, Session, candidate_tests, mutants_of
 
 MODULE = b'''"""A module."""
 
@@ -35,6 +35,11 @@ def test_share():
 
 def test_broken():
     assert share(6.0, -4.0) == (2.5, False)
+
+
+def test_slow():
+    while share(6.0, -4.0):
+        pass
 """
 
 
@@ -94,6 +99,17 @@ def repository(tmp_path: Path) -> Path:
     return root
 
 
+def test_where_time_is_short_those_that_run_what_others_do_not_come_first() -> None:
+    lines = {3: ["", "a::1", "a::2", "b::3"], 5: ["a::1", "a::2", "b::3"], 7: ["a::2"], 9: ["b::3", "c::4"]}
+    times_s = {"a::1": 0.5, "a::2": 4.0, "b::3": 2.5, "c::4": 1.5}
+    reach = Reach(times_s, {"m.py": lines}, [], 9.0)
+    assert reach.of("m.py", range(5, 6)) == ["b::3", "a::1", "a::2"]
+    assert Reach(times_s, {"m.py": lines}, [], 6.0).of("m.py", range(5, 6)) == ["b::3", "a::2"]
+    assert reach.of("m.py", range(7, 10)) == ["c::4", "b::3", "a::2"]
+    assert reach.imported("m.py", range(3, 4))
+    assert not reach.imported("m.py", range(4, 10))
+
+
 def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> None:
     module = repository / "src" / "demo" / "thing.py"
     tests = candidate_tests(repository, [module])
@@ -106,8 +122,8 @@ def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> Non
         ("dropped", 14): "unreached",
     }
     with Session(repository) as session:
-        reach = session.reach([module], tests)
-        assert reach.failed == ["tests/unit/test_thing.py::test_broken"]
+        reach = session.reach([module], tests, slowest_s=0.5)
+        assert reach.failed == [f"tests/unit/test_thing.py::test_{each}" for each in ("broken", "slow")]
         verdicts = {
             place: session.outcome(module, each, reach).verdict
             for each in mutants_of(MODULE)

@@ -414,6 +414,7 @@ def test_snapshot_and_restore_bring_everything_back(store: Store, tmp_path: Path
     store.snapshot(snapshot)
     assert not list(tmp_path.glob("monday.db-*"))
     assert not list(tmp_path.glob(".monday*"))
+    assert snapshot.read_bytes()[18:20] == b"\1\1"  # a plain file, that needs none beside it to be read
     programs["O1"] = b"G1"
     programs["O2"] = b"new"
     alarms.append({"number": 2})

@@ -221,6 +221,31 @@ def test_a_boring_tool_has_its_tip_on_the_other_side() -> None:
     assert ends[1].startswith("line Z-10")
 
 
+@pytest.mark.parametrize(
+    ("tip", "expected"),
+    [
+        # The middle of the nose (0.5) keeps off the cylinder of radius 10; the tip is beside it.
+        (0, "X10.5 Z-6"),
+        (1, "X11 Z-5.5"),
+        (2, "X11 Z-6.5"),
+        (3, "X10 Z-6.5"),
+        (4, "X10 Z-5.5"),
+        (5, "X10.5 Z-5.5"),
+        (6, "X11 Z-6"),
+        (7, "X10.5 Z-6.5"),
+        (8, "X10 Z-6"),
+        (9, "X10.5 Z-6"),
+    ],
+)
+def test_where_the_tip_is_by_its_number(tip: int, expected: str) -> None:
+    lathe = machine_config(AXES, "[spindle]\nmax_rpm = 4000\n", f"[tools.5]\nradius_mm = 0.5\ntip = {tip}\n")
+    program = "T0505\nG0 X16. Z4.\nG42 G1 X20. Z2. F0.1\nZ-6.\nZ-10.\nG40 X30.\n"
+    found = moves(TURN + program, config=lathe, dialect="fanuc-lathe")
+    x, z = expected.split()
+    assert found[3].startswith(f"line {x} Z")
+    assert found[4] == f"line {z} F100"
+
+
 def test_a_tool_without_a_tip_is_programmed_by_its_middle() -> None:
     program = "T0606\nG0 X16. Z4.\nG42 G1 X20. Z2. F0.1\nZ-10.\nG40 X30.\n"
     ends = [
@@ -487,6 +512,16 @@ def test_roughing_stops_at_an_arc() -> None:
     assert "arc X20 Z-18 about Z-10 X20 by -90 F300" in found
 
 
+def test_roughing_a_contour_that_begins_with_a_face() -> None:
+    """The face from radius 8 to 12 lies at the start's Z: down to it, from 25, in cuts of 4: 21, 17, 13, 9."""
+    contour = "N1 G0 X16.\nG1 X24. F0.1\nZ-10.\nN2 X50.\n"
+    found = turned(f"G71 U4. R1.\nG71 P1 Q2 U0 W0 F0.3\n{contour}")
+    assert found[:8] == [
+        *("rapid X21 stop", "line Z-10 F300 stop", "rapid X22 Z-9 stop", "rapid Z2 stop"),
+        *("rapid X17 stop", "line Z-10 F300 stop", "rapid X18 Z-9 stop", "rapid Z2 stop"),
+    ]
+
+
 def test_roughing_along_x() -> None:
     """The same contour seen the other way: G72 cuts along X at Z levels of 2 - 3, 2 - 6, ..."""
     contour = "N1 G0 Z-10.\nG1 X30. F0.1\nX20. Z-5.\nN2 Z2.\n"
@@ -552,6 +587,10 @@ def test_a_pattern_is_repeated_nearer_and_nearer() -> None:
         ),
         (
             "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20.\nG1 Z-9.\nX15. Z-12.\nN2 X50.",
+            "G71: the contour turns back, and its first block names one axis",
+        ),
+        (  # the arc begins and ends at 10 and 14 of X, with its top at 15 between
+            "G71 U4. R1.\nG71 P1 Q2 U1. F0.3\nN1 G0 X20.\nG1 Z-9.\nG3 X28. Z-17. I0 K-5.\nN2 G1 X50.",
             "G71: the contour turns back, and its first block names one axis",
         ),
         (

@@ -159,6 +159,17 @@ def test_what_was_late_is_not_lost_when_the_rate_changes_but_forgotten_when_it_f
     assert (pace.due(0.001, 10**9), pace.rate, pace.wait_s(0.001, 10)) == (0, 0.0, math.inf)
 
 
+def test_nothing_is_due_at_once_when_a_pace_without_limit_gets_one() -> None:
+    wall = FakeWall()
+    pace = Pace(wall, math.inf)
+    assert pace.due(0.001, 77) == 77
+    pace.count(77)
+    pace.rate = 2.0
+    assert pace.due(0.001, 10**9) == 0
+    wall.time_s += 0.25
+    assert pace.due(0.001, 10**9) == 500
+
+
 def test_what_passed_before_the_first_question_counts_at_its_own_rate() -> None:
     wall = FakeWall()
     pace = Pace(wall, 3.0)

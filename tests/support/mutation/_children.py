@@ -50,14 +50,14 @@ def answer_of(work: Callable[[], Answer], limit_s: float, output: str) -> str:
     status = os.waitpid(child, 0)[1]
     if text:
         return text
-    slow = late.is_set() or (os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGALRM)
+    slow = late.is_set() or (os.WIFSIGNALED(status) and os.WTERMSIG(status) == signal.SIGPROF)
     return json.dumps({"status": TIMEOUT if slow else CRASH})
 
 
 def limited(limit_s: float) -> None:
-    """End this process if it is not called again in time; 0 for never."""
-    signal.signal(signal.SIGALRM, signal.SIG_DFL)
-    signal.setitimer(signal.ITIMER_REAL, limit_s)
+    """End this process if it is not called again within a processor time; 0 for never."""
+    signal.signal(signal.SIGPROF, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_PROF, limit_s)
 
 
 def end(child: int) -> None:

@@ -14,24 +14,24 @@ FOLDERS = (
     "conformance",
 )  # tests of commands run in processes of their own, which nothing sees
 
-LIMIT_S = 120.0  # of tests for one change, as long as they took when nothing was changed
-
 
 @dataclass(frozen=True)
 class Reach:
     """The time of each test in seconds and, for each file, the tests that ran each line, with "" for imports.
 
-    `failed` are tests that fail although nothing is changed; they are left out everywhere.
+    `failed` are tests that fail although nothing is changed; they are left out everywhere. `limit_s` is what the tests
+    for one change may take together, as long as they took when nothing was changed.
     """
 
     times_s: dict[str, float]
     tests: dict[str, dict[int, list[str]]]
     failed: list[str]
+    limit_s: float
 
     def of(self, file: str, lines: range) -> list[str]:
         """Return the tests that ran one of a file's lines, file by file, the quickest first.
 
-        Where there are more than `LIMIT_S` allows, each file gives its quickest.
+        Where there are more than `limit_s` allows, each test file gives those first that ran what few others run.
         """
         seen = self.tests.get(file, {})
         found = {test for line in lines for test in seen.get(line, ()) if test}
@@ -40,15 +40,22 @@ class Reach:
         by_file = defaultdict[str, list[str]](list)
         for test in sorted(found, key=lambda test: (self.times_s.get(test, 0.0), test)):
             by_file[test.partition("::")[0]].append(test)
-        left_s, chosen = LIMIT_S, set[str]()
-        for test in chain.from_iterable(
-            zip_longest(*by_file.values())
-        ):  # one of each file, then the next of each
+        chosen = self._chosen(seen, list(by_file.values()))
+        files = sorted(by_file.values(), key=lambda tests: sum(self.times_s.get(test, 0.0) for test in tests))
+        return [test for tests in files for test in tests if test in chosen]
+
+    def _chosen(self, seen: dict[int, list[str]], files: list[list[str]]) -> set[str]:
+        rare = defaultdict[str, float](float)
+        for tests in seen.values():
+            for test in tests:
+                rare[test] += 1.0 / len(tests)
+        ranked = [sorted(tests, key=lambda test: -rare[test]) for tests in files]
+        left_s, chosen = self.limit_s, set[str]()
+        for test in chain.from_iterable(zip_longest(*ranked)):  # one of each file, then the next of each
             if test is not None and (left_s > 0.0 or not chosen):
                 chosen.add(test)
                 left_s -= self.times_s.get(test, 0.0)
-        files = sorted(by_file.values(), key=lambda tests: sum(self.times_s.get(test, 0.0) for test in tests))
-        return [test for tests in files for test in tests if test in chosen]
+        return chosen
 
     def imported(self, file: str, lines: range) -> bool:
         """Return whether an import ran one of a file's lines."""

@@ -84,10 +84,19 @@ class Session:
             worker.communicate()
         self._folder.cleanup()
 
-    def reach(self, modules: Sequence[Path], tests: Sequence[Path]) -> Reach:
+    def reach(
+        self,
+        modules: Sequence[Path],
+        tests: Sequence[Path],
+        *,
+        slowest_s: float = 0.0,
+        limit_s: float = 120.0,
+    ) -> Reach:
         """Run the test files once, interpreted, and return which tests run which lines.
 
-        Tests that fail by that, such as those of compiled code alone, cannot tell anything and are left out.
+        Tests that fail by that, such as those of compiled code alone, cannot tell anything and are left out; so are
+        those that take more processor time than `slowest_s` where that is not 0. `limit_s` is for the tests of one
+        change.
 
         Raises:
             RuntimeError: The tests cannot be run.
@@ -98,20 +107,23 @@ class Session:
             arguments=[*self._pytest(), *(str(self._copied(test)) for test in tests)],
             only=None,
             watch=list(watched),
+            slowest_s=slowest_s,
             limit_s=REACH_LIMIT_S,
         )
         if answer["status"] not in (0, 1):
             said = self._output.read_text(encoding="utf-8", errors="replace").splitlines()
             raise RuntimeError("\n".join(["the tests cannot be run", *said[-20:]]))
         failed = set(answer["failed"])
+        names = [*answer["tests"], ""]  # an import is the last
         lines = {
             str(watched[file]): {
-                int(line): [each for each in tests if each not in failed] for line, tests in seen.items()
+                int(line): [name for test in tests if (name := names[test]) not in failed]
+                for line, tests in seen.items()
             }
             for file, seen in answer["lines"].items()
         }
         times_s = {test: time_s for test, time_s in answer["times_s"].items() if test not in failed}
-        return Reach(times_s, lines, sorted(failed))
+        return Reach(times_s, lines, sorted(failed), limit_s)
 
     def source(self, module: Path) -> bytes:
         """Return a module's text as it was when the copy was made."""
@@ -162,6 +174,7 @@ class Session:
                 ],
                 only=tests,
                 watch=[],
+                slowest_s=0.0,
                 limit_s=60.0 + 4 * sum(reach.times_s.get(test, 0.0) for test in tests),
             )
         finally:

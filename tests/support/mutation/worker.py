@@ -1,8 +1,9 @@
 """Runs tests in forked children; one request a line and one answer, as JSON: `python -m mutation.worker (fresh|ready)`.
 
 `fresh` has the heavy imports behind it and imports polycnc anew for each request: `arguments` for pytest, `only` (the
-tests to run, in that order, or null), `watch` (the files whose lines are asked for) and `limit_s`. The answer has
-`status`, the tests' `times_s`, those that `failed` and, for each watched file, its `lines`.
+tests to run, in that order, or null), `watch` (the files whose lines are asked for), `slowest_s` (of processor time,
+after which a test fails) and `limit_s`. The answer has `status`, the tests' `times_s`, those that `failed` and, for
+each watched file, its `lines` with the numbers of the `tests` that ran them; -1 is an import.
 
 `ready` takes `arguments` first, collects those tests once, and runs some of them for each request with the functions
 of `file` as they are in the text `after` instead of `before`, until one fails.
@@ -12,9 +13,10 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import sys
 from collections.abc import Generator, Iterator
-from typing import Any, TextIO
+from typing import Any, NoReturn, TextIO
 
 import numba  # noqa: F401
 import numpy  # noqa: F401  (what every run would import again)
@@ -26,15 +28,21 @@ from ._exchange import NotExchangeableError, exchange
 from ._lines import Watch
 
 
+class _TooSlow(BaseException):
+    """Ends a test; no test and no hypothesis takes it for a failure of its own."""
+
+
 class Choice:
     """Takes away what is not asked for and remembers how long each test took, and what it reached."""
 
-    def __init__(self, only: list[str] | None, watch: Watch | None) -> None:
+    def __init__(self, only: list[str] | None, watch: Watch | None, slowest_s: float) -> None:
         self.only = only
         self.watch = watch
+        self.slowest_s = slowest_s
         self.times_s: dict[str, float] = {}
         self.failed: set[str] = set()
-        self.lines: dict[str, dict[int, list[str]]] = {}
+        self.tests: list[str] = []
+        self.lines: dict[str, dict[int, list[int]]] = {}
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
@@ -46,13 +54,28 @@ class Choice:
 
     @pytest.hookimpl(wrapper=True, tryfirst=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Generator[None, Any, Any]:
-        self.note("")  # what ran before belongs to no test
+        self.note(-1)  # what ran before belongs to no test
         try:
             return (yield)
         finally:
-            self.note(item.nodeid)
+            self.tests.append(item.nodeid)
+            self.note(len(self.tests) - 1)
 
-    def note(self, test: str) -> None:
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_call(self, item: pytest.Item) -> Generator[None, Any, Any]:
+        def end_slow(*_: object) -> NoReturn:
+            raise _TooSlow
+
+        signal.signal(signal.SIGPROF, end_slow)
+        signal.setitimer(signal.ITIMER_PROF, self.slowest_s)
+        try:
+            return (yield)
+        except _TooSlow:  # kept from pytest, which cannot tell of every place where a signal may arrive
+            self.failed.add(item.nodeid)
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+
+    def note(self, test: int) -> None:
         """Let what ran since the last call be of a test."""
         if self.watch is not None:
             for file, lines in self.watch.taken().items():
@@ -71,15 +94,16 @@ def run(request: dict[str, Any]) -> Answer:
     watch = Watch(request["watch"]) if request["watch"] else None
     if watch:
         sys.dont_write_bytecode = True  # the notes stay out of it
-    choice = Choice(request["only"], watch)
+    choice = Choice(request["only"], watch, request["slowest_s"])
     status = pytest.main(request["arguments"], plugins=[choice])
     for file, lines in watch.imported.items() if watch else ():
         for line in lines:
-            choice.lines.setdefault(file, {}).setdefault(line, []).append("")
+            choice.lines.setdefault(file, {}).setdefault(line, []).append(-1)
     return {
         "status": int(status),
         "times_s": choice.times_s,
         "failed": sorted(choice.failed),
+        "tests": choice.tests,
         "lines": choice.lines,
     }
 

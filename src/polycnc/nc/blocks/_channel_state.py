@@ -39,12 +39,14 @@ class Spindle:
 
 @dataclass(frozen=True, slots=True)
 class Cycle:
-    """Hold the active drilling cycle (its action, empty: none) and its words, levels of the program.
+    """Hold the active drilling cycle (its action, empty: none; the G code that called it) and its words.
 
-    `initial` is where the drilling axis was when the first cycle began, in machine coordinates.
+    Levels are those of the program; `initial` is where the drilling axis was when the first cycle began, in machine
+    coordinates.
     """
 
     action: str = ""
+    code: float = 80.0
     retract_to_initial: bool = True
     initial: float = 0.0
     words: CycleWords = field(default_factory=CycleWords)

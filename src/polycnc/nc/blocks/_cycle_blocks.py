@@ -75,7 +75,7 @@ class CycleBlocks:
         if not cycle.action:
             axis = int(self.state.modal.whole[AXIS_R])
             initial = float(self.state.modal.position[axis]) if axis != NO_AXIS else 0.0
-        self.state.cycle = replace(cycle, action=g.action.name.lower(), initial=initial)
+        self.state.cycle = replace(cycle, action=g.action.name.lower(), code=g.word.value, initial=initial)
 
     def cancel(self) -> None:
         """Leave the cycle and forget its words."""

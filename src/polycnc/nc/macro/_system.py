@@ -36,11 +36,6 @@ _PLANES = (17.0, 18.0, 19.0)
 _TOOL_FIELDS = ("wear_length_mm", "length_mm", "wear_radius_mm", "radius_mm")
 _ADDITIONAL, _ADDITIONAL_LONG = 7001, 14001
 _MODAL, _EXECUTED = 4000, 4200
-_CYCLES = {
-    "cycle_chip_break": 73.0, "cycle_tap_left": 74.0, "cycle_fine_bore": 76.0, "cycle_drill": 81.0,
-    "cycle_dwell": 82.0, "cycle_deep": 83.0, "cycle_tap": 84.0, "cycle_bore": 85.0, "cycle_bore_stop": 86.0,
-    "cycle_back_bore": 87.0, "cycle_bore_manual": 88.0, "cycle_bore_dwell": 89.0,
-}  # fmt: skip
 _MODAL_NUMBERS = frozenset(
     {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 22, 107, 109, 111, 113, 114, 115, 119, 120, 130}
 )
@@ -292,7 +287,7 @@ class SystemVariables:
             case 8:
                 return {1: 43.0, -1: 44.0}.get(coordinates.length_sign, 49.0)
             case 9:
-                return _CYCLES.get(state.cycle.action, 80.0)
+                return state.cycle.code
             case 10:
                 return 98.0 if state.cycle.retract_to_initial else 99.0
             case 11:
