@@ -318,6 +318,24 @@ def test_single_block_stops_behind_each_block(example: Example) -> None:
 
 
 @pytest.mark.parametrize(
+    ("mode", "expected"),
+    [
+        pytest.param(mode, value, marks=pytest.mark.covers("cpl.SD.13", f"cpl.SD.13.val.{value}"))
+        for mode, value in (
+            (Mode.SINGLE_BLOCK, 0), (Mode.SINGLE_STEP, 0), (Mode.AUTOMATIC, 1), (Mode.PROGRAM_BLOCK, 2),
+        )
+    ],
+)  # fmt: skip
+def test_a_program_is_told_the_mode_of_its_channel(example: Example, mode: Mode, expected: int) -> None:
+    other = Mode.AUTOMATIC if mode is Mode.SINGLE_BLOCK else Mode.SINGLE_BLOCK
+    example.pnc.select_mode(other, channel=1)
+    example.pnc.select_mode(mode, channel=2)
+    example.start("1 #A%=SD(13)", channel=2)
+    example.pnc.advance(20)
+    assert example.pnc.variables(2)["#A%"] == expected
+
+
+@pytest.mark.parametrize(
     "loop",
     ["10 WHILE 1=1 DO\n20 A=A\n30 END", "10 A%=1\n20 GOTO 10", "10 REPEAT\n20 A?=IC(1)\n30 UNTIL 1=2"],
 )

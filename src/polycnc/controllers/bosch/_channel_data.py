@@ -7,6 +7,7 @@ from typing import Any
 
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
+from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import (
     SD_GROUPS,
     LastFunctions,
@@ -17,6 +18,7 @@ from polycnc.controllers.bosch.system import (
 from polycnc.nc import Group, ModalWords
 
 _SPINDLE = 1
+_SINGLE_BLOCK, _AUTOMATIC, _PROGRAM_BLOCK = range(3)
 _SENSES = {1: 3, -1: 4, 0: 0}
 _OFF = (53, 153, 253, 67, 39, 146, 167)
 """What is in force of groups of which nothing was programmed."""
@@ -29,14 +31,20 @@ _OTHER_GROUPS = ((138, 139), (168, 169), (268, 269), (147, 148, 247, 347, 447, 5
 
 
 class ChannelData:
-    """The system data of channel `number`; `language` is the country code of MACODA 6010 00010."""
+    """The system data of channel `number`; `language` is the country code of MACODA 6010 00010, `modes` tells modes."""
 
     def __init__(
-        self, axes: SystemAxes, number: int, runs: Callable[[int], ProgramRun | None], language: int
+        self,
+        axes: SystemAxes,
+        number: int,
+        runs: Callable[[int], ProgramRun | None],
+        modes: Callable[[int], Mode],
+        language: int,
     ) -> None:
         self._axes = axes
         self._number = number
         self._runs = runs
+        self._modes = modes
         self._language = language
         self.functions: Mapping[str, Callable[..., object]] = {
             "SD": lambda *place: self.system_data().sd(*place),
@@ -78,13 +86,18 @@ class ChannelData:
             spindle_overrides=overrides,
             actual_rpm={_SPINDLE: rpm},
             probe_missing=probe is not None and probe.position is None,
-            machining_mode=0 if run.single_block else 1,
+            machining_mode=self._machining_mode(),
             language=self._language,
             test_without_motion=run.machine_lock,
             axis_names=dict(zip(axes.names, axes.numbers, strict=True)),
             logical_names=axes.logical_names(),
             machining_axes=frozenset(range(1, len(axes.channels[self._number]) + 1)),
         )
+
+    def _machining_mode(self) -> int:
+        if self._modes(self._number) is Mode.PROGRAM_BLOCK:
+            return _PROGRAM_BLOCK
+        return _SINGLE_BLOCK if self.run.single_block else _AUTOMATIC
 
     def programmed(self) -> ModalWords:
         """Return the words that were programmed last."""

@@ -124,7 +124,11 @@ class BoschSystem:
         self.drives = Drives(self.axes.physical, self._drive, self._write_lines)
         self.data = {
             number: ChannelData(
-                self.axes, number, lambda each: self.run_of(each), int(str(self.parameter(LANGUAGE)))
+                self.axes,
+                number,
+                lambda each: self.run_of(each),
+                lambda each: self.mode_of(each),
+                int(str(self.parameter(LANGUAGE))),
             )
             for number in self.axes.channels
         }
