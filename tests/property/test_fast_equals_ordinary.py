@@ -66,7 +66,7 @@ def test_the_fast_path_takes_plain_blocks_and_only_those(monkeypatch: pytest.Mon
     ordinary_block = Channel._ordinary_block
 
     def noting(self: Channel) -> None:
-        taken.append(self._next_block)
+        taken.append(self._reading.next)
         ordinary_block(self)
 
     monkeypatch.setattr(Channel, "_ordinary_block", noting)

@@ -12,6 +12,7 @@ from collections.abc import Callable, Sequence
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine, MachineConfig, SnapshotError
+from polycnc.nc._block_reading import CHUNK_BLOCKS, BlockReading
 from polycnc.nc._block_records import BlockRecords, Call
 from polycnc.nc._block_source import (
     BoundLanguage,
@@ -30,42 +31,30 @@ from polycnc.nc._block_source import (
 )
 from polycnc.nc._channel_snapshot import ChannelSnapshot, Suppressed
 from polycnc.nc._dialect import Dialect
+from polycnc.nc._first_state import first_state
 from polycnc.nc.blocks._calls import Back, Calls, Library, Place
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._interpreter import Control, Interpreter, Trouble
+from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import (
-    LINEAR_AXIS,
-    MODULO_AXIS,
     ORDINARY,
-    ROTARY_AXIS,
-    make_modal,
-    set_diameters,
 )
 from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._outcomes import Control, Trouble
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import (
-    COMMENT,
-    LABEL,
     MESSAGE,
     PERCENT,
     PLAIN,
-    WordColumns,
-    scan,
     scan_rules,
-    word_columns,
 )
-from polycnc.nc.text._scan_plain import Block, Word, scan_block
+from polycnc.nc.text._scan_plain import Block
 
 ORDINARY_BLOCKS = 2000
-_CHUNK_BLOCKS = 1 << 14
-_JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are short, and jumps many
 _MOST_ERRORS = 1000
 _MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
-_WORDS_ONLY = COMMENT | LABEL
-_START_OFFSET = "G54"
 
 
 class Channel:
@@ -126,31 +115,26 @@ class Channel:
         self._language = language
         self._ordinary_blocks = ordinary_blocks
         self._calls = Calls(program, dialect, library)
-        self._place = Place(program)
-        self._text_end = len(program)  # what is beyond is not read
         self._calls_within: tuple[
             Call, ...
         ] = ()  # those that the source of the present program made by itself
-        self._chunk = word_columns(_CHUNK_BLOCKS)
-        self._jump_chunk = word_columns(_JUMP_BLOCKS)
-        self._words = self._chunk
-        self._next_block = 0
-        self._text_rules = dialect.text_rules()
-        self._scan_rules = scan_rules(self._text_rules)
+        text_rules = dialect.text_rules()
+        rules = scan_rules(text_rules)
+        self._reading = BlockReading(program, text_rules, rules)
         self._tables = dialect.tables()
         kernel = machine.state
         if before is None:
             self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
-            self.state = self._initial_state(config or machine.config)
-            self.records = BlockRecords(dialect, self._scan_rules, self._tables, _CHUNK_BLOCKS)
+            self.state = self._first_state(config or machine.config)
+            self.records = BlockRecords(dialect, rules, self._tables, CHUNK_BLOCKS)
         else:
             self.writer, self.state, self.records = before.writer, before.state, before.records
             if not keeps_modal:
-                self.state = self._initial_state(config or machine.config)
+                self.state = self._first_state(config or machine.config)
                 self.state.tool = before.state.tool
         self._fast_work = make_fast_work(
             self.state.modal,
-            _CHUNK_BLOCKS if marks else 0,
+            CHUNK_BLOCKS if marks else 0,
             feed_needs_point=dialect.numbers.feed_least_input > 0.0,
         )
         self.interpreter = Interpreter(
@@ -189,7 +173,7 @@ class Channel:
     @property
     def progress(self) -> float:
         """How much of the program text has been prepared, 0 to 1; it goes back where sub-programs repeat."""
-        here = self._here()
+        here = self._reading.here
         size = len(here.text)
         return min(here.offset / size, 1.0) if size else 1.0
 
@@ -225,7 +209,7 @@ class Channel:
                 return
             if most is not None and self.blocks >= most:
                 return
-            if self._next_block >= self._words.n_blocks:
+            if self._reading.is_through:
                 if not self._next_chunk():
                     return
             elif compiled and self.blocks >= self._ordinary_blocks and not whole[ORDINARY]:
@@ -254,9 +238,9 @@ class Channel:
             except ProgramError as error:
                 raise UsageError(error.what, hint=error.hint) from error
             if running.source is not None:
-                self._jump(begin, begin.offset)  # no text for now
+                self._reading.jump(begin, begin.offset)  # no text for now
                 return
-        self._jump(place, len(place.text))
+        self._reading.jump(place, len(place.text))
 
     def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
         """Carry out all blocks before a line of the main program; False if the program ends before.
@@ -268,7 +252,7 @@ class Channel:
         """
         place = self._target(line)
         self._begun = self._seeking = True
-        self._text_end = place.offset
+        self._reading.end = place.offset
         while not self._ended and not self._is_at(place):
             self.fill()
             drop()
@@ -281,7 +265,7 @@ class Channel:
                 f"radius compensation is active at line {line}",
                 hint="Search a block before G41 or G42, or behind G40.",
             )
-        self._jump(place, len(place.text))
+        self._reading.jump(place, len(place.text))
         return True
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:
@@ -301,8 +285,8 @@ class Channel:
     def _is_at(self, place: Place) -> bool:
         return (
             self._calls.depth == 0
-            and self._next_block >= self._words.n_blocks
-            and self._place.offset >= place.offset
+            and self._reading.is_through
+            and self._reading.place.offset >= place.offset
             and not self.writer.backlog
         )
 
@@ -318,8 +302,8 @@ class Channel:
             self.state.save(),
             self.state.tables.save(),
             self._calls.snapshot(),
-            self._here(),
-            self._text_end,
+            self._reading.here,
+            self._reading.end,
             self._calls_within,
             self.blocks,
             tuple(self.errors),
@@ -376,7 +360,7 @@ class Channel:
         self.writer.restore(saved.writer)
         self.records.restore(saved.records)
         self.interpreter.restore(saved.interpreter)
-        self._jump(saved.place, saved.text_end)
+        self._reading.jump(saved.place, saved.text_end)
         if returning is not None:
             for running, (arguments, source) in zip(self._calls.under_way, returning(), strict=True):
                 running.arguments, running.source = arguments, source
@@ -386,50 +370,14 @@ class Channel:
         self._ended = True
         self._calls.close()
 
-    def _initial_state(self, config: MachineConfig) -> ChannelState:
-        limits = [axis.soft_limits for axis in config.axes]
-        names = tuple(self._axes or config.axis_names)
-        modal = make_modal(
-            names,
-            [
-                LINEAR_AXIS if axis.kind == "linear" else MODULO_AXIS if axis.modulo else ROTARY_AXIS
-                for axis in config.axes
-            ],
-            [low for low, _ in limits],
-            [high for _, high in limits],
-            min(axis.vmax for axis in config.axes),
-        )
-        modal.position[:] = config.start_positions
-        self.dialect.set_initial_state(modal)
-        named = self.dialect.diameter_axes
-        set_diameters(
-            modal,
-            [index for index, axis in enumerate(config.axes) if axis.is_diameter or axis.name in named],
-        )
-        state = ChannelState(config, modal)
-        state.path_tolerance_mm = self.dialect.path_tolerance_mm(config.path)
-        state.axis_names = names
-        given = getattr(config.offsets, "at_start", None)
-        begins = _START_OFFSET in config.offsets if given is None else given
-        if begins or self.dialect.sets_work_offsets:
-            state.coordinates.select_work_offset(0, _START_OFFSET)
-        return state
+    def _first_state(self, config: MachineConfig) -> ChannelState:
+        return first_state(config, self.dialect, tuple(self._axes or config.axis_names))
 
     # ------------------------------------------------------------------ reading
 
-    def _scan(self, columns: WordColumns) -> None:
-        """Scan the blocks that follow the present place; the place moves behind them."""
-        place = self._place
-        self._words = columns
-        data = place.text.data[: self._text_end]
-        offset = scan(data, place.offset, place.line, self._scan_rules, columns)
-        self._place = Place(place.text, offset, columns.next_line)
-        self._next_block = 0
-
     def _next_chunk(self) -> bool:
         """Get more blocks, where the text ends from the language; False if there are none for now."""
-        if self._place.offset < self._text_end:
-            self._scan(self._chunk)
+        if self._reading.more():
             return True
         if self._calls.running.source is not None:
             return self._from_source()
@@ -437,15 +385,6 @@ class Channel:
             return False
         self._leave()
         return True
-
-    def _stop_reading(self) -> None:
-        """Read no more of the present text: the source says what comes next."""
-        self._jump(Place(self._place.text, self._text_end, self._place.line), self._text_end)
-
-    def _jump(self, place: Place, end: int) -> None:
-        self._place = place
-        self._text_end = end
-        self._scan(self._jump_chunk)
 
     def _begin(self) -> None:
         """Begin the present program, or its next round."""
@@ -460,9 +399,9 @@ class Channel:
             except ProgramError as error:
                 self._note(error)
         if running.source is not None:
-            self._jump(begin, begin.offset)  # no text for now
+            self._reading.jump(begin, begin.offset)  # no text for now
         elif self._calls.depth or self._language is not None:
-            self._jump(begin, len(begin.text))
+            self._reading.jump(begin, len(begin.text))
 
     # ------------------------------------------------------------------ from a language
 
@@ -489,12 +428,12 @@ class Channel:
         if isinstance(item, WordsBlock | TextSpan | Drain | Statement):
             text = item.text or text
             self._calls_within = item.calls
-            self._place = Place(text, self._text_end, item.line)  # the end of what there is to read
+            self._reading.stand_at(text, item.line)
         match item:
             case WordsBlock():
                 self._words_block(text, item)
             case TextSpan():
-                self._jump(Place(text, item.offset, item.line), item.end)
+                self._reading.jump(Place(text, item.offset, item.line), item.end)
             case Drain():
                 self.interpreter.drain(text, item.line)
             case Statement():
@@ -532,43 +471,33 @@ class Channel:
         if trouble is not None:
             what, hint, code = trouble
             raise ProgramError(what, position=text.position(call.offset), hint=hint, code=code)
-        back = Back(self._here(), self._text_end, call.line, self._calls_within)
+        back = Back(self._reading.here, self._reading.end, call.line, self._calls_within)
         if self._calls.enter(call.program, call.repeats, back, call.arguments):
             self._begin()
 
     def _reference(self, line: int) -> int:
         """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._place.text, self.stack, self.state.snapshot(), line)
+        return self.records.reference(self._reading.text, self.stack, self.state.snapshot(), line)
 
     @property
     def stack(self) -> tuple[Call, ...]:
         """The calls that led to what is prepared now, the outermost first."""
         return self._calls.stack + self._calls_within if self._calls_within else self._calls.stack
 
-    def _here(self) -> Place:
-        """Return the place of the next block."""
-        if self._next_block < self._words.n_blocks:
-            return Place(
-                self._place.text,
-                int(self._words.offset[self._next_block]),
-                int(self._words.line[self._next_block]),
-            )
-        return self._place
-
     # ------------------------------------------------------------------ blocks
 
     def _plain_blocks(self, most: int | None) -> int:
         """Let the compiled kernel take what it can; return why it stopped."""
-        first = self._next_block
-        words = self._words
+        reading = self._reading
+        first, words = reading.next, reading.words
         kernel = self.machine.state
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
-        base = self.records.run_base(self._place.text, self.stack, self.state.snapshot(), begin)
+        base = self.records.run_base(reading.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks
         if most is not None:
             after = min(after, first + most - self.blocks)
-        self._next_block, reason = run_plain(
+        reading.next, reason = run_plain(
             words,
             first,
             after,
@@ -583,16 +512,16 @@ class Channel:
         )
         if self.writer.marks is not None:
             self.writer.marks.extend(marked(self._fast_work))
-        if self._next_block > first:
-            self.blocks += self._next_block - first
-            if words.first_word[self._next_block] > words.first_word[first]:
+        if reading.next > first:
+            self.blocks += reading.next - first
+            if words.first_word[reading.next] > words.first_word[first]:
                 self._calls.running.begun = True
         return reason
 
     def _ordinary_block(self) -> None:
-        index = self._next_block
-        self._next_block += 1
-        words = self._words
+        reading = self._reading
+        index, words = reading.next, reading.words
+        reading.next += 1
         running = self._calls.running
         if words.flags[index] & PERCENT:
             if running.begun:  # the % behind a program ends it, the one before it does not matter
@@ -602,37 +531,17 @@ class Channel:
             self.blocks += 1
             return
         try:
-            block = self._block(index)
+            block = reading.block(index)
             if running.begun and _is_program_number(block):
                 self._leave()  # another program begins here
                 return
             running.begun = running.begun or bool(block.words)
             self.blocks += 1
-            self._execute(self._place.text, block)
+            self._execute(self._reading.text, block)
         except ProgramError as error:
             self._note(error)
             if error.position is not None and error.position.line != words.line[index]:
                 self.interpreter.leave_compensation()  # the move before is wrong: not every one after it
-
-    def _block(self, index: int) -> Block:
-        """Return a block of the columns; one that is more than words is read again."""
-        columns = self._words
-        text = self._place.text
-        offset, line = int(columns.offset[index]), int(columns.line[index])
-        flags = int(columns.flags[index])
-        if flags & ~_WORDS_ONLY:
-            return scan_block(text, offset, line, self._text_rules)
-        span = slice(columns.first_word[index], columns.first_word[index + 1])
-        words = tuple(
-            map(
-                Word,
-                columns.letter[span].tobytes().decode("ascii"),
-                columns.value[span].tolist(),
-                columns.place[span].tolist(),
-                columns.point[span].astype(bool).tolist(),
-            )
-        )
-        return Block(words, flags, int(columns.skip_level[index]), offset, text.next_line(offset), line)
 
     def _note(self, error: ProgramError) -> None:
         """Note an error once, however often its block is repeated."""
@@ -661,7 +570,7 @@ class Channel:
                 else:
                     self._end()
             case Control.CALL:
-                back = Back(self._here(), self._text_end, block.line, self._calls_within)
+                back = Back(self._reading.here, self._reading.end, block.line, self._calls_within)
                 if self._calls.enter(outcome.program, outcome.repeats, back):
                     self._begin()
             case Control.GO_ON:
@@ -669,7 +578,7 @@ class Channel:
             case Control.RETURN:
                 source = self._calls.running.source
                 if source is not None and source.leave():
-                    self._stop_reading()
+                    self._reading.stop()
                     return
                 if self._calls.depth == 0:
                     self.messages.add("a return from the main program ends it")
@@ -684,13 +593,13 @@ class Channel:
             ProgramError: statements stand before that place.
         """
         assert place is not None
-        if place.offset > self._text_end:
+        if place.offset > self._reading.end:
             raise ProgramError(
                 "a contour that is cut apart by statements is not supported yet",
                 position=place.text.position(block.offset),
                 hint="Write the contour in plain words.",
             )
-        self._jump(place, self._text_end)
+        self._reading.jump(place, self._reading.end)
 
     def _leave(self) -> None:
         """End the present program: go back to the one that called it, or end everything."""
@@ -702,7 +611,7 @@ class Channel:
             self._begin()
         else:
             self._calls_within = back.within
-            self._jump(back.place, back.end)
+            self._reading.jump(back.place, back.end)
 
     def _end(self) -> None:
         self.close()

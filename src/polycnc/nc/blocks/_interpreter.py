@@ -10,17 +10,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
-from enum import Enum
+from dataclasses import replace
 
 from polycnc.errors import ProgramError
 from polycnc.nc._block_records import AGAIN
 from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks import _turning_blocks as turning_blocks
-from polycnc.nc.blocks._actions import Action, Group, MAction
-from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
+from polycnc.nc.blocks._actions import Action, Group
+from polycnc.nc.blocks._auxiliary import Auxiliary
 from polycnc.nc.blocks._calls import Place
-from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
+from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._contours import (
     ContourTrouble,
@@ -30,47 +29,35 @@ from polycnc.nc.blocks._contours import (
     numbered_block,
     without_compensation,
 )
-from polycnc.nc.blocks._corners import Corner, CornerError, joined
+from polycnc.nc.blocks._corner_blocks import NUMBERS, CornerBlocks
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
 from polycnc.nc.blocks._frames import Frames
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._modal import (
-    AXIS_P,
-    AXIS_Q,
-    AXIS_R,
     FEED_MODE,
     FEED_PER_MINUTE,
     MOTION,
-    MOTION_ARC_CCW,
     MOTION_ARC_CW,
     MOTION_LINEAR,
     MOTION_NONE,
-    MOTION_RAPID,
-    NO_AXIS,
     ORDINARY,
-    length_scale,
 )
 from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Arc, Line, Move, QueueItem, Spline, Stop, Wait
+from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
+from polycnc.nc.blocks._outcomes import JUMPS, NEXT, Control, Outcome, Outcomes, Trouble
 from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._splines import SPLINES, SplineBlocks
 from polycnc.nc.blocks._turning_blocks import TurningBlocks
-from polycnc.nc.blocks._words import BlockWords, GWord, code_text, sort_words
+from polycnc.nc.blocks._word_checks import MOTIONS, WordChecks
+from polycnc.nc.blocks._words import BlockWords, GWord, sort_words
 from polycnc.nc.text._not_words import slip, statements
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
 from polycnc.nc.text._scan_plain import Block, Word
 
-_MOTIONS = {
-    Action.RAPID: MOTION_RAPID,
-    Action.LINEAR: MOTION_LINEAR,
-    Action.ARC_CW: MOTION_ARC_CW,
-    Action.ARC_CCW: MOTION_ARC_CCW,
-    Action.MOTION_OFF: MOTION_NONE,
-}
 _FRAME_ACTIONS = {
     Action.SET_DATA,
     Action.SET_WORK_ZERO,
@@ -85,58 +72,8 @@ _LANGUAGES = (
     "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
     "or post the program without them."
 )
-_NUMBERS = "NO:"  # block and program numbers
-_AXIS_LETTERS = "XYZABCUVW"
-# What the words belong to that need a function beside them.
-_BELONGS_TO = {
-    "I": "an arc (G2, G3) or a drilling cycle",
-    "J": "an arc (G2, G3) or a drilling cycle",
-    "K": "an arc (G2, G3) or a drilling cycle",
-    "R": "an arc (G2, G3) or a drilling cycle",
-    "Q": "a drilling cycle",
-    "P": "a dwell, a sub-program call, an arc or a drilling cycle",
-    "L": "a sub-program call or a drilling cycle",
-    "D": "radius compensation",
-    "H": "tool length compensation (G43, G44)",
-    "F": "a dwell that has its time already, or a feed",
-}
 
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
-_WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
-
-Trouble = tuple[str, str, str]
-"""What is wrong, what to do and its code, of something that is not a matter of the block's words alone."""
-
-
-class Control(Enum):
-    """What comes after a block."""
-
-    NEXT = "next"
-    CALL = "call"
-    RETURN = "return"
-    STOP = "stop"
-    END = "end"
-    GO_ON = "go on"
-
-
-@dataclass(frozen=True, slots=True)
-class Outcome:
-    """Say how the program goes on; a call names the sub-program and how often it runs, GO_ON a place."""
-
-    control: Control = Control.NEXT
-    program: int = 0
-    repeats: int = 1
-    place: Place | None = None
-
-
-_NEXT = Outcome()
-_JUMPS = (MAction.SUB_CALL, MAction.SUB_RETURN)  # never leave the control
-_OUTCOMES = {
-    MAction.PROGRAM_END: Outcome(Control.END),
-    MAction.PROGRAM_STOP: Outcome(Control.STOP),
-    MAction.OPTIONAL_STOP: Outcome(Control.STOP),
-    MAction.SUB_RETURN: Outcome(Control.RETURN),
-}
 
 
 def _moves_only(g: GWord) -> tuple[str, str]:
@@ -163,7 +100,6 @@ class Interpreter:
         self.state = state
         self.messages = messages
         self._queue = queue
-        self._call_trouble = call_trouble
         self._reference = reference
         self._last_tag = 0
         self._text = ProgramText.from_text("")
@@ -184,9 +120,13 @@ class Interpreter:
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
         self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
         self._splines = SplineBlocks(state, self._motion, self.fail)
+        self._checks = WordChecks(state, dialect, messages, self.fail)
+        self._corners = CornerBlocks(state, self._motion, self.fail)
+        self._outcomes = Outcomes(
+            dialect, self.fail, lambda program, place: call_trouble(program, self._text, place)
+        )
         self._behind: Place | None = None  # where the program goes on, behind a contour that a cycle has cut
         self._capturing = False
-        self._holds: Corner | None = None  # the corner that the present block asks for
 
     def execute(self, text: ProgramText, block: Block) -> Outcome:
         """Execute one block of `text`.
@@ -214,7 +154,7 @@ class Interpreter:
 
     def _going_on(self, outcome: Outcome) -> Outcome:
         """Return how the program goes on: behind a contour that has been cut."""
-        if self._behind is None or outcome is not _NEXT:
+        if self._behind is None or outcome is not NEXT:
             return outcome
         return Outcome(Control.GO_ON, place=self._behind)
 
@@ -284,7 +224,7 @@ class Interpreter:
         assert self._block is not None
         words = self._block.words
         for each in words:
-            if each.letter not in _NUMBERS:
+            if each.letter not in NUMBERS:
                 return each.place
         return words[0].place if words else self._block.offset
 
@@ -309,12 +249,12 @@ class Interpreter:
             self.messages.add(f"MSG: {block.message}")
         line = block.line
         words = sort_words(block, self.dialect, self.fail, self._count)
-        self._refuse_contradictions(words)
-        self._leave_out(words)
+        self._checks.refuse_contradictions(words)
+        self._checks.leave_out(words)
         self._motion.begin(words)
-        for letter in _NUMBERS:
+        for letter in NUMBERS:
             words.take(letter)
-        outcome = self._outcome(words) if words.m else _NEXT
+        outcome = self._outcomes.outcome(words) if words.m else NEXT
         modes = self._modes
         modes.set_units_and_plane(words)
         modes.set_feed(words)
@@ -328,11 +268,11 @@ class Interpreter:
                 self._frames.set_modal(g, words)
         items += self._moved(words, line, functions=bool(items))
         if words.left_out:
-            self._take_parameters(words)
-        self._refuse_unused(words)
+            self._checks.take_parameters(words)
+        self._checks.refuse_unused(words)
         if words.m:
             items += self._auxiliary.after_motion(words, line, block.message)
-            if codes := tuple(m.code for m in words.m if m.action not in _JUMPS):
+            if codes := tuple(m.code for m in words.m if m.action not in JUMPS):
                 self.state.m_codes = codes
         self._motion.check_times(items)
         self._note_position(items)
@@ -432,40 +372,6 @@ class Interpreter:
         self.state.compensation.reset()
         self.state.side = 0
 
-    def _leave_out(self, words: BlockWords) -> None:
-        """Say which codes are left out, and leave out the words that belong to them.
-
-        Axis words belong to the block's own motion word, if it has one.
-        """
-        for code in words.left_out:
-            self.messages.add(f"{code} is left out, as told")
-        if words.takes_words and words.g.keys().isdisjoint(_WORDS_OF_THEIR_OWN):
-            words.take_all()
-
-    def _refuse_contradictions(self, words: BlockWords) -> None:
-        """Refuse functions of different groups that cannot share a block."""
-        g = words.g
-        if len(g) < 2:
-            return
-        non_modal, dwell, motion = g.get(Group.NON_MODAL), g.get(Group.DWELL), g.get(Group.MOTION)
-        if dwell and non_modal:
-            self._exclude(f"G{dwell.code}", f"G{non_modal.code}", "both need their own block", non_modal.word)
-        if motion is None:
-            return
-        is_straight = motion.action in (Action.RAPID, Action.LINEAR)
-        if non_modal and (
-            non_modal.action is Action.SET_POSITION
-            or motion.action in SPLINES
-            or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
-        ):
-            self._exclude(f"G{non_modal.code}", f"G{motion.code}", "both use the axis words", motion.word)
-        cancel = g.get(Group.CYCLE_CANCEL)
-        if cancel and motion.action not in _MOTIONS.keys() | SPLINES.keys():
-            self._exclude(f"G{cancel.code}", f"G{motion.code}", "one ends what the other begins", motion.word)
-
-    def _exclude(self, first: str, second: str, why: str, word: Word) -> None:
-        raise self.fail(f"{first} and {second} exclude each other: {why}", "Write them in two blocks.", word)
-
     # ------------------------------------------------------------------ motion
 
     def _motion_in_force(self, words: BlockWords) -> int:
@@ -475,10 +381,10 @@ class Interpreter:
             self._cycles.cancel()
         g = words.g.get(Group.MOTION)
         if g is not None and g.action not in SPLINES:
-            if g.action in _MOTIONS:
+            if g.action in MOTIONS:
                 self._cycles.cancel()
                 self._turning.cancel()
-                whole[MOTION] = _MOTIONS[g.action]
+                whole[MOTION] = MOTIONS[g.action]
             elif g.action in turning_blocks.MODAL:
                 self._cycles.cancel()
                 self._turning.begin(g)
@@ -533,7 +439,7 @@ class Interpreter:
             )
         moves = self._motion.moves(self._motion.target(values), motion, line)
         if motion == MOTION_LINEAR and self.dialect.corner_words:
-            return self._held_corner(list(moves), words)
+            return self._corners.held(list(moves), words)
         return list(moves)
 
     def _moved(self, words: BlockWords, line: int, *, functions: bool) -> list[QueueItem]:
@@ -544,69 +450,8 @@ class Interpreter:
         if not self.dialect.corner_words:
             return moves
         if functions and self.state.corner is not None:
-            raise self._no_straight_move(self.state.corner)
-        return self._with_corner(moves, words)
-
-    def _no_straight_move(self, corner: Corner) -> ProgramError:
-        return self.fail(
-            f"{corner.word} of the block before needs a straight move at feed behind it",
-            "Write G1 and nothing else in this block, or take the corner out.",
-            None,
-        )
-
-    def _held_corner(self, moves: list[Move], words: BlockWords) -> list[QueueItem]:
-        """Hold the last of a block's moves if R or C asks for a corner behind it; return the others."""
-        letters = [each for each in "RC" if each in words.by_letter and each not in self.state.axis_names]
-        if not letters:
-            return list(moves)
-        word = words.by_letter[letters[-1]]
-        size = words.length(letters[-1])
-        if len(letters) > 1 or size is None:
-            raise self.fail("R and C in one block", "Write one of them.", word)
-        if size == 0.0:
-            return list(moves)
-        last = moves[-1]
-        assert isinstance(last, Line)
-        text = f"{letters[-1]}{code_text(word.value)}"
-        self._holds = Corner(last, abs(size) * length_scale(self.state.modal), letters[-1] == "R", text)
-        return list(moves[:-1])
-
-    def _with_corner(self, items: list[QueueItem], words: BlockWords) -> list[QueueItem]:
-        """Return the items behind a move that waits for its corner, with that move and the corner.
-
-        Raises:
-            ProgramError: the block is no straight move at feed, or the corner does not fit.
-        """
-        corner, holds = self.state.corner, self._holds
-        self._holds = None
-        if corner is None or not (
-            items or holds or words.by_letter.keys() - set(_NUMBERS) or words.g or words.m
-        ):
-            self.state.corner = holds or corner
-            return items
-        moves = [*items, *([holds.move] if holds else [])]
-        after = moves[0] if moves else None
-        whole = self.state.modal.whole
-        plane = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
-        if not isinstance(after, Line) or after.rapid or NO_AXIS in plane[:2]:
-            raise self._no_straight_move(corner)
-        try:
-            found: list[QueueItem] = list(joined(corner, after, plane))
-        except CornerError as error:
-            raise self.fail(error.what, error.hint, None) from None
-        for item in found:
-            if isinstance(item, Arc):
-                self._motion.check_limits(item.end, "would pass")
-        last = found.pop()
-        if holds is None:
-            self.state.corner = None
-            return [*found, last, *items[1:]]
-        assert isinstance(last, Line)
-        if len(moves) == 1:
-            self.state.corner = replace(holds, move=last)
-            return found
-        self.state.corner = holds
-        return [*found, last, *items[1:]]
+            raise self._corners.no_straight_move(self.state.corner)
+        return self._corners.joined(moves, words)
 
     def _contour_cycle(self, g: GWord, words: BlockWords, line: int) -> list[QueueItem]:
         """Return the moves of a cycle about a contour, which stands in other blocks: from P to Q."""
@@ -617,9 +462,9 @@ class Interpreter:
         blocks = self._contour(*numbers, g)
         start = self._motion.start
         if g.action is Action.TURN_FINISH:
-            self._refuse_unused(words)
+            self._checks.refuse_unused(words)
             found = [item for block in blocks for item in self._of_contour(block, g)]
-            self._refuse_open_corner(g)
+            self._corners.refuse_open(g)
             return [*found, *self._turning.back_to(start, line)]
         state = self.state
         saved = state.save()
@@ -631,20 +476,12 @@ class Interpreter:
                 for item in self._of_contour(without_compensation(block, self.dialect), g)
                 if isinstance(item, (Line, Arc))
             ]
-            self._refuse_open_corner(g)
+            self._corners.refuse_open(g)
         finally:
             self._capturing = False
             state.restore(saved)
         both = names_x_and_z(blocks[0], self.dialect) if blocks else False
         return self._turning.contour_cycle(g, words, moves, line, both_axes=both)
-
-    def _refuse_open_corner(self, g: GWord) -> None:
-        if (corner := self.state.corner) is not None:
-            raise self.fail(
-                f"{corner.word} at the end of the contour of G{g.code}",
-                "A corner needs a straight move behind it.",
-                g.word,
-            )
 
     def _of_contour(self, block: Block, g: GWord) -> list[QueueItem]:
         """Execute a block of a contour within the present block; return its moves."""
@@ -652,7 +489,7 @@ class Interpreter:
         self._block = block
         try:
             outcome, items = self._execute(block)
-            if outcome is not _NEXT or any(isinstance(item, Spline) for item in items):
+            if outcome is not NEXT or any(isinstance(item, Spline) for item in items):
                 raise self.fail(*_moves_only(g), None)
         finally:
             self._block, self._motion.words, self._motion.exact_stop_block = outer, words, stops
@@ -704,76 +541,3 @@ class Interpreter:
             plane = None if Group.PLANE in words.g else placement.plane
             codes = (*kept, *sorted(said))
             self.state.placement = replace(placement, codes=codes, once=once, plane=plane)
-
-    # ------------------------------------------------------------------ the rest of the block
-
-    def _outcome(self, words: BlockWords) -> Outcome:
-        for m in words.m:
-            if m.action is MAction.SUB_CALL:
-                return self._call(words, f"M{m.code}", m.word)
-            if m.action is MAction.SUB_RETURN and "P" in words.by_letter:
-                raise self.fail(
-                    f"M{m.code} P: a return to a block number cannot be carried out",
-                    "Take P out, or call another sub-program.",
-                    words.by_letter["P"],
-                )
-            if m.action in _OUTCOMES:
-                return _OUTCOMES[m.action]
-        return _NEXT
-
-    def _call(self, words: BlockWords, code: str, at: Word) -> Outcome:
-        p_word, l_word = words.take("P"), words.take("L")
-        if p_word is None:
-            raise self.fail(f"{code} without a sub-program", "Add P and the number of the sub-program.", at)
-        program = whole_number(p_word, "the number of a program", self.fail)
-        repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", self.fail)
-        if l_word is None and program > 9999 and self.dialect.sub_program.repeats_in_p:
-            repeats, program = divmod(program, 10_000)
-        if trouble := self._call_trouble(program, self._text, p_word.place):
-            what, hint, number = trouble
-            error = self.fail(what, hint, p_word)
-            error.code = number
-            raise error
-        return Outcome(Control.CALL, program, repeats)
-
-    def _take_parameters(self, words: BlockWords) -> None:
-        """Take what is left of words that are no axes: it belonged to codes that are left out."""
-        for letter, word in list(words.unused()):
-            if letter not in self.state.axis_names and word.letter not in _AXIS_LETTERS:
-                words.take(letter)
-
-    def _refuse_unused(self, words: BlockWords) -> None:
-        for name, word in words.unused():
-            if name in self.dialect.ignored_addresses:
-                self.messages.add(f"'{name}' has no effect here and is ignored")
-            elif name in self.state.axis_names:
-                raise self.fail(
-                    f"'{name}' cannot stand beside this function",
-                    "Write the move in a block of its own.",
-                    word,
-                )
-            elif of_another_channel(name) in self.state.axis_names:
-                raise self.fail(
-                    f"axis '{name}' belongs to another channel",
-                    "Take the word out, or execute the program in that channel.",
-                    word,
-                )
-            elif word.letter in _AXIS_LETTERS:
-                names = ", ".join(self.state.axis_names)
-                raise self.fail(
-                    f"there is no axis '{name}' on machine '{self.state.machine.name}'",
-                    f"Its axes are {names}; take the word out, or choose another machine.",
-                    word,
-                )
-            elif name in _BELONGS_TO:
-                raise self.fail(
-                    f"'{name}' has no meaning in this block", f"It belongs to {_BELONGS_TO[name]}.", word
-                )
-            else:
-                value = code_text(word.value)
-                raise self.fail(
-                    f"the address '{name}' is not known in dialect '{self.dialect.name}'",
-                    f"Take {name}{'=' if word.index is not None else ''}{value} out, or list '{name}' in the "
-                    "dialect's ignored_addresses.",
-                    word,
-                )
