@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         OperatorMessages,
         PastAlarm,
     )
-    from polycnc.cnc._control import PROGRAM_MESSAGE, Control, ControlEvent
+    from polycnc.cnc._control import PROGRAM_MESSAGE, Control
     from polycnc.cnc._control_channel import ControlChannel
     from polycnc.cnc._control_data import (
         AfterManual,
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
         Switches,
     )
     from polycnc.cnc._control_snapshot import ControlSnapshot
+    from polycnc.cnc._control_time import ControlEvent
     from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
     from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
     from polycnc.cnc._program_edit import ProgramEdit
@@ -62,7 +63,8 @@ _LATER = {
         "OperatorMessages",
         "PastAlarm",
     ),
-    "_control": ("PROGRAM_MESSAGE", "Control", "ControlEvent"),
+    "_control": ("PROGRAM_MESSAGE", "Control"),
+    "_control_time": ("ControlEvent",),
     "_control_channel": ("ControlChannel",),
     "_control_data": (
         "AfterManual",

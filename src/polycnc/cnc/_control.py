@@ -6,11 +6,10 @@ Every command is carried out or refused whole: a refused one raises `ControlErro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
-from enum import IntFlag
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any
 
 from polycnc.cnc._alarms import MOST_MESSAGE_CHARACTERS, Alarm, AlarmKind, AlarmList, OperatorMessages
 from polycnc.cnc._auxiliary import AuxiliaryFunctions
@@ -34,27 +33,26 @@ from polycnc.cnc._control_data import (
     Switches,
     check_channels,
 )
+from polycnc.cnc._control_moment import moment_of, put_back
+from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot
+from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import PlcModel, Script
 from polycnc.cnc._program_edit import ProgramEdit, ProgramEdits
 from polycnc.cnc._program_memory import ProgramMemory
-from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_snapshot import file_text
-from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import AxisStatus, Emergency, Status
 from polycnc.cnc._status_reading import AxisFigures, read_axes, read_figures, read_status
 from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
-from polycnc.kernel import FEED_S
 from polycnc.machine import (
     AnyAxis,
     Machine,
     MachineConfig,
-    Reason,
     Snapshot,
     SnapshotError,
     Store,
@@ -62,22 +60,10 @@ from polycnc.machine import (
 )
 from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
 
-Condition: TypeAlias = Callable[[], bool]
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
-_MOST_STANDSTILLS = 10_000
 _MDI_NAME = "MDI"
 PROGRAM_MESSAGE = 3006
 """Number of the message of a stop in a program of the first channel; those of the others follow."""
-
-
-class ControlEvent(IntFlag):
-    """What can end `Control.advance` early."""
-
-    NONE = 0
-    RUN_STATE = 1  # a channel has begun, stopped, ended
-    ALARM = 2  # an alarm has come
-    MANUAL = 4  # all manual motion has ended
-    FUNCTION = 8  # an auxiliary function was handed to the PLC, or answered
 
 
 class Control:
@@ -104,7 +90,7 @@ class Control:
         record_cycles: int = 0,
         languages: Sequence[Language | None] = (),
     ) -> None:
-        self.data = data or ControlData()
+        data = data or ControlData()
         file = load_machine(config)
         shares = tuple(channels) or (ChannelData(file.axis_names, spindle=True),)
         check_channels(shares, file.axis_names)
@@ -114,18 +100,18 @@ class Control:
         )
         self.dialect = load_dialect(dialect)
         store, clock, machine_file = self.machine.memory, self.machine.clock, self.machine.config
-        self.programs = ProgramMemory(store, clock, self.data.memory)
+        self.programs = ProgramMemory(store, clock, data.memory)
         self.tools = ToolTable(store, machine_file)
         self.offsets = OffsetTable(store, machine_file)
-        self.alarms = AlarmList(store, clock, self.data.alarms, keep=self.data.history_length, owners=owners)
-        self.messages = OperatorMessages(store, clock, keep=self.data.history_length)
+        self.alarms = AlarmList(store, clock, data.alarms, keep=data.history_length, owners=owners)
+        self.messages = OperatorMessages(store, clock, keep=data.history_length)
         self.timers = Timers(store, clock)
         self.parts = PartCounter(store)
         self.spindle = Spindle(clock, machine_file)
-        self.plc = PlcModel(clock, machine_file.times, script, limit_s=self.data.answer_limit_s)
+        self.plc = PlcModel(clock, machine_file.times, script, limit_s=data.answer_limit_s)
         self.functions = AuxiliaryFunctions(clock, machine_file.times, self.spindle, self.plc)
         self.manual = ManualMotion(
-            self.machine, self.alarms, self.data.manual, referenced=self.data.referenced_at_start
+            self.machine, self.alarms, data.manual, referenced=data.referenced_at_start
         )
         self._live = self._live_config()
         self.channels = tuple(
@@ -137,18 +123,31 @@ class Control:
                 self.manual,
                 config=self._live,
                 library=self._sub_program,
-                dry_run_mm_min=self.data.dry_run_mm_min,
+                dry_run_mm_min=data.dry_run_mm_min,
                 on_event=self._meet,
                 language=languages[path] if path < len(languages) else None,
             )
             for path, share in enumerate(shares)
         )
         self.clock = clock
+        self._parts = ControlParts(
+            self.machine, clock, self.channels, data, self.programs, self.alarms, self.messages, self.timers,
+            self.parts, self.spindle, self.plc, self.functions, self.manual,
+        )  # fmt: skip
+        self._time = ControlTime(self._parts, self._fail)
         self._emergency = Emergency.OFF
         self._relative_zero = [0.0] * len(machine_file.axes)
         self._edits = ProgramEdits(self.programs)
-        self._raised = ControlEvent.NONE
         self.manual.check_limit_switches()
+
+    @property
+    def data(self) -> ControlData:
+        """What is set for the control."""
+        return self._parts.data
+
+    @data.setter
+    def data(self, data: ControlData) -> None:
+        self._parts.data = data
 
     def _live_config(self) -> MachineConfig:
         """Return the machine file with the tables that change while programs run."""
@@ -390,10 +389,10 @@ class Control:
                 )
             search = Search(line) if line > 1 else None if is_mdi else chosen.search
             chosen.begin(text, mdi=is_mdi, step=step, search=search)
-            self._note_end(chosen)  # of a program that is over or wrong before anything moves
+            self._time.note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
-        self._note_running()
-        self._raised |= ControlEvent.RUN_STATE
+        self._time.note_running()
+        self._time.raised |= ControlEvent.RUN_STATE
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.
@@ -409,7 +408,7 @@ class Control:
         for each in running:
             each.hold()
         self.manual.stop_all(axes)
-        self._raised |= ControlEvent.RUN_STATE
+        self._time.raised |= ControlEvent.RUN_STATE
 
     def reset(self, *, channel: int | None = None) -> None:
         """Break off everything, and take away the alarms whose causes are gone; the axes brake.
@@ -428,18 +427,18 @@ class Control:
         for axis in (axis for each in chosen for axis in each.axes):
             self.machine.state.servo.error_tripped[names.index(axis)] = 0
         self.manual.check_limit_switches()
-        self._note_running()
-        self._raised |= ControlEvent.RUN_STATE
+        self._time.note_running()
+        self._time.raised |= ControlEvent.RUN_STATE
 
     def emergency_stop(self, on: bool = True) -> None:
         """Press or release the emergency stop: everything brakes and is broken off; the spindle stops."""
         if on and self._emergency is not Emergency.ON:
             self._emergency = Emergency.ON
             self.alarms.put("emergency_stop")
-            self._raised |= ControlEvent.ALARM
+            self._time.raised |= ControlEvent.ALARM
             self._break_off(self.channels)
             self.spindle.stop()
-            self._note_running()
+            self._time.note_running()
         elif not on and self._emergency is Emergency.ON:
             self.alarms.cause_gone("emergency_stop")
             needed = self.data.emergency_needs_reset
@@ -454,7 +453,7 @@ class Control:
             return self.alarms.put(name, axis=axis)
         alarm = self.alarms.put(name, axis=axis, detail=detail)
         self._fail((alarm,))
-        self._raised |= ControlEvent.ALARM
+        self._time.raised |= ControlEvent.ALARM
         return alarm
 
     def _fail(self, alarms: Iterable[Alarm]) -> None:
@@ -559,7 +558,7 @@ class Control:
     @property
     def raised(self) -> ControlEvent:
         """What happened in the last cycle that was run, and since."""
-        return self._raised
+        return self._time.raised
 
     def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did.
@@ -567,70 +566,7 @@ class Control:
         Fewer after the cycle in which one of the events `until` (`ControlEvent`) happened, or in which the condition
         `until`, looked at in every cycle, holds.
         """
-        condition = until if callable(until) else None
-        events = 0 if until is None or callable(until) else int(until)
-        done = 0
-        standstills = 0
-        while done < cycles:
-            self._raised = ControlEvent.NONE
-            passed = self._stretch(1 if condition is not None else cycles - done)
-            done += passed
-            standstills = 0 if passed else standstills + 1
-            if self._raised & events or (condition is not None and condition()):
-                break
-            if standstills > _MOST_STANDSTILLS:
-                break  # a program that loops without motion, as fast as time can pass
-        return done
-
-    def _stretch(self, cycles: int) -> int:
-        """Let time pass until something has to be looked at, and look."""
-        states = [channel.run_state for channel in self.channels]
-        alarms, manual = self.alarms.active, self.manual.active
-        row = self.machine.state.clock[0]
-        row["mask"] = 0
-        for channel in self.channels:
-            self._take_answers(channel)  # somebody may have answered since
-            if channel.run is not None and not channel.returning:
-                cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
-        due = self.plc.due_cycle()
-        if due is not None:
-            cycles = min(cycles, max(1, due - self.clock.cycles))
-        cycles = min(cycles, self.manual.horizon())
-        cutting_s = self._cutting_s()
-        reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
-        passed = self.machine.advance(cycles, until=int(row["mask"]) | reasons)
-        self.timers.count(
-            passed,
-            operating=RunState.ACTIVE in states,
-            cutting_s=self._cutting_s() - cutting_s,
-            tool=self._tool(),
-        )
-        self._look(passed, states)
-        if [channel.run_state for channel in self.channels] != states:
-            self._raised |= ControlEvent.RUN_STATE
-        if any(alarm not in alarms for alarm in self.alarms.active):
-            self._raised |= ControlEvent.ALARM
-        if manual and not self.manual.active:
-            self._raised |= ControlEvent.MANUAL
-        return passed
-
-    def _look(self, passed: int, states: list[RunState]) -> None:
-        """Look at what the last cycles have brought since the channels had these states."""
-        alarms = self.alarms.active
-        self.manual.after()
-        for number, channel in enumerate(self.channels):
-            if channel.run is not None and not channel.returning:
-                channel.run.after_cycles(passed)
-            if channel.run_state is not states[number]:
-                self._note_end(channel)
-            channel.look()
-            self._take_answers(channel)
-        self.functions.note_failures(self.alarms)
-        for index, axis in enumerate(self.machine.config.axes):
-            if self.machine.state.servo.error_tripped[index]:
-                self.alarms.put("following_error", axis=axis.name)
-        self._fail(alarm for alarm in self.alarms.active if alarm not in alarms)
-        self._note_running()
+        return self._time.advance(cycles, until=until)
 
     def _sub_program(self, number: int) -> ProgramText | None:
         for name in self.data.sub_program_names:
@@ -638,37 +574,18 @@ class Control:
                 return self.programs.text(found)
         return None
 
-    def _note_end(self, channel: ControlChannel) -> None:
-        """Count the part of a program that has ended, or put its error among the alarms."""
-        run = channel.run
-        counts = self.data.count_parts and channel.path == 0 and not channel.is_mdi
-        if channel.run_state is RunState.COMPLETED and counts:
-            self.parts.count()
-        if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
-            error = run.error
-            name, axis = self.alarms.of_program(error)
-            detail = str(error).splitlines()[0] if name == "program" else error.what
-            self.alarms.put(name, axis=axis, detail=detail, channel=channel.path)
-
-    def _note_running(self) -> None:
-        self.programs.running = frozenset().union(*(channel.programs for channel in self.channels))
-
     # ------------------------------------------------------------------ auxiliary functions
 
     def _meet(self, channel: ControlChannel, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
         if event.message:  # until the program goes on or is reset
             self.messages.show(PROGRAM_MESSAGE + channel.path, event.message[:MOST_MESSAGE_CHARACTERS])
-        self._raised |= ControlEvent.FUNCTION
+        self._time.raised |= ControlEvent.FUNCTION
         return self.functions.meet(channel, event, self.dialect)
 
     def waiting_functions(self, path: int) -> tuple[str, ...]:
         """Return the auxiliary functions, like "M8", that a channel waits for."""
         return self.functions.waiting(path)
-
-    def _take_answers(self, channel: ControlChannel) -> None:
-        if self.functions.take_answers(channel):
-            self._raised |= ControlEvent.FUNCTION
 
     # ------------------------------------------------------------------ state
 
@@ -694,7 +611,8 @@ class Control:
             None if channel.run is None else channel.run.snapshot(find=self._text)
             for channel in self.channels
         )
-        return ControlSnapshot.of(self._made_from, self.machine.snapshot(), self._moment(), runs)
+        moment = moment_of(self._parts, self._emergency, self.relative_zero, int(self._time.raised))
+        return ControlSnapshot.of(self._made_from, self.machine.snapshot(), moment, runs)
 
     def restore(self, snapshot: Snapshot) -> None:
         """Go back to a snapshot of this control, or of one made alike.
@@ -716,7 +634,11 @@ class Control:
         back = [channel.way_back(run, self._text) for channel, run in zip(self.channels, runs, strict=True)]
         self.machine.restore(snapshot.machine)
         self._edits.close_all()
-        self._put_back(moment, tuple(each() for each in back))
+        self._emergency = moment.emergency
+        self._relative_zero = list(moment.relative_zero)
+        self._time.raised = ControlEvent(moment.raised)
+        put_back(self._parts, moment, tuple(each() for each in back))
+        self._time.note_running()
 
     @property
     def _made_from(self) -> str:
@@ -726,35 +648,6 @@ class Control:
     def _text(self, name: str) -> ProgramText | None:
         """Return the present text of a program, of the memory or of a file."""
         return self.programs.text(name) if name in self.programs else file_text(name)
-
-    def _moment(self) -> ControlMoment:
-        return ControlMoment(
-            emergency=self._emergency,
-            relative_zero=self.relative_zero,
-            raised=int(self._raised),
-            channels=tuple(channel.moment(self.functions.serials(channel.path)) for channel in self.channels),
-            manual=self.manual.snapshot(),
-            spindle=self.spindle.snapshot(),
-            plc=self.plc.snapshot(),
-            alarms=self.alarms.snapshot(),
-            messages=self.messages.snapshot(),
-            timers=self.timers.snapshot(),
-        )
-
-    def _put_back(self, moment: ControlMoment, runs: tuple[ProgramRun | None, ...]) -> None:
-        self._emergency = moment.emergency
-        self._relative_zero = list(moment.relative_zero)
-        self._raised = ControlEvent(moment.raised)
-        for channel, kept, run in zip(self.channels, moment.channels, runs, strict=True):
-            channel.put_back(kept, run)
-        self.functions.restore((n, kept.waiting) for n, kept in enumerate(moment.channels))
-        self.manual.restore(moment.manual)
-        self.spindle.restore(moment.spindle)
-        self.plc.restore(moment.plc)
-        self.alarms.restore(moment.alarms)
-        self.messages.restore(moment.messages)
-        self.timers.restore(moment.timers)
-        self._note_running()
 
     # ------------------------------------------------------------------ within
 
@@ -783,11 +676,3 @@ class Control:
         if self._emergency is not Emergency.OFF or serious:
             check_ready(self._emergency, alarms)
         owner.lend()
-
-    def _cutting_s(self) -> float:
-        return float(self.machine.state.paths.totals[:, FEED_S].sum())
-
-    def _tool(self) -> int:
-        turning = next((channel for channel in self.channels if channel.data.spindle), self.channels[0])
-        block = turning.executed
-        return 0 if block is None else block.modal.tool

@@ -1,0 +1,134 @@
+"""Let time pass in a control: in stretches that end where anything has to be looked at, and look."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from enum import IntFlag
+from typing import TypeAlias
+
+from polycnc.cnc._alarms import Alarm
+from polycnc.cnc._control_channel import ControlChannel
+from polycnc.cnc._control_parts import ControlParts
+from polycnc.cnc._manual import ManualMotion
+from polycnc.cnc._run_state import RunState
+from polycnc.kernel import FEED_S
+from polycnc.machine import Reason
+
+Condition: TypeAlias = Callable[[], bool]
+_MOST_STANDSTILLS = 10_000
+
+
+class ControlEvent(IntFlag):
+    """What can end `Control.advance` early."""
+
+    NONE = 0
+    RUN_STATE = 1  # a channel has begun, stopped, ended
+    ALARM = 2  # an alarm has come
+    MANUAL = 4  # all manual motion has ended
+    FUNCTION = 8  # an auxiliary function was handed to the PLC, or answered
+
+
+class ControlTime:
+    """Let time pass; `raised` is what happened in the last stretch and since, `fail` stops what alarms stop."""
+
+    def __init__(self, of: ControlParts, fail: Callable[[Iterable[Alarm]], None]) -> None:
+        self._of = of
+        self._fail = fail
+        self.raised = ControlEvent.NONE
+
+    def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
+        """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
+        condition = until if callable(until) else None
+        events = 0 if until is None or callable(until) else int(until)
+        done = 0
+        standstills = 0
+        while done < cycles:
+            self.raised = ControlEvent.NONE
+            passed = self._stretch(1 if condition is not None else cycles - done)
+            done += passed
+            standstills = 0 if passed else standstills + 1
+            if self.raised & events or (condition is not None and condition()):
+                break
+            if standstills > _MOST_STANDSTILLS:
+                break  # a program that loops without motion, as fast as time can pass
+        return done
+
+    def _stretch(self, cycles: int) -> int:
+        """Let time pass until something has to be looked at, and look."""
+        states = [channel.run_state for channel in self._of.channels]
+        alarms, manual = self._of.alarms.active, self._of.manual.active
+        row = self._of.machine.state.clock[0]
+        row["mask"] = 0
+        for channel in self._of.channels:
+            self._take_answers(channel)  # somebody may have answered since
+            if channel.run is not None and not channel.returning:
+                cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
+        due = self._of.plc.due_cycle()
+        if due is not None:
+            cycles = min(cycles, max(1, due - self._of.clock.cycles))
+        cycles = min(cycles, self._of.manual.horizon())
+        cutting_s = self._cutting_s()
+        reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
+        passed = self._of.machine.advance(cycles, until=int(row["mask"]) | reasons)
+        self._of.timers.count(
+            passed,
+            operating=RunState.ACTIVE in states,
+            cutting_s=self._cutting_s() - cutting_s,
+            tool=self._tool(),
+        )
+        self._look(passed, states)
+        if [channel.run_state for channel in self._of.channels] != states:
+            self.raised |= ControlEvent.RUN_STATE
+        if any(alarm not in alarms for alarm in self._of.alarms.active):
+            self.raised |= ControlEvent.ALARM
+        if manual and not self._of.manual.active:
+            self.raised |= ControlEvent.MANUAL
+        return passed
+
+    def _look(self, passed: int, states: list[RunState]) -> None:
+        """Look at what the last cycles have brought since the channels had these states."""
+        alarms = self._of.alarms.active
+        self._of.manual.after()
+        for number, channel in enumerate(self._of.channels):
+            if channel.run is not None and not channel.returning:
+                channel.run.after_cycles(passed)
+            if channel.run_state is not states[number]:
+                self.note_end(channel)
+            channel.look()
+            self._take_answers(channel)
+        self._of.functions.note_failures(self._of.alarms)
+        for index, axis in enumerate(self._of.machine.config.axes):
+            if self._of.machine.state.servo.error_tripped[index]:
+                self._of.alarms.put("following_error", axis=axis.name)
+        self._fail(alarm for alarm in self._of.alarms.active if alarm not in alarms)
+        self.note_running()
+
+    def note_end(self, channel: ControlChannel) -> None:
+        """Count the part of a program that has ended, or put its error among the alarms."""
+        run = channel.run
+        counts = self._of.data.count_parts and channel.path == 0 and not channel.is_mdi
+        if channel.run_state is RunState.COMPLETED and counts:
+            self._of.parts.count()
+        if run is not None and channel.run_state is RunState.ALARM and run.error is not None:
+            error = run.error
+            name, axis = self._of.alarms.of_program(error)
+            detail = str(error).splitlines()[0] if name == "program" else error.what
+            self._of.alarms.put(name, axis=axis, detail=detail, channel=channel.path)
+
+    def note_running(self) -> None:
+        """Let the program memory know which programs are executed."""
+        self._of.programs.running = frozenset().union(*(channel.programs for channel in self._of.channels))
+
+    def _take_answers(self, channel: ControlChannel) -> None:
+        if self._of.functions.take_answers(channel):
+            self.raised |= ControlEvent.FUNCTION
+
+    def _cutting_s(self) -> float:
+        return float(self._of.machine.state.paths.totals[:, FEED_S].sum())
+
+    def _tool(self) -> int:
+        turning = next(
+            (channel for channel in self._of.channels if channel.data.spindle), self._of.channels[0]
+        )
+        block = turning.executed
+        return 0 if block is None else block.modal.tool
