@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.cnc import ControlError, ControlEvent, RunState
-from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc import PowerMate, PowerMateSnapshot, fwlib
 from polycnc.controllers.fanuc.fwlib import EW
 from polycnc.machine import SnapshotError
 from support.power_mate import OK, attached, moved, registered, running
@@ -264,14 +264,31 @@ def test_a_snapshot_keeps_a_program_under_way_and_its_variables() -> None:
     assert [control.macros.get(number) for number in (101, 500, 501)] == [3.0, 3.0, 8.0]
 
 
-def test_a_snapshot_of_something_else_is_refused_and_none_goes_to_a_file() -> None:
+def test_a_snapshot_of_something_else_is_refused() -> None:
     control, _ = attached()
     for snapshot in (control.machine.snapshot(), control.control.snapshot()):
         with pytest.raises(SnapshotError, match="not of a Power Mate"):
             control.restore(snapshot)
-    with pytest.raises(SnapshotError, match="file"):
-        control.snapshot().to_bytes()
+        with pytest.raises(SnapshotError, match="not of a Power Mate"):
+            PowerMateSnapshot.from_bytes(snapshot.to_bytes())
     assert control.snapshot() == control.snapshot()
+
+
+def test_a_program_goes_on_from_a_file_in_another_control() -> None:
+    program = "\n#101=3\nWHILE[#101LT7]DO1\n#101=#101+1\nG1X#101F900.\nG4X0.1\n#502=#502+#5041\nEND1\nM30\n"
+    control, _ = attached()
+    registered(control, O5=program)
+    running(control, 5, lambda: control.status().time_s > 0.7)
+    content = control.snapshot().to_bytes()
+    assert until_rest(control) is RunState.COMPLETED
+    assert control.macros.get(502) == 4.0 + 5.0 + 6.0 + 7.0
+    other, _ = attached()
+    registered(other, O5=program)
+    other.restore(PowerMateSnapshot.from_bytes(content))
+    assert other.snapshot().to_bytes() == content
+    assert until_rest(other) is RunState.COMPLETED
+    assert [other.macros.get(number) for number in (101, 502)] == [7.0, 22.0]
+    assert other.clock.cycles == control.clock.cycles
 
 
 def test_a_program_with_macros_may_begin_at_a_block() -> None:

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Self
 
 from polycnc.cnc import ControlSnapshot
-from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState, Block, Order
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._signals import SignalState
-from polycnc.machine import Snapshot, SnapshotError
+from polycnc.machine import Form, Snapshot, SnapshotError, Values
 
 DEVICE = "power mate"
 
 
 @dataclass(frozen=True, slots=True)
 class PowerMateSnapshot(Snapshot):
-    """Everything but programs, parameters, offsets, variables and other durable data, and open transfers."""
+    """Everything but programs, parameters, offsets and other durable data, and open transfers."""
 
     control: ControlSnapshot
     mode: PowerMateMode
@@ -34,11 +35,32 @@ class PowerMateSnapshot(Snapshot):
     sampling_stopped: bool
 
     def to_bytes(self) -> bytes:
-        """Refuse to be written to a file.
+        """Return the snapshot as the contents of a file; what the memory file keeps is not in it.
 
         Raises:
-            SnapshotError: Always; what a Power Mate keeps durably is in its memory file.
+            SnapshotError: Something of it cannot be kept.
         """
-        raise SnapshotError(
-            "a snapshot of a Power Mate cannot be written to a file", hint="keep it in this process"
-        )
+        whole = Snapshot.take(DEVICE, "", self.cycle, (), {"state": _VALUES.plain(self)})
+        return Snapshot(DEVICE, self.made_from, self.cycle, (), whole.beside).to_bytes()
+
+    @classmethod
+    def from_bytes(cls, content: bytes) -> Self:
+        """Return the snapshot that `to_bytes` has written.
+
+        Raises:
+            SnapshotError: The contents are not a snapshot of a Power Mate, or damaged.
+        """
+        whole = Snapshot.from_bytes(content)
+        found = _VALUES.value(whole.data().get("state")) if whole.device == DEVICE else None
+        if not isinstance(found, cls):
+            raise SnapshotError(
+                f"this is a snapshot of {whole.device}, not of a Power Mate",
+                hint="restore it where it was taken",
+            )
+        return found
+
+
+_VALUES = Values(
+    (AxisMotionState, Block, Order, PowerMateMode, PowerMateSnapshot, SignalState),
+    {ControlSnapshot: Form(lambda control: (control.to_bytes(),), ControlSnapshot.from_bytes)},
+)
