@@ -45,9 +45,10 @@ def limit_queue(
             seg.row[k]["junction"] = 0.0
             seg.row[k]["yield_before"] = 0.0
             seg.row[k]["yield_after"] = 0.0
+            seg.row[k]["held_out"] = 0.0
         last = seg.row[slot(paths, g, max(count - 1, head))]
         entered = last["junction"] if count > head else 0.0  # what lies before the head is planned no more
-        share_acceleration(seg, k, entered, last["yield_after"], jerkrel, dt)
+        share_acceleration(seg, k, entered, last["yield_after"], jerkrel, row["last_share"], dt)
 
 
 @compiled
