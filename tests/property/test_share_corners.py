@@ -44,7 +44,7 @@ class Track:
                 LinearAxis(name=name, vmax_mm_s=v, amax_mm_s2=a)
                 for name, v, a in zip("XYZ", SPEED, ACCELERATION, strict=True)
             ),
-            path=PathConfig(**(rules or RULES)),
+            path=PathConfig.model_validate(rules or RULES),
         )
         self.state = Machine(config, segments=4096).state
         self.row = self.state.paths.row[0]
@@ -281,4 +281,4 @@ def test_lines_of_one_length_keep_the_limits_of_the_axes(tolerance: float, lengt
 )
 def test_rules_that_do_not_go_together_are_refused(rules: dict[str, float], what: str) -> None:
     with pytest.raises(ValueError, match=what):
-        PathConfig(**rules)
+        PathConfig.model_validate(rules)

@@ -212,7 +212,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     first = frozen_until(seg, paths, g, dt)
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
-    accel = seg.row[k]["full_accel"]
+    accel, cap = seg.row[k]["full_accel"], seg.row[k]["cap"]
     with_jerk = has_limited_jerk(path)
     for count in range(head, head if with_jerk else min(first, last)):
         passed = slot(paths, g, count)
@@ -220,6 +220,8 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         _lower_cap(seg, passed, limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     limit_cruise(seg, paths, g, first, last)
+    if with_jerk and first < last:  # it may be entered faster than it will be gone along
+        seg.row[k]["cap"] = max(cap, seg.row[k]["cap"])
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
@@ -229,7 +231,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         row["junction"] = min(row["junction"], row["cap"], after["cap"])
     path["planned"] = head
     _plan(seg, paths, g, dt)
-    for count in range(head, min(first, last) if with_jerk else head):
+    for count in range(head, min(first + 1, last) if with_jerk else head):
         k = slot(paths, g, count)
         seg.geo[k, ASKED] = _asked_cap(seg, k, limits, path)
     plan_again(seg, paths, g, dt)
