@@ -277,6 +277,8 @@ def test_lines_of_one_length_keep_the_limits_of_the_axes(tolerance: float, lengt
     [
         ({"corner_share": 0.1, "square_corner_mm_s": 5.0}, "'square_corner_mm_s' and 'corner_share'"),
         ({"corner_share": 0.1, "jerk_mm_s3": 900.0}, "ramps of even acceleration"),
+        ({"last_share": 0.6}, "'last_share' needs 'corner_share'"),
+        ({"rounding_gap_s": 0.003}, "'rounding_gap_s' needs 'corner_share'"),
     ],
 )
 def test_rules_that_do_not_go_together_are_refused(rules: dict[str, float], what: str) -> None:

@@ -228,7 +228,8 @@ def limit_junction(
     row["junction"] = 0.0
     row["yield_before"] = 0.0
     row["yield_after"] = 0.0
-    row["held_out"], after["held_in"] = 0.0, 0.0
+    if path["corner_rule"] == BY_SHARE:
+        row["kept_out"], after["kept_in"] = 0.0, 0.0
     if row["flags"] & STOP or row["kind"] == WAIT or after["kind"] == WAIT:
         return
     segment_tangent(seg, k, 1.0, work[0])
@@ -294,8 +295,8 @@ def _junction_by_share(
     most = path["corner_share"]
     if share > most:
         speed = 0.0 if row["flags"] & CORNER_STOP else speed * most / share
-    row["held_out"] = min(share, most)
-    after["held_in"] = row["held_out"]
+    row["kept_out"] = min(share, most)
+    after["kept_in"] = row["kept_out"]
     if after["flags"] & LAST and path["last_share"] > 0.0:
         speed = min(speed, math.sqrt(path["last_share"] * after["full_accel"] * after["length"]))
     return float(speed)
@@ -457,18 +458,19 @@ def _saves_time(row: np.void, speed: float, share: float, jerkrel: float, dt: fl
 
 @compiled
 def share_acceleration(
-    seg: Segments, k: int, before: float, yield_before: float, jerkrel: float, last_share: float, dt: float
+    seg: Segments, k: int, before: float, yield_before: float, jerkrel: float, path: np.void, dt: float
 ) -> None:
     """Set `accel` of segment `k`, and `gain`: what its ramps add to the squared speed beside both its corners.
 
     `before` is the junction at its start; the segment gives `yield_before` per speed to that corner. An S-shaped ramp
-    has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower. `last_share` of it
-    is left on a LAST segment, 0 all.
+    has (1 + jerkrel) times its mean acceleration at its peak, so the mean is that much lower.
     """
     row = seg.row[k]
-    accel = row["full_accel"] * (1.0 - max(row["held_in"], row["held_out"])) / (1.0 + jerkrel)
-    if row["flags"] & LAST and last_share > 0.0:
-        accel *= last_share
+    accel = row["full_accel"] / (1.0 + jerkrel)
+    if path["corner_rule"] == BY_SHARE:
+        accel *= 1.0 - max(row["kept_in"], row["kept_out"])
+        if row["flags"] & LAST and path["last_share"] > 0.0:
+            accel *= path["last_share"]
     length = row["length"]
     row["accel"] = accel
     row["gain"] = 2.0 * accel * length

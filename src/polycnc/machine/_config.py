@@ -152,6 +152,9 @@ class PathConfig(StrictModel):
                 hint="add 'square_corner_mm_s' or 'junction_deviation_mm'",
                 at=("minimum_cruise_share",),
             )
+        for name in ("rounding_share", "last_share", "rounding_gap_s"):
+            if getattr(self, name) and self.corner_share is None:
+                raise problem(f"'{name}' needs 'corner_share'", hint="add 'corner_share'", at=(name,))
         if self.corner_share is not None and (self.jerkrel > 0.0 or self.jerk_mm_s3 is not None):
             raise problem(
                 "'corner_share' holds for ramps of even acceleration",
