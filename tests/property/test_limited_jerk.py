@@ -10,6 +10,7 @@ import pytest
 from ruckig import InputParameter, Ruckig, Trajectory
 
 from polycnc.kernel import (
+    EXACT_PATH,
     HELD,
     PATH_RESTED,
     RECORDER_FULL,
@@ -149,6 +150,29 @@ def test_override_hold_and_late_blocks_keep_the_jerk_and_the_end(jerk: float, de
         assert highest_jerk(state) <= jerk * ROUNDING, f"seed {seed}"
         if is_done(state):
             assert np.array_equal(state.setpoint, state.paths.queued[0])
+
+
+@pytest.mark.parametrize("tolerance", [EXACT_PATH, 0.01, math.inf])
+def test_rounded_and_exact_paths_keep_the_jerk_whatever_changes(tolerance: float) -> None:
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        jerk = 10.0 ** rng.uniform(3.5, 6.5)
+        state = run_with_changes(rng, PathSettings(jerk=jerk, tolerance=tolerance), late=bool(seed % 2))
+        assert highest_jerk(state) <= jerk * ROUNDING, f"seed {seed}"
+
+
+@pytest.mark.parametrize(("seed", "tolerance"), [(100064, EXACT_PATH), (100204, 0.01)])
+def test_braking_that_ends_before_its_corner_goes_on_to_it(seed: int, tolerance: float) -> None:
+    """Found at random: the ramp was done before its corner, and the path went on past it."""
+    rng = np.random.default_rng(seed)
+    jerk = 10.0 ** rng.uniform(3.5, 6.5)
+    depth = int(rng.choice([0, 0, 2, 16]))
+    rng.choice(5)
+    state = run_with_changes(
+        rng, PathSettings(jerk=jerk, depth=depth, tolerance=tolerance), late=bool(rng.random() < 0.7)
+    )
+    assert max(overload(state)) <= ROUNDING
+    assert highest_jerk(state) <= jerk * ROUNDING
 
 
 def test_a_hold_in_any_phase_comes_to_rest_and_goes_on_to_the_same_end() -> None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from polycnc.kernel import (
+    BY_SHARE,
     PATH_RESTED,
     RAPID,
     RECORDER_FULL,
@@ -54,6 +55,7 @@ class PathSettings:
     jerkrel: float = 0.0
     depth: int = 0
     jerk: float = 0.0
+    shares: tuple[float, float, float] | None = None  # of corners, arcs in them and last lines, see BY_SHARE
 
 
 def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 4096) -> KernelState:
@@ -64,6 +66,9 @@ def machine(rng: np.random.Generator, settings: PathSettings, segments: int = 40
     row = state.paths.row[0]
     row["tolerance_mm"], row["jerkrel"], row["depth"] = settings.tolerance, settings.jerkrel, settings.depth
     row["jerk_mm_s3"] = settings.jerk
+    if settings.shares is not None:
+        row["corner_rule"], row["corner_cycle_s"] = BY_SHARE, CYCLE_S
+        row["corner_share"], row["rounding_share"], row["last_share"] = settings.shares
     give_to_path(state, 0)
     return state
 

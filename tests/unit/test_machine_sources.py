@@ -292,6 +292,21 @@ def test_linuxcnc_limits_the_jerk_with_its_second_planner_only(
     assert config.path.jerk_mm_s3 == jerk
 
 
+def test_linuxcnc_corners_are_those_of_its_trapezoidal_planner(tmp_path: Path) -> None:
+    lines = "ARC_BLEND_KINK_RATIO = 0.04\nARC_BLEND_GAP_CYCLES = 6"
+    plain, _ = made(tmp_path, LINUXCNC)
+    told, _ = made(tmp_path, LINUXCNC.replace("[TRAJ]", f"[TRAJ]\n{lines}"))
+    jerk, _ = made(
+        tmp_path, LINUXCNC.replace("[TRAJ]", f"[TRAJ]\n{lines}\nPLANNER_TYPE = 1\nMAX_LINEAR_JERK = 800")
+    )
+    found = [
+        (path.corner_share, path.rounding_share, path.last_share, path.rounding_gap_s)
+        for path in (plain.path, told.path, jerk.path)
+    ]
+    # Its servo period is half a millisecond.
+    assert found == [(0.1, 0.5, 0.5, 0.002), (0.04, 0.5, 0.5, 0.003), (None, None, None, 0.0)]
+
+
 def test_fanuc_ramps_give_the_acceleration_and_corner_steps_the_jump(tmp_path: Path) -> None:
     config, toml = made(tmp_path, FANUC)
     assert axes(config) == {

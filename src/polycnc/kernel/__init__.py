@@ -13,7 +13,7 @@ from polycnc.kernel._advance import (
 from polycnc.kernel._append import append_arc, append_circle3d, append_spline, append_wait
 from polycnc.kernel._axis_limits import AxisLimits, make_limits
 from polycnc.kernel._bezier import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
-from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SQUARE_CORNER
+from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SHARE, BY_SQUARE_CORNER
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lines import add_line
@@ -94,6 +94,7 @@ __all__ = [
     "ARC",
     "BLOCK",
     "BY_DEVIATION",
+    "BY_SHARE",
     "BY_SQUARE_CORNER",
     "EXACT_PATH",
     "FEED_LENGTH",

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._jit import compiled, entry
-from polycnc.kernel._lines import appended, set_ends
+from polycnc.kernel._lines import appended, mark_last, set_ends
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import STOP, Floats, Segments, set_arc, set_circle3d, set_spline, set_wait
 
@@ -17,6 +17,7 @@ from polycnc.kernel._segments import STOP, Floats, Segments, set_arc, set_circle
 def stop_before_next(seg: Segments, paths: Paths, g: int) -> None:
     """Make the last segment appended come to rest, unless it has run already."""
     if paths.row[g]["tail"] > paths.row[g]["head"]:
+        mark_last(seg, paths, g)
         seg.row[slot(paths, g, paths.row[g]["tail"] - 1)]["flags"] |= STOP
 
 

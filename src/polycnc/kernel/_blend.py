@@ -13,6 +13,7 @@ import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
+from polycnc.kernel._corner_rules import BY_SHARE
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._limits import CENTRIPETAL_SHARE
 from polycnc.kernel._path import Paths, slot
@@ -22,6 +23,7 @@ from polycnc.kernel._segments import (
     CORNER_STOP,
     LINE,
     RAPID,
+    ROUNDING,
     STOP,
     Floats,
     Segments,
@@ -36,6 +38,13 @@ FREE_SHARE = 0.25  # of the shorter line is the tolerance where none is set
 # Columns of the scratch `paths.blend`.
 _BEFORE, _AFTER, _START, _CENTER, _NORMAL = 0, 3, 6, 9, 12
 _CUT, _CUT_LINE = 15, 16  # what the last arc took of the line behind it, mm, and which line that is
+
+
+@compiled
+def may_be_rounded(path: np.void, row: np.void) -> bool:
+    """Tell whether a corner behind a segment may be rounded: it is a line, and at feed but for BY_SHARE."""
+    stops = STOP | CORNER_STOP | (0 if path["corner_rule"] == BY_SHARE else RAPID)
+    return bool(row["kind"] == LINE and not row["flags"] & stops)
 
 
 @compiled
@@ -55,7 +64,7 @@ def blend_corner(
         return False
     k = slot(paths, g, row["tail"] - 1)
     line = seg.row[k]
-    if line["kind"] != LINE or line["flags"] & (RAPID | STOP | CORNER_STOP) or math.isinf(speed_mm_s):
+    if not may_be_rounded(row, line) or math.isinf(speed_mm_s) != (line["flags"] & RAPID != 0):
         return False
     p, q, r = counting_axes(seg, k, limits, end)
     if p < 0:
@@ -72,18 +81,68 @@ def blend_corner(
     length_before += cut_before
     if math.isinf(tolerance):
         tolerance = FREE_SHARE * min(length_before, length_after)
+    elif row["corner_rule"] == BY_SHARE:
+        tolerance = min(tolerance, FREE_SHARE * min(length_before, length_after))
     tangent = math.tan(0.5 * turn)
     quarter = math.sin(0.25 * turn)
     # Along the lines: what the tolerance allows, radius (1 / cos(turn / 2) - 1), within the room there is.
     cut = tolerance * math.sin(0.5 * turn) / (2.0 * quarter * quarter)
     cut = min(cut, 0.5 * length_before, 0.5 * length_after, line["length"] - SMALLEST_ARC)
+    speed = 0.0
+    if row["corner_rule"] == BY_SHARE:
+        cut, speed = _cut_by_share(row, line, limits, (p, q, r), work, cut, turn, speed_mm_s)
     radius = cut / tangent
-    if radius * turn < SMALLEST_ARC or not _saves_time(
+    if radius * turn < SMALLEST_ARC:
+        return False
+    if row["corner_rule"] != BY_SHARE and not _saves_time(
         line, limits, (p, q, r), work, cut, radius, turn, speed_mm_s
     ):
         return False
+    if line["length"] - cut < row["rounding_gap_s"] * speed:
+        line["flags"] |= ROUNDING
     work[_CUT], work[_CUT_LINE] = cut, row["tail"] + 1
     return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, speed_mm_s, tag)
+
+
+@compiled
+def _cut_by_share(
+    path: np.void,
+    line: np.void,
+    limits: AxisLimits,
+    axes: tuple[int, int, int],
+    work: Floats,
+    cut_mm: float,
+    turn_rad: float,
+    speed_mm_s: float,
+) -> tuple[float, float]:
+    """Return how much of both lines the arc of a path with BY_SHARE takes, up to `cut_mm`; 0 where it has none.
+
+    It is as large as the speed needs that the largest would allow, and at least half as long as the ramps are that
+    overlap in the corner with half the acceleration.
+    """
+    sine = math.sqrt(work[_NORMAL] ** 2 + work[_NORMAL + 1] ** 2 + work[_NORMAL + 2] ** 2)
+    speed = min(line["feed_mm_s"], speed_mm_s)
+    accel, accel_after, busiest = math.inf, math.inf, 0.0
+    for j in range(3):
+        allowed, most = limits.acceleration[axes[j]], limits.speed[axes[j]]
+        u, w, normal = work[_BEFORE + j], work[_AFTER + j], work[_NORMAL + j] / sine
+        if u != 0.0:
+            speed = min(speed, most / abs(u))
+        if w != 0.0:
+            speed, accel_after = min(speed, most / abs(w)), min(accel_after, allowed / abs(w))
+        busiest = max(busiest, abs(w - u) / allowed)
+        in_plane = math.sqrt(max(0.0, 1.0 - normal * normal))  # of the axis; nothing turns along the others
+        if in_plane > 0.0:
+            accel = min(accel, allowed / in_plane)
+            speed = min(speed, most / in_plane)
+    if busiest * (speed / path["corner_cycle_s"] + accel_after) < path["corner_share"]:
+        return 0.0, 0.0
+    tangent = math.tan(0.5 * turn_rad)
+    largest = cut_mm / tangent
+    speed = min(speed, math.sqrt(CENTRIPETAL_SHARE * accel * largest))
+    overlap_s = 2.0 * min(math.sqrt(accel * cut_mm), speed) / accel
+    radius = max(speed * speed / (CENTRIPETAL_SHARE * accel), min(overlap_s * speed / turn_rad, largest))
+    return min(cut_mm, radius * tangent), speed
 
 
 @compiled
@@ -196,7 +255,8 @@ def _append_arc(
     line = seg.row[k]
     seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]
     line["length"] -= cut_mm
-    set_common(seg, arc, seg.end[k], seg.end[k], min(speed_mm_s, line["feed_mm_s"]), 0, tag)
+    flags = ROUNDING | line["flags"] & RAPID
+    set_common(seg, arc, seg.end[k], seg.end[k], min(speed_mm_s, line["feed_mm_s"]), flags, tag)
     circle3d_point(geo, 1.0, start)
     seg.end[arc, p], seg.end[arc, q], seg.end[arc, r] = start[0], start[1], start[2]
     seg.row[arc]["kind"] = CIRCLE3D

@@ -19,6 +19,9 @@ from polycnc.kernel._segments import LINE, Floats, Segments
 AS_AXES_ALLOW = 0
 BY_DEVIATION = 1  # acceleration: what the axes allow in the direction of the turn
 BY_SQUARE_CORNER = 2  # acceleration: that of both moves; a move also bounds the radius by half its length
+BY_SHARE = (
+    3  # a part of what each axis has in a cycle, which the lines beside the corner do without all along
+)
 
 REVERSAL = 1e-6  # of 1 + cosine; a sharper corner is a stop
 STRAIGHT_ON = 1e-12  # of 1 - s; a smaller turn is none
@@ -33,6 +36,22 @@ def turns(work: Floats, angle_rad: float) -> bool:
         before += work[0, i] * work[0, i]
         behind += work[1, i] * work[1, i]
     return bool(dot < math.cos(angle_rad) * math.sqrt(before * behind))
+
+
+@compiled
+def step_share(
+    limits: AxisLimits, work: Floats, speed_mm_s: float, accel_mm_s2: float, cycle_s: float
+) -> float:
+    """Return which part of its acceleration the busiest axis needs to step through a corner within a cycle.
+
+    The path passes it with a speed, from the tangent `work[0]` to `work[1]`, and speeds up in the same cycle.
+    """
+    share = 0.0
+    for i in range(work.shape[1]):
+        change = abs(work[1, i] - work[0, i])
+        if change > 0.0:
+            share = max(share, change * (speed_mm_s / cycle_s + accel_mm_s2) / limits.acceleration[i])
+    return share
 
 
 @compiled

@@ -49,11 +49,11 @@ def _rise(seg: Segments, paths: Paths, g: int, first: int, known: int) -> None:
         if count > path["head"]:
             last = seg.row[slot(paths, g, count - 1)]
             limit = last["junction"] * last["junction"]
-            row["reach_in"] = min(limit, last["reach_in"] + _gain(last))
-            row["low_in"] = min(limit, last["low_in"] + _low_gain(path, last))
+            row["kept_in"] = min(limit, last["kept_in"] + _gain(last))
+            row["kept_out"] = min(limit, last["kept_out"] + _low_gain(path, last))
         elif count >= known:  # it begins at rest
-            row["reach_in"] = 0.0
-            row["low_in"] = 0.0
+            row["kept_in"] = 0.0
+            row["kept_out"] = 0.0
 
 
 @compiled
@@ -71,7 +71,7 @@ def limit_cruise(seg: Segments, paths: Paths, g: int, first: int, known: int) ->
         row = seg.row[slot(paths, g, count)]
         low_gain = _low_gain(path, row)
         reach, low_reach = out + _gain(row), low_out + low_gain
-        start, low_start = min(row["reach_in"], reach), min(row["low_in"], low_reach)
+        start, low_start = min(row["kept_in"], reach), min(row["kept_out"], low_reach)
         if low_start < low_reach:
             if low_start + low_gain > low_out or falling > 0:
                 peaks += 1

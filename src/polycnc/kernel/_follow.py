@@ -356,8 +356,14 @@ def _go_by_plan(seg: Segments, paths: Paths, g: int, dt: float) -> bool:
             ramps[GONE] = ramps[PLAN_S] + gone
             ramps[PLAN_KIND] = TIGHT if rate < 0.0 else LOOSE
             break
-        at_target = abs(ramps[PLAN_S] + gone - ramps[PLAN_TO]) <= AT_TARGET
+        short = ramps[PLAN_TO] - ramps[PLAN_S] - gone
+        at_target = abs(short) <= AT_TARGET
         speed, rate = min(speed, ramps[PLAN_END_SPEED]), 0.0
+        if ramps[PLAN_COAST] < 0.0 and short > AT_TARGET and speed > 0.0:  # it may be done before its node
+            ramps[PLAN_S] += gone
+            ramps[PLAN_SPEED], ramps[PLAN_RATE], ramps[PLAN_END_SPEED] = speed, 0.0, speed
+            ramps[PLAN_TIME], ramps[PLAN_COAST] = max(beyond, 0.0), short
+            continue
         if at_target and ramps[PLAN_END_SPEED] == 0.0:
             ramps[SPEED_NOW], ramps[RATE], ramps[PLAN_KIND] = 0.0, 0.0, NO_PLAN
             while path["head"] < ramps[PLAN_COUNT]:
@@ -416,7 +422,11 @@ def _choose(seg: Segments, paths: Paths, g: int, to_speed: float, dt: float) -> 
 
 @compiled
 def _brake_anyway(seg: Segments, paths: Paths, g: int, rate: float, dt: float) -> bool:
-    """Brake where nothing is safe: what is ahead has changed too late. Return True at rest at the end of a segment."""
+    """Brake where nothing is safe: what is ahead has changed too late. Return True at rest at the end of a segment.
+
+    Random paths with overrides, holds and late blocks come here only with a limited look-ahead: a segment that comes
+    into view can turn a stop into a corner that is passed, which takes acceleration that braking counted on.
+    """
     path, ramps = paths.row[g], paths.ramps[g]
     speed, now = ramps[SPEED_NOW], ramps[RATE]
     jerk = math.copysign(path["jerk_mm_s3"], rate - now)

@@ -20,7 +20,7 @@ import numpy as np
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._bezier import BEND_BOUND, TANGENT_BOUND
 from polycnc.kernel._circle3d import circle3d_tangent_bound
-from polycnc.kernel._corner_rules import AS_AXES_ALLOW, corner_speed, turns
+from polycnc.kernel._corner_rules import AS_AXES_ALLOW, BY_SHARE, corner_speed, step_share, turns
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._ramps import MOST_SHARE, beside_corner
@@ -29,10 +29,12 @@ from polycnc.kernel._segments import (
     CIRCLE3D,
     CIRCLE3D_RADIUS,
     CORNER_STOP,
+    LAST,
     LINE,
     RADIUS_END,
     RADIUS_START,
     RAPID,
+    ROUNDING,
     SPLINE,
     STOP,
     SWEEP_RAD,
@@ -105,11 +107,15 @@ def limit_segment(seg: Segments, k: int, limits: AxisLimits, path: np.void, work
                 cap = min(cap, limits.speed[i] / part)
                 accel = min(accel, limits.acceleration[i] / part)
         accel = min(accel, path["accel_limit_mm_s2"])
+        if path["rounding_share"] > 0.0 and row["flags"] & ROUNDING:
+            accel *= path["rounding_share"]
         cap = min(cap, path["speed_limit_mm_s"])
         if row["flags"] & RAPID:
             cap = overridden_rapid(cap, path)
     else:
         cap, accel = _limit_curve(seg, k, limits, path, cap, work)
+        if row["flags"] & RAPID:
+            cap = overridden_rapid(cap, path)
     row["cap"] = cap
     row["full_accel"] = accel
 
@@ -130,13 +136,16 @@ def _limit_curve(
             cap = min(cap, limits.speed[i] / tangent[i])
         if bend[i] > 0.0:
             cap = min(cap, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
-    accel = CURVE_SHARE * whole
+    # With BY_SHARE the lines beside a corner do without what it takes, and an arc has nothing put aside for it.
+    share = 1.0 if path["corner_rule"] == BY_SHARE and not is_spline else CURVE_SHARE
+    rounds = path["rounding_share"] > 0.0 and seg.row[k]["flags"] & ROUNDING != 0
+    accel = share * whole
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             allowed = min(limits.acceleration[i], whole)
             used = cap * cap * bend[i] / allowed if bend[i] > 0.0 else 0.0
-            left = CURVE_SHARE - used if is_spline else math.sqrt(CURVE_SHARE * CURVE_SHARE - used * used)
-            accel = min(accel, left * allowed / tangent[i])
+            left = share - used if is_spline else math.sqrt(share * share - used * used)
+            accel = min(accel, (path["rounding_share"] if rounds else left) * allowed / tangent[i])
     return cap, accel
 
 
@@ -219,13 +228,18 @@ def limit_junction(
     row["junction"] = 0.0
     row["yield_before"] = 0.0
     row["yield_after"] = 0.0
+    if path["corner_rule"] == BY_SHARE:
+        row["kept_out"], after["kept_in"] = 0.0, 0.0
     if row["flags"] & STOP or row["kind"] == WAIT or after["kind"] == WAIT:
         return
     segment_tangent(seg, k, 1.0, work[0])
     segment_tangent(seg, following, 0.0, work[1])
+    speed = min(row["cap"], after["cap"])
+    if path["corner_rule"] == BY_SHARE:
+        row["junction"] = _junction_by_share(row, after, limits, path, work, speed)
+        return
     if row["flags"] & CORNER_STOP and turns(work, LARGEST_BEND):
         return
-    speed = min(row["cap"], after["cap"])
     if path["corner_rule"] != AS_AXES_ALLOW:
         row["junction"] = corner_speed(seg, k, following, limits, path, work, speed)
         return
@@ -265,6 +279,27 @@ def limit_junction(
         if needs and speed > 0.0:
             speed = _give_way(seg, k, following, path["jerkrel"], dt, work, speed, near)
     row["junction"] = speed
+
+
+@compiled
+def _junction_by_share(
+    row: np.void, after: np.void, limits: AxisLimits, path: np.void, work: Floats, speed: float
+) -> float:
+    """Return the speed of a corner that takes a share of the acceleration, and hold that share back beside it.
+
+    An exact path that rests in the corner holds it back all the same.
+    """
+    share = step_share(limits, work, speed, after["full_accel"], path["corner_cycle_s"])
+    if (row["kind"] == ARC or after["kind"] == ARC) and path["rounding_share"] > 0.0:
+        share /= path["rounding_share"]  # an arc needs the rest to turn
+    most = path["corner_share"]
+    if share > most:
+        speed = 0.0 if row["flags"] & CORNER_STOP else speed * most / share
+    row["kept_out"] = min(share, most)
+    after["kept_in"] = row["kept_out"]
+    if after["flags"] & LAST and path["last_share"] > 0.0:
+        speed = min(speed, math.sqrt(path["last_share"] * after["full_accel"] * after["length"]))
+    return float(speed)
 
 
 @compiled
@@ -423,7 +458,7 @@ def _saves_time(row: np.void, speed: float, share: float, jerkrel: float, dt: fl
 
 @compiled
 def share_acceleration(
-    seg: Segments, k: int, before: float, yield_before: float, jerkrel: float, dt: float
+    seg: Segments, k: int, before: float, yield_before: float, jerkrel: float, path: np.void, dt: float
 ) -> None:
     """Set `accel` of segment `k`, and `gain`: what its ramps add to the squared speed beside both its corners.
 
@@ -432,6 +467,10 @@ def share_acceleration(
     """
     row = seg.row[k]
     accel = row["full_accel"] / (1.0 + jerkrel)
+    if path["corner_rule"] == BY_SHARE:
+        accel *= 1.0 - max(row["kept_in"], row["kept_out"])
+        if row["flags"] & LAST and path["last_share"] > 0.0:
+            accel *= path["last_share"]
     length = row["length"]
     row["accel"] = accel
     row["gain"] = 2.0 * accel * length

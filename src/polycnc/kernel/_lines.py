@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._path import slot_of
-from polycnc.kernel._segments import CORNER_STOP, RAPID, STOP, Floats, set_line
+from polycnc.kernel._path import Paths, slot, slot_of
+from polycnc.kernel._segments import CORNER_STOP, LAST, RAPID, STOP, WAIT, Floats, Segments, set_line
 
 Rows: TypeAlias = npt.NDArray[np.void]
 
@@ -35,6 +35,16 @@ def set_ends(row: Rows, path: Rows, g: int, flags: int) -> None:
         k = slot_of(path, g, path[g]["tail"] - 1)
         if (row[k]["flags"] ^ flags) & RAPID:
             row[k]["flags"] |= STOP
+
+
+@compiled
+def mark_last(seg: Segments, paths: Paths, g: int) -> None:
+    """Mark the last segment appended as the end of a path with rounded corners, if nothing has planned it."""
+    path = paths.row[g]
+    if path["tolerance_mm"] > 0.0 and path["tail"] > path["prepared"]:
+        row = seg.row[slot(paths, g, path["tail"] - 1)]
+        if row["kind"] != WAIT and not row["flags"] & (STOP | CORNER_STOP):
+            row["flags"] |= LAST
 
 
 @compiled

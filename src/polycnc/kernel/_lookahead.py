@@ -13,6 +13,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._corner_rules import BY_SHARE
 from polycnc.kernel._geometry import grow_extents
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import least_accel, limit_junction, limit_segment, share_acceleration
@@ -45,9 +46,11 @@ def limit_queue(
             seg.row[k]["junction"] = 0.0
             seg.row[k]["yield_before"] = 0.0
             seg.row[k]["yield_after"] = 0.0
+            if row["corner_rule"] == BY_SHARE:
+                seg.row[k]["kept_out"] = 0.0
         last = seg.row[slot(paths, g, max(count - 1, head))]
         entered = last["junction"] if count > head else 0.0  # what lies before the head is planned no more
-        share_acceleration(seg, k, entered, last["yield_after"], jerkrel, dt)
+        share_acceleration(seg, k, entered, last["yield_after"], jerkrel, row, dt)
 
 
 @compiled

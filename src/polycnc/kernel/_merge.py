@@ -131,7 +131,8 @@ def append_line(
     With a path tolerance the corner before it is rounded where that is possible: at once, or when it is complete.
     """
     row = paths.row[g]
-    close_line(seg, paths, g, limits)
+    if row["merged"] > 0:
+        close_line(seg, paths, g, limits)
     merges = row["merge_mm"] > 0.0 and row["tolerance_mm"] > 0.0 and not flags & (RAPID | STOP)
     if not merges:
         blend_corner(seg, paths, g, limits, end, speed_mm_s, tag)

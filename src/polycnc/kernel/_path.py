@@ -70,7 +70,18 @@ PATH_ROW = np.dtype(
         ("speed_limit_mm_s", np.float64),  # of the path, whatever its axes allow
         ("accel_limit_mm_s2", np.float64),  # of the path, whatever its axes allow
         ("low_accel_mm_s2", np.float64),  # with which speeds between corners are found, 0: with all there is
-        ("corner_deviation_mm", np.float64),  # of a corner rule other than AS_AXES_ALLOW
+        ("corner_deviation_mm", np.float64),  # of the corner rules by deviation, see `_corner_rules`
+        ("corner_share", np.float64),  # of BY_SHARE
+        ("corner_cycle_s", np.float64),  # of BY_SHARE: the control cycle
+        (
+            "rounding_share",
+            np.float64,
+        ),  # of the acceleration is left along arcs in corners, 0: what they leave
+        ("last_share", np.float64),  # of the acceleration is left on LAST segments, 0: all
+        (
+            "rounding_gap_s",
+            np.float64,
+        ),  # what is left of a line beside such an arc belongs to it if it takes less
         ("lead", np.float64),  # time into the running segment at sample 0
         (
             "entry_share",

@@ -11,6 +11,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._blend import may_be_rounded
 from polycnc.kernel._cruise import first_open, limit_cruise
 from polycnc.kernel._follow import GONE, RATE, SPEED_NOW, follows
 from polycnc.kernel._geometry import is_curved
@@ -19,11 +20,12 @@ from polycnc.kernel._jerk import brake_way, moved
 from polycnc.kernel._jerk_plan import has_limited_jerk, plan_with_jerk
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._limits import feed_in_force, least_accel, line_speed, overridden_rapid
+from polycnc.kernel._lines import mark_last
 from polycnc.kernel._lookahead import limit_queue, plan_path
 from polycnc.kernel._merge import close_line, is_open
 from polycnc.kernel._path import HELD, IDLE, NO_LIMIT, READY, RUNNING, Paths, slot
 from polycnc.kernel._ramps import FROM_S, LENGTH, SPEED_OUT, TIME_CRUISE, TIME_IN, ramps_at
-from polycnc.kernel._segments import ASKED, LINE, RAPID, STOP, WAIT, Floats, Segments, set_wait
+from polycnc.kernel._segments import ASKED, RAPID, STOP, WAIT, Floats, Segments, set_wait
 
 
 @compiled
@@ -109,7 +111,8 @@ def _ready_count(seg: Segments, paths: Paths, g: int) -> int:
         return int(path["limit"])
     if tail > path["prepared"] and path["tolerance_mm"] > 0.0 and path["closed"] == 0:
         row = seg.row[slot(paths, g, tail - 1)]
-        if row["kind"] == LINE and not row["flags"] & (RAPID | STOP):
+        may_be_last = path["last_share"] > 0.0 and row["kind"] != WAIT and not row["flags"] & STOP
+        if may_be_rounded(path, row) or may_be_last:
             return max(tail - 2, int(path["prepared"])) if is_open(paths, g) else tail - 1
     return tail
 
@@ -135,6 +138,7 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
     path = paths.row[g]
     if path["closed"] != 0:
         close_line(seg, paths, g, limits)
+        mark_last(seg, paths, g)
         path["closed"] = 1  # though the line has been appended anew
     head, first = int(path["head"]), int(path["prepared"])
     path["prepared"] = _ready_count(seg, paths, g)
@@ -208,7 +212,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
     first = frozen_until(seg, paths, g, dt)
     k = slot(paths, g, first)
     keeps = first < last and is_curved(seg, k)
-    accel = seg.row[k]["full_accel"]
+    accel, cap = seg.row[k]["full_accel"], seg.row[k]["cap"]
     with_jerk = has_limited_jerk(path)
     for count in range(head, head if with_jerk else min(first, last)):
         passed = slot(paths, g, count)
@@ -216,6 +220,8 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         _lower_cap(seg, passed, limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     limit_cruise(seg, paths, g, first, last)
+    if with_jerk and first < last:  # it may be entered faster than it will be gone along
+        seg.row[k]["cap"] = max(cap, seg.row[k]["cap"])
     if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
@@ -225,7 +231,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         row["junction"] = min(row["junction"], row["cap"], after["cap"])
     path["planned"] = head
     _plan(seg, paths, g, dt)
-    for count in range(head, min(first, last) if with_jerk else head):
+    for count in range(head, min(first + 1, last) if with_jerk else head):
         k = slot(paths, g, count)
         seg.geo[k, ASKED] = _asked_cap(seg, k, limits, path)
     plan_again(seg, paths, g, dt)

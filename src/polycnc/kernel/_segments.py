@@ -28,6 +28,8 @@ WAIT = 4  # no motion: a dwell, or an event at a point of the path
 RAPID = 1  # flag: positioning at the axes' speed
 STOP = 2  # flag: come to rest at the end (exact stop)
 CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on in the same direction
+LAST = 16  # flag: rounded corners lie before it and the path rests at its end, with nothing behind
+ROUNDING = 32  # flag: an arc that rounds a corner
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
 GEO = BEZIER_SIZE
@@ -59,11 +61,13 @@ SEGMENT_ROW = np.dtype(
         ("junction", np.float64),  # highest speed through the end
         ("yield_before", np.float64),  # part of `accel` given up near its end, per speed through it
         ("yield_after", np.float64),  # the same of the following segment near its start
+        # What its two ends keep for the rule of the path: with BY_SHARE the parts of `full_accel` that the corners
+        # take all along, in `_cruise` the squared speeds that its start can have, coming from before.
+        ("kept_in", np.float64),
+        ("kept_out", np.float64),
         ("gain", np.float64),  # by how much its ramps can change the squared speed, at the least
         ("out", np.float64),  # planned speed at the end
         ("bound", np.float64),  # earlier planned speed there, if too close to reach a lower one
-        ("reach_in", np.float64),  # squared speeds that its start can have, coming from before, see `_cruise`
-        ("low_in", np.float64),
         ("tag", np.int64),  # the caller's name for the segment: what block it belongs to
         ("kind", np.int8),
         ("flags", np.int8),
@@ -123,6 +127,8 @@ def _set_common(
     row[k]["flags"] = flags
     row[k]["tag"] = tag
     row[k]["end_speed"] = -1.0
+    row[k]["kept_in"] = 0.0
+    row[k]["kept_out"] = 0.0
 
 
 @compiled

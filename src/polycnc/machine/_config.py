@@ -25,6 +25,9 @@ EPOCH = datetime(2000, 1, 1)
 WORK_OFFSET = re.compile(r"G[12]?5[4-9]")
 IO_ADDRESS = re.compile(r"(IW|OW|I|O)(0|[1-9][0-9]*)")
 Deviation: TypeAlias = Annotated[float, Field(ge=1e-9, le=LARGEST_POSITION)]
+CornerShare: TypeAlias = Annotated[float, Field(gt=0, le=0.5)]
+RampShare: TypeAlias = Annotated[float, Field(ge=0.5, le=0.9)]
+CORNER_RULES = ("junction_deviation_mm", "square_corner_mm_s", "corner_share")
 Duration: TypeAlias = Annotated[float, Field(ge=0, le=LONGEST_BLOCK_S)]
 Count: TypeAlias = Annotated[int, Field(ge=0, le=65536)]
 
@@ -108,6 +111,25 @@ class PathConfig(StrictModel):
         default=None,
         description="The same by the speed through a right angle, sharper corners slower and blunter ones faster.",
     )
+    corner_share: CornerShare | None = Field(
+        default=None,
+        description="Corners that are not rounded take this part of what the axes' acceleration gives in a cycle, "
+        "all along the lines beside them; those that an exact path rests in take it too.",
+    )
+    rounding_share: RampShare | None = Field(
+        default=None,
+        description="Part of the acceleration that ramps have on arcs that round corners; "
+        "absent: what the arc leaves them.",
+    )
+    last_share: RampShare | None = Field(
+        default=None,
+        description="Part of the acceleration that the last line has before a path with rounded corners rests; "
+        "absent: all.",
+    )
+    rounding_gap_s: Annotated[float, Field(ge=0, le=1)] = Field(
+        default=0.0,
+        description="What is left of a line before such an arc has its share too, if it takes less than this.",
+    )
     minimum_cruise_share: Annotated[float, Field(ge=0, lt=1)] = Field(
         default=0.0,
         description="Part of the acceleration that is not counted on for the speeds between corners that are close "
@@ -116,11 +138,12 @@ class PathConfig(StrictModel):
 
     @model_validator(mode="after")
     def _one_corner_rule(self) -> PathConfig:
-        if self.junction_deviation_mm is not None and self.square_corner_mm_s is not None:
+        rules = [name for name in CORNER_RULES if getattr(self, name) is not None]
+        if len(rules) > 1:
             raise problem(
-                "'junction_deviation_mm' and 'square_corner_mm_s' are two rules for the same corners",
+                f"'{rules[0]}' and '{rules[1]}' are two rules for the same corners",
                 hint="keep one of them",
-                at=("square_corner_mm_s",),
+                at=(rules[1],),
             )
         by_angle = self.junction_deviation_mm is not None or self.square_corner_mm_s is not None
         if self.minimum_cruise_share > 0.0 and not by_angle:
@@ -128,6 +151,15 @@ class PathConfig(StrictModel):
                 "'minimum_cruise_share' needs corners that are passed by their angle",
                 hint="add 'square_corner_mm_s' or 'junction_deviation_mm'",
                 at=("minimum_cruise_share",),
+            )
+        for name in ("rounding_share", "last_share", "rounding_gap_s"):
+            if getattr(self, name) and self.corner_share is None:
+                raise problem(f"'{name}' needs 'corner_share'", hint="add 'corner_share'", at=(name,))
+        if self.corner_share is not None and (self.jerkrel > 0.0 or self.jerk_mm_s3 is not None):
+            raise problem(
+                "'corner_share' holds for ramps of even acceleration",
+                hint="leave 'jerkrel' and 'jerk_mm_s3' out",
+                at=("corner_share",),
             )
         return self
 

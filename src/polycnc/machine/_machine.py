@@ -295,6 +295,12 @@ class Machine:
             # The arc through a right angle has the radius deviation / (sqrt(2) - 1) and the highest acceleration.
             rows["corner_rule"] = kernel.BY_SQUARE_CORNER
             rows["corner_deviation_mm"] = path.square_corner_mm_s**2 * (math.sqrt(2.0) - 1.0) / highest
+        elif path.corner_share is not None:
+            rows["corner_rule"] = kernel.BY_SHARE
+            rows["corner_share"], rows["corner_cycle_s"] = path.corner_share, self.config.cycle_s
+        rows["rounding_share"] = path.rounding_share or 0.0
+        rows["last_share"] = path.last_share or 0.0
+        rows["rounding_gap_s"] = path.rounding_gap_s
         if path.minimum_cruise_share > 0.0:
             rows["low_accel_mm_s2"] = highest * (1.0 - path.minimum_cruise_share)
 

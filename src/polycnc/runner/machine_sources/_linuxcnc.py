@@ -21,10 +21,16 @@ CONTROL = "a LinuxCNC configuration"
 INCH = ("inch", "imperial", "in")
 TOLERANCE = re.compile(r"G64\s*P\s*([\d.]+)(?:\s*Q\s*([\d.]+))?", re.IGNORECASE)
 LEAST_JERK = 1.0  # in the file's unit; with less, or without one, the control takes trapezoids
+PERIOD_NS = 1e6
+KINK_RATIO, GAP_CYCLES = 0.1, 4.0  # what the control takes where the file says nothing
+ARC_SHARE = LAST_SHARE = 0.5  # fixed in its planner
 LEFT_OUT = {
     "RS274NGC.PARAMETER_FILE": "work offsets and variables are in that file",
     "EMCIO.TOOL_TABLE": "tools are in that file",
     "TRAJ.ARC_BLEND_OPTIMIZATION_DEPTH": "the look-ahead is unlimited",
+    "TRAJ.ARC_BLEND_RAMP_FREQ": "short moves speed up and slow down between their corners",
+    "TRAJ.ARC_BLEND_ENABLE": "corners are rounded with arcs",
+    "TRAJ.ARC_BLEND_FALLBACK_ENABLE": "corners are rounded with arcs",
 }
 
 
@@ -61,6 +67,8 @@ def read(text: str, file: str) -> Facts:
     planner, jerk = settings.get("TRAJ.PLANNER_TYPE"), settings.get("TRAJ.MAX_LINEAR_JERK")
     if planner is not None and planner.text == "1" and jerk is not None and jerk.positive >= LEAST_JERK:
         path["jerk_mm_s3"] = jerk.positive * to_mm
+    else:
+        path |= _corners(settings, (settings.number("EMCMOT.SERVO_PERIOD", PERIOD_NS)) * 1e-9)
     path["path_tolerance_mm"] = "free"  # G64 without P
     start = settings.get("RS274NGC.RS274NGC_STARTUP_CODE")
     tolerance = TOLERANCE.search(start.text) if start is not None else None
@@ -83,6 +91,17 @@ def read(text: str, file: str) -> Facts:
         spindle={} if top is None else {"max_rpm": top.positive},
         cycle_s=None if period is None else period.positive * 1e-9,
     )
+
+
+def _corners(settings: Settings, period_s: float) -> dict[str, float | str]:
+    """Return how the control passes, rounds and rests in corners."""
+    gap = max(0.0, settings.number("TRAJ.ARC_BLEND_GAP_CYCLES", GAP_CYCLES)) * period_s
+    return {
+        "corner_share": min(max(settings.number("TRAJ.ARC_BLEND_KINK_RATIO", KINK_RATIO), 0.001), 0.5),
+        "rounding_share": ARC_SHARE,
+        "rounding_gap_s": min(gap, 1.0),
+        "last_share": LAST_SHARE,
+    }
 
 
 def _joint_letters(settings: Settings, coordinates: Entry) -> list[str]:
