@@ -243,6 +243,8 @@ def test_errors_come_in_the_order_of_their_time() -> None:
     assert [field[row, 1] for row in range(1, 7)] == [1856, 777, 1938, 555, 1971, 444]
     assert found.read(1, OMITTED, field) == 1
     assert [field[row, 1] for row in range(1, 3)] == [555, 0]
+    assert found.read(2, OMITTED, field) == 5  # one is read where no number is given
+    assert [field[row, 1] for row in range(1, 4)] == [1856, 0, 0]
     found.clear(2)
     assert found.read(-1, OMITTED, field) == 2
 
@@ -272,7 +274,7 @@ def test_more_errors_than_the_field_holds_are_not_read() -> None:
     assert len(field) == 101 * 4
 
 
-@pytest.mark.covers("cpl.GETERR.ret.-1")
+@pytest.mark.covers("cpl.GETERR", "cpl.GETERR.ret.-1")
 def test_what_cannot_be_asked_gives_minus_1() -> None:
     found = errors()
     field = Field("I", (2, 3))

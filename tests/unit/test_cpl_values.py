@@ -306,6 +306,7 @@ def test_the_memory_for_permanent_variables_is_limited() -> None:
         assert len(PermanentMemory().declare([("w", f"DEF {kind} @SIXTEENCHARACTE({most + 1});")])) == 1
 
 
+@pytest.mark.covers("cpl.file.wmhperm.dat")
 @pytest.mark.parametrize(
     "line", ["DEF INT ABCD;", "DEF LONG @A;", "DEF INT @A", "DEF INT @a;", "DEF INT @A(0);", "DEF CHAR @A(1025);",
              "DEF INT @A(65536);", "DEF INT @A(" + "9" * 5000 + ");", "X", "DEF INT @A;\nDEF INT @A;"],
