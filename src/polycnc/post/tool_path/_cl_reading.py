@@ -136,14 +136,18 @@ class Reading:
         self.cycle_on = False
 
     def check_units(self, statement: Statement) -> None:
-        """Refuse a feed in inches in a CLSF that does not say the unit of its lengths, which would be read as mm.
+        """Refuse a feed in inches where nothing says the unit of the lengths, which would be read as mm.
+
+        Threads in inches are cut on metric parts too: only in a CLSF, which never says its unit, they are refused.
 
         Raises:
             ProgramError: it is so.
         """
-        if self.clsf_word and not self.units_said and statement.words() & {"IPM", "IPR"}:
+        if self.units_said or (statement.major == "PITCH" and not self.clsf_word):
+            return
+        if statement.words() & {"IPM", "IPR", "FPM"}:
             raise statement.fail(
-                "a feed in inches in a CLSF that does not say the unit of its lengths",
+                "a feed in inches in a tool path that does not say the unit of its lengths",
                 "Write UNITS/INCHES or UNITS/MM as its first line.",
             )
 
