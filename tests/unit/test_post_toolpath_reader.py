@@ -109,7 +109,7 @@ def test_feeds_in_inches_where_the_unit_of_lengths_is_said() -> None:
     for unit in ("UNITS/MM", "UNITS/INCHES"):
         text = f"{unit}\nFEDRAT/10,IPM\nFEDRAT/IPR,.01\nFEDRAT/5,FPM\n"
         found = list(parse_tool_path(text))
-        assert found == [Feed(2, 254.0), Feed(3, 0.254, True), Feed(4, 5.0 * 12.0 * 25.4)]
+        assert found == [Feed(2, 254.0), Feed(3, 0.254, True), Feed(4, 5.0 * (12.0 * 25.4))]
 
 
 CYCLES: dict[str, Cycle] = {
