@@ -13,6 +13,7 @@ from polycnc.errors import ProgramError
 from polycnc.post import ArcAxis, parse_control, parse_tool_path, shipped_text, sweep_tool_path
 from polycnc.post.tool_path._cl_words import CLSF_WORDS
 from polycnc.post.tool_path._records import (
+    Axis,
     Circle,
     Compensation,
     Coolant,
@@ -258,6 +259,9 @@ REFUSED = {
     "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
     "CYCLE/DRILL,12,2,3,4,5": "the numbers of the cycle from 4 on are not known",
     "CYCLE/BORE,14.5,0,0,2,85,1,355,ON,0,0,1000": "the numbers of the cycle from 2 on are not known",
+    "CYCLE/DRILL,126,85,1,MMPM": "which of the numbers 85 and 1 is the feed",
+    "GOTO/1,2,3,0,0.6,0.8\nMULTAX/OFF\nGOTO/1,2,9": "MULTAX/OFF while the tool is tilted",
+    "TLAXIS/0,0.6,0.8\nMULTAX/OFF\n" + "GOTO/1,2,9\n" * 9: "MULTAX/OFF while the tool is tilted",
     "CUTCOM/ADJUST,55": "CUTCOM/ADJUST with something else",
     "CUTCOM/ADJUST,2,PLUS,XAXIS,5": "CUTCOM/ADJUST with something else",
     "CUTCOM/ADJUST,ON": "ADJUST needs a work offset",
@@ -265,8 +269,11 @@ REFUSED = {
     "GOTO/1,2,3\nCUTCOM/ADJUST,2\nCIRCLE/1,5,3,0,0,1,3\nGOTO/1,8,3": "an arc without a start point",
     "CLEARP/XYPLAN,5\nCUTCOM/ADJUST,2\nRETRCT": "RETRCT without a clearance plane",
     "UNIT/FURLONG": "UNIT without a unit",
-    "PAINT/PATH\nFEDRAT/IPM,12": "a feed in inches in a CLSF",
-    "PAINT/PATH\nCYCLE/DRILL,RAPTO,.1,FEDTO,-1,IPR,.002": "a feed in inches in a CLSF",
+    "PAINT/PATH\nFEDRAT/IPM,12": "a feed in inches in a tool path",
+    "PAINT/PATH\nCYCLE/DRILL,RAPTO,.1,FEDTO,-1,IPR,.002": "a feed in inches in a tool path",
+    "FEDRAT/12,IPM": "a feed in inches in a tool path that does not say the unit",
+    "FEDRAT/IPR,.012": "a feed in inches in a tool path that does not say the unit",
+    "CYCLE/DRILL,DEPTH,1,IPM,4,CLEAR,.1": "a feed in inches in a tool path that does not say the unit",
     "NURBS/3": "NURBS moves the tool",
     "MODE/INCR": "MODE/INCR is not known",
     "CUTCOM/ON\nGOTO/1,2,3": "CUTCOM/ON without a side",
@@ -557,3 +564,54 @@ def test_a_surface_speed_without_a_highest_speed_is_remarked() -> None:
     for words, expected in (("180,SMM", True), ("180,SMM,MAXRPM,2500", False), ("600,RPM", False)):
         remarks = post_file(parse_tool_path(path.format(words)), "fanuc-lathe").summary.remarks
         assert any("nothing limits the spindle" in each.text for each in remarks) == expected
+
+
+def test_behind_multax_off_the_tool_axis_is_known_where_it_is_said() -> None:
+    text = "TLAXIS/0,0.6,0.8\nMULTAX/OFF\nTLAXIS/0,0,1\nGOTO/1,2,9\nMULTAX/OFF\nGOTO/3,2,9,0,0.6,0.8\nMULTAX/ON\n"
+    assert [type(each) for each in records(text + "GOTO/4,5,6\n" * 9)][:4] == [Axis, Axis, Goto, Goto]
+
+
+# --- what the shipped control files write at holes
+
+WITH_CYCLES = ("fanuc-mill", "haas-mill", "fanuc-5axis", "bosch-pnc", "bosch-pnc-cpl")
+TWO_HOLES = """LOADTL/4,LENGTH,70
+SPINDL/RPM,640,{sense}
+RAPID
+GOTO/10,10,30
+CYCLE/{cycle},CLEAR,3
+GOTO/10,10,0
+GOTO/30,10,0
+CYCLE/OFF
+FEDRAT/150,MMPM
+GOTO/40,10,3
+"""
+HOLE_KINDS = ("DRILL", "DRILL,DWELL,0.5", "DEEP,STEP,4", "BRKCHP,STEP,4", "BORE")
+
+
+@pytest.mark.parametrize("kind", HOLE_KINDS)
+@pytest.mark.parametrize("name", WITH_CYCLES)
+def test_a_cycle_with_a_feed_per_revolution_takes_the_time_of_that_feed(name: str, kind: str) -> None:
+    """0.25 mm a turn at 640 rpm are 160 mm/min; what follows is per minute again."""
+    seconds = []
+    for feed in ("MMPR,0.25", "MMPM,160"):
+        path = TWO_HOLES.format(sense="CLW", cycle=f"{kind},DEPTH,12,{feed}")
+        result = post_file(parse_tool_path(path), name, verify=True)
+        assert result.verification is not None
+        assert result.ok
+        seconds.append(result.verification.run.time_s)
+    assert seconds[0] == pytest.approx(seconds[1], abs=0.02)
+    assert seconds[0] > 10.0
+
+
+@pytest.mark.parametrize("name", ["fanuc-mill", "haas-mill", "fanuc-5axis"])
+@pytest.mark.parametrize(("sense", "code"), [("CLW", "G84"), ("CCLW", "G74")])
+@pytest.mark.parametrize("back", ["", ",RTRCTO,AUTO"])
+def test_a_left_hand_thread_is_tapped_left_handed(name: str, sense: str, code: str, back: str) -> None:
+    result = post_file(
+        parse_tool_path(TWO_HOLES.format(sense=sense, cycle=f"TAP,DEPTH,12,MMPR,1.25{back}")),
+        name,
+        verify=True,
+    )
+    assert result.ok
+    assert re.findall(r"G[78]4", result.text or "") == [code]
+    assert f"{'G98' if back else 'G99'} {code} X10. Y10. Z-12. R3. F800." in (result.text or "")

@@ -72,8 +72,6 @@ STATEMENTS: dict[str, Record] = {
     "FEDRAT/250": Feed(1, 250.0),
     "FEDRAT/250,MMPM": Feed(1, 250.0),
     "FEDRAT / MMPR, 0.25": Feed(1, 0.25, True),
-    "FEDRAT/10,IPM": Feed(1, 254.0),
-    "FEDRAT/IPR,.01": Feed(1, 0.254, True),
     "RAPID": Rapid(1),
     "goto/1,2,3": Goto(1, 1.0, 2.0, 3.0),
     "GOTO / 1., -.5, +2.5E-1": Goto(1, 1.0, -0.5, 0.25),
@@ -107,10 +105,17 @@ def test_a_statement(text: str) -> None:
     assert only(text + "   $$ a remark") == STATEMENTS[text]
 
 
+def test_feeds_in_inches_where_the_unit_of_lengths_is_said() -> None:
+    for unit in ("UNITS/MM", "UNITS/INCHES"):
+        text = f"{unit}\nFEDRAT/10,IPM\nFEDRAT/IPR,.01\nFEDRAT/5,FPM\n"
+        found = list(parse_tool_path(text))
+        assert found == [Feed(2, 254.0), Feed(3, 0.254, True), Feed(4, 5.0 * (12.0 * 25.4))]
+
+
 CYCLES: dict[str, Cycle] = {
     "DRILL,DEPTH,10,MMPM,100,CLEAR,2": Cycle(1, "drill", 10.0, 2.0, 2.0, 100.0),
     # RAPTO goes on from CLEAR towards the point, and RETURN names the level to leave to.
-    "DRILL,DEPTH,10,IPM,10,CLEAR,5,RAPTO,3,RETURN,20": Cycle(1, "drill", 10.0, 2.0, 20.0, 254.0),
+    "DRILL,DEPTH,10,MMPM,254,CLEAR,5,RAPTO,3,RETURN,20": Cycle(1, "drill", 10.0, 2.0, 20.0, 254.0),
     "DRILL,DEPTH,10,CLEAR,5,RETURN,0": Cycle(1, "drill", 10.0, 5.0, None),
     # Without CLEAR, RAPTO is the level; depths may be written downwards.
     "DRILL,RAPTO,3.0,FEDTO,-20.0,RTRCTO,10,MMPM,250": Cycle(1, "drill", 20.0, 3.0, 10.0, 250.0),

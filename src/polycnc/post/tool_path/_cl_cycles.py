@@ -29,6 +29,7 @@ _KINDS: dict[str, CycleKind] = {
 }
 _TURNING = ("TURN", "ROUGH", "FINISH", "GROOVE", "THREAD", "PROFIL", "CONTUR", "AREA", "LATHE", "TURNIN")
 _PASSES = "Let the CAM system write each pass as points (GOTO, RAPID), not a cycle of the control."
+_SLOW_MM_MIN = 20.0  # no drill is as slow, and no clearance as high
 _PECKS = ("STEP", "INCR")
 _NUMBERED = ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RETURN", "RTRCTO", "DWELL", *_PECKS)
 
@@ -113,6 +114,11 @@ def _split(
             factor, per_revolution = known[token.text]
             if len(bare) >= 2:  # by place the feed comes before its unit
                 feed = bare.pop() / scale * factor
+                if len(bare) > 1 and not per_revolution and feed < _SLOW_MM_MIN < bare[1]:
+                    raise statement.fail(
+                        f"which of the numbers {bare[1] / scale:g} and {feed / factor:g} is the feed is not clear",
+                        "Let the CAM system write them by name, like CYCLE/DRILL,DEPTH,10,MMPM,100,CLEAR,2.",
+                    )
             else:
                 feed = statement.number("a feed") * factor
         elif token.text == "TPI":

@@ -111,7 +111,9 @@ def tool_axis(reading: Reading, statement: Statement) -> Iterator[Record]:
             "Write three numbers, like TLAXIS/0,0,1, or let the CAM system write the axis with each GOTO.",
             statement.peek(),
         )
-    yield Axis(statement.line, _unit(statement, (numbers[0], numbers[1], numbers[2])))
+    axis = _unit(statement, (numbers[0], numbers[1], numbers[2]))
+    reading.is_tilted, reading.axis_unsure = axis != UPRIGHT, None
+    yield Axis(statement.line, axis)
 
 
 def clearance_plane(reading: Reading, statement: Statement) -> Iterator[Record]:

@@ -15,6 +15,7 @@ from polycnc.post.tool_path._cl_statement import Statement
 from polycnc.post.tool_path._records import (
     LARGEST_MM,
     MOST_TURNS,
+    UPRIGHT,
     Circle,
     Compensation,
     Goto,
@@ -84,13 +85,17 @@ class Reading:
     unknown: int = 0
     moves: int = 0
 
+    is_tilted: bool = False
+    """Whether the last tool axis is not upright."""
+    axis_unsure: Statement | None = None
+    """A MULTAX/OFF that leaves open how the tool stands."""
     is_lathe: bool = False
     """Whether the tool that was described last is one for turning."""
 
     @property
     def waits(self) -> bool:
-        """Whether something comes before the next point: a CUTCOM/ON its side, a tool its change."""
-        return self.resumes or self.announced is not None
+        """Whether the next point needs a look: a CUTCOM/ON waits for its side, a tool for its change."""
+        return self.resumes or self.announced is not None or self.axis_unsure is not None
 
     def resume(self, statement: Statement) -> Compensation:
         """Return the compensation that CUTCOM/ON takes up again.
@@ -131,14 +136,18 @@ class Reading:
         self.cycle_on = False
 
     def check_units(self, statement: Statement) -> None:
-        """Refuse a feed in inches in a CLSF that does not say the unit of its lengths, which would be read as mm.
+        """Refuse a feed in inches where nothing says the unit of the lengths, which would be read as mm.
+
+        Threads in inches are cut on metric parts too: only in a CLSF, which never says its unit, they are refused.
 
         Raises:
             ProgramError: it is so.
         """
-        if self.clsf_word and not self.units_said and statement.words() & {"IPM", "IPR"}:
+        if self.units_said or (statement.major == "PITCH" and not self.clsf_word):
+            return
+        if statement.words() & {"IPM", "IPR", "FPM"}:
             raise statement.fail(
-                "a feed in inches in a CLSF that does not say the unit of its lengths",
+                "a feed in inches in a tool path that does not say the unit of its lengths",
                 "Write UNITS/INCHES or UNITS/MM as its first line.",
             )
 
@@ -153,7 +162,18 @@ class Reading:
         return bool(self.clsf_word)
 
     def point(self, line: int, x: float, y: float, z: float, axis: Vector | None = None) -> Goto | Circle:
-        """Return the move to a point."""
+        """Return the move to a point.
+
+        Raises:
+            ProgramError: how the tool stands there is left open.
+        """
+        if axis is not None:
+            self.is_tilted, self.axis_unsure = axis != UPRIGHT, None
+        elif self.axis_unsure is not None:
+            raise self.axis_unsure.fail(
+                "MULTAX/OFF while the tool is tilted, and points without a tool axis behind it",
+                "Write TLAXIS/0,0,1 behind it if the tool stands upright there, or let the CAM system write the axis.",
+            )
         if self.scale != 1.0:
             x, y, z = x * self.scale, y * self.scale, z * self.scale
         self.moves += 1

@@ -44,7 +44,6 @@ IGNORED = frozenset(
             "INTOL",
             "OUTTOL",
             "TOLER",
-            "MULTAX",
             "CUT",
             "CLPRNT",
         ),
@@ -414,7 +413,14 @@ def _end(reading: Reading, statement: Statement) -> Iterator[Record]:
     yield End(statement.line)
 
 
+def _multax(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read MULTAX: behind OFF a point without an axis is for an upright tool, for some systems."""
+    reading.axis_unsure = statement if "OFF" in statement.words() and reading.is_tilted else None
+    return iter(())
+
+
 HANDLERS: dict[str, Handler] = {
+    "MULTAX": _multax,
     "PARTNO": _text("part"),
     "PPRINT": _text("comment"),
     "INSERT": _text("insert"),
