@@ -141,6 +141,25 @@ def test_events_stop_the_run_at_their_point_one_by_one() -> None:
     assert state.paths.row[0]["event"] == -1  # told once
 
 
+def test_an_event_of_one_path_is_not_told_again_with_that_of_another() -> None:
+    state = make_state(2, segments=64, paths=2)
+    state.limits.speed[:], state.limits.acceleration[:] = 100.0, 1000.0
+    state.paths.axis[0], state.paths.axis[1] = (0, -1), (1, -1)
+    for g, (wait_s, event) in enumerate([(0.004, 7), (0.0, 8)]):
+        give_to_path(state, g)
+        append_wait(state.seg, state.paths, g, wait_s, -1, 1)
+        append_wait(state.seg, state.paths, g, 0.0, event, 2)
+        append_wait(state.seg, state.paths, g, 0.003, -1, 3)
+        state.paths.row[g]["closed"] = 1
+        prepare_path(state.seg, state.paths, g, state.limits, CYCLE_S, state.work)
+        start_path(state.paths, g)
+    found = []
+    for _ in range(2):
+        cycles = run_until(state, PATH_EVENT)
+        found.append((cycles, state.paths.row["event"].tolist()))
+    assert found == [(0, [-1, 8]), (4, [7, -1])]
+
+
 def test_a_wait_takes_whole_cycles_at_rest() -> None:
     state = state_of()
     give_to_path(state, 0)

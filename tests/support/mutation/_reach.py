@@ -31,7 +31,7 @@ class Reach:
     def of(self, file: str, lines: range) -> list[str]:
         """Return the tests that ran one of a file's lines, file by file, the quickest first.
 
-        Where there are more than `limit_s` allows, each test file gives those first that ran what few others run.
+        Where there are more than `limit_s` allows, each test file first gives what quickly runs what few others run.
         """
         seen = self.tests.get(file, {})
         found = {test for line in lines for test in seen.get(line, ()) if test}
@@ -49,7 +49,10 @@ class Reach:
         for tests in seen.values():
             for test in tests:
                 rare[test] += 1.0 / len(tests)
-        ranked = [sorted(tests, key=lambda test: -rare[test]) for tests in files]
+        ranked = [
+            sorted(tests, key=lambda test: -rare[test] / (0.05 + self.times_s.get(test, 0.0)))
+            for tests in files
+        ]
         left_s, chosen = self.limit_s, set[str]()
         for test in chain.from_iterable(zip_longest(*ranked)):  # one of each file, then the next of each
             if test is not None and (left_s > 0.0 or not chosen):
