@@ -112,6 +112,7 @@ def main() -> None:
         image.do(word, rest)
     shutil.copy(REPOSITORY / "examples" / "bracket.nc", root / "work")
     subprocess.run(["chmod", "-R", "a-w", str(root)], check=True)
+    image.environment["POLYCNC_COMPILE_AT_ONCE"] = "1"  # so small a program would not be compiled anyway
     said, remarks, seconds = image.run("run", "bracket.nc")
     print(said, end="")
     if remarks:

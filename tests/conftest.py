@@ -8,6 +8,8 @@ from pathlib import Path
 
 # Before polycnc is imported: tests may call compiled functions that are not entries.
 os.environ["POLYCNC_OPEN_INTERNALS"] = "1"
+# And they try compiled code, whatever was compiled before them.
+os.environ["POLYCNC_COMPILE_AT_ONCE"] = "1"
 
 import pytest
 from hypothesis import settings

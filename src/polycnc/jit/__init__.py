@@ -9,6 +9,7 @@ from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, ve
 from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files
 from polycnc.jit._notice import COMPILING
 from polycnc.jit._pipeline import KNOWN as KNOWN_NUMBA
+from polycnc.jit._plain import compile_at_once
 from polycnc.jit._reach import Fingerprints, NotKnownError
 from polycnc.jit._warm import compile_entries
 
@@ -23,6 +24,7 @@ __all__ = [
     "Fingerprints",
     "NotKnownError",
     "allocating",
+    "compile_at_once",
     "compile_entries",
     "compiled",
     "entry",

@@ -77,6 +77,12 @@ class ContentCache(_Cache):
         """Return how the stems of the function as it is now begin, for all types of arguments."""
         return f"{self.family}-{_hexadecimal(FINGERPRINTS.of(self._dispatcher), _compiler())}"
 
+    def is_kept(self, sig: tuple[Any, ...], target_context: Any) -> bool:
+        """Tell whether there is a file for these types of arguments, without waiting for who makes it."""
+        processor = target_context.codegen().magic_tuple()
+        stems = ((_SHIPPED, (processor[0], *ANY_PROCESSOR)), (FILES, processor))
+        return any(files is not None and files.has(self._stem(sig, kind)) for files, kind in stems)
+
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return the function for these types of arguments; when it is not there, hold others from making it."""
         _runtime.initialize(target_context)  # not `refresh`, which loads all that compiling takes

@@ -6,22 +6,27 @@ import functools
 import inspect
 import os
 from collections.abc import Callable
-from typing import Any, ParamSpec, TypeVar, cast
+from typing import Any, ParamSpec, TypeVar, cast, overload
 
 import numba
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.dispatcher import OmittedArg
 from numba.core.registry import CPUDispatcher
+from numba.core.types import Omitted
 
 from polycnc.jit._cache import ContentCache
 from polycnc.jit._pipeline import pipelines
+from polycnc.jit._plain import ALLOWANCE, PlainEntry, values_of
 from polycnc.jit._reference import by_reference
 
 P = ParamSpec("P")
 R = TypeVar("R")
+F = TypeVar("F", bound=Callable[..., Any])
 
 # numba's own annotations leave out the options and settings that are used here.
 _config: Any = numba.config
 _njit: Any = numba.njit
+_Omitted: Any = Omitted
 _INTERNAL, _ENTRY = pipelines()
 
 OPEN_INTERNALS = bool(os.environ.get("POLYCNC_OPEN_INTERNALS"))
@@ -33,6 +38,33 @@ class _Entry(CPUDispatcher):
 
     _cache: ContentCache
     _inner: Any
+    _steps: Callable[..., int] | None = None
+    _spared: Callable[..., int] | None = None
+    _plain: PlainEntry | None = None
+
+    def _compile_for_args(self, *args: Any, **kws: Any) -> Any:
+        """Return what is called with these arguments, of types that are not loaded: plain Python for little work."""
+        numbas: Any = super()
+        values = values_of(args)
+        if not ALLOWANCE.take(lambda: 1 if self._steps is None else self._steps(*values)):
+            return numbas._compile_for_args(*args, **kws)
+        if self._plain is None:
+            types = tuple(map(self._type_of, args))
+            if self._cache.is_kept(types, self.targetctx):
+                return numbas._compile_for_args(*args, **kws)
+            self._plain = PlainEntry(self._inner)
+        return functools.partial(self._do_plainly, self._plain, values)
+
+    def _do_plainly(self, plain: PlainEntry, values: list[Any], *_: object) -> object:
+        result = plain(*values)
+        if self._spared is not None:
+            ALLOWANCE.give_back(self._spared(result, *values))
+        return result
+
+    def _type_of(self, argument: Any) -> Any:
+        if isinstance(argument, OmittedArg):
+            return _Omitted(argument.value)
+        return self.typeof_pyval(argument)
 
     def compile(self, sig: Any) -> Any:
         """Load or compile the function for these types of arguments."""
@@ -101,14 +133,26 @@ def allocating(function: Callable[P, R]) -> Callable[P, R]:
     return _internal(function, counted=True)
 
 
-def entry(function: Callable[P, R]) -> Callable[P, R]:
-    """Compile `function` for Python and compiled callers, and keep the result on disk."""
+@overload
+def entry(function: Callable[P, R]) -> Callable[P, R]: ...
+@overload
+def entry(*, steps: Callable[..., int], spared: Callable[..., int] | None = None) -> Callable[[F], F]: ...
+def entry(function: Any = None, *, steps: Any = None, spared: Any = None) -> Any:
+    """Compile `function` for Python and compiled callers, and keep the result on disk.
+
+    `steps` tells from the arguments of a call how many steps it may take, of some 20 µs uncompiled each; without it
+    every call is one. `spared` tells from the result and the arguments how many of them it did not take. Few steps are
+    not worth compiling (see `_plain`).
+    """
+    if function is None:
+        return functools.partial(entry, steps=steps, spared=spared)
     internal = _internal(function, counted=True)
     if not isinstance(internal, _Internal):
         return internal
     found = _as_entry(internal)
+    found._steps, found._spared = steps, spared
     _entries[f"{function.__module__}.{function.__qualname__}"] = found
-    return cast("Callable[P, R]", found)
+    return found
 
 
 def _internal(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:

@@ -68,6 +68,10 @@ class Files:
         self._folder = folder
         self._remarked = False
 
+    def has(self, stem: str) -> bool:
+        """Tell whether something was written under this stem."""
+        return self._folder is not None and (self._folder / f"{stem}.nbc").exists()
+
     def read(self, stem: str) -> bytes | None:
         """Return what was written under this stem; None where there is nothing, or nothing whole."""
         if self._folder is None:

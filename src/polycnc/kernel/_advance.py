@@ -134,7 +134,7 @@ def cycle(state: KernelState) -> None:
     follow_cycle(state)
 
 
-@entry
+@entry(steps=lambda state, cycles: cycles * (2 + 2 * len(state.setpoint)))
 def advance(state: KernelState, cycles: int) -> int:
     """Run up to `cycles` control cycles; return how many were run.
 

@@ -171,8 +171,9 @@ def _saves_time(
     turning = min(before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
     stopping = _stop_s(cut_mm, before_mm_s, accel_before) + _stop_s(cut_mm, after_mm_s, accel_after)
     rounding = radius_mm * turn_rad / turning
-    rounding += (before_mm_s - turning) ** 2 / (2.0 * accel_before * before_mm_s)
-    rounding += (after_mm_s - turning) ** 2 / (2.0 * accel_after * after_mm_s)
+    slower, later = before_mm_s - turning, after_mm_s - turning
+    rounding += slower * slower / (2.0 * accel_before * before_mm_s)
+    rounding += later * later / (2.0 * accel_after * after_mm_s)
     return bool(rounding < stopping)
 
 

@@ -21,6 +21,7 @@ from polycnc.kernel._path import (
     EVENT,
     HELD,
     INSIDE,
+    NO_LIMIT,
     READY,
     REST_SLACK,
     RESTED,
@@ -273,7 +274,14 @@ def _jump_ahead(paths: Paths, g: int, dt: float) -> int:
     return int(cycles - now)
 
 
-@entry
+def _steps(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int:
+    path = paths.row[g]
+    if path["jerk_mm_s3"] > 0.0:
+        return NO_LIMIT  # each cycle is one, and nobody knows how many there will be
+    return 3 * int(min(until, path["tail"]) - path["head"]) + 1
+
+
+@entry(steps=_steps)
 def skip_path(seg: Segments, paths: Paths, g: int, dt: float, until: int) -> int:
     """Go along path `g` while its segment count is below `until`; return the cycles taken.
 

@@ -133,7 +133,7 @@ def window_speed(seg: Segments, paths: Paths, g: int, count: int) -> float:
     return min(end_limit(seg.row[slot(paths, g, count)]), math.sqrt(rest))
 
 
-@entry
+@entry(steps=lambda seg, paths, g, first, low, high: int(paths.row["prepared"][g]) - first + 1)
 def measure_queue(seg: Segments, paths: Paths, g: int, first: int, low: Floats, high: Floats) -> None:
     """Widen the box `low[n]`, `high[n]` to hold the prepared segments of path `g` from count `first` on."""
     work = np.empty(low.shape[0])

@@ -128,7 +128,11 @@ def _plan(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         path["planned"] = max(path["head"], min(path["planned"], path["cruising"]))
 
 
-@entry
+def _steps(seg: Segments, paths: Paths, g: int, *_: object) -> int:
+    return 3 * int(paths.row["tail"][g] - paths.row["head"][g]) + 1
+
+
+@entry(steps=_steps)
 def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
     """Take what was appended since the last call into the look-ahead of path `g`. `work` is scratch, [3, n].
 
@@ -204,7 +208,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     path["limit"] = NO_LIMIT
 
 
-@entry
+@entry(steps=_steps)
 def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: float, work: Floats) -> None:
     """Take over a new override, feed hold or its release from where path `g` stands now."""
     path = paths.row[g]

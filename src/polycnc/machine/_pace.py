@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Protocol
 
 from polycnc.errors import UsageError
+from polycnc.jit import compile_at_once
 
 _FORGIVEN = 1e-9  # cycles that rounding may be short of
 
@@ -38,6 +39,7 @@ class Pace:
     """
 
     def __init__(self, wall: Wall, rate: float = 1.0, *, changed: Callable[[], None] | None = None) -> None:
+        compile_at_once()  # rather than in the middle of a motion
         self._wall = wall
         self._changed = changed or (lambda: None)
         self._lock = threading.Lock()

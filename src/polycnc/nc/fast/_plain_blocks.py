@@ -143,7 +143,10 @@ def marked(work: FastWork) -> list[tuple[int, int]]:
     return [(count, tag) for count, tag in work.marks[: work.said[_MARKED]].tolist()]
 
 
-@entry
+@entry(
+    steps=lambda words, block, n_blocks, *_: 2 * (n_blocks - block) + 1,
+    spared=lambda end, words, block, n_blocks, *_: 2 * (n_blocks - end[0]),
+)
 def run_plain(
     words: WordColumns,
     block: int,

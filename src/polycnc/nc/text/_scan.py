@@ -142,7 +142,7 @@ def scan_rules(rules: TextRules) -> ScanRules:
     return ScanRules(classes, statement, powers, rules.unclosed_comments, rules.line_numbers)
 
 
-@entry
+@entry(steps=lambda data, offset, *_: (len(data) - offset) // 16 + 1)
 def scan(data: npt.NDArray[np.uint8], offset: int, line: int, rules: ScanRules, columns: WordColumns) -> int:
     """Fill the columns with whole blocks from byte `offset` on and return the offset to go on from.
 

@@ -118,7 +118,7 @@ def _nearest(
     return best, which
 
 
-@entry
+@entry(steps=lambda a_start, a_end, b_start, *_: 40 * (len(a_start) + len(b_start)))
 def farthest(
     a_start: Floats,
     a_end: Floats,
@@ -142,7 +142,8 @@ def farthest(
         for k in range(width):
             first[k] = a_start[i, k]
             last[k] = a_end[i, k]
-            length += (last[k] - first[k]) ** 2
+            way = last[k] - first[k]
+            length += way * way
         length = np.sqrt(length)
         distance, guess = _nearest(first, b_start, b_end, low, high, guess, stack)
         part0[0], at0[0], near0[0] = 0.0, distance, guess
@@ -204,7 +205,7 @@ def _free(point: Floats, path: Floats, at: int, reach: float) -> tuple[float, fl
     return (low, high) if low <= high else (2.0, -1.0)
 
 
-@entry
+@entry(steps=lambda a, b, reach: len(a) * len(b))
 def in_one_order(a: Floats, b: Floats, reach: float) -> tuple[bool, int, int]:
     """Say whether two polylines can be gone along together, never back, and never farther apart than `reach`.
 

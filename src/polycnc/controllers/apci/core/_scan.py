@@ -239,7 +239,7 @@ def scan(b: BoardState, state: KernelState) -> None:
     analysis_cycle(b, state)
 
 
-@entry
+@entry(steps=lambda b, state, scans, mask: scans * 5 * len(state.setpoint))
 def run_scans(b: BoardState, state: KernelState, scans: int, mask: int) -> int:
     """Run up to `scans` scans, fewer when something of `mask` happens; return how many were run."""
     board = b.board[0]

@@ -114,7 +114,7 @@ def control_cycle(s: CardState, state: KernelState) -> None:
     s.card[0]["cycle"] += 1
 
 
-@entry
+@entry(steps=lambda s, state, cycles, mask: cycles * 6 * len(state.setpoint))
 def run_cycles(s: CardState, state: KernelState, cycles: int, mask: int) -> int:
     """Run up to `cycles` control cycles, fewer when something of `mask` happens; return how many were run."""
     card = s.card[0]
