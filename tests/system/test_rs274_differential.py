@@ -332,3 +332,47 @@ def test_a_series_that_has_no_beginning_is_refused_as_the_manual_says(tmp_path: 
         error = ends(spline_program(blocks))[1]
         assert error is not None
         assert "first of a series" in str(error)
+
+
+POINTS = "X4 Y9 P.5\nX11 Y-2.5 P3\nX17 Y8 P1"
+NURBS = (
+    f"G5.2 P2 L3\n{POINTS}\nG5.3",
+    f"G5.2 X1 Y2 P1.5 L4\n{POINTS}\nG5.3",
+    f"G5.2 X1 Y2 P1.5\nM8\n(remark)\nG4 P1\nG5.2 {POINTS}\nG5.3",
+    f"G91 G5.2 X1 Y2 P1.5 L5\n{POINTS}\nG5.3\nG90",
+    "G20 G92 X.5 Y-1\nG5.2 X.1 Y.2 P1.5 L3\nX.4 Y.9 P.5\nX1.1 Y-.25 P3\nG5.3",
+)
+"""Curves by control points, and what is in force with them."""
+NO_NURBS = (
+    *(
+        "G5.2 X1 P1",
+        "G5.2 Y1 P1",
+        "G5.2 X1 Y1 P1 L3.5",
+        "G5.3",
+        "G5.2 X1 Y2 P1\nG5.3",
+        "G5.2 X1 Y2 P1\nX3 Y4",
+    ),
+    *(f"G5.2 X1 Y2 P1 L6\n{POINTS}\nG5.3", "G5.2 X1 Y2 P1\nG5.2 P2"),
+    *(f"G5.2 P2 L3\n{POINTS}\nG5.3\nX7", "G5.2 X1 Y2 P1\nX3 Y2 P0"),
+)
+"""Curves that both refuse."""
+
+
+@pytest.mark.parametrize("blocks", NURBS)
+def test_curves_by_control_points_end_in_the_same_place_with_the_same_modes(
+    blocks: str, tmp_path: Path
+) -> None:
+    theirs = rs274.interpret(spline_program(blocks), tmp_path)
+    assert not theirs.error, theirs.error
+    assert [name for name, _ in theirs.calls].count("NURBS_FEED") == 1
+    ours, error = ends(spline_program(blocks))
+    assert error is None
+    there, here = rs274.canonical_steps(theirs, len(AXES), scale=1)[-1], ours[-1]
+    assert isinstance(there, Feed)
+    assert isinstance(here, Feed)
+    assert np.allclose(here.end, there.end, rtol=0.0, atol=2e-3)
+
+
+@pytest.mark.parametrize("blocks", NO_NURBS)
+def test_both_refuse_the_same_curves_by_control_points(blocks: str, tmp_path: Path) -> None:
+    test_both_refuse_the_same_splines(blocks, tmp_path)

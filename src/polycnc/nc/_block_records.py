@@ -40,6 +40,7 @@ from polycnc.nc.blocks._modal import (
     MOTION_ARC_CW,
     MOTION_CUBIC,
     MOTION_LINEAR,
+    MOTION_NURBS,
     MOTION_QUADRATIC,
     MOTION_RAPID,
     PLANE,
@@ -69,6 +70,7 @@ _MOTIONS = {
 _MOTION_ACTIONS = {motion: action for action, motion in _MOTIONS.items()} | {
     MOTION_CUBIC: Action.CUBIC_SPLINE,
     MOTION_QUADRATIC: Action.QUADRATIC_SPLINE,
+    MOTION_NURBS: Action.NURBS,
 }
 _PLANES = {PLANE_XY: Action.PLANE_XY, PLANE_ZX: Action.PLANE_ZX, PLANE_YZ: Action.PLANE_YZ}
 _FEED_MODES = {

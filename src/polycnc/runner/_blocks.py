@@ -19,6 +19,7 @@ _MOTIONS = {
     Action.ARC_CCW: "arc",
     Action.CUBIC_SPLINE: "spline",
     Action.QUADRATIC_SPLINE: "spline",
+    Action.NURBS: "spline",
 }
 KINDS = ("rapid", "line", "arc", "spline", "cycle", "other")
 _FEW = 8  # blocks in a row with one context that are not worth arrays

@@ -41,6 +41,8 @@ class Action(IntEnum):
     ARC_CCW = auto()
     CUBIC_SPLINE = auto()
     QUADRATIC_SPLINE = auto()
+    NURBS = auto()
+    NURBS_END = auto()
     MOTION_OFF = auto()
     THREAD = auto()
     THREAD_CHANGING = auto()
@@ -152,6 +154,8 @@ _BY_GROUP: dict[Group, tuple[Action, ...]] = {
         Action.ARC_CCW,
         Action.CUBIC_SPLINE,
         Action.QUADRATIC_SPLINE,
+        Action.NURBS,
+        Action.NURBS_END,
         Action.MOTION_OFF,
         Action.THREAD,
         Action.THREAD_CHANGING,

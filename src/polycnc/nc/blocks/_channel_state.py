@@ -16,6 +16,7 @@ from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._frame import Frame
 from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.blocks._nurbs_curve import Nurbs
 from polycnc.nc.blocks._placement import Placement
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tables import ProgramTables
@@ -75,6 +76,7 @@ class Plain(NamedTuple):
     tip: TipShift
     corner: Corner | None
     spline_way: tuple[float, float] | None
+    nurbs: Nurbs | None
 
 
 class ModalSnapshot(NamedTuple):
@@ -149,6 +151,7 @@ class ChannelState:
         self.tip = TipShift()
         self.corner: Corner | None = None  # a straight move that waits for the next one
         self.spline_way: tuple[float, float] | None = None
+        self.nurbs: Nurbs | None = None  # a curve that is being written
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
@@ -198,6 +201,7 @@ class ChannelState:
             self.tip,
             self.corner,
             self.spline_way,
+            self.nurbs,
         )
 
     def snapshot(self) -> ModalSnapshot:

@@ -40,12 +40,14 @@ from polycnc.nc.blocks._modal import (
     MOTION_ARC_CW,
     MOTION_LINEAR,
     MOTION_NONE,
+    MOTION_NURBS,
     ORDINARY,
 )
 from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
+from polycnc.nc.blocks._nurbs import NurbsBlocks
 from polycnc.nc.blocks._outcomes import JUMPS, NEXT, Control, Outcome, Outcomes, Trouble
 from polycnc.nc.blocks._placing import PLACING, Placing
 from polycnc.nc.blocks._queue import QueueWriter
@@ -120,6 +122,7 @@ class Interpreter:
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
         self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
         self._splines = SplineBlocks(state, self._motion, self.fail)
+        self._nurbs = NurbsBlocks(state, self._motion, self._splines, self.fail, self._leave_cycles)
         self._checks = WordChecks(state, dialect, messages, self.fail)
         self._corners = CornerBlocks(state, self._motion, self.fail)
         self._outcomes = Outcomes(
@@ -172,6 +175,13 @@ class Interpreter:
                     f"{corner.word} at the end of the program",
                     position=self._text.line_position(corner.move.line),
                     hint="A corner needs a straight move behind it.",
+                )
+            if (curve := self.state.nurbs) is not None:
+                self.state.nurbs = None
+                raise ProgramError(
+                    f"the program ends in a curve (G{curve.code})",
+                    position=self._text.line_position(curve.line),
+                    hint="End the curve with G5.3.",
                 )
         finally:
             self.state.compensation.reset()
@@ -250,6 +260,7 @@ class Interpreter:
         line = block.line
         words = sort_words(block, self.dialect, self.fail, self._count)
         self._checks.refuse_contradictions(words)
+        self._nurbs.refuse_others(words)
         self._checks.leave_out(words)
         self._motion.begin(words)
         for letter in NUMBERS:
@@ -280,8 +291,9 @@ class Interpreter:
             self._note_codes(words)
         whole = self.state.modal.whole
         in_force = whole[MOTION]
-        if self._is_spline(words):
-            whole[MOTION] = SPLINES[words.g[Group.MOTION].action]  # for the record of this block
+        if self._is_spline(words) or self.state.nurbs is not None:  # for the record of this block
+            g = words.g.get(Group.MOTION)
+            whole[MOTION] = SPLINES[g.action] if g is not None else MOTION_NURBS
         tagged = self._tagged(items, line, words_stand=bool(block.words))
         whole[MOTION] = in_force
         return outcome, self._compensated(tagged, change_compensation)
@@ -343,6 +355,7 @@ class Interpreter:
             or self._turning.active
             or self.state.corner is not None
             or self.state.spline_way is not None
+            or self.state.nurbs is not None
             or self.state.placement.once != 0  # the next block takes it back
             or whole[FEED_MODE] != FEED_PER_MINUTE
             or self.state.frame.active
@@ -374,6 +387,10 @@ class Interpreter:
 
     # ------------------------------------------------------------------ motion
 
+    def _leave_cycles(self) -> None:
+        self._cycles.cancel()
+        self._turning.cancel()
+
     def _motion_in_force(self, words: BlockWords) -> int:
         """Take over a motion word of the block and return the motion in force."""
         whole = self.state.modal.whole
@@ -382,8 +399,7 @@ class Interpreter:
         g = words.g.get(Group.MOTION)
         if g is not None and g.action not in SPLINES:
             if g.action in MOTIONS:
-                self._cycles.cancel()
-                self._turning.cancel()
+                self._leave_cycles()
                 whole[MOTION] = MOTIONS[g.action]
             elif g.action in turning_blocks.MODAL:
                 self._cycles.cancel()
@@ -398,6 +414,10 @@ class Interpreter:
     def _is_spline(words: BlockWords) -> bool:
         g = words.g.get(Group.MOTION)
         return g is not None and g.action in SPLINES
+
+    def _is_nurbs(self, words: BlockWords) -> bool:
+        g = words.g.get(Group.MOTION)
+        return self.state.nurbs is not None or (g is not None and SPLINES.get(g.action) == MOTION_NURBS)
 
     def _move(self, words: BlockWords, line: int) -> list[QueueItem]:
         motion = self._motion_in_force(words)
@@ -422,6 +442,8 @@ class Interpreter:
                 self._placing.carry_out(g, words)
                 return []
             return list(self._non_modal.carry_out(g, motion, line))
+        if self._is_nurbs(words):
+            return list(self._nurbs.block(words, line))
         if self._is_spline(words):
             return list(self._splines.moves(words.g[Group.MOTION], line))
         if self._cycles.active:

@@ -41,6 +41,7 @@ MOTION_ARC_CW = 2
 MOTION_ARC_CCW = 3
 MOTION_CUBIC = 4  # a spline is gone along by its own block only: these are never in force behind it
 MOTION_QUADRATIC = 5
+MOTION_NURBS = 6  # up to the block that ends it
 
 # Values of PLANE.
 PLANE_XY = 0

@@ -7,7 +7,7 @@ force for its own block only. A quadratic is the cubic with its control points a
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from polycnc.nc.blocks._modal import (
     AXIS_P,
     AXIS_Q,
     MOTION_CUBIC,
+    MOTION_NURBS,
     MOTION_QUADRATIC,
     NO_AXIS,
     PLANE,
@@ -27,8 +28,15 @@ from polycnc.nc.blocks._modal import (
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
 from polycnc.nc.blocks._words import Fail, GWord
+from polycnc.nc.text._scan_plain import Word
 
-SPLINES = {Action.CUBIC_SPLINE: MOTION_CUBIC, Action.QUADRATIC_SPLINE: MOTION_QUADRATIC}
+SPLINES = {
+    Action.CUBIC_SPLINE: MOTION_CUBIC,
+    Action.QUADRATIC_SPLINE: MOTION_QUADRATIC,
+    Action.NURBS: MOTION_NURBS,
+    Action.NURBS_END: MOTION_NURBS,
+}
+"""Motions that count for their own block, or up to the block that ends them; they take axis words."""
 
 XY = tuple[float, float]
 
@@ -49,32 +57,50 @@ class SplineBlocks:
             ProgramError: another plane than XY or another axis, a control point that is missing, radius compensation, a
                 feed that is missing, a limit.
         """
-        state, motion = self._state, self._motion
-        whole = state.modal.whole
-        plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
-        if whole[PLANE] != PLANE_XY or NO_AXIS in plane:
-            raise self._fail("a spline outside the plane XY", "Select it with G17 first.", g.word)
-        if state.side or state.compensation.active:
-            raise self._fail(
-                "a spline with radius compensation",
-                "Take it back with G40 and a straight move first, or write the path of the tool's centre.",
-                g.word,
-            )
-        values = motion.axis_words()
-        for axis in values:
-            if axis not in plane:
-                name = state.axis_names[axis]
-                raise self._fail(
-                    f"a spline moves X and Y only, not {name}",
-                    f"Move {name} in a block of its own.",
-                    motion.words.first(name),
-                )
+        motion = self._motion
+        plane = self.plane(g.word)
+        values = self.axis_words(plane)
         if not values:
             raise self._fail("a spline without an end point", "Add X or Y.", g.word)
         end = motion.target(values)
         way = end[plane[0]] - motion.start[plane[0]], end[plane[1]] - motion.start[plane[1]]
         control = self._cubic(g, way) if g.action is Action.CUBIC_SPLINE else self._quadratic(g, way)
-        return list(self._parts(end, plane, control, line))
+        return self.parts(end, plane, [control], line)
+
+    def plane(self, word: Word | None) -> tuple[int, int]:
+        """Return the axes of a spline.
+
+        Raises:
+            ProgramError: another plane than XY, radius compensation.
+        """
+        state, whole = self._state, self._state.modal.whole
+        plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
+        if whole[PLANE] != PLANE_XY or NO_AXIS in plane:
+            raise self._fail("a spline outside the plane XY", "Select it with G17 first.", word)
+        if state.side or state.compensation.active:
+            raise self._fail(
+                "a spline with radius compensation",
+                "Take it back with G40 and a straight move first, or write the path of the tool's centre.",
+                word,
+            )
+        return plane
+
+    def axis_words(self, plane: tuple[int, int]) -> dict[int, float]:
+        """Take the axis words of a block.
+
+        Raises:
+            ProgramError: there is another axis.
+        """
+        values = self._motion.axis_words()
+        for axis in values:
+            if axis not in plane:
+                name = self._state.axis_names[axis]
+                raise self._fail(
+                    f"a spline moves X and Y only, not {name}",
+                    f"Move {name} in a block of its own.",
+                    self._motion.words.first(name),
+                )
+        return values
 
     def _cubic(self, g: GWord, way: XY) -> list[XY]:
         """Return the ways from the start to the inner control points and the end; remember how it ends."""
@@ -130,38 +156,61 @@ class SplineBlocks:
         whole = self._state.modal.whole
         return self._state.frame.vector(int(whole[AXIS_P]), int(whole[AXIS_Q]), u, v)
 
-    def _parts(
-        self, end: Point, plane: tuple[int, int], control: list[XY], line: int
+    def parts(
+        self, end: Point, plane: tuple[int, int], cubics: Iterable[list[XY]], line: int
+    ) -> list[Line | Spline]:
+        """Return the moves along cubics that follow each other up to `end`, none if they go nowhere.
+
+        A cubic is the ways from its start to its inner control points and to its end.
+
+        Raises:
+            ProgramError: a limit, a feed that is missing, control points too far apart.
+        """
+        motion = self._motion
+        motion.check_limits(end)
+        rows: list[list[float]] = []
+        behind = 0.0, 0.0
+        for control in cubics:
+            self._check_extremes(control, plane, behind)
+            count = cut_bezier(np.array([(0.0, 0.0), *control]), self._spans)
+            if count < 0:
+                raise self._fail(
+                    "the control points of the spline lie too far from each other",
+                    "Check I J P Q.",
+                    motion.place(),
+                )
+            for row in self._spans[:count].tolist():
+                row[SPAN_END] += behind[0]
+                row[SPAN_END + 1] += behind[1]
+                rows.append(row)
+            behind = behind[0] + control[2][0], behind[1] + control[2][1]
+        return list(self._moves(rows, end, plane, line))
+
+    def _check_extremes(self, control: list[XY], plane: tuple[int, int], behind: XY) -> None:
+        start = self._motion.start
+        for corner in _extremes(control):
+            passed = list(start)
+            for j, axis in enumerate(plane):
+                passed[axis] = start[axis] + (behind[j] + corner[j])
+            self._motion.check_limits(tuple(passed), "would pass")
+
+    def _moves(
+        self, rows: list[list[float]], end: Point, plane: tuple[int, int], line: int
     ) -> Iterator[Line | Spline]:
         motion = self._motion
         start = motion.start
-        motion.check_limits(end)
-        for corner in _extremes(control):
-            passed = list(end)
-            for axis, way in zip(plane, corner, strict=True):
-                passed[axis] = start[axis] + way
-            motion.check_limits(tuple(passed), "would pass")
-        spans = self._spans
-        count = cut_bezier(np.array([(0.0, 0.0), *control]), spans)
-        if count < 0:
-            raise self._fail(
-                "the control points of the spline lie too far from each other",
-                "Check I J P Q.",
-                motion.place(),
-            )
-        lengths = spans[:count, SPAN_LENGTH].tolist()
-        feed = motion.feed(start, end, straight=False) if count else Feed()
-        whole_mm = math.fsum(lengths)
-        for number, length in enumerate(lengths):
-            span = spans[number].tolist()
+        feed = motion.feed(start, end, straight=False) if rows else Feed()
+        whole_mm = math.fsum(row[SPAN_LENGTH] for row in rows)
+        for left, row in zip(range(len(rows) - 1, -1, -1), rows, strict=True):
+            length = row[SPAN_LENGTH]
             place = list(start)
             for j, axis in enumerate(plane):
-                place[axis] = motion.start[axis] + span[SPAN_END + j]
-            to = end if number == count - 1 else tuple(place)
+                place[axis] = motion.start[axis] + row[SPAN_END + j]
+            to = tuple(place) if left else end
             part = Feed(duration_s=feed.duration_s * length / whole_mm) if feed.duration_s > 0.0 else feed
-            stop = motion.exact_stop and number == count - 1
-            if span[SPAN_CURVED]:
-                yield Spline(start, to, plane, tuple(span[:SPAN_END]), length, part, stop, line)
+            stop = motion.exact_stop and not left
+            if row[SPAN_CURVED]:
+                yield Spline(start, to, plane, tuple(row[:SPAN_END]), length, part, stop, line)
             else:
                 yield Line(start, to, part, False, stop, line)
             start = to
