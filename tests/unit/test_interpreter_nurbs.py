@@ -233,3 +233,19 @@ def test_the_executed_block_shows_the_curve() -> None:
         if run.executed is not None and run.modal is not None:
             seen[run.executed.line] = run.modal.g.get(Group.MOTION)
     assert {line: g for line, g in seen.items() if line in (1, 4, 5)} == {1: "G1", 4: "G5.2", 5: "G1"}
+
+
+def test_a_snapshot_within_a_curve_goes_on_alike() -> None:
+    text = "G1 F900 X4\nG5.2 X1 Y9 P2.5 L4\nX9 Y7 P.5\nG4 P1\nX15 Y2 P1.5\nG5.3\nM30\n"
+    run = program_run(text, dialect="linuxcnc", blocks_ahead=1)
+    run.start()
+    run.advance(700)
+    assert run.machine.setpoints == {"X": 4.0, "Y": 0.0, "Z": 0.0}
+    saved, machine = run.snapshot(), run.machine.snapshot()
+    run.advance(1200)
+    later = run.machine.setpoints
+    run.restore(saved)
+    run.machine.restore(machine)
+    run.advance(1200)
+    assert run.machine.setpoints == later
+    assert later["Y"] > 1.0

@@ -16,6 +16,7 @@ from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._frame import Frame, Polar, Rotation
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Spline, Stop, Wait
+from polycnc.nc.blocks._nurbs_curve import Nurbs
 from polycnc.nc.blocks._offset_geometry import Leg
 from polycnc.nc.blocks._placement import Placement
 from polycnc.nc.blocks._probe import Probe
@@ -58,7 +59,7 @@ class ChannelSnapshot(NamedTuple):
 
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Corner, Cycle, CycleWords, Event, Feed, Frame, Leg, Line, Message, ModalSnapshot,
-    Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation, SavedRecords, SavedState,
+    Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation, SavedRecords, SavedState,
     SavedTables, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
