@@ -122,6 +122,7 @@ class Interpreter:
         self._cycles = CycleBlocks(state, dialect, self._motion, self.fail)
         self._turning = TurningBlocks(state, dialect, self._motion, self.fail)
         self._splines = SplineBlocks(state, self._motion, self.fail)
+        self._nurbs = NurbsBlocks(state, self._motion, self._splines, self.fail, self._leave_cycles)
         self._checks = WordChecks(state, dialect, messages, self.fail)
         self._corners = CornerBlocks(state, self._motion, self.fail)
         self._outcomes = Outcomes(
