@@ -373,3 +373,26 @@ def test_the_search_of_a_program_runs_its_way(name: str, way: int) -> None:
     axis.run(f"cl (A2); A2.hac := 400; A2.hvl := 23; {name} (A2); wt (200); CD0 := A2.dv; CD1 := A3.dv;")
     assert axis.cd(0) == pytest.approx(23.0 * way)
     assert axis.cd(1) == 0.0
+
+
+# ------------------------------------------------------------------ numbers that no board can be given
+
+WITHOUT_END = {
+    "a target velocity": "TRTVL := 1e308; mlr (A1 := 2.5, A2 := 1.5)",
+    "a speed": "TRVL := 1e200 * 1e200; smlr (A1 := 2.5, A2 := 1.5); ssms (A1, A2)",
+    "a distance": "mlr (A1 := 1e300, A2 := 1.5)",
+    "a jog": "ja (A1 := 0.0 - 1e101)",
+    "a spooled velocity": "smlr (A1 := 0.0, A2 := 0.0); sstvl (A1, A2, 0.0 - 1e308); ssms (A1, A2)",
+    "a setpoint": "A1.dp := 1e308; A1.rp := 1e308; A1.jac := 1e200; A1.jovr := 1e150",
+    "a point of a table": "d[2] := 1e308; spdr (A1, 3, d); ssms (A1)",
+}
+
+
+@pytest.mark.parametrize("what", WITHOUT_END)
+def test_a_program_cannot_send_an_axis_where_numbers_end(what: str) -> None:
+    axis = Sap()
+    axis.run(f"VAR d: ARRAY [1..3] OF DOUBLE; BEGIN {HOME} {WITHOUT_END[what]} END.")
+    axis.board.advance(500)
+    assert places(axis) == pytest.approx([17.0, -9.0, 4.0])
+    axis.run(f"{FAST} mlr (A1 := 2.5, A3 := -1.5); wt (A1, A3);")
+    assert places(axis) == pytest.approx([19.5, -9.0, 2.5])

@@ -75,12 +75,11 @@ BUFFER = bytes([9] * 8 + [77, 0, 0, 0, 5, 6, 7, 0])
 
 
 def rig(fast: bool, monkeypatch: pytest.MonkeyPatch) -> tuple[Board, BoardTasks]:
-    """Return a board with tasks that are looked at for polling, or given every turn."""
+    """Return a board with tasks that have their turns in the compiled scan, or every one from Python."""
     board = Board(parse_system_file(SYSTEM))
     tasks = BoardTasks(board)
-    for task in tasks.tasks._tasks:
-        if not fast:
-            monkeypatch.setattr(task, "poll", lambda budget: None)
+    if not fast:
+        monkeypatch.setattr(tasks._turns, "_is_worth_it", lambda number: False)
     return board, tasks
 
 
@@ -89,8 +88,9 @@ def picture(board: Board, tasks: BoardTasks) -> tuple[object, ...]:
     state = board.state
     arrays = (state.axis, state.ci, state.cd, board.kernel.servo.actual, board.kernel.base)
     seen: list[object] = [array.tobytes() for array in arrays]
-    for number, task in enumerate(tasks.tasks._tasks):
+    for number, task in enumerate(tasks.tasks.each):
         seen.append(tasks.tasks.rdcncts(number))
+        task.come_home()
         seen.append((task.next, task.base, repr(task.stack), repr(task.memory), task.frames, task.waiting))
     return tuple(seen)
 
@@ -155,9 +155,13 @@ def test_polling_tasks_do_bit_for_bit_what_every_turn_would_do(
 
 
 @pytest.mark.parametrize(
-    "name", ["a common variable", "a status", "an event", "short waits", "a function", "a long loop"]
+    "name",
+    [
+        *("a common variable", "a status", "an event", "an event in a wait", "short waits", "a function"),
+        *("a long loop", "a position", "a heartbeat", "the queue", "a buffer", "memory"),
+    ],
 )
-def test_a_task_that_polls_needs_no_turns_while_nothing_changes(
+def test_a_task_that_polls_has_its_turns_in_the_compiled_scan(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     turns = []
@@ -172,10 +176,14 @@ def test_a_task_that_polls_needs_no_turns_while_nothing_changes(
     for number in range(4):
         tasks.load(sap.compile_program(PROGRAMS[name], task=number))
         tasks.tasks.startcnct(number)
-    board.advance(1000)
+    cl(board, (0,))
+    board.axes[0].jac, board.axes[0].jvl = 60.0, 9.0
+    board.advance(100)
+    jr(board, (0,), (1.25,))
     before = len(turns)
     board.advance(300)
     assert len(turns) == before
+    assert board.axes[0].rp > 1.0
 
 
 def test_a_position_that_is_polled_ends_the_scan_in_which_it_is_reached() -> None:

@@ -224,27 +224,6 @@ def test_a_stopped_wait_goes_on_when_continued() -> None:
     assert board.ci(0) == 1
 
 
-def test_sleep_says_how_long_nobody_needs_a_turn() -> None:
-    board = FakeBoard()
-    assert board.tasks.sleep() == sap.Sleep(None, ())
-    board.start("wt (128); CI0 := 1;")
-    board.start("mlr (Y := 1, X := 2); wt (Y, X); CI1 := 1;", task=1)
-    board.start("wt (64); CI2 := 1;", task=3)
-    assert board.tasks.sleep() == sap.Sleep(0, ())
-    board.advance()
-    sleep = board.tasks.sleep()
-    assert sleep == sap.Sleep(49, ((1, 0),))
-    board.scan += 49  # nobody was asked in between
-    board.move_scans = 0
-    board.ends.clear()
-    board.advance()
-    assert (board.ci(0), board.ci(1), board.ci(2)) == (0, 1, 1)
-    assert board.tasks.sleep() == sap.Sleep(49, ())
-    board.start("EVENT e ON CI9 = 1; BEGIN END; BEGIN wt (64) END.", task=2)
-    board.advance(2)
-    assert board.tasks.sleep() == sap.Sleep(0, ())
-
-
 def test_a_task_gets_its_budget_and_no_more() -> None:
     board = FakeBoard()
     board.start(COUNT_FOREVER)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from polycnc.jit import KNOWN_NUMBA, allocating, compile_entries, compiled, entry
+from polycnc.jit import KNOWN_NUMBA, allocating, call_at, compile_entries, compiled, detached, entry
 
 Floats = npt.NDArray[np.float64]
 
@@ -106,5 +106,29 @@ def test_entries_are_compiled_beforehand_for_what_their_annotations_say(
     seen: list[str] = []
     with caplog.at_level(logging.WARNING):
         left_out = compile_entries(__name__, [make_state()], lambda name, part: seen.append(f"{name} {part}"))
-    assert (left_out, seen) == (0, ["work 0.0", "work_twice 0.5"])
+    assert (left_out, seen) == (0, ["_shift_twice 0.0", "_shifted 0.25", "work 0.5", "work_twice 0.75"])
     assert len(work_twice.signatures) == 1  # type: ignore[attr-defined]
+
+
+@compiled
+def _shifted(state: State, by: int, index: int) -> int:
+    state.counts[index] += by
+    return int(state.counts[index]) * 10
+
+
+SHIFTED = detached(_shifted)
+
+
+@entry
+def _shift_twice(numbers: npt.NDArray[np.int64], by: int) -> int:
+    return call_at(numbers[0], (numbers[1],), (by, 1)) + call_at(numbers[0], (numbers[1],), (2 * by, 0))
+
+
+def test_a_detached_function_is_called_with_the_places_of_its_states() -> None:
+    state = make_state()
+    before = state.counts.tolist()
+    ready = SHIFTED.ready(state, numbers=2)
+    assert _shift_twice(ready.numbers, 7) == 10 * (before[1] + 7) + 10 * (before[0] + 14)
+    assert state.counts.tolist() == [before[0] + 14, before[1] + 7]
+    with pytest.raises(TypeError, match="arrays only"):
+        SHIFTED.ready((3, "no array"), numbers=2)

@@ -40,12 +40,17 @@ def _warm_run(progress: Progress) -> None:
 
 
 def _warm_apci(progress: Progress) -> None:
-    from polycnc.controllers.apci import Board, parse_system_file
+    from polycnc.controllers.apci import Board, BoardTasks, parse_system_file, sap
     from polycnc.jit import compile_entries
 
     board = Board(parse_system_file("number_of_axes = 3"))
     compile_entries("polycnc.controllers.apci", [board.state, board.kernel], progress)
     compile_entries("polycnc.kernel", [board.kernel], progress)
+    progress("a stand-alone program", 0.9)
+    tasks = BoardTasks(board)
+    tasks.load(sap.compile_program("CI0 := 1;"))
+    tasks.tasks.startcnct(0)
+    board.advance(1)
 
 
 def _warm_imc(progress: Progress) -> None:

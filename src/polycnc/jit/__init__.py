@@ -6,6 +6,7 @@ checkout, a reinstallation and a copied cache compile nothing, nor does a change
 
 from polycnc.jit._cache import FILES
 from polycnc.jit._compile import OPEN_INTERNALS, allocating, compiled, entry, versions
+from polycnc.jit._detached import Detached, Ready, call_at, detached
 from polycnc.jit._files import CACHE_FOLDER, SHIPPED_FOLDER, Files
 from polycnc.jit._notice import COMPILING
 from polycnc.jit._pipeline import KNOWN as KNOWN_NUMBA
@@ -20,13 +21,17 @@ __all__ = [
     "KNOWN_NUMBA",
     "OPEN_INTERNALS",
     "SHIPPED_FOLDER",
+    "Detached",
     "Files",
     "Fingerprints",
     "NotKnownError",
+    "Ready",
     "allocating",
+    "call_at",
     "compile_at_once",
     "compile_entries",
     "compiled",
+    "detached",
     "entry",
     "versions",
 ]

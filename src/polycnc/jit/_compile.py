@@ -151,7 +151,7 @@ def entry(function: Any = None, *, steps: Any = None, spared: Any = None) -> Any
         return internal
     found = _as_entry(internal)
     found._steps, found._spared = steps, spared
-    _entries[f"{function.__module__}.{function.__qualname__}"] = found
+    register_entry(function, found)
     return found
 
 
@@ -167,6 +167,13 @@ def _internal(function: Callable[P, R], *, counted: bool) -> Callable[P, R]:
 
 def _as_entry(internal: _Internal) -> _Entry:
     """Make what Python calls: it takes the arguments as they come, and passes states on by reference."""
+    dispatcher = as_detour(internal, _Entry)
+    dispatcher._inner = internal
+    return cast("_Entry", dispatcher)
+
+
+def as_detour(internal: Any, kind: type, **options: object) -> Any:
+    """Return a kept function of this kind that does nothing but call an internal one."""
     function = internal.py_func
     names = ", ".join(inspect.signature(function).parameters)
     namespace: dict[str, Any] = {"__name__": function.__module__, "internal": internal}
@@ -174,10 +181,13 @@ def _as_entry(internal: _Internal) -> _Entry:
     detour = namespace["entry"]
     detour.__defaults__ = function.__defaults__
     functools.update_wrapper(detour, function)
-    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=internal.targetoptions["_nrt"], **_ENTRY)(
-        detour
-    )
-    dispatcher.__class__ = _Entry
+    counted = internal.targetoptions["_nrt"]
+    dispatcher = _njit(error_model="numpy", fastmath=False, _nrt=counted, **options, **_ENTRY)(detour)
+    dispatcher.__class__ = kind
     dispatcher._cache = ContentCache(dispatcher)
-    dispatcher._inner = internal
-    return cast("_Entry", dispatcher)
+    return dispatcher
+
+
+def register_entry(function: Callable[..., object], dispatcher: Any) -> None:
+    """Have a kept function among those that are compiled beforehand."""
+    _entries[f"{function.__module__}.{function.__qualname__}"] = dispatcher

@@ -14,6 +14,7 @@ from typing import Any, TypeAlias
 
 import numpy as np
 from numba.core import types as numba_types
+from numba.core.extending import _Intrinsic
 from numba.core.registry import CPUDispatcher
 
 _OURS = __name__.partition(".")[0]
@@ -169,6 +170,6 @@ _TEXTS: tuple[tuple[tuple[type, ...], Callable[[Any, Follow], str]], ...] = (
     ((dict,), _mapping),
     ((numba_types.Type,), _plain),
     ((type,), _class),
-    ((BuiltinFunctionType, ModuleType, np.ufunc), _named),
+    ((BuiltinFunctionType, ModuleType, np.ufunc, _Intrinsic), _named),
     ((FunctionType,), _plain_function),
 )

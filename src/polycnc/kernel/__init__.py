@@ -15,7 +15,7 @@ from polycnc.kernel._axis_limits import AxisLimits, make_limits
 from polycnc.kernel._bezier import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
 from polycnc.kernel._corner_rules import BY_DEVIATION, BY_SHARE, BY_SQUARE_CORNER
 from polycnc.kernel._geometry import segment_coordinate, segment_point, segment_slope
-from polycnc.kernel._jit import compiled, entry
+from polycnc.kernel._jit import call_at, compiled, detached, entry
 from polycnc.kernel._lines import add_line
 from polycnc.kernel._lookahead import measure_queue
 from polycnc.kernel._merge import NOT_MERGED, append_line, close_line, merge_line
@@ -159,11 +159,13 @@ __all__ = [
     "append_line",
     "append_spline",
     "append_wait",
+    "call_at",
     "close_line",
     "close_profile",
     "compiled",
     "cut_bezier",
     "cycle",
+    "detached",
     "drop_queue",
     "earliest_limit",
     "entry",

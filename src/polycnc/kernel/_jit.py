@@ -1,5 +1,5 @@
 """The decorators of compiled functions, for the modules of the kernel."""
 
-from polycnc.jit import allocating, compiled, entry
+from polycnc.jit import allocating, call_at, compiled, detached, entry
 
-__all__ = ["allocating", "compiled", "entry"]
+__all__ = ["allocating", "call_at", "compiled", "detached", "entry"]

@@ -24,7 +24,7 @@ from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.core._compiled_entries import change_override
 from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import OUTPUTS, ErrorReg, ModeReg
-from polycnc.controllers.apci.core._scan import INTERRUPT, PROFILE_END, RESET, WATCHED, run_scans
+from polycnc.controllers.apci.core._scan import INTERRUPT, NO_TURNS, PROFILE_END, RESET, run_scans
 from polycnc.controllers.apci.core._state import BoardState, Floats, make_board_state
 from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, make_state, move_to
 from polycnc.machine import PIECE_CYCLES, Clock, Snapshot, wait
@@ -236,15 +236,10 @@ class Board:
             self._carry_out()
             mask = INTERRUPT | RESET | wanted
             piece = min(cycles - done, PIECE_CYCLES)
-            if self.tasks is not None:
-                waiting = self.tasks.scans_to_wait()
-                if waiting == 0:
-                    self.tasks.run_scan()
-                piece = int(min(piece, max(waiting, 1)))
-                mask |= PROFILE_END | WATCHED  # a task may wait for it
+            turns = NO_TURNS if self.tasks is None else self.tasks.turns()
             if self.pending:
                 piece = min(piece, max(self.pending[0].due - self.clock.cycles, 1))
-            ran = int(run_scans(self.state, self.kernel, piece, mask))
+            ran = int(run_scans(self.state, self.kernel, turns, piece, mask, self.clock.cycles))
             done += ran
             self.clock.tick(ran)
             if self._attend() & wanted:

@@ -55,8 +55,6 @@ def _made_from(board: Board) -> str:
 
 
 def _arrays(board: Board) -> list[Array]:
-    board.state.board[0]["watched"] = 0  # noted anew before every run
-    board.state.watch[:] = board.state.watched[:] = 0
     axes = tuple((axis.varint, axis.vardbl, axis.ctrlparams) for axis in board.axes)
     return arrays_of((board.kernel, board.state, board.sysvarint, board.sysvardbl, axes))
 

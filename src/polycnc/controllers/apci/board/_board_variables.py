@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from polycnc.controllers.apci.board._environment import InterfaceStatus
+from polycnc.controllers.apci.core._state import Whole
 
 COMMON_VARIABLES = 1000
 COMMON_BUFFER_BYTES = 1000
@@ -16,12 +17,8 @@ CNC_TASKS = 4
 class Tasks(Protocol):
     """What runs SAP programs within the board's time."""
 
-    def scans_to_wait(self) -> float:
-        """Return for how many scans no task has anything to do; 0 if one can go on, inf if all wait for profiles."""
-        ...
-
-    def run_scan(self) -> None:
-        """Let every task do what it can within one scan."""
+    def turns(self) -> Whole:
+        """Give the tasks their turns in this scan; return the call that gives them those of the scans that follow."""
         ...
 
     def halt(self) -> None:

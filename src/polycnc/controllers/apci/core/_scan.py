@@ -5,6 +5,8 @@ Python is entered again only when something happens that it waits for (`attentio
 
 from __future__ import annotations
 
+import numpy as np
+
 from polycnc.controllers.apci.core._analysis import analysis_cycle
 from polycnc.controllers.apci.core._backlash import backlash_cycle
 from polycnc.controllers.apci.core._command_port import command_cycle
@@ -43,13 +45,14 @@ from polycnc.controllers.apci.core._state import (
     TABLE,
     WAITING,
     BoardState,
+    Whole,
 )
-from polycnc.controllers.apci.core._watch import has_changed
 from polycnc.kernel import (
     LIMIT_HIGH,
     LIMIT_LOW,
     REFERENCE,
     KernelState,
+    call_at,
     compiled,
     entry,
     follow_cycle,
@@ -63,7 +66,9 @@ _FORBID_TARGET_VELOCITY = int(ModeReg.ForbidTargetVel)
 INTERRUPT = 1  # the board interrupts the PC
 PROFILE_END = 2  # an axis came to its profile end
 RESET = 4  # the board demands a reset of itself
-WATCHED = 8  # something that a polling program looks at has another value
+
+_ALWAYS = 1 << 60
+NO_TURNS: Whole = np.zeros(4, np.int64)
 
 
 @compiled
@@ -239,15 +244,34 @@ def scan(b: BoardState, state: KernelState) -> None:
     analysis_cycle(b, state)
 
 
-@entry(steps=lambda b, state, scans, mask: scans * 5 * len(state.setpoint))
-def run_scans(b: BoardState, state: KernelState, scans: int, mask: int) -> int:
-    """Run up to `scans` scans, fewer when something of `mask` happens; return how many were run."""
+def _steps(b: BoardState, state: KernelState, turns: Whole, scans: int, mask: int, cycle: int) -> int:
+    """Return how much work scans are; turns are compiled, and only compiled code can call them."""
+    return scans * 5 * len(state.setpoint) if turns[0] == 0 else _ALWAYS
+
+
+@entry
+def first_turns(turns: Whole, begin: int, cycle: int) -> int:
+    """Give the tasks from `begin` on their turns in scan `cycle`; return 0 if they have had them all."""
+    return call_at(turns[0], (turns[1], turns[2], turns[3]), (begin, cycle))
+
+
+@entry(steps=_steps)
+def run_scans(b: BoardState, state: KernelState, turns: Whole, scans: int, mask: int, cycle: int) -> int:
+    """Run up to `scans` scans, fewer when something of `mask` happens; return how many were run.
+
+    Between two scans the tasks have their turns; if one needs Python for it, no more scans are run. `turns` is the call
+    that gives them (`_turns`), made ready, and zeros without tasks. `cycle` is the number of the first scan, in which
+    they have had theirs.
+    """
     board = b.board[0]
-    for done in range(scans):
+    for done in range(1, scans + 1):
         board["attention"] = 0
         scan(b, state)
-        if board["watched"] != 0 and has_changed(b, state):
-            board["attention"] |= WATCHED
         if board["attention"] & mask:
-            return done + 1
+            return done
+        # Here, and looked up every time: in front of the scan this made LLVM compile all of it twice.
+        if turns[0] != 0 and done < scans:
+            places = (turns[1], turns[2], turns[3])
+            if call_at(turns[0], places, (0, cycle + done)) != 0:
+                return done
     return scans

@@ -180,7 +180,6 @@ BOARD_ROW = np.dtype(
         ("attention", np.int64),  # something happened that Python waits for
         ("nfrax", np.int64),
         ("io_down", np.int64),  # inputs and outputs have been reset by an error
-        ("watched", np.int64),  # rows of `watch` in use
         # Recording for the graphical system analysis.
         ("record_axes", np.int64),  # bit by index
         ("record_every", np.int64),  # scans, 0 off
@@ -205,7 +204,6 @@ SPOOL_BYTES = 145_000
 SPOOL_ENTRIES = SPOOL_BYTES // ENTRY_BYTES
 POINTS = SPOOL_BYTES // POINT_BYTES
 ANALYSIS_ROWS = 4096
-WATCHES = 64
 QUANTITIES = 3  # recorded of each axis: setpoint and actual machine position, commanded velocity
 
 
@@ -227,8 +225,6 @@ class BoardState(NamedTuple):
     analysis: Floats  # [ANALYSIS_ROWS, n, QUANTITIES] what lpr and lprs record
     ci: npt.NDArray[np.int32]  # [1000] common integer variables
     cd: Floats  # [1000]
-    watch: Whole  # [WATCHES, 2] what polling programs look at: kind, axis or index
-    watched: Floats  # [WATCHES] its value
 
 
 def make_board_state(axes: int, dt: float) -> BoardState:
@@ -260,6 +256,4 @@ def make_board_state(axes: int, dt: float) -> BoardState:
         analysis=np.zeros((ANALYSIS_ROWS, axes, QUANTITIES)),
         ci=np.zeros(1000, np.int32),
         cd=np.zeros(1000),
-        watch=np.zeros((WATCHES, 2), np.int64),
-        watched=np.zeros(WATCHES),
     )

@@ -6,11 +6,11 @@ A number that is not finite or beyond `LARGEST` is refused with code 1, before a
 from __future__ import annotations
 
 import ctypes
-import math
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeAlias
 
 from polycnc.controllers.apci.board._environment import InterruptRoutine
+from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import (
     AS,
     CBCNCT,
@@ -35,14 +35,6 @@ from polycnc.controllers.library import (
 )
 from polycnc.controllers.library import Real as AnyReal
 from polycnc.controllers.library import Text as AnyText
-
-LARGEST = 1e100
-"""Ruling: a number beyond it is treated like infinity."""
-
-
-def is_number(value: float) -> bool:
-    """Tell whether a board can be given this number."""
-    return math.isfinite(value) and abs(value) <= LARGEST
 
 
 def longint(value: int) -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from polycnc.controllers.apci.board import _axis_commands as commands
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import AS
 from polycnc.controllers.apci.library._call import (
     DOUBLE,
@@ -15,7 +16,6 @@ from polycnc.controllers.apci.library._call import (
     axes_call,
     axis_call,
     board_call,
-    is_number,
     record_call,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Selection, Session

@@ -13,6 +13,7 @@ from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import write_dp, write_mcp, write_rp
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Success
+from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import CTRLPARAMS, STRUCTURES, TRU
 from polycnc.controllers.apci.board._spool_commands import free_bytes, moves_queued
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit
@@ -25,7 +26,6 @@ from polycnc.controllers.apci.library._call import (
     LONG,
     board_call,
     filled_call,
-    is_number,
     longint,
     record_call,
 )

@@ -10,6 +10,7 @@ from __future__ import annotations
 from polycnc.controllers.apci.board import _spool_commands as spooler
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import SPDBUF
 from polycnc.controllers.apci.library._call import (
     DOUBLE,
@@ -19,7 +20,6 @@ from polycnc.controllers.apci.library._call import (
     axes_call,
     axis_call,
     board_call,
-    is_number,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection
 from polycnc.controllers.library import Refused

@@ -15,6 +15,7 @@ from typing import Annotated, Any, TypeAlias, TypeVar
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Status
+from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import TSRP
 from polycnc.controllers.apci.library._call import (
     CODE,
@@ -26,7 +27,6 @@ from polycnc.controllers.apci.library._call import (
     LONG_AT,
     board_call,
     filled_call,
-    is_number,
     polled_call,
     record_call,
 )

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import BufferError
+from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import (
     CBCNCT,
     CDBUF,
@@ -35,7 +36,6 @@ from polycnc.controllers.apci.library._call import (
     TaskInfo,
     TaskText,
     board_call,
-    is_number,
     polled_call,
     session_call,
 )

@@ -11,7 +11,7 @@ from polycnc.controllers.apci.sap._faults import FAULTS
 from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Call, Host
 from polycnc.controllers.apci.sap._program import TASKS, Program
 from polycnc.controllers.apci.sap._task import TaskStatus
-from polycnc.controllers.apci.sap._tasks import BUDGET, Sleep, Tasks
+from polycnc.controllers.apci.sap._tasks import BUDGET, Tasks
 
 __all__ = [
     "AXIS_QUALIFIERS",
@@ -25,7 +25,6 @@ __all__ = [
     "CncFileError",
     "Host",
     "Program",
-    "Sleep",
     "TaskStatus",
     "Tasks",
     "check",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -20,9 +19,10 @@ from polycnc.controllers.apci.board._move_commands import (
     go,
     queue,
 )
+from polycnc.controllers.apci.board._numbers import is_number
+from polycnc.controllers.apci.core._state import Whole
 from polycnc.controllers.apci.sap import Call, Program, Tasks
-from polycnc.controllers.apci.sap._polling import Read
-from polycnc.controllers.apci.sap._watching import arm, is_watchable, watched_by
+from polycnc.controllers.apci.sap._compiled_turns import CompiledTurns
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -173,8 +173,10 @@ class BoardHost:
         return known.index(name.upper()) if name.upper() in known else None
 
     def call(self, call: Call) -> None:
-        """Give a command."""
-        COMMANDS[call.name](self.board, call)
+        """Give a command; one with a number that no board can be given does nothing, as from the PC."""
+        numbers = (*call.values, *_flat(call.numbers), *(call.path or ()))
+        if all(map(is_number, numbers)):
+            COMMANDS[call.name](self.board, call)
 
     def profile_ended(self, axes: tuple[int, ...]) -> bool:
         """Tell whether all of `axes` have reached the end of their profiles."""
@@ -187,11 +189,13 @@ class BoardHost:
             return float(getattr(board.variables, name))
         if name in _ON_BOARD or name == "errorreg":
             return float(getattr(board, name))
-        return float(self._field(name)[_checked(index)])
+        return float(self.system_field(name)[_checked(index)])
 
     def write_system(self, name: str, index: int | None, value: float) -> None:
-        """Set a system variable."""
+        """Set a system variable; the overrides not to a number that no board can be given."""
         board = self.board
+        if name in ("trovr", "trovrst") and not is_number(value):
+            return
         if name == "irqpc":
             board.raise_interrupt(bool(value))
         elif name in _VARIABLES:
@@ -200,9 +204,10 @@ class BoardHost:
         elif name in _ON_BOARD:
             setattr(board, name, value if name in ("trovr", "trovrst") else int(value))
         else:
-            self._field(name)[_checked(index)] = value
+            self.system_field(name)[_checked(index)] = value
 
-    def _field(self, name: str) -> Any:
+    def system_field(self, name: str) -> Any:
+        """Return a field of system variables."""
         board = self.board
         fields = {
             "ci": board.state.ci,
@@ -212,11 +217,23 @@ class BoardHost:
         }
         return fields[name]
 
+    def axis_field(self, axis: int, name: str) -> Any:
+        """Return a field of variables of an axis."""
+        return {"varint": self.board.axes[axis].varint, "vardbl": self.board.axes[axis].vardbl}[name]
+
+    def velocity_unit_s(self, axis: int) -> float:
+        """Return by what velocities of an axis are multiplied for programs."""
+        return self.board.axes[axis].time_unit_s
+
+    def alarms(self, axis: int) -> int:
+        """Return the bits of digi that no scan changes."""
+        return self.board.axes[axis].alarms
+
     def read_axis(self, axis: int, name: str, index: int | None) -> float:
         """Return an axis qualifier."""
         one = self.board.axes[axis]
         if index is not None:
-            return float(getattr(one, name)[_checked(index, 100)])
+            return float(self.axis_field(axis, name)[_checked(index, 100)])
         special: Mapping[str, Callable[[], float]] = {
             "digo": lambda: self.board.outputs,
             "ifs": lambda: self.board.variables.interface.word,
@@ -229,7 +246,9 @@ class BoardHost:
         return float(special[name]() if name in special else getattr(one, name))
 
     def write_axis(self, axis: int, name: str, index: int | None, value: float) -> None:
-        """Set an axis qualifier."""
+        """Set an axis qualifier; to a number that no board can be given only where it is a mere variable."""
+        if index is None and not is_number(value):
+            return
         board, one = self.board, self.board.axes[axis]
         writers: Mapping[str, Callable[[], None]] = {
             "rp": lambda: axis_commands.write_rp(board, axis, value),
@@ -237,7 +256,7 @@ class BoardHost:
             "mcp": lambda: axis_commands.write_mcp(board, axis, int(value)),
         }
         if index is not None:
-            getattr(one, name)[_checked(index, 100)] = value
+            self.axis_field(axis, name)[_checked(index, 100)] = value
         elif name == "digo":
             board.outputs = int(value)
         elif name in writers:
@@ -250,6 +269,11 @@ class BoardHost:
         return self.board.variables.buffers[task]
 
 
+def _flat(numbers: Sequence[float | tuple[float, ...]]) -> list[float]:
+    """Return numbers and those of tables behind one another."""
+    return [each for part in numbers for each in (part if isinstance(part, tuple) else (part,))]
+
+
 def _checked(index: int | None, count: int = 1000) -> int:
     if index is None or not 0 <= index < count:
         raise UsageError(f"there is no variable {index}", hint=f"they have the numbers 0 to {count - 1}")
@@ -260,35 +284,19 @@ class BoardTasks:
     """The four tasks of a board, in its time."""
 
     def __init__(self, board: Board) -> None:
-        self.tasks = Tasks(BoardHost(board))
-        self._board = board
-        self._budget = board.config.rulings.instructions_per_scan
-        self._reads: frozenset[Read] = frozenset()
-        self._watched: list[tuple[int, int]] | None = []
+        host = BoardHost(board)
+        self.tasks = Tasks(host)
+        budget = board.config.rulings.instructions_per_scan
+        self._turns = CompiledTurns(self.tasks.each, host, (board.state, board.kernel), budget)
         board.tasks = self
 
     def load(self, program: Program) -> None:
         """Load a compiled program into the task that it names."""
         self.tasks.load(program)
 
-    def scans_to_wait(self) -> float:
-        """Return for how many scans no task has anything to do; infinity if they wait for profiles."""
-        sleep = self.tasks.sleep(is_watchable, self._budget)
-        rows = self._rows(sleep.reads)
-        if rows is None or any(not any(self._board.axes[i].is_busy for i in group) for group in sleep.groups):
-            arm(self._board, ())
-            return 0
-        arm(self._board, rows)
-        return math.inf if sleep.scans is None else sleep.scans
-
-    def _rows(self, reads: frozenset[Read]) -> list[tuple[int, int]] | None:
-        if reads != self._reads:
-            self._reads, self._watched = reads, watched_by(reads)
-        return self._watched
-
-    def run_scan(self) -> None:
-        """Let every task do what it can within one scan."""
-        self.tasks.run_scan(self._budget)
+    def turns(self) -> Whole:
+        """Give the tasks their turns in this scan; return the call that gives them those of the scans that follow."""
+        return self._turns.give()
 
     def halt(self) -> None:
         """Halt all tasks."""

@@ -7,18 +7,16 @@ import struct
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from enum import Enum
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
+from polycnc.controllers.apci.core._turns import LATE, WAIT_UNIT_S
 from polycnc.controllers.apci.sap._cnc_file import read_cnc, write_cnc
 from polycnc.controllers.apci.sap._faults import FAULTS, ILLEGAL, REFUSED, STACK_OVERFLOW, VALUE_RANGE, Fault
-from polycnc.controllers.apci.sap._linker import Acts, link, only_polling
+from polycnc.controllers.apci.sap._host import Host
+from polycnc.controllers.apci.sap._linker import link
 from polycnc.controllers.apci.sap._machine import CELL_BYTES, FRAME_CELLS, STACK_CELLS, Pause, Step
-from polycnc.controllers.apci.sap._polling import CELLS_MOST, TURNS_MOST, Circle, Observer, Patience
 from polycnc.controllers.apci.sap._program import Program, cell_values
 from polycnc.errors import PolycncError
-
-WAIT_UNIT_S = 0.001
-"""Ruling: `wt (t)` waits t ms, rounded up to whole scans; Part 1 of the manual does not say."""
 
 STRING_BYTES = 512
 HALT_AT_WRITELN = 1 << 26  # in MODEREG
@@ -66,10 +64,20 @@ class TaskStatus(NamedTuple):
     csrcline: int
 
 
+class Away(Protocol):
+    """What has the state of a task while it is not in the task itself."""
+
+    def bring_home(self) -> None:
+        """Put the state back into the task."""
+
+    def where(self) -> tuple[int, int, int, bool]:
+        """Return the next instruction, cells on the stack, frames, and whether the task waits."""
+
+
 class Task:
     """Run the program of one task a number of instructions at a time; see `Tasks` for the public calls."""
 
-    def __init__(self, number: int, host: Observer, control: Callable[[str, int], None]) -> None:
+    def __init__(self, number: int, host: Host, control: Callable[[str, int], None]) -> None:
         self.number = number
         self.host = host
         self.control = control
@@ -84,10 +92,7 @@ class Task:
         self.next = 0
         self._errnum = self._errline = 0
         self._steps: list[Step] = []
-        self._polling_steps: list[Step] = []
-        self._circle: Circle | None = None
-        self._turn_had = -1  # scan in which the circle has had its turn
-        self._patience = Patience()
+        self.away: Away | None = None  # has stack, memory, frames, wait and place of the program
         self._by_writeln = False
         self._in_event = False
         self._waiting_before: Wait | None = None  # of the program that an event handler interrupts
@@ -110,17 +115,15 @@ class Task:
             self._armed = [True] * len(self.program.events)
             try:
                 self._steps = link(self, self.program)
-                self._polling_steps = only_polling(self.program, self._steps)
             except _ILLEGAL as error:
                 self._steps = []
                 self._fail(0, ILLEGAL, f"{FAULTS[ILLEGAL]}: {error}")
                 return
-            self._patience = Patience(self.host.scan + 1)
             self.state = State.RUNNING
 
     def end(self, stop: bool) -> None:
         """End the program: to be continued (`stop`), or for good."""
-        self.leave_circle()
+        self.come_home()
         if self.state is State.RUNNING or not stop:
             self.state = State.STOPPED if stop else State.IDLE
             self._by_writeln = False
@@ -135,8 +138,14 @@ class Task:
         """Return whether the task is not to run any further."""
         return self.state is not State.RUNNING
 
+    def come_home(self) -> None:
+        """Have the state of the program in the task itself."""
+        if self.away is not None:
+            away, self.away = self.away, None
+            away.bring_home()
+
     def _reset(self) -> None:
-        self._circle = None
+        self.come_home()
         self.state = State.IDLE
         self.waiting = self._waiting_before = None
         self.error = ""
@@ -148,18 +157,17 @@ class Task:
 
     # Running
 
-    def run(self, budget: int) -> None:
-        """Run at most `budget` instructions, as one scan does; return early when the program waits or ends."""
+    def run(self, budget: int, *, rest: bool = False) -> None:
+        """Run at most `budget` instructions, as one scan does; return early when the program waits or ends.
+
+        The `rest` of a turn begins in the middle of the program, without a look at events and waits.
+        """
+        self.come_home()
         if self.state is not State.RUNNING:
             return
-        if self._circle is not None:
-            if self.host.is_unchanged(self._circle.reads):
-                self._turn_had = self.host.scan
-                return
-            self.leave_circle()
         at = self.next
         try:
-            if self._armed and not self._in_event:
+            if self._armed and not self._in_event and not rest:
                 self._raise_event()
             if self.waiting is not None:
                 if not self._is_over(self.waiting):
@@ -226,91 +234,14 @@ class Task:
             self._fail(condition, ILLEGAL, f"{FAULTS[ILLEGAL]}: {error}")
             raise Pause from None
 
-    # Polling
-
-    def poll(self, budget: int) -> Circle | None:
-        """Return the circle in which the program polls, so that it needs no turn while its reads stay the same.
-
-        It is looked for now and then, by trying out turns on the board as it stands. The task goes through the circle
-        by itself from then on; whatever asks for the task's state, or runs it, finds it where it has got to.
-        """
-        scan = self.host.scan
-        if self._circle is not None:
-            if self.host.is_unchanged(self._circle.reads):
-                return self._circle
-            self.leave_circle()
-            return None
-        if scan < self._patience.next or len(self.memory) + len(self.stack) > CELLS_MOST:
-            return None
-        self._circle = self._try_out(scan, budget)
-        if self._circle is None:
-            self._patience.failed(scan)
-        return self._circle
-
-    def _try_out(self, scan: int, budget: int) -> Circle | None:
-        before = self._save(scan)
-        states = [before]
-        steps, self._steps = self._steps, self._polling_steps
-        self.host.noted = {}
-        try:
-            for turn in range(1, TURNS_MOST + 1):
-                self.run(budget)
-                if self.state is not State.RUNNING:
-                    return None
-                self.host.ahead = turn
-                now = self._save(scan + turn)
-                if now == before and repr(now) == repr(before):
-                    return Circle(scan, tuple(states), self.host.noted)
-                states.append(now)
-            return None
-        except Acts:
-            return None
-        finally:
-            self._steps = steps
-            self.host.noted, self.host.ahead = None, 0
-            self.state = State.RUNNING
-            self._errnum, self._errline, self.error = 0, 0, ""
-            self._restore(before, scan)
-
-    def leave_circle(self) -> None:
-        """Let the program be where it has got to in the circle in which it polls."""
-        circle = self._circle
-        if circle is not None:
-            self._catch_up()
-            self._circle = None
-            self._patience.ended(self.host.scan, circle)
-
-    def _catch_up(self) -> None:
-        """Take over where the program has got to in its circle, if it is in one."""
-        circle = self._circle
-        if circle is not None:
-            turn = self.host.scan + (1 if self._turn_had == self.host.scan else 0)
-            self._restore(circle.states[(turn - circle.since) % len(circle.states)], turn)
-
-    def _save(self, scan: int) -> tuple[Any, ...]:
-        """Return what the program's further way depends on; waits count from `scan`, the next turn's."""
-        waits = tuple(
-            wait if wait is None or wait.until is None else Wait(wait.until - scan, ())
-            for wait in (self.waiting, self._waiting_before)
-        )
-        cells = tuple(self.stack), tuple(self.memory), tuple(self.frames), tuple(self._armed)
-        return self.next, self.base, self._in_event, waits, *cells
-
-    def _restore(self, saved: tuple[Any, ...], scan: int) -> None:
-        self.next, self.base, self._in_event, waits, stack, memory, frames, armed = saved
-        self.waiting, self._waiting_before = (
-            wait if wait is None or wait.until is None else Wait(wait.until + scan, ()) for wait in waits
-        )
-        self.stack[:], self.memory[:], self.frames[:], self._armed[:] = stack, memory, frames, armed
-
     # Waiting
 
     def wait(self, time_ms: float, axes: tuple[int, ...]) -> bool:
         """Begin to wait, for the ends of profiles if there are axes; return False if there is nothing to wait for."""
-        scans = max(time_ms * WAIT_UNIT_S / self.host.scan_s, 0.0)
+        scans = time_ms * WAIT_UNIT_S / self.host.scan_s
         if not scans < 2.0**53:
             raise Fault(VALUE_RANGE)
-        until = None if axes else self.host.scan + math.ceil(round(scans, 6))
+        until = None if axes else self.host.scan + (math.ceil(scans - LATE) if scans > 0.0 else 0)
         wait = Wait(until, axes)
         self.waiting = None if self._is_over(wait) else wait
         return self.waiting is not None
@@ -321,9 +252,14 @@ class Task:
         return self.host.scan >= wait.until
 
     @property
-    def has_events(self) -> bool:
-        """Return whether conditions of event handlers must be looked at in every scan."""
-        return bool(self._armed) and not self._in_event
+    def in_event(self) -> bool:
+        """Return whether the program is in the handler of an event."""
+        return self._in_event
+
+    @property
+    def armed(self) -> list[bool]:
+        """Return, event by event, whether its condition has not held since it was raised."""
+        return self._armed
 
     # Messages
 
@@ -357,12 +293,14 @@ class Task:
 
     def status(self) -> TaskStatus:
         """Return the record that rdcncts reads."""
-        self._catch_up()
+        at, waits = self.next, self.waiting is not None
+        cells, frames = len(self.stack), len(self.frames)
+        if self.away is not None:
+            at, cells, frames, waits = self.away.where()
         running = RUNNING * (self.state is State.RUNNING) | HALTED_BY_WRITELN * self._by_writeln
-        running |= WAITING * (self.state is State.RUNNING and self.waiting is not None)
-        used = len(self.stack) + FRAME_CELLS * len(self.frames)
-        free = CELL_BYTES * max(0, STACK_CELLS - used)
-        return TaskStatus(self._errnum, self._errline, free, running, self._line(self.next))
+        running |= WAITING * (self.state is State.RUNNING and waits)
+        free = CELL_BYTES * max(0, STACK_CELLS - cells - FRAME_CELLS * frames)
+        return TaskStatus(self._errnum, self._errline, free, running, self._line(at))
 
     def _line(self, at: int) -> int:
         return self.program.code[at][2] if self.program is not None else 0
@@ -371,7 +309,7 @@ class Task:
 
     def save(self) -> dict[str, Any]:
         """Return program and state as plain data."""
-        self._catch_up()
+        self.come_home()
         waits = (self.waiting, self._waiting_before)
         return {
             "program": None if self.program is None else write_cnc(self.program),
@@ -398,9 +336,8 @@ class Task:
         rest = {name: kind(data[name]) for names, kind in _KINDS for name in names}
 
         def put() -> None:
+            self.away = None
             self.program, self.state, self._steps = program, state, steps
-            self._polling_steps = only_polling(program, steps) if program is not None and steps else []
-            self._circle, self._patience = None, Patience()
             self.waiting, self._waiting_before = waits
             for name, values in cells.items():
                 getattr(self, name)[:] = values  # the steps hold on to these lists

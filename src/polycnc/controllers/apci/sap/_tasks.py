@@ -3,37 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any
 
 from polycnc.controllers.apci.sap._faults import TASK_NUMBER, Fault
 from polycnc.controllers.apci.sap._host import BUFFER_BYTES, Host
-from polycnc.controllers.apci.sap._polling import Observer, Read
 from polycnc.controllers.apci.sap._program import TASKS, Program
-from polycnc.controllers.apci.sap._task import STRING_BYTES, State, Task, TaskStatus, Wait
+from polycnc.controllers.apci.sap._task import STRING_BYTES, Task, TaskStatus
 
 BUDGET = 100
 """Ruling: instructions that every task runs per scan, in the order of their numbers."""
-
-_SHORT_WAIT = 16  # scans: a task that waits no longer than that may be one that polls
 
 NO_SUCH_TASK, TOO_MANY_BYTES, BAD_MEMORY = 0x1, 0x2, 0x4
 """What rdcbcnct and wrcbcnct return, bit by bit."""
 
 _UNKNOWN_ERROR = 1
-
-
-@dataclass(frozen=True, slots=True)
-class Sleep:
-    """How long the tasks need no turn.
-
-    `scans` may pass before the next turn (None: no limit), and a turn is due in the scan in which all axes of
-    one of the `groups` have reached the ends of their profiles, or in which one of the `reads` gives something else.
-    """
-
-    scans: int | None
-    groups: tuple[tuple[int, ...], ...]
-    reads: frozenset[Read] = frozenset()
 
 
 class Tasks:
@@ -43,57 +26,57 @@ class Tasks:
     """
 
     def __init__(self, host: Host) -> None:
-        self._host = Observer(host)
-        self._tasks = tuple(Task(number, self._host, self._control) for number in range(TASKS))
+        self._host = host
+        self.each = tuple(Task(number, host, self._control) for number in range(TASKS))
 
     def load(self, program: Program) -> None:
         """Halt the program's task and overwrite what it had to run."""
-        self._tasks[program.task].load(program)
+        self.each[program.task].load(program)
 
     def startcnct(self, task: int) -> None:
         """Start the program of a task from its beginning; a running one is stopped first."""
         if 0 <= task < TASKS:
-            self._tasks[task].start()
+            self.each[task].start()
 
     def stopcnct(self, task: int) -> None:
         """Stop the program of a task; its event handlers are not processed any more."""
         if 0 <= task < TASKS:
-            self._tasks[task].end(stop=True)
+            self.each[task].end(stop=True)
 
     def contcnct(self, task: int) -> None:
         """Continue a stopped program; one that has ended, by ABORT too, stays ended."""
         if 0 <= task < TASKS:
-            self._tasks[task].resume()
+            self.each[task].resume()
 
     def stepcnct(self, task: int) -> None:
         """Do nothing: the manual declares single steps as not implemented (Manual 002, 4.4.125)."""
 
     def halt_all(self) -> None:
         """Stop all programs, as a system reset does."""
-        for task in self._tasks:
+        for task in self.each:
             task.end(stop=True)
 
     def rdcncts(self, task: int) -> TaskStatus:
         """Return the status of a task; zeros for one that does not exist."""
-        return self._tasks[task].status() if 0 <= task < TASKS else TaskStatus(0, 0, 0, 0, 0)
+        return self.each[task].status() if 0 <= task < TASKS else TaskStatus(0, 0, 0, 0, 0)
 
     def error_text(self, task: int) -> str:
         """Return what the run-time error of a task says, for people; empty without one."""
-        return self._tasks[task].error
+        return self.each[task].error
 
     def gettskinfo(self, task: int) -> tuple[int, int]:
         """Return status (0: good) and tskinfo: bit 0 an incomplete, bit 1 a complete string is to be read."""
-        return (0, self._tasks[task].text_bits) if 0 <= task < TASKS else (_UNKNOWN_ERROR, 0)
+        return (0, self.each[task].text_bits) if 0 <= task < TASKS else (_UNKNOWN_ERROR, 0)
 
     def gettskstr(self, task: int, size: int = STRING_BYTES) -> str:
         """Return the string of a task, at most `size` and at most 512 characters, and clear the tskinfo bits."""
-        return self._tasks[task].take_text(size) if 0 <= task < TASKS else ""
+        return self.each[task].take_text(size) if 0 <= task < TASKS else ""
 
     # State
 
     def save(self) -> list[dict[str, Any]]:
         """Return the state of all tasks, with their programs, as plain data."""
-        return [task.save() for task in self._tasks]
+        return [task.save() for task in self.each]
 
     def read_saved(self, data: Any) -> Callable[[], None]:
         """Read what `save` has returned; return what puts it back.
@@ -101,7 +84,7 @@ class Tasks:
         Raises:
             KeyError, TypeError, ValueError: It is damaged.
         """
-        changes = [task.read_saved(each) for task, each in zip(self._tasks, data, strict=True)]
+        changes = [task.read_saved(each) for task, each in zip(self.each, data, strict=True)]
 
         def put() -> None:
             for change in changes:
@@ -129,39 +112,8 @@ class Tasks:
 
     def run_scan(self, budget: int = BUDGET) -> None:
         """Give every task its turn; to be called once per scan, with the host's `scan` already counted up."""
-        for task in self._tasks:
+        for task in self.each:
             task.run(budget)
-
-    def sleep(self, can_watch: Callable[[Read], bool] | None = None, budget: int = BUDGET) -> Sleep:
-        """Return how long no task needs a turn, so that many scans can be run without asking.
-
-        `can_watch` says which reads whoever runs these scans can watch; without it, a task that polls needs its turns.
-        The answer holds for the present scan and what the board gives in it.
-        """
-        scans: int | None = None
-        groups: list[tuple[int, ...]] = []
-        reads: frozenset[Read] = frozenset()
-        for task in self._tasks:
-            if task.state is not State.RUNNING:
-                continue
-            left = None if task.has_events else self._left(task.waiting)
-            if can_watch is not None and (left is None or left < _SHORT_WAIT):
-                circle = task.poll(budget)
-                if circle is not None and all(map(can_watch, circle.reads)):
-                    reads |= circle.reads.keys()
-                    continue
-            wait = task.waiting
-            if wait is None or task.has_events:
-                return Sleep(0, ())
-            if left is None:
-                groups.append(wait.axes)
-            else:
-                scans = left if scans is None else min(scans, left)
-        return Sleep(scans, tuple(groups), reads)
-
-    def _left(self, wait: Wait | None) -> int | None:
-        """Return for how many scans a wait for time needs no turn, None if it is none."""
-        return None if wait is None or wait.until is None else max(0, wait.until - self._host.scan - 1)
 
     def _control(self, name: str, number: int) -> None:
         if not 0 <= number < TASKS:
