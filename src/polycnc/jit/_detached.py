@@ -20,7 +20,6 @@ from numba.extending import intrinsic
 
 from polycnc.jit._cache import ContentCache
 from polycnc.jit._compile import as_detour, register_entry
-from polycnc.jit._plain import compile_at_once
 from polycnc.jit._reference import by_reference
 
 # numba's own annotations leave these out.
@@ -77,7 +76,6 @@ class Detached:
             ready = Ready(0, [], states)
             ready.numbers = np.array([_number(each) for each in (self._function, *states)], np.int64)
             return ready
-        compile_at_once()  # plain Python cannot call an address
         key = (*map(_typeof, states), *[_types.int64] * numbers)
         if key not in self._addresses:
             self._dispatcher.compile(key)

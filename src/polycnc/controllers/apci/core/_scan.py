@@ -67,6 +67,7 @@ INTERRUPT = 1  # the board interrupts the PC
 PROFILE_END = 2  # an axis came to its profile end
 RESET = 4  # the board demands a reset of itself
 
+_ALWAYS = 1 << 60
 NO_TURNS: Whole = np.zeros(4, np.int64)
 
 
@@ -243,13 +244,18 @@ def scan(b: BoardState, state: KernelState) -> None:
     analysis_cycle(b, state)
 
 
-@entry
+def _steps(b: BoardState, state: KernelState, turns: Whole, scans: int, mask: int, cycle: int) -> int:
+    """Return how much work scans are; turns are compiled, and only compiled code can call them."""
+    return scans * 5 * len(state.setpoint) if turns[0] == 0 else _ALWAYS
+
+
+@entry(steps=lambda turns, begin, cycle: _ALWAYS)
 def first_turns(turns: Whole, begin: int, cycle: int) -> int:
     """Give the tasks from `begin` on their turns in scan `cycle`; return 0 if they have had them all."""
     return call_at(turns[0], (turns[1], turns[2], turns[3]), (begin, cycle))
 
 
-@entry(steps=lambda b, state, turns, scans, mask, cycle: scans * 5 * len(state.setpoint))
+@entry(steps=_steps)
 def run_scans(b: BoardState, state: KernelState, turns: Whole, scans: int, mask: int, cycle: int) -> int:
     """Run up to `scans` scans, fewer when something of `mask` happens; return how many were run.
 
