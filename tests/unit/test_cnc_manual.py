@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from polycnc.cnc import AlarmList, ControlError, ManualData, ManualKind, ManualMotion, Refusal
@@ -302,6 +302,20 @@ def test_what_cannot_be_meant_is_refused_and_moves_nothing() -> None:
         ManualData(jog_speeds={"X": 0.0})
 
 
+def test_a_handwheel_turned_back_just_before_the_software_limit_waits_for_the_rest_there() -> None:
+    """With S-shaped ramps a new profile would brake later than the one that is nearly over."""
+    rig = Rig(path={"jerkrel": 0.6})
+    rig.manual.handwheel("X", -170, 0.37)  # far beyond -50
+    while rig.at("X") > -48.5:
+        rig.run(1)
+    assert rig.at("X") > -50.0
+    rig.manual.handwheel("X", 11, 0.37)
+    rig.run(2000)
+    assert rig.record(0).min() == -50.0
+    assert rig.at("X") == pytest.approx(-50.0 + 11 * 0.37, abs=1e-12)
+    assert not rig.manual.active
+
+
 COMMANDS = st.lists(
     st.tuples(
         st.sampled_from(
@@ -316,6 +330,7 @@ COMMANDS = st.lists(
 
 
 @settings(max_examples=60)
+@example(commands=[("handle", 1, 0.0), ("up", 186, 0.0), ("handle", 74, 0.0), ("up", 260, 0.0)], jerkrel=0.6)
 @given(commands=COMMANDS, jerkrel=st.sampled_from((0.0, 0.6)))
 def test_whatever_the_operator_does_no_axis_breaks_a_limit_in_any_cycle(
     commands: list[tuple[str, int, float]], jerkrel: float

@@ -27,6 +27,7 @@ from polycnc.kernel import (
     REFERENCE,
     SHORT_OVERSHOOT,
     move_to,
+    rest_position,
     stop_axis,
 )
 from polycnc.machine import AxisConfig, Machine, Reason
@@ -76,7 +77,8 @@ class AxisMotion:
     """What an axis is doing by hand; `target` None is no end in `direction`.
 
     `stopping`: it brakes and then is done. `beyond`: it was told to go farther than the software limit at `target`.
-    `home`: a reference search goes to the reference position. `braking`: a step of a search is over.
+    `home`: a reference search goes to the reference position. `braking`: a step of a search is over. `waiting`: what it
+    did before has to come to rest first (see `ManualMotion._is_late`).
     """
 
     kind: ManualKind = ManualKind.NONE
@@ -90,6 +92,7 @@ class AxisMotion:
     step: int = 0
     braking: bool = False
     home: bool = False
+    waiting: bool = False
 
 
 _REST = AxisMotion()
@@ -315,6 +318,9 @@ class ManualMotion:
             if motion.stopping:
                 if at_rest:
                     self._motions[i] = _REST
+            elif motion.waiting:
+                if at_rest:
+                    self._plan(i)
             elif motion.kind is ManualKind.REFERENCE and not motion.home:
                 self._search(i, motion, at_rest)
             elif at_rest and self._speed(i, motion) > 0.0:
@@ -387,6 +393,11 @@ class ManualMotion:
         if speed <= 0.0:
             self._brake(i)
             return
+        waiting = self._is_late(i)
+        if waiting is not motion.waiting:
+            self._motions[i] = replace(motion, waiting=waiting)
+        if waiting:
+            return
         jerkrel = self._machine.config.path.jerkrel
         rate = axis.amax / (1.0 + jerkrel)
         target, then = motion.target, 0.0
@@ -396,7 +407,22 @@ class ManualMotion:
             target = self._position(i) + _ramp_distance(velocity, then, rate)
         move_to(state.ptp, MAIN, i, target, then, speed, rate, rate, jerkrel, SHORT_OVERSHOOT)
 
+    def _is_late(self, i: int) -> bool:
+        """Tell whether an axis that comes to rest at its software limit would pass it with another profile.
+
+        Every profile begins without acceleration, so a ramp that is under way already ends sooner than a new one.
+        """
+        axis, state = self._axes[i], self._machine.state
+        velocity = float(state.ptp.row[MAIN, i]["velocity"])
+        direction = _UP if velocity > 0.0 else _DOWN
+        end = self._soft(i, direction)
+        rate = axis.amax / (1.0 + self._machine.config.path.jerkrel)
+        rest = self._position(i) + _ramp_distance(velocity, 0.0, rate)
+        return (rest - end) * direction > 0.0 and (rest_position(state.ptp, MAIN, i) - end) * direction <= 0.0
+
     def _brake(self, i: int) -> None:
+        if self._is_late(i):
+            return
         jerkrel = self._machine.config.path.jerkrel
         rate = self._axes[i].amax / (1.0 + jerkrel)
         stop_axis(self._machine.state.ptp, MAIN, i, rate, jerkrel)

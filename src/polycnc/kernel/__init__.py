@@ -39,7 +39,7 @@ from polycnc.kernel._path import (
     slot,
     start_path,
 )
-from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, stop_axis
+from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, rest_position, stop_axis
 from polycnc.kernel._profile import (
     SHORT_JUMP,
     SHORT_OVERSHOOT,
@@ -187,6 +187,7 @@ __all__ = [
     "profile_duration",
     "ramp_distance",
     "replan_path",
+    "rest_position",
     "segment_coordinate",
     "segment_point",
     "segment_slope",

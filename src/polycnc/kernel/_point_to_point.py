@@ -8,6 +8,7 @@ Units: lengths in the axis' own unit (mm or deg), velocities per s, rates per s2
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,7 @@ import numpy.typing as npt
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._profile import plan_profile, stop_profile
 from polycnc.kernel._profile_shape import (
+    POSITION,
     PROFILE_COLUMNS,
     PROFILE_PHASES,
     VELOCITY,
@@ -105,6 +107,13 @@ def stop_axis(ptp: PointToPoint, layer: int, i: int, deceleration: float, jerkre
     count = stop_profile(planned, row["position"], row["velocity"], deceleration, jerkrel)
     _begin(ptp, layer, i, planned, count)
     return count
+
+
+def rest_position(ptp: PointToPoint, layer: int, i: int) -> float:
+    """Return where the running profile of axis `i` comes to rest; NaN if none runs, or it does not."""
+    row = ptp.row[layer, i]
+    end = ptp.phases[layer, i, row["count"]]
+    return float(end[POSITION]) if row["active"] and end[VELOCITY] == 0.0 else math.nan
 
 
 @compiled
