@@ -430,6 +430,7 @@ def test_haas_mirrors() -> None:
         ("G12 I5. D1 F100.", "G12 is not supported yet (1 block has it)"),
         ("G70 I5. J0 L6", "G70 is not supported yet (1 block has it)"),
         ("G5.1 Q1", "G5.1 is not known in dialect 'haas'"),
+        ("G77 Z-3. R2. F100. Q0.5", "G77 bores from R up to Z here, and Z -3 does not lie above R 2"),
     ],
 )
 def test_haas_words_that_are_refused(block: str, text: str) -> None:

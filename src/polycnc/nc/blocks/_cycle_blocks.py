@@ -12,7 +12,6 @@ from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState, Cycle
 from polycnc.nc.blocks._cycles import (
-    CYCLES,
     SHIFTING,
     TAPPING,
     CycleError,
@@ -91,7 +90,7 @@ class CycleBlocks:
         """
         whole = self.state.modal.whole
         axes = (int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R]))
-        code = CYCLES[self.state.cycle.action]
+        code = f"G{self.state.cycle.code:g}"
         if NO_AXIS in axes:
             letters = PLANE_LETTERS[int(whole[PLANE])]
             raise self.fail(
@@ -150,7 +149,8 @@ class CycleBlocks:
             rigid=rigid,
         )
         try:
-            steps = expand_cycle(cycle.action, self._with_pitch(cycle), place, self.dialect.cycle_settings())
+            settings = self.dialect.cycle_settings()
+            steps = expand_cycle(cycle.action, self._with_pitch(cycle), place, settings, code=code)
         except CycleError as error:
             at = words.first(*_TROUBLE_LETTERS.get(error.reason, "")) or self.motion.place()
             raise self.fail(error.what, error.hint, at) from None

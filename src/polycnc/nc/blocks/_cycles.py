@@ -289,16 +289,17 @@ TAPPING = {name: -1 if "left" in row.needs else 1 for name, row in _ROWS.items()
 
 
 def expand_cycle(
-    action: str, words: CycleWords, place: CyclePlace, settings: CycleSettings | None = None
+    action: str, words: CycleWords, place: CyclePlace, settings: CycleSettings | None = None, *, code: str = ""
 ) -> list[CycleStep]:
     """Return the steps of one cycle block: the way to each hole, and what the cycle does there.
 
-    `action` is a key of `CYCLES`; `words` are those in force, levels absolute. Repeats of 0 give no steps.
+    `action` is a key of `CYCLES`; `words` are those in force, levels absolute. Repeats of 0 give no steps. Errors name
+    the cycle by `code`, the G code that called it.
 
     Raises:
         CycleError: a word is missing or does not make sense, or the spindle must turn and does not.
     """
-    row = _ROWS[action]
+    row = dataclasses.replace(_ROWS[action], code=code or _ROWS[action].code)
     hole = _settled(row, words, place, settings or CycleSettings())
     steps: list[CycleStep] = []
     level = place.level_mm
