@@ -167,6 +167,7 @@ def test_no_entry_reaches_compiled_code_when_it_is_plain() -> None:
         if not each.name.startswith(("polycnc.cli", "polycnc.__main__")):
             importlib.import_module(each.name)
     functions, seen = PlainFunctions(), set[int]()
-    ours = [each for name, each in entries() if name.startswith("polycnc.")]
+    # Detached functions are called by their address, from compiled code alone.
+    ours = [each for name, each in entries() if name.startswith("polycnc.") and hasattr(each, "_inner")]
     assert [found for each in ours for found in _names_compiled(functions.of(each._inner), seen)] == []
     assert len(seen) > 300
