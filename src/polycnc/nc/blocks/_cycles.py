@@ -289,7 +289,12 @@ TAPPING = {name: -1 if "left" in row.needs else 1 for name, row in _ROWS.items()
 
 
 def expand_cycle(
-    action: str, words: CycleWords, place: CyclePlace, settings: CycleSettings | None = None, *, code: str = ""
+    action: str,
+    words: CycleWords,
+    place: CyclePlace,
+    settings: CycleSettings | None = None,
+    *,
+    code: str = "",
 ) -> list[CycleStep]:
     """Return the steps of one cycle block: the way to each hole, and what the cycle does there.
 
