@@ -15,8 +15,9 @@ import pytest
 from numba.core.registry import CPUDispatcher
 
 import polycnc
+from polycnc.cli._warmup import warmup_command
 from polycnc.jit._compile import entries
-from polycnc.jit._plain import ALLOWED_STEPS, Allowance, PlainFunctions
+from polycnc.jit._plain import ALLOWANCE, ALLOWED_STEPS, Allowance, PlainFunctions
 from support.command import environment
 
 # Entries that tell from their arguments how long they take, and one that does not.
@@ -171,3 +172,11 @@ def test_no_entry_reaches_compiled_code_when_it_is_plain() -> None:
     ours = [each for name, each in entries() if name.startswith("polycnc.") and hasattr(each, "_inner")]
     assert [found for each in ours for found in _names_compiled(functions.of(each._inner), seen)] == []
     assert len(seen) > 300
+
+
+def test_warming_up_leaves_nothing_to_the_interpreter(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ALLOWANCE, "left", 5_000)
+    left: list[int | None] = []
+    monkeypatch.setattr("polycnc.cli._warmup._JOBS", {"run": lambda _: left.append(ALLOWANCE.left)})
+    warmup_command("run")
+    assert left == [0]

@@ -95,8 +95,11 @@ def warmup_command(
     """Compile what the job needs, so that its first use does not wait; what is there already is left as it is."""
     import time
 
+    from polycnc.jit import compile_at_once
+
     if job not in (*_JOBS, "all"):
         raise UsageError(f"unknown job '{job}'", hint=f"Jobs are: {', '.join(_JOBS)}, all.")
+    compile_at_once()  # what is run here to be compiled is small work
     for name, warm in _JOBS.items():
         if job in (name, "all"):
             begin_s = time.monotonic()
