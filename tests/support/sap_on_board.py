@@ -10,6 +10,16 @@ from polycnc.controllers.apci.board._system_axis import AxisSetup
 from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 
+TWO_AXES = """
+[[axis]]
+name = "A1"
+[[axis]]
+name = "A2"
+[inputs]
+3 = { functions = ["REF"], axes = ["A2"] }
+"""
+"""Two axes, with the reference switch of the second on input 3."""
+
 
 class Sap:
     """A board with three axes whose task 0 runs programs; the first has a right software limit at 5."""

@@ -14,15 +14,7 @@ from polycnc.controllers.apci.board._jog_commands import jr
 from polycnc.controllers.apci.board._system_file import SystemFile, parse_system_file
 from polycnc.controllers.apci.sap._board_host import BoardTasks
 from polycnc.controllers.apci.sap._task import Task
-
-SYSTEM = """
-[[axis]]
-name = "A1"
-[[axis]]
-name = "A2"
-[inputs]
-3 = { functions = ["REF"], axes = ["A2"] }
-"""
+from support.sap_on_board import TWO_AXES
 
 PROGRAMS = {
     "a common variable": "BEGIN REPEAT UNTIL CI7 = 3; CI8 := CI8 + 5 END.",
@@ -76,7 +68,7 @@ BUFFER = bytes([9] * 8 + [77, 0, 0, 0, 5, 6, 7, 0])
 
 def rig(fast: bool, monkeypatch: pytest.MonkeyPatch) -> tuple[Board, BoardTasks]:
     """Return a board with tasks that have their turns in the compiled scan, or every one from Python."""
-    board = Board(parse_system_file(SYSTEM))
+    board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     if not fast:
         monkeypatch.setattr(tasks._turns, "_is_worth_it", lambda number: False)

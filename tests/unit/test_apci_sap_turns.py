@@ -14,15 +14,7 @@ from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.board._spool_commands import ssms
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.sap._board_host import BoardTasks
-
-SYSTEM = """
-[[axis]]
-name = "A1"
-[[axis]]
-name = "A2"
-[inputs]
-3 = { functions = ["REF"], axes = ["A2"] }
-"""
+from support.sap_on_board import TWO_AXES
 
 HEAD = """
 VAR i, j: INTEGER; x, y: DOUBLE; f: BOOLEAN; a: ARRAY [-2..3] OF INTEGER; d: ARRAY [1..4] OF DOUBLE;
@@ -150,7 +142,7 @@ class Programs:
 
 def run(seed: int, programs: list[str], away: bool, monkeypatch: pytest.MonkeyPatch) -> list[object]:
     """Return what programs do while axes move and values change."""
-    board = Board(parse_system_file(SYSTEM))
+    board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     if not away:
         monkeypatch.setattr(tasks._turns, "_is_worth_it", lambda number: False)
@@ -208,7 +200,7 @@ def test_random_programs_do_the_same_in_the_compiled_scan(seed: int, monkeypatch
 def test_a_program_that_only_changes_common_variables_needs_no_python(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    board = Board(parse_system_file(SYSTEM))
+    board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program("BEGIN WHILE TRUE DO BEGIN CI3 := CI3 + 7; CD5 := CD5 + 0.25 END END."))
     tasks.tasks.startcnct(0)
@@ -221,7 +213,7 @@ def test_a_program_that_only_changes_common_variables_needs_no_python(
 
 
 def test_a_program_too_large_for_the_compiled_scan_runs_all_the_same() -> None:
-    board = Board(parse_system_file(SYSTEM))
+    board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     tasks.load(
         sap.compile_program(
@@ -248,7 +240,7 @@ def test_a_program_too_large_for_the_compiled_scan_runs_all_the_same() -> None:
     ],
 )
 def test_an_error_in_the_compiled_scan_stops_the_task_where_it_is(text: str, fault: int) -> None:
-    board = Board(parse_system_file(SYSTEM))
+    board = Board(parse_system_file(TWO_AXES))
     tasks = BoardTasks(board)
     tasks.load(sap.compile_program(f"BEGIN\nREPEAT UNTIL CI9 = 4;\n{text};\nCI5 := 3\nEND."))
     tasks.tasks.startcnct(0)

@@ -9,12 +9,8 @@ import pytest
 from polycnc.cnc import (
     AfterManual,
     Answer,
-    ChannelData,
-    Control,
     ControlData,
-    ControlError,
     ControlEvent,
-    ControlSnapshot,
     Emergency,
     Function,
     Mode,
@@ -25,49 +21,7 @@ from polycnc.cnc import (
     RunState,
     Timer,
 )
-from polycnc.errors import UsageError
-from polycnc.machine import SnapshotError
-from support.cnc_machine import cnc_machine
-
-# 30 mm at 3000 mm/min are 0.6 s, and the way back as long.
-PART = """O7 (PLATE)
-N10 G1 X42.5 F3000
-N20 X12.5
-N30 M30
-"""
-SLOT = """N10 G1 X20 F600
-N20 M8
-N30 X30
-N40 M2
-"""
-
-
-def control(data: ControlData | None = None, **keys: object) -> Control:
-    made = Control(cnc_machine(), data=data, **keys)  # type: ignore[arg-type]
-    made.programs.create("PART", PART)
-    made.programs.create("SLOT", SLOT)
-    return made
-
-
-def started(data: ControlData | None = None, program: str = "PART", **keys: object) -> Control:
-    made = control(data, **keys)
-    made.select_program(program)
-    made.cycle_start()
-    return made
-
-
-def refused(reason: Refusal, call: Callable[[], object], made: Control) -> None:
-    before = made.status()
-    with pytest.raises(ControlError) as caught:
-        call()
-    assert caught.value.reason is reason
-    assert caught.value.hint
-    assert made.status() == before
-
-
-def x(made: Control) -> float:
-    return made.status().axes["X"].machine
-
+from support.cnc_control import control, refused, started, x_of
 
 # ---------------------------------------------------------------------- programs
 
@@ -119,8 +73,8 @@ def test_a_run_in_pieces_is_the_run_in_one() -> None:
 
 def test_a_condition_is_looked_at_in_every_cycle() -> None:
     made = started()
-    made.advance(100_000, until=lambda: x(made) >= 20.0)
-    assert 20.0 <= x(made) < 20.051
+    made.advance(100_000, until=lambda: x_of(made) >= 20.0)
+    assert 20.0 <= x_of(made) < 20.051
 
 
 def test_a_hold_stands_and_a_start_goes_on_to_the_same_end() -> None:
@@ -135,11 +89,11 @@ def test_a_hold_stands_and_a_start_goes_on_to_the_same_end() -> None:
     assert status.axes["X"].to_go > 0.0
     stood = status.axes["X"].machine
     made.advance(500)
-    assert x(made) == stood
+    assert x_of(made) == stood
     assert status.timers_s[Timer.OPERATING] == pytest.approx(0.3)
     made.cycle_start()
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
 
 
 def test_a_start_while_the_axes_still_brake_is_refused() -> None:
@@ -152,7 +106,7 @@ def test_a_start_while_the_axes_still_brake_is_refused() -> None:
     made.cycle_start()
     made.advance(100_000, until=ControlEvent.RUN_STATE)
     assert made.status().channel.run_state is RunState.COMPLETED
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
 
 
 def test_override_0_in_single_block_neither_ends_nor_skips_a_block() -> None:
@@ -163,7 +117,7 @@ def test_override_0_in_single_block_neither_ends_nor_skips_a_block() -> None:
     made.advance(10, until=ControlEvent.RUN_STATE)
     assert made.status().channel.run_state == RunState.STOPPED_AT_BLOCK  # behind the line with the O number
     made.advance(50)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
     made.cycle_start()
     made.advance(200)
     made.set_overrides(feed=0.0)
@@ -173,15 +127,15 @@ def test_override_0_in_single_block_neither_ends_nor_skips_a_block() -> None:
     made.set_overrides(feed=1.3)
     made.advance(5000, until=ControlEvent.RUN_STATE)
     assert made.status().channel.run_state is RunState.STOPPED_AT_BLOCK
-    assert x(made) == 42.5
+    assert x_of(made) == 42.5
     made.set_overrides(feed=0.0)
     made.cycle_start()
     made.advance(700)
-    assert x(made) == 42.5
+    assert x_of(made) == 42.5
     made.reset()
     made.set_overrides(feed=1.0)
     made.advance(700)
-    assert x(made) == 42.5
+    assert x_of(made) == 42.5
     assert made.status().channel.run_state is RunState.RESET
 
 
@@ -204,7 +158,7 @@ def test_mdi_executes_a_text_and_leaves_the_selected_program_alone() -> None:
     made.select_mode(Mode.MDI)
     made.cycle_start()
     made.advance(10_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 15.0
+    assert x_of(made) == 15.0
     assert made.status().parts == Parts()
     assert made.status().channel.program == "PART"
 
@@ -227,7 +181,7 @@ def test_an_error_of_the_program_is_an_alarm_that_a_reset_clears() -> None:
     made.select_program("PART")
     made.cycle_start()
     made.advance(5000)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
 
 
 # ---------------------------------------------------------------------- modes
@@ -322,7 +276,7 @@ def test_editing_in_fore_and_background() -> None:
     back = made.edit("SLOT", background=True)
     back.insert(1, "N5 G4 P1")
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
     back.close()
 
 
@@ -332,7 +286,7 @@ def test_a_program_that_was_edited_between_two_starts_runs_as_it_is_now() -> Non
     made.programs.write("PART", "G1 X14.25 F3000\nM30\n")
     made.cycle_start()
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 14.25
+    assert x_of(made) == 14.25
 
 
 # ---------------------------------------------------------------------- by hand, in between
@@ -345,7 +299,7 @@ def test_axes_moved_during_an_interruption_must_be_back() -> None:
     made.select_mode(Mode.JOG)
     refused(Refusal.RUNNING, lambda: made.jog("Y", 1), made)  # still braking
     made.advance(300)
-    stood = x(made)
+    stood = x_of(made)
     made.jog("Y", 1)
     made.advance(200)
     made.jog("Y", None)
@@ -361,9 +315,9 @@ def test_axes_moved_during_an_interruption_must_be_back() -> None:
     assert made.status().axes["Y"].machine == 0.0
     made.cycle_start()
     made.advance(1)
-    assert x(made) >= stood
+    assert x_of(made) >= stood
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
 
 
 def test_or_they_return_by_themselves() -> None:
@@ -371,7 +325,7 @@ def test_or_they_return_by_themselves() -> None:
     made.advance(300)
     made.feed_hold()
     made.advance(300)
-    stood = x(made)
+    stood = x_of(made)
     made.select_mode(Mode.JOG)
     made.jog("X", -1)
     made.advance(500)
@@ -385,13 +339,13 @@ def test_or_they_return_by_themselves() -> None:
     made.feed_hold()  # in the middle of the return
     made.advance(500)
     assert not made.status().channel.returning
-    assert x(made) != stood
+    assert x_of(made) != stood
     made.cycle_start()
     made.advance(100_000, until=lambda: not made.status().channel.returning)
-    assert x(made) == stood
+    assert x_of(made) == stood
     made.advance(100_000, until=ControlEvent.RUN_STATE)
     assert made.status().channel.run_state is RunState.COMPLETED
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
 
 
 def test_a_reset_after_moving_by_hand_forgets_the_interruption() -> None:
@@ -408,7 +362,7 @@ def test_a_reset_after_moving_by_hand_forgets_the_interruption() -> None:
     made.select_mode(Mode.AUTO)
     made.cycle_start()
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
 
 
 # ---------------------------------------------------------------------- PLC, spindle
@@ -539,7 +493,7 @@ def test_an_emergency_stop_breaks_everything_off_and_wants_a_reset() -> None:
     made.select_mode(Mode.AUTO)
     made.cycle_start()
     made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 12.5
+    assert x_of(made) == 12.5
     assert len(made.alarms.history()) == 2
 
 
@@ -576,277 +530,5 @@ def test_a_limit_switch_in_a_program_is_an_alarm_that_stops_it() -> None:
     made.advance(500)
     made.jog("X", None)
     made.advance(100)
-    made.reset()
-    assert made.status().alarms == ()
-
-
-# ---------------------------------------------------------------------- settings
-
-
-def test_what_is_out_of_range_is_refused() -> None:
-    made = control()
-    for call in (
-        lambda: made.set_overrides(feed=2.1),
-        lambda: made.set_overrides(feed=0.5, rapid=0.3),
-        lambda: made.set_overrides(spindle=float("nan")),
-        lambda: made.set_switches(block_delete=frozenset({0})),
-        lambda: made.set_switches(single_block=True, block_delete=frozenset({3, 10})),
-        lambda: made.cycle_start(channel=1),
-        lambda: made.set_relative("W"),
-        lambda: made.set_relative("X", float("inf")),
-    ):
-        refused(Refusal.DATA, call, made)
-
-
-def test_the_machine_lock_executes_without_the_axes_and_only_changes_in_between() -> None:
-    made = control()
-    made.set_switches(machine_lock=True)
-    made.select_program("PART")
-    made.cycle_start()
-    made.advance(300)
-    assert x(made) == 12.5
-    refused(Refusal.RUNNING, lambda: made.set_switches(machine_lock=False), made)
-    made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert x(made) == 12.5
-    made.set_switches(machine_lock=False)
-    made.cycle_start()
-    made.advance(300)
-    assert x(made) > 20.0
-
-
-def test_axes_stay_where_they_are_when_the_machine_lock_is_taken_off() -> None:
-    made = control()
-    made.set_switches(machine_lock=True)
-    made.select_program("SLOT")  # ends at X30, and the axes have never left 12.5
-    made.cycle_start()
-    made.advance(300)
-    made.reset()
-    made.advance(300)
-    made.set_switches(machine_lock=False)
-    made.advance(7)
-    assert x(made) == 12.5
-    made.cycle_start()
-    made.advance(1)
-    assert x(made) == pytest.approx(12.5, abs=1e-3)
-    made.advance(10_000)
-    assert x(made) == 30.0
-
-
-@pytest.mark.parametrize("calculate", [False, True])
-@pytest.mark.parametrize("ends", ["another program", "MDI", "reset"])
-def test_a_search_ends_with_another_selection(ends: str, calculate: bool) -> None:
-    made = control()
-    made.select_program("PART")
-    assert made.search(line=3, calculate=calculate) == 3
-    if ends == "another program":
-        made.select_program("SLOT")
-    elif ends == "MDI":
-        made.select_mode(Mode.MDI)
-        made.set_mdi("G1 X14 F600\nX15\nX16\nX17\n")
-    else:
-        made.reset()
-    made.cycle_start()
-    made.advance(10)
-    block = made.status().channel.block
-    assert block is not None
-    assert block.line == {"another program": 1, "MDI": 1, "reset": 2}[ends]  # O7 moves nothing
-
-
-def test_dry_run_and_block_delete_reach_the_program() -> None:
-    made = control(ControlData(dry_run_mm_min=1200.0))
-    made.programs.create("DRY", "/2 N10 X99 \nN20 G1 X32.5 F60\nM30\n".replace(" X99", " Z-3 F900 G1"))
-    made.set_switches(dry_run=True, block_delete=frozenset({2}))
-    made.select_program("DRY")
-    made.cycle_start()
-    passed = made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert passed == pytest.approx(1000, abs=60)
-    assert made.status().axes["Z"].machine == 3.0
-
-
-def test_auxiliary_functions_take_the_machine_files_times_and_the_spindle_its_ramp() -> None:
-    made = control()
-    made.programs.create("AUX", "S1500 M3\nT4 M6\nM8\nM30\n")
-    made.select_program("AUX")
-    made.cycle_start()
-    # 1500 rpm at 3000 rpm/s, 1.5 s of tool change, 0.3 s of coolant.
-    passed = made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert made.status().channel.run_state is RunState.COMPLETED
-    assert passed == pytest.approx(500 + 1500 + 300, abs=8)
-
-
-def test_a_sub_program_comes_from_the_memory() -> None:
-    made = Control(cnc_machine(), dialect="fanuc")
-    made.programs.create("MAIN", "G1 X13.5 F6000\nM98 P31\nM30\n")
-    made.programs.create("O0031", "O31\nG1 Y4.25\nM99\n")
-    made.select_program("MAIN")
-    made.cycle_start()
-    made.advance(100_000, until=lambda: made.status().axes["Y"].machine > 1.0)
-    assert made.programs.running == {"MAIN", "O0031"}
-    refused(Refusal.IN_USE, lambda: made.programs.delete("O0031"), made)
-    made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert made.status().axes["Y"].machine == 4.25
-
-
-def test_a_turret_takes_the_offsets_of_the_table() -> None:
-    made = Control("lathe2", dialect="fanuc-lathe")
-    made.tools.set(3, x_mm=7.0, wear_x_mm=0.125, z_mm=-2.5, tip=3)
-    made.programs.create("TURN", "G97 S1000 M3\nT0303\nG0 X20. Z5.\nM30\n")
-    made.select_program("TURN")
-    made.cycle_start()
-    made.advance(100_000, until=ControlEvent.RUN_STATE)
-    axes = made.status().axes
-    assert (axes["X"].machine, axes["Z"].machine) == (17.125, 2.5)  # X20 is a diameter
-
-
-def test_positions_machine_work_and_relative() -> None:
-    made = control()
-    made.offsets.set("G54", {"X": 2.5})
-    made.set_relative("X", 100.0)
-    made.select_mode(Mode.INC)
-    made.increment("X", 1, 7.25)
-    made.advance(1)
-    assert 0.0 < made.status().axes["X"].to_go <= 7.25
-    made.advance(2000)
-    axis = made.status().axes["X"]
-    assert (axis.machine, axis.relative, axis.to_go) == (19.75, 107.25, 0.0)
-    made.select_mode(Mode.AUTO)
-    made.programs.create("AT", "G54 G1 X20 F6000\nM30\n")
-    made.select_program("AT")
-    made.cycle_start()
-    made.advance(2000)
-    axis = made.status().axes["X"]
-    assert (axis.machine, axis.work) == (22.5, 20.0)
-
-
-# ---------------------------------------------------------------------- snapshots
-
-
-def test_a_snapshot_in_the_middle_of_a_program_goes_on_as_the_undisturbed_one() -> None:
-    script = {(Function.M, 8): Answer(0.7)}
-    made = started(program="SLOT", script=script)
-    made.set_overrides(feed=0.9)
-    made.advance(600)
-    saved = made.snapshot()
-    assert made.snapshot() == saved
-    ends = []
-    for _ in range(2):
-        made.advance(77)
-        made.set_overrides(feed=1.7)
-        passed = made.advance(100_000, until=ControlEvent.RUN_STATE)
-        ends.append((passed, made.status()))
-        made.select_mode(Mode.JOG)
-        made.jog("Y", 1)
-        made.advance(100)
-        made.emergency_stop()
-        made.restore(saved)
-        assert made.clock.cycles == 600
-        assert made.snapshot() == saved
-    assert ends[0][0] == ends[1][0]
-    first, second = (end.axes for _, end in ends)
-    assert first == second
-    assert made.status().emergency is Emergency.OFF
-    elsewhere = control(script=script)
-    elsewhere.restore(ControlSnapshot.from_bytes(saved.to_bytes()))
-    assert elsewhere.snapshot() == saved
-    elsewhere.advance(77)
-    elsewhere.set_overrides(feed=1.7)
-    assert elsewhere.advance(100_000, until=ControlEvent.RUN_STATE) == ends[0][0]
-    assert elsewhere.status().axes == first
-    made.advance(100_000, until=ControlEvent.RUN_STATE)
-    ended, status = made.snapshot(), made.status()
-    made.reset()
-    made.restore(ended)
-    assert made.status() == status
-    other = control(script=script)
-    other.restore(ControlSnapshot.from_bytes(ended.to_bytes()))
-    assert other.status().axes["X"].machine == 30.0
-
-
-def test_a_snapshot_at_rest_is_a_file_for_another_control_made_alike() -> None:
-    made = control(ControlData(referenced_at_start=False))
-    made.select_mode(Mode.REF)
-    made.reference("Z")
-    made.advance(40)
-    made.messages.show(7, "clean the table")
-    made.set_switches(block_delete=frozenset({2, 5}))
-    made.spindle.turn(rpm=900.0, direction=1)
-    made.plc.strobe(Function.M, 30)
-    saved = made.snapshot()
-    made.advance(3000)
-    other = control(ControlData(referenced_at_start=False))
-    other.restore(ControlSnapshot.from_bytes(saved.to_bytes()))
-    assert other.snapshot() == saved
-    other.advance(3000)
-    assert other.status() == made.status()
-    assert other.status().axes["Z"].referenced
-
-
-def test_the_snapshot_of_another_thing_is_refused_before_anything_changes() -> None:
-    made = started()
-    made.advance(300)
-    others = (
-        Control(cnc_machine(), channels=(ChannelData(("X", "Y")), ChannelData(("Z", "B")))).snapshot(),
-        Control("mill3").snapshot(),
-        Control(cnc_machine(cycle_s=0.002)).snapshot(),
-        Control(cnc_machine(), dialect="fanuc").snapshot(),
-        made.machine.snapshot(),
-    )
-    before = made.status()
-    for other in others:
-        with pytest.raises(SnapshotError):
-            made.restore(other)
-        assert made.status() == before
-    made.advance(100_000, until=ControlEvent.RUN_STATE)
-    assert made.status().channel.run_state is RunState.COMPLETED
-    with pytest.raises(SnapshotError):
-        ControlSnapshot.from_bytes(Control("mill3").machine.snapshot().to_bytes())
-
-
-# ---------------------------------------------------------------------- what a vendor's control changes
-
-
-def test_axes_can_be_given_other_limits_while_nothing_runs() -> None:
-    made = started()
-    axes = made.machine.config.axes
-    slower = axes[0].model_copy(update={"vmax_mm_s": 30.0, "soft_limits_mm": (-50.0, 42.0)})
-    made.advance(10)
-    refused(Refusal.RUNNING, lambda: made.change_axes((slower, *axes[1:])), made)
-    made.reset()
-    made.advance(200)
-    made.change_axes((slower, *axes[1:]))
-    made.cycle_start()
-    assert made.status().alarms[0].name == "program"  # 42.5 is beyond the new limit
-    made.reset()
-    made.programs.write("PART", PART.replace("42.5", "41.5"))
-    made.cycle_start()
-    made.advance(300)
-    assert made.status().axes["X"].velocity == pytest.approx(30.0)
-    with pytest.raises(UsageError):
-        made.machine.change_axes(axes[1:])
-
-
-def test_a_program_can_begin_at_a_line() -> None:
-    made = control()
-    made.select_program("SLOT")
-    refused(Refusal.NOT_FOUND, lambda: made.cycle_start(line=99), made)
-    made.programs.write("SLOT", "N10 G1 X20 F600\nN20 Y3\nN30 G1 X15.5 F600\nM2\n")
-    made.cycle_start(line=3)
-    made.advance(2000)
-    status = made.status()
-    assert (status.axes["X"].machine, status.axes["Y"].machine) == (15.5, 0.0)
-
-
-def test_an_alarm_from_outside_stops_everything_once() -> None:
-    made = started()
-    made.advance(100)
-    made.put_alarm("function_failed", detail="M8")
-    made.advance(300)
-    at = x(made)
-    made.advance(300)
-    assert x(made) == at
-    assert made.status().channel.run_state is RunState.ALARM
-    assert [alarm.text for alarm in made.status().alarms] == ["M8"]
-    made.put_alarm("function_failed", detail="again")
-    assert [alarm.text for alarm in made.status().alarms] == ["M8"]
     made.reset()
     assert made.status().alarms == ()

@@ -13,11 +13,11 @@ from scipy.interpolate import BSpline
 from scipy.optimize import minimize_scalar
 
 import polycnc
-from polycnc.kernel import segment_point
 from polycnc.kernel._segments import SPLINE
-from polycnc.nc import Channel, Group
+from polycnc.nc import Group
 from polycnc.nc.blocks._nurbs_curve import nurbs_cubics
-from support.programs import LINEAR, accepted, machine_config, prepare, refusal
+from support.curves import prepared, track
+from support.programs import LINEAR, machine_config, prepare, refusal
 from support.runs import program_run
 
 Floats = npt.NDArray[np.float64]
@@ -33,21 +33,6 @@ def program(points: Points, order: int, before: str = "F700") -> str:
     (x, y, weight), *others = points
     more = "".join(f"X{x!r} Y{y!r} P{weight!r}\n" for x, y, weight in others)
     return f"{before} G0 X{x!r} Y{y!r}\nG5.2 P{weight!r} L{order}\n{more}G5.3\n"
-
-
-def prepared(text: str, **options: Any) -> Channel:
-    return accepted(text, **{"dialect": "linuxcnc", **options})
-
-
-def track(channel: Channel, parts: int = 3) -> Floats:
-    seg = channel.machine.state.seg
-    out = np.zeros(3)
-    points = []
-    for k in np.flatnonzero(seg.row["kind"] == SPLINE):
-        for part in range(parts + 1):
-            segment_point(seg, int(k), float(seg.row[k]["length"]) * part / parts, out)
-            points.append(out[:2].copy())
-    return np.array(points)
 
 
 def curve_of(points: Points, order: int) -> Any:
@@ -84,7 +69,7 @@ def off(points: Floats, control: Points, order: int) -> float:
 
 def test_weights_make_a_quarter_of_a_circle() -> None:
     channel = prepared(program(ARC, 3))
-    points = track(channel)
+    points = track(channel, 3)
     assert np.abs(np.hypot(points[:, 0], points[:, 1]) - 10.0).max() < 1e-5
     seg, tail = channel.machine.state.seg, int(channel.machine.state.paths.row[0]["tail"])
     assert seg.end[tail - 1].tolist() == [0.0, 10.0, 0.0]
@@ -95,7 +80,7 @@ def test_weights_make_a_quarter_of_a_circle() -> None:
 
 @pytest.mark.parametrize("order", [3, 4, 5])
 def test_curves_of_any_order_are_those_of_scipy(order: int) -> None:
-    points = track(prepared(program(WAVE, order)))
+    points = track(prepared(program(WAVE, order)), 3)
     assert off(points[::7], WAVE, order) < 1e-5
     assert points[-1] == pytest.approx([37.5, -4.0], abs=1e-12)
 
@@ -105,7 +90,7 @@ def test_parabolas_and_cubics_without_weights_are_exact(order: int, pieces: int)
     """The five points make three parabolas, or two cubics, and each is one cubic."""
     even = [(x, y, 2.5) for x, y, _ in WAVE]
     channel = prepared(program(even, order))
-    assert off(track(channel)[::3], even, order) < 2e-8
+    assert off(track(channel, 3)[::3], even, order) < 2e-8
     straight = [(3.0, 4.0, 1.0), (5.0, 8.0, 1.0), (9.0, 16.0, 1.0)]
     row = prepared(program(straight, 3)).machine.state.seg.row
     assert row["length"].sum() == pytest.approx(5.0 + math.hypot(6.0, 12.0), rel=1e-12)

@@ -12,10 +12,10 @@ import pytest
 from scipy.interpolate import BPoly
 
 import polycnc
-from polycnc.kernel import segment_point
 from polycnc.kernel._segments import SPLINE
-from polycnc.nc import Channel, Dialect, Group, load_dialect
-from support.programs import LINEAR, MILL, accepted, listing, machine_config, moves, prepare, refusal
+from polycnc.nc import Dialect, Group, load_dialect
+from support.curves import prepared, track
+from support.programs import LINEAR, MILL, listing, machine_config, moves, prepare, refusal
 from support.runs import program_run, to_the_end
 
 Floats = npt.NDArray[np.float64]
@@ -27,24 +27,8 @@ CONTROL = [
 ]
 
 
-def prepared(program: str, **options: Any) -> Channel:
-    return accepted(program, **{"dialect": "linuxcnc", **options})
-
-
 def refused(program: str) -> str:
     return refusal(program, dialect="linuxcnc")
-
-
-def track(channel: Channel, parts: int = 7) -> Floats:
-    """Return points of all spline segments in the queue, X and Y."""
-    seg = channel.machine.state.seg
-    out = np.zeros(3)
-    points = []
-    for k in np.flatnonzero(seg.row["kind"] == SPLINE):
-        for part in range(parts + 1):
-            segment_point(seg, int(k), float(seg.row[k]["length"]) * part / parts, out)
-            points.append(out[:2].copy())
-    return np.array(points)
 
 
 def off(points: Floats, *controls: list[tuple[float, float]]) -> float:
