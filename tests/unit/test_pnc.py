@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.cnc import ControlError, RunState
+from polycnc.cnc import Mode as CncMode
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import Signals
@@ -201,6 +202,44 @@ def test_axes_go_from_channel_to_channel_and_indices_follow(example: Example) ->
     example.pnc.advance(50)
     with pytest.raises(ControlError, match="channel 1 executes a program"):
         example.pnc.transfer_axis("Z", 2)
+
+
+def test_an_axis_has_the_overrides_of_its_channel_and_without_one_those_of_all(example: Example) -> None:
+    control = example.pnc.control
+    example.pnc.select_mode(Mode.REFERENCE)
+
+    def speed() -> float:
+        """Return how fast Y goes to its reference point."""
+        control.reference("Y")
+        example.pnc.advance(5000, until=lambda: not control.manual.moves(["Y"]))
+        example.pnc.select_mode(Mode.JOG)
+        control.jog("Y", 1, rapid=True)
+        example.pnc.advance(300)
+        found = example.pnc.axes["Y"].velocity
+        control.jog("Y", None)
+        example.pnc.advance(300)
+        example.pnc.select_mode(Mode.REFERENCE)
+        return found
+
+    full = speed()
+    control.set_overrides(rapid=0.0, channel=0)
+    example.pnc.transfer_axis("Y", None)
+    control.set_overrides(rapid=0.25)
+    assert speed() == pytest.approx(0.25 * full)
+    control.set_overrides(rapid=0.5, channel=1)
+    example.pnc.transfer_axis("Y", 2)
+    assert speed() == pytest.approx(0.5 * full)
+
+
+def test_the_mode_of_all_channels_changes_or_that_of_none(example: Example) -> None:
+    example.write("other.npg", "N10 G1 X2=20 F600\nN20 M30")
+    example.pnc.select_program("other.npg", channel=2)
+    example.pnc.cycle_start(channel=2)
+    example.pnc.advance(40)
+    with pytest.raises(ControlError):
+        example.pnc.select_mode(Mode.JOG)
+    assert {each.mode for each in example.pnc.status().channels} == {CncMode.AUTO}
+    assert not example.pnc.status().channels[0].switches.single_block
 
 
 @pytest.mark.covers("cpl.param.1003_00001", "cpl.param.1003_00002")

@@ -175,6 +175,8 @@ class Control:
         """Share the axes out anew, one tuple a channel; refused while one executes a program that is to change."""
         share_axes(self.channels, shares)
         self.alarms.owners = {axis: n for n, axes in enumerate(shares) for axis in axes}
+        for each in self.channels:
+            self.manual.set_overrides(feed=each.overrides.feed, rapid=each.overrides.rapid, axes=each.axes)
 
     def change_dialect(self, dialect: Dialect) -> None:
         """Let programs be read in another dialect, or with other settings of it, from now on.
@@ -249,7 +251,7 @@ class Control:
         spindle: float | None = None,
         channel: int | None = None,
     ) -> None:
-        """Set overrides, 1 is 100 %; what is None stays.
+        """Set overrides, 1 is 100 %; what is None stays. Those of all channels hold for axes without a channel too.
 
         Raises:
             ControlError: One is out of range.
@@ -263,6 +265,9 @@ class Control:
             if each.data.spindle:
                 self.spindle.set_override(overrides.spindle)
             each.set_overrides(overrides)
+        if channel is None:
+            free = set(self.machine.config.axis_names).difference(*(each.axes for each in chosen))
+            self.manual.set_overrides(feed=feed, rapid=rapid, axes=free)
 
     def set_switches(
         self,

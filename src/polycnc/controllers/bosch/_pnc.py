@@ -170,10 +170,10 @@ class Pnc:
         """
         if mode not in _MODES:
             raise ControlError(Refusal.DATA, f"the mode {mode} cannot be selected", hint="See `Mode`.")
-        for number in self.system.axes.channels if channel is None else (channel,):
-            self._control.select_mode(_MODES[mode], channel=self._path(number))
-            self._control.set_switches(single_block=mode in _ONE_BY_ONE, channel=self._path(number))
-            self._modes[number] = mode
+        path = None if channel is None else self._path(channel)
+        self._control.select_mode(_MODES[mode], channel=path)
+        self._control.set_switches(single_block=mode in _ONE_BY_ONE, channel=path)
+        self._modes.update(dict.fromkeys(self.system.axes.channels if channel is None else (channel,), mode))
 
     def select_program(self, name: str, *, channel: int = 1) -> None:
         """Select a part program of the root.
