@@ -153,24 +153,34 @@ def test_override_hold_and_late_blocks_keep_the_jerk_and_the_end(jerk: float, de
 
 
 @pytest.mark.parametrize("tolerance", [EXACT_PATH, 0.01, math.inf])
-def test_rounded_and_exact_paths_keep_the_jerk_whatever_changes(tolerance: float) -> None:
+def test_rounded_and_exact_paths_keep_their_limits_whatever_changes(tolerance: float) -> None:
     for seed in range(40):
         rng = np.random.default_rng(seed)
         jerk = 10.0 ** rng.uniform(3.5, 6.5)
         state = run_with_changes(rng, PathSettings(jerk=jerk, tolerance=tolerance), late=bool(seed % 2))
+        assert max(overload(state)) <= ROUNDING, f"seed {seed}"
         assert highest_jerk(state) <= jerk * ROUNDING, f"seed {seed}"
 
 
-@pytest.mark.parametrize(("seed", "tolerance"), [(100064, EXACT_PATH), (100204, 0.01)])
-def test_braking_that_ends_before_its_corner_goes_on_to_it(seed: int, tolerance: float) -> None:
-    """Found at random: the ramp was done before its corner, and the path went on past it."""
+def found_at_random(seed: int, tolerance: float) -> tuple[KernelState, float]:
+    """Return a machine that has gone along a path of the campaigns, and its jerk."""
     rng = np.random.default_rng(seed)
     jerk = 10.0 ** rng.uniform(3.5, 6.5)
     depth = int(rng.choice([0, 0, 2, 16]))
     rng.choice(5)
-    state = run_with_changes(
-        rng, PathSettings(jerk=jerk, depth=depth, tolerance=tolerance), late=bool(rng.random() < 0.7)
-    )
+    settings = PathSettings(jerk=jerk, depth=depth, tolerance=tolerance)
+    return run_with_changes(rng, settings, late=bool(rng.random() < 0.7)), jerk
+
+
+BRAKING_DONE_EARLY = [(100064, EXACT_PATH), (100204, 0.01)]
+"""The ramp was done before its corner, and the path went on past it."""
+CARRIED_TOO_FAR = [(19, math.inf), (664, 0.1), (1386, 0.1)]
+"""What was left of an acceleration took the path past the speed of the segment behind a corner."""
+
+
+@pytest.mark.parametrize(("seed", "tolerance"), BRAKING_DONE_EARLY + CARRIED_TOO_FAR)
+def test_paths_that_once_broke_a_limit_keep_it(seed: int, tolerance: float) -> None:
+    state, jerk = found_at_random(seed, tolerance)
     assert max(overload(state)) <= ROUNDING
     assert highest_jerk(state) <= jerk * ROUNDING
 

@@ -105,6 +105,8 @@ def _is_safe(
     ramps[NODE_AT] = -1.0
     left = row["length"] - s
     most = speed + 0.5 * rate * rate / jerk if rate > 0.0 else speed
+    if rate > 0.0 and count > path["head"] and most > row["cap"] * SLACK:
+        return False
     carried = min(geo[EASE], geo[REDUCED])
     carries = True  # what acceleration is left at the end is not too much there
     if abs(rate) > carried:
