@@ -162,11 +162,13 @@ def test_rounded_and_exact_paths_keep_their_limits_whatever_changes(tolerance: f
         assert highest_jerk(state) <= jerk * ROUNDING, f"seed {seed}"
 
 
-def found_at_random(seed: int, tolerance: float) -> tuple[KernelState, float]:
+def found_at_random(
+    seed: int, tolerance: float, depths: tuple[int, ...] = (0, 0, 2, 16)
+) -> tuple[KernelState, float]:
     """Return a machine that has gone along a path of the campaigns, and its jerk."""
     rng = np.random.default_rng(seed)
     jerk = 10.0 ** rng.uniform(3.5, 6.5)
-    depth = int(rng.choice([0, 0, 2, 16]))
+    depth = int(rng.choice(depths))
     rng.choice(5)
     settings = PathSettings(jerk=jerk, depth=depth, tolerance=tolerance)
     return run_with_changes(rng, settings, late=bool(rng.random() < 0.7)), jerk
@@ -177,12 +179,27 @@ BRAKING_DONE_EARLY = [(100064, EXACT_PATH), (100204, 0.01)]
 CARRIED_TOO_FAR = [(19, math.inf), (664, 0.1), (1386, 0.1)]
 """What was left of an acceleration took the path past the speed of the segment behind a corner."""
 
+SEEN_TOO_LATE = [(461, 0.01), (1032, 0.0)]
+"""A segment that came into view made a corner of the stop that the path was braking to."""
 
-@pytest.mark.parametrize(("seed", "tolerance"), BRAKING_DONE_EARLY + CARRIED_TOO_FAR)
+
+@pytest.mark.parametrize(("seed", "tolerance"), BRAKING_DONE_EARLY + CARRIED_TOO_FAR + SEEN_TOO_LATE)
 def test_paths_that_once_broke_a_limit_keep_it(seed: int, tolerance: float) -> None:
     state, jerk = found_at_random(seed, tolerance)
     assert max(overload(state)) <= ROUNDING
     assert highest_jerk(state) <= jerk * ROUNDING
+
+
+FEW_AHEAD = [(70, 0.1), (395, 0.1), (441, 0.01), (698, math.inf), (726, 0.01), (1148, 0.01)]
+"""What came into view, or another override, took what the braking under way had counted on: jerks of up to 31 times."""
+
+
+@pytest.mark.parametrize(("seed", "tolerance"), FEW_AHEAD)
+def test_what_comes_into_view_late_breaks_no_limit(seed: int, tolerance: float) -> None:
+    state, jerk = found_at_random(seed, tolerance, (2, 2, 3, 5))
+    assert max(overload(state)) <= ROUNDING
+    assert highest_jerk(state) <= jerk * ROUNDING
+    assert is_done(state)
 
 
 def test_a_hold_in_any_phase_comes_to_rest_and_goes_on_to_the_same_end() -> None:

@@ -14,10 +14,37 @@ import math
 
 import numpy as np
 
-from polycnc.kernel._jerk import brake_phases, brake_way, moved, wanted_rate
+from polycnc.kernel._braking import (
+    AT_TARGET,
+    DIRECT,
+    GONE,
+    HALVINGS,
+    LOOSE,
+    NO_PLAN,
+    PLAN_ACCEL,
+    PLAN_COAST,
+    PLAN_COUNT,
+    PLAN_END_SPEED,
+    PLAN_KIND,
+    PLAN_RATE,
+    PLAN_S,
+    PLAN_SPEED,
+    PLAN_TIME,
+    PLAN_TO,
+    RATE,
+    ROUNDING,
+    SLACK,
+    SPEED_NOW,
+    TIGHT,
+    enter_next,
+    go_by_plan,
+    plan_holds,
+    plan_rest,
+)
+from polycnc.kernel._jerk import brake_way, moved, wanted_rate
 from polycnc.kernel._jerk_plan import has_limited_jerk, last_known, node_short, plan_with_jerk
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._path import HELD, INSIDE, READY, REST_SLACK, RESTED, Paths, is_held, slot
+from polycnc.kernel._path import HELD, INSIDE, READY, RESTED, Paths, is_held, slot
 from polycnc.kernel._ramps import REGISTERS, SPEED_PEAK
 from polycnc.kernel._segments import (
     ASKED,
@@ -29,7 +56,6 @@ from polycnc.kernel._segments import (
     NODE_SPEED,
     NODE_WAY,
     REDUCED,
-    SHARE_IN,
     WAIT,
     ZONE_IN,
     ZONE_OUT,
@@ -38,24 +64,12 @@ from polycnc.kernel._segments import (
 )
 from polycnc.kernel._totals import account_time, leave_segment
 
-# Registers: where the path is in the segment at `head`, its speed and acceleration.
-GONE, SPEED_NOW, RATE = REGISTERS, REGISTERS + 1, REGISTERS + 2
-# The plan: what braking begins with and how long ago, its target as a place from the start of `head`, and its kind.
-PLAN_S, PLAN_SPEED, PLAN_RATE, PLAN_TIME = REGISTERS + 3, REGISTERS + 4, REGISTERS + 5, REGISTERS + 6
-PLAN_TO, PLAN_END_SPEED, PLAN_ACCEL, PLAN_COUNT = REGISTERS + 7, REGISTERS + 8, REGISTERS + 9, REGISTERS + 10
-PLAN_KIND = REGISTERS + 11
-NO_PLAN, LOOSE, TIGHT = 0.0, 1.0, 2.0
-DIRECT = -1.0
 # What a cycle would come to: how many segments on, place, speed, acceleration; and the node it could brake to.
 NEXT_COUNT, NEXT_S, NEXT_SPEED, NEXT_RATE = REGISTERS + 12, REGISTERS + 13, REGISTERS + 14, REGISTERS + 15
 NODE_TO, NODE_END_SPEED, NODE_BRAKE, NODE_AT = REGISTERS + 16, REGISTERS + 17, REGISTERS + 18, REGISTERS + 19
-NODE_COAST, PLAN_COAST = REGISTERS + 20, REGISTERS + 21  # before the braking, DIRECT: without that
+NODE_COAST = REGISTERS + 20  # before the braking, DIRECT: without that
 
-ROUNDING = 1e-12  # mm, by which a way may be too short
-SLACK = 1.0 + 1e-9
 AT_REST = 1e-9  # mm/s
-AT_TARGET = 1e-8  # mm
-HALVINGS = 60
 
 
 @compiled
@@ -262,24 +276,11 @@ def _try(seg: Segments, paths: Paths, g: int, rate: float, dt: float) -> bool:
 
 
 @compiled
-def _enter_next(seg: Segments, paths: Paths, g: int) -> None:
-    """Leave the segment at `head`, all places being counted from the start of the next."""
-    path, ramps = paths.row[g], paths.ramps[g]
-    length = seg.row[slot(paths, g, path["head"])]["length"]
-    leave_segment(seg, paths, g, 0.0)
-    geo = seg.geo[slot(paths, g, path["head"])]
-    path["entry_share"], path["entry_zone"] = geo[SHARE_IN], geo[ZONE_IN]
-    ramps[GONE] -= length
-    ramps[PLAN_S] -= length
-    ramps[PLAN_TO] -= length
-
-
-@compiled
 def _take(seg: Segments, paths: Paths, g: int, kind: float) -> None:
     """Do what was tried last, and keep the braking it found as the plan."""
     path, ramps = paths.row[g], paths.ramps[g]
     while path["head"] < ramps[NEXT_COUNT]:
-        _enter_next(seg, paths, g)
+        enter_next(seg, paths, g)
     ramps[GONE], ramps[SPEED_NOW], ramps[RATE] = ramps[NEXT_S], ramps[NEXT_SPEED], ramps[NEXT_RATE]
     ramps[PLAN_KIND] = NO_PLAN
     if ramps[NODE_AT] >= 0.0:
@@ -289,99 +290,6 @@ def _take(seg: Segments, paths: Paths, g: int, kind: float) -> None:
         ramps[PLAN_TO] = ramps[GONE] + ramps[NODE_TO]
         ramps[PLAN_END_SPEED], ramps[PLAN_ACCEL] = ramps[NODE_END_SPEED], ramps[NODE_BRAKE]
         ramps[PLAN_COUNT], ramps[PLAN_COAST] = ramps[NODE_AT], ramps[NODE_COAST]
-
-
-@compiled
-def _plan_at(ramps: Floats, jerk: float, time: float) -> tuple[float, float, float, float]:
-    """Return way, speed and acceleration of the plan at a time, and how much of the time is beyond its end, negative
-    before its last phase."""
-    speed, rate = ramps[PLAN_SPEED], ramps[PLAN_RATE]
-    gone = 0.0
-    if ramps[PLAN_COAST] >= 0.0:
-        ease_time = abs(rate) / jerk
-        gone, speed, rate = moved(speed, rate, -math.copysign(jerk, rate), min(time, ease_time))
-        time -= ease_time
-        if time <= 0.0:
-            return gone, speed, rate, -math.inf
-        rate = 0.0
-        coasts = ramps[PLAN_COAST] / speed if speed > 0.0 else math.inf
-        gone += speed * min(time, coasts)
-        time -= coasts
-        if time <= 0.0:
-            return gone, speed, rate, -math.inf
-    first, build, hold, release = brake_phases(speed, rate, ramps[PLAN_END_SPEED], ramps[PLAN_ACCEL], jerk)
-    more, speed, rate = moved(speed, rate, first, min(time, build))
-    gone += more
-    time -= build
-    if time > 0.0:
-        more, speed, rate = moved(speed, rate, 0.0, min(time, hold))
-        gone += more
-        time -= hold
-        if time > 0.0:
-            more, speed, rate = moved(speed, rate, jerk, min(time, release))
-            gone += more
-            time -= release
-            return gone, speed, rate, time
-        return gone, speed, rate, -release
-    return gone, speed, rate, time - hold - release
-
-
-@compiled
-def _plan_on(seg: Segments, paths: Paths, g: int, beyond_s: float, dt: float) -> bool:
-    """Plan on from the node at the end of the plan, which was reached `beyond_s` ago; return False if that fails."""
-    ramps = paths.ramps[g]
-    count = int(ramps[PLAN_COUNT])
-    geo = seg.geo[slot(paths, g, count)]
-    speed = ramps[PLAN_END_SPEED]
-    to_end = node_short(geo, seg.row[slot(paths, g, count)]["out"], dt)
-    end_speed, accel = min(speed, geo[NODE_SPEED]), geo[NODE_ACCEL]
-    coast = to_end + geo[NODE_WAY] - brake_way(speed, 0.0, end_speed, accel, paths.row[g]["jerk_mm_s3"])
-    if speed > seg.row[slot(paths, g, count)]["out"] + ROUNDING or geo[NODE_COUNT] == count:
-        return False
-    ramps[PLAN_S] = ramps[PLAN_TO]
-    ramps[PLAN_TO] += to_end + geo[NODE_WAY]
-    ramps[PLAN_SPEED], ramps[PLAN_RATE], ramps[PLAN_TIME] = speed, 0.0, beyond_s
-    ramps[PLAN_END_SPEED], ramps[PLAN_ACCEL] = end_speed, accel
-    ramps[PLAN_COUNT], ramps[PLAN_COAST] = geo[NODE_COUNT], max(coast, 0.0)
-    return True
-
-
-@compiled
-def _go_by_plan(seg: Segments, paths: Paths, g: int, dt: float) -> bool:
-    """Go along the plan for a cycle; return True when it has brought the path to rest at its end."""
-    path, ramps = paths.row[g], paths.ramps[g]
-    jerk = path["jerk_mm_s3"]
-    ramps[PLAN_TIME] += dt
-    while True:
-        gone, speed, rate, beyond = _plan_at(ramps, jerk, ramps[PLAN_TIME])
-        if beyond < -REST_SLACK * dt:
-            ramps[GONE] = ramps[PLAN_S] + gone
-            ramps[PLAN_KIND] = TIGHT if rate < 0.0 else LOOSE
-            break
-        short = ramps[PLAN_TO] - ramps[PLAN_S] - gone
-        at_target = abs(short) <= AT_TARGET
-        speed, rate = min(speed, ramps[PLAN_END_SPEED]), 0.0
-        if ramps[PLAN_COAST] < 0.0 and short > AT_TARGET and speed > 0.0:  # it may be done before its node
-            ramps[PLAN_S] += gone
-            ramps[PLAN_SPEED], ramps[PLAN_RATE], ramps[PLAN_END_SPEED] = speed, 0.0, speed
-            ramps[PLAN_TIME], ramps[PLAN_COAST] = max(beyond, 0.0), short
-            continue
-        if at_target and ramps[PLAN_END_SPEED] == 0.0:
-            ramps[SPEED_NOW], ramps[RATE], ramps[PLAN_KIND] = 0.0, 0.0, NO_PLAN
-            while path["head"] < ramps[PLAN_COUNT]:
-                _enter_next(seg, paths, g)
-            return True
-        if not at_target or not _plan_on(seg, paths, g, max(beyond, 0.0), dt):
-            ramps[GONE] = ramps[PLAN_S] + gone + max(beyond, 0.0) * speed
-            ramps[PLAN_KIND] = NO_PLAN
-            break
-    ramps[SPEED_NOW], ramps[RATE] = max(speed, 0.0), rate
-    last = last_known(path)
-    while path["head"] + 1 < last and ramps[GONE] > seg.row[slot(paths, g, path["head"])]["length"]:
-        if ramps[PLAN_END_SPEED] == 0.0 and path["head"] >= ramps[PLAN_COUNT]:
-            break
-        _enter_next(seg, paths, g)
-    return False
 
 
 @compiled
@@ -399,14 +307,16 @@ def _choose(seg: Segments, paths: Paths, g: int, to_speed: float, dt: float) -> 
     if _try(seg, paths, g, wanted, dt):
         _take(seg, paths, g, LOOSE)
         return False
-    if ramps[PLAN_KIND] == TIGHT:
-        return _go_by_plan(seg, paths, g, dt)
+    if ramps[PLAN_KIND] == TIGHT and plan_holds(seg, paths, g):
+        return go_by_plan(seg, paths, g, dt)
     safe = lowest
     if not _try(seg, paths, g, safe, dt):
         safe = now - min(max(now, -step), step)
         if not _try(seg, paths, g, safe, dt):
-            if ramps[PLAN_KIND] == LOOSE:
-                return _go_by_plan(seg, paths, g, dt)
+            if ramps[PLAN_KIND] == NO_PLAN or not plan_holds(seg, paths, g):
+                plan_rest(seg, paths, g, ramps[GONE], ramps[SPEED_NOW], now, 0.0)
+            if ramps[PLAN_KIND] != NO_PLAN:
+                return go_by_plan(seg, paths, g, dt)
             return _brake_anyway(seg, paths, g, lowest, dt)
     unsafe = wanted
     for _ in range(HALVINGS):
@@ -426,8 +336,7 @@ def _choose(seg: Segments, paths: Paths, g: int, to_speed: float, dt: float) -> 
 def _brake_anyway(seg: Segments, paths: Paths, g: int, rate: float, dt: float) -> bool:
     """Brake where nothing is safe: what is ahead has changed too late. Return True at rest at the end of a segment.
 
-    Random paths with overrides, holds and late blocks come here only with a limited look-ahead: a segment that comes
-    into view can turn a stop into a corner that is passed, which takes acceleration that braking counted on.
+    Random paths with overrides, holds and late blocks did not come here, with any look-ahead.
     """
     path, ramps = paths.row[g], paths.ramps[g]
     speed, now = ramps[SPEED_NOW], ramps[RATE]
@@ -446,7 +355,7 @@ def _brake_anyway(seg: Segments, paths: Paths, g: int, rate: float, dt: float) -
     while ramps[GONE] >= seg.row[slot(paths, g, path["head"])]["length"]:
         if path["head"] + 1 >= last or seg.geo[slot(paths, g, path["head"]), LIMIT] <= 0.0:
             return True
-        _enter_next(seg, paths, g)
+        enter_next(seg, paths, g)
     return False
 
 

@@ -13,7 +13,8 @@ import math
 
 import numpy as np
 
-from polycnc.kernel._follow import GONE, SPEED_NOW, follow_cycle_along, follows, start_following
+from polycnc.kernel._braking import GONE, SPEED_NOW
+from polycnc.kernel._follow import follow_cycle_along, follows, start_following
 from polycnc.kernel._geometry import segment_point
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lookahead import window_speed

@@ -121,7 +121,8 @@ def _step_back(
     far = min(floor, fastest_start(node_speed, length + way, least, jerk))
     most = min(limit, cap)
     before = min(most, max(near, far))
-    eased = reduced if geo[LIMIT] <= 0.0 else min(reduced, ease + jerk * length / cap)
+    stops = geo[LIMIT] <= 0.0 and not unknown
+    eased = reduced if stops else min(reduced, ease + jerk * length / cap)
     if far > near:
         return before, length + way, node_speed, least, min(floor, most), eased, node, before_bound
     return before, short, speed, reduced, most, eased, count, before_bound
@@ -173,7 +174,9 @@ def plan_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     k = slot(paths, g, tail - 1)
     row = seg.row[k]
     met = bool(closed or row["flags"] & STOP)
-    rest = (0.0, 0.0, 0.0, math.inf, 0.0, math.inf, tail - 1, 0.0)
+    # What comes into view later may need everything of the last segment but that it can end at rest.
+    ease, bound = (math.inf, 0.0) if met else (0.0, float(row["cap"]))
+    rest = (0.0, 0.0, 0.0, math.inf, 0.0, ease, tail - 1, bound)
     more = (row["cap"], 0.0, row["cap"], math.inf, row["cap"], math.inf, tail - 1, row["cap"])
     final = tail if met else -1
     _put(seg, k, rest)
@@ -192,7 +195,7 @@ def plan_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         unknown = not met and count == tail - 1
         if not met:
             more = _step_back(seg, k, count, more, limit, reached, corner, unknown, jerk, dt)
-        rest = _step_back(seg, k, count, rest, limit, reached, corner, False, jerk, dt)
+        rest = _step_back(seg, k, count, rest, limit, reached, corner, unknown, jerk, dt)
         if count == head:
             geo[SHARE_IN], geo[ZONE_IN] = path["entry_share"], path["entry_zone"]
             geo[REDUCED] = min(geo[REDUCED], row["accel"] * (1.0 - path["entry_share"]))

@@ -12,8 +12,9 @@ import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
 from polycnc.kernel._blend import may_be_rounded
+from polycnc.kernel._braking import GONE, RATE, SPEED_NOW
 from polycnc.kernel._cruise import first_open, limit_cruise
-from polycnc.kernel._follow import GONE, RATE, SPEED_NOW, follows
+from polycnc.kernel._follow import follows
 from polycnc.kernel._geometry import is_curved
 from polycnc.kernel._interpolate import ends_within, in_ramp, plan_again
 from polycnc.kernel._jerk import brake_way, moved
