@@ -57,6 +57,7 @@ _AXES = "XYZ"
 _LEVER_MM = 300.0  # no point of a part is much further from the rotary axes that swing it
 _RECORD_CYCLES = 1 << 13
 _CONTEXT_SHIFT = 32
+_MANY_BLOCKS = 20_000  # of a program whose machine takes so much memory that looking for it is worth the time
 
 
 @dataclass(frozen=True, slots=True)
@@ -172,7 +173,8 @@ def verify_post(
     path_feed_mm, path_rapid_mm = moves.length_mm()
     with tempfile.TemporaryDirectory(prefix="polycnc-") as root:  # nothing is left beside the program
         result = run(program, config, read, check=False, root=root)
-        gc.collect()  # the machine of that run, before there is another one
+        if len(block_map.line) > _MANY_BLOCKS:
+            gc.collect()  # the machine of that run, before there is another one
         comparison = _Comparison(moves, block_map, carried, config, read, frame)
         if result.ok:
             _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress, root)
