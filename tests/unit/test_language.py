@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+import gc
+import itertools
 from contextlib import ExitStack
 
 import pytest
@@ -27,6 +30,7 @@ from polycnc.language import (
     read_expression,
     real_value,
     whole_value,
+    without_collection,
 )
 
 LEXICON = Lexicon(
@@ -247,3 +251,127 @@ def test_code_that_is_only_looked_at_is_not_compiled() -> None:
     traced = out.compile("<later>")
     with pytest.raises(SyntaxError):
         traced.load({})
+
+
+BINARY = ("or", "and", "==", "<", "|", "^", "&", "<<", ">>", "+", "-", "*", "/", "//", "%")
+COMPARED = {"==", "<"}
+
+
+def tree_of(text: str) -> str:
+    return ast.dump(ast.parse(text))
+
+
+@pytest.mark.parametrize(("first", "second"), list(itertools.product(BINARY, BINARY)))
+def test_pieces_put_together_mean_what_they_meant_and_have_no_more_parentheses(
+    first: str, second: str
+) -> None:
+    a, b, c = Python("a"), Python("b"), Python("c")
+    if first == second in ("or", "and"):  # one node either way
+        return
+    left = infix(infix(a, first, b), second, c).text
+    right = infix(a, first, infix(b, second, c)).text
+    assert tree_of(left) == tree_of(f"(a {first} b) {second} c")
+    assert tree_of(right) == tree_of(f"a {first} (b {second} c)")
+    bare = f"a {first} b {second} c"
+    if not {first, second} <= COMPARED:
+        needs = tree_of(bare) != tree_of(f"(a {first} b) {second} c")
+        assert ("(" in left) is needs
+        assert ("(" in right) is (tree_of(bare) != tree_of(f"a {first} (b {second} c)")) or first == second
+
+
+@pytest.mark.parametrize(("sign", "operator"), list(itertools.product(("not", "-", "+", "~"), BINARY)))
+def test_signs_stand_before_what_they_belong_to(sign: str, operator: str) -> None:
+    a, b = Python("a"), Python("b")
+    assert tree_of(prefix(sign, infix(a, operator, b)).text) == tree_of(f"{sign} (a {operator} b)")
+    assert tree_of(infix(prefix(sign, a), operator, b).text) == tree_of(f"({sign} a) {operator} b")
+    assert tree_of(infix(a, operator, prefix(sign, b)).text) == tree_of(f"a {operator} ({sign} b)")
+    twice = prefix(sign, prefix(sign, a)).text
+    assert tree_of(twice) == tree_of(f"{sign} ({sign} a)")
+    assert "(" not in twice
+
+
+def test_what_is_left_may_be_entered_again() -> None:
+    many = "(2)+(3)*" * 9 + "(5)"
+    assert isinstance(read(many), Chain)  # one inside the other they would be too many
+    signs = " AND ".join(f"NOT {letter}" for letter in "abcdefghi")
+    assert isinstance(read(signs), Chain)
+    with pytest.raises(Flaw, match="more than 7 parentheses"):
+        read("(2)+(3)+" + "(" * 8 + "5" + ")" * 8)
+
+
+def test_a_lexicon_reads_one_token_and_says_where_it_ends() -> None:
+    text = "  ab*  12.5 "
+    assert LEXICON.read(text, 0, len(text)) == (Token("name", "AB", "ab", 2), 4)
+    assert LEXICON.read(text, 1, 3) == (Token("name", "A", "a", 2), 3)
+    assert LEXICON.read(text, 5, len(text)) == (Token("number", "12.5", "12.5", 7), 11)
+    assert LEXICON.read(text, 11, len(text)) == (Token("end", "", "", 12), 12)
+    with pytest.raises(Flaw) as caught:
+        LEXICON.read("ab  ?", 2, 5)
+    assert (caught.value.at, caught.value.what) == (4, "'?' has no meaning here")
+
+
+def test_tokens_are_stepped_over_taken_and_jumped_to() -> None:
+    tokens = Tokens(LEXICON, "xyz ab * (12)  cd ?", 4, 16)
+    assert (tokens.token.text, tokens.behind, tokens.next_at) == ("ab", 4, 6)
+    assert not tokens.take("*")
+    assert tokens.token.text == "ab"
+    assert tokens.take("AB")
+    assert (tokens.behind, tokens.token.text) == (6, "*")
+    assert tokens.expect("*") == Token("mark", "*", "*", 7)
+    tokens.jump(10)
+    assert (tokens.behind, tokens.token.text, tokens.next_at) == (10, "12", 12)
+    with pytest.raises(Flaw) as caught:
+        tokens.expect("(", "open it")
+    assert (caught.value.at, caught.value.what, caught.value.hint) == (
+        10,
+        "'(' is missing before '12'",
+        "open it",
+    )
+    tokens.jump(13)
+    assert tokens.step() == Token("name", "C", "c", 15)  # the stretch ends within the name
+    assert tokens.token == Token("end", "", "", 16)
+    tokens.end("it")
+    with pytest.raises(Flaw, match="no meaning"):
+        Tokens(LEXICON, "ab ?", 3)
+
+
+def test_a_text_may_begin_with_an_empty_line() -> None:
+    source = Source("\nAB\n", "part.cpl")
+    assert source.line_count == 3
+    assert [source.line(line) for line in (1, 2, 3)] == ["", "AB", ""]
+    assert str(source.position(2)) == "part.cpl:2:2"
+    assert [source.line_of(at) for at in (0, 1, 3, 4)] == [1, 2, 2, 3]
+    assert (source.begin(2), source.end(2)) == (1, 3)
+
+
+@pytest.mark.parametrize("enabled", [True, False])
+def test_the_collector_of_cycles_is_left_as_it_was(enabled: bool) -> None:
+    was = gc.isenabled()
+    try:
+        (gc.enable if enabled else gc.disable)()
+        with without_collection():
+            assert not gc.isenabled()
+        assert gc.isenabled() is enabled
+        with pytest.raises(KeyError), without_collection():
+            raise KeyError
+        assert gc.isenabled() is enabled
+    finally:
+        (gc.enable if was else gc.disable)()
+
+
+@pytest.mark.parametrize("error", [RecursionError(), MemoryError()])
+def test_a_refusal_without_a_line_is_that_of_the_longest(
+    monkeypatch: pytest.MonkeyPatch, error: Exception
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise error
+
+    out: Emitter[int] = Emitter(5)
+    for place, line in ((11, "a = 2"), (37, f"b = {'2 + ' * 90}2"), (41, "c = 'longer than the first'")):
+        out.place = place
+        out.put(line)
+    monkeypatch.setattr("polycnc.language._python.compile", refuse, raising=False)
+    with pytest.raises(Flaw) as caught:
+        out.compile("<long>")
+    assert caught.value.at == 37
+    assert caught.value.hint == "split it"

@@ -148,3 +148,20 @@ def test_a_yield_may_be_gone_through_again() -> None:
 def test_a_line_without_a_yield_is_refused(line: int) -> None:
     with pytest.raises(ValueError, match="yield"):
         resumed(traced(NESTED), line, ["n"])
+
+
+def test_what_was_given_out_from_is_forgotten_when_it_has_ended() -> None:
+    program = traced(
+        "def program(L, H):\n    n = 3\n    yield from given(n)\n    yield n, 'behind'\n    yield 'end'"
+    )
+    one = made(program, [])
+    assert next(one) == (3001, "given")
+    line = line_of(one)
+    assert line == 3
+    other = made(resumed(program, line, ["n"]), [], {"n": 4, INNER: Given(4, 1)})
+    assert next(other) is None
+    assert isinstance(inner_of(other), Given)  # it goes on with it
+    assert next(other) == (4000, "given")
+    assert next(other) == (4, "behind")
+    assert inner_of(other) is None
+    assert names_of(other).keys() == {"L", "H", "n"}

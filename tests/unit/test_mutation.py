@@ -106,8 +106,17 @@ def test_where_time_is_short_those_that_run_what_others_do_not_come_first() -> N
     assert reach.of("m.py", range(5, 6)) == ["a::1", "a::2", "b::3"]
     assert Reach(times_s, {"m.py": lines}, [], 3.0).of("m.py", range(5, 6)) == ["a::2", "b::3"]
     assert reach.of("m.py", range(7, 10)) == ["a::2", "c::4", "b::3"]
+    assert reach.of("m.py", range(5, 6))[0] == "a::1"
+    reach.note("m.py", "b::3")
+    assert reach.of("m.py", range(5, 6)) == ["b::3", "a::1", "a::2"]  # it told of another change
     assert reach.imported("m.py", range(3, 4))
     assert not reach.imported("m.py", range(4, 10))
+
+
+def test_the_file_of_the_module_comes_first() -> None:
+    times_s = {"test_other::1": 0.1, "test_arcs::2": 3.0}
+    reach = Reach(times_s, {"src/_arcs.py": {4: list(times_s)}}, [], 9.0)
+    assert reach.of("src/_arcs.py", range(4, 5)) == ["test_arcs::2", "test_other::1"]
 
 
 def test_survivors_are_the_changes_that_no_test_notices(repository: Path) -> None:

@@ -24,7 +24,6 @@ from polycnc.kernel._jit import compiled
 from polycnc.kernel._path import HELD, RUNNING, Paths, slot
 from polycnc.kernel._ramps import MOST_SHARE, beside_corner
 from polycnc.kernel._segments import (
-    ASKED,
     EASE,
     LIMIT,
     NODE_ACCEL,
@@ -148,7 +147,6 @@ def _set_limits(seg: Segments, paths: Paths, g: int, known: int, tail: int, dt: 
     for count in range(known, tail):
         k = slot(paths, g, count)
         row = seg.row[k]
-        seg.geo[k, ASKED] = row["cap"]
         limit = 0.0
         if count + 1 < tail:
             limit = _corner_limit(row, seg.row[slot(paths, g, count + 1)], dt)

@@ -129,6 +129,18 @@ def _plan(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         path["planned"] = max(path["head"], min(path["planned"], path["cruising"]))
 
 
+@compiled
+def _ask_for_caps(seg: Segments, paths: Paths, g: int, first: int) -> None:
+    """Let a path with limited jerk go for the caps of its segments from count `first` on.
+
+    Those before it keep what was asked for, which may be less than the cap that they were planned with.
+    """
+    if has_limited_jerk(paths.row[g]):
+        for count in range(first, int(paths.row[g]["prepared"])):
+            k = slot(paths, g, count)
+            seg.geo[k, ASKED] = seg.row[k]["cap"]
+
+
 def _steps(seg: Segments, paths: Paths, g: int, *_: object) -> int:
     return 3 * int(paths.row["tail"][g] - paths.row["head"][g]) + 1
 
@@ -146,15 +158,19 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
         mark_last(seg, paths, g)
         path["closed"] = 1  # though the line has been appended anew
     head, first = int(path["head"]), int(path["prepared"])
-    path["prepared"] = _ready_count(seg, paths, g)
+    ready = _ready_count(seg, paths, g)
     first_end = max(first - 1, head)
-    goes_on = first_end == head and head < first < path["prepared"]
-    if goes_on and frozen_until(seg, paths, g, dt) > head:
+    goes_on = first_end == head and head < first < ready
+    if (
+        goes_on and frozen_until(seg, paths, g, dt) > head
+    ):  # by what is planned: the new ones have no limits yet
         goes_on = False
         first_end = first
+    path["prepared"] = ready
     begin = first_open(path, first)
     limit_queue(seg, paths, g, limits, dt, begin, min(first_end, max(begin - 1, head)), work)
     limit_cruise(seg, paths, g, begin, first)
+    _ask_for_caps(seg, paths, g, begin)
     _plan(seg, paths, g, dt)
     if goes_on:
         plan_again(seg, paths, g, dt)
@@ -236,6 +252,7 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         row["junction"] = min(row["junction"], row["cap"], after["cap"])
     path["planned"] = head
     _plan(seg, paths, g, dt)
+    _ask_for_caps(seg, paths, g, first + 1)
     for count in range(head, min(first + 1, last) if with_jerk else head):
         k = slot(paths, g, count)
         seg.geo[k, ASKED] = _asked_cap(seg, k, limits, path)

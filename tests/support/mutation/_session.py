@@ -139,6 +139,8 @@ class Session:
             answer = self._tried(module, mutant, tests, reach)
         if answer["status"] is None:
             answer = self._tried_anew(module, mutant, tests, reach)
+        if by := answer.get("by", ""):
+            reach.note(str(module), by)
         verdicts = {0: "survived", 5: "unreached", "timeout": "timeout", "crash": "crash"}
         return Outcome(verdicts.get(answer["status"], "killed"), len(tests), answer.get("by", ""))
 

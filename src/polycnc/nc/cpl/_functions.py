@@ -74,7 +74,7 @@ def _rows() -> list[Function]:
         f("SCS", "X", (3, 4), "SCS(axis,type,number[,result])", results=(3,)),
         f("SCSL", "I", (4, 5), "SCSL(axis,type,number,file[,result])", results=(4,)),
         f("SD", "I", (1, 4), "SD(group[,index[,index[,index]]])"),
-        f("SDR", "D", (1, 4), "SDR(group[,index[,index[,index]]])"),
+        f("SDR", "D", (1, 3), "SDR(group[,index[,index]])"),
         f("AXP", "X", (2, 3), "AXP(axis,position[,axis type])"),
         f("IC", "B", (1, 3), "IC(bit[,group[,index]])", settable=True),
         f("PLC", "I", (3, 4), "PLC(type,module,address,size)", settable=True),
