@@ -161,9 +161,7 @@ def prepare_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: fl
     ready = _ready_count(seg, paths, g)
     first_end = max(first - 1, head)
     goes_on = first_end == head and head < first < ready
-    if (
-        goes_on and frozen_until(seg, paths, g, dt) > head
-    ):  # by what is planned: the new ones have no limits yet
+    if goes_on and frozen_until(seg, paths, g, dt) > head:  # what is new has no limits yet
         goes_on = False
         first_end = first
     path["prepared"] = ready
