@@ -65,17 +65,17 @@ def _checked(board: Board, axes: Sequence[int], speeds: Speeds, numbers: Sequenc
     if len(set(axes)) < len(axes):
         board.raise_error(ErrorReg.errAxDef)
         return None
-    rows = [board.state.axis[i] for i in axes]
-    for row in rows:
-        if not row["closed"]:
+    closed = board.state.axis["closed"]
+    for i in axes:
+        if not closed[i]:
             return None
     units = path_units(board, axes)
     if units is None:
         board.raise_error(ErrorReg.errUnit)
     elif _is_consistent(board, units, speeds) and all(map(math.isfinite, numbers)):
-        return units if rows else None
-    for row in rows:
-        row["dhef"] = 1
+        return units if axes else None
+    for i in axes:
+        board.state.axis[i]["dhef"] = 1
     return None
 
 
