@@ -55,6 +55,9 @@ class Fifo(IntEnum):
     SEL_CFIFO = 4
 
 
+_TAKE_INSTRUCTIONS = frozenset(Fifo) - {Fifo.SEL_CFIFO}
+
+
 class Card:
     """A card as its card file describes it, just switched on.
 
@@ -150,7 +153,7 @@ class Card:
                 events, a segment not of 1 to 16 coordinates, or there are no points. Or the instruction takes more
                 words than the queue ever holds.
         """
-        if fifo not in (Fifo.SEL_IFIFO, Fifo.SEL_QFIFO, Fifo.SEL_PFIFO1, Fifo.SEL_PFIFO2):
+        if fifo not in _TAKE_INSTRUCTIONS:
             raise UsageError(f"queue {fifo} takes no instructions", hint="give SEL_IFIFO to SEL_PFIFO2")
         if isinstance(instruction, WaitTime | WaitParam) and fifo == Fifo.SEL_IFIFO:
             raise UsageError("IFIFO cannot wait", hint="use SEL_QFIFO, SEL_PFIFO1 or SEL_PFIFO2")
@@ -182,13 +185,14 @@ class Card:
 
     def _put(self, fifo: int, cells: list[int], words: int) -> bool:
         q, ring = self.state.fifo[fifo], self.state.ring[fifo]
-        if words > q["depth"]:
-            raise UsageError(
-                f"{words} words never fit into {Fifo(fifo).name}",
-                hint=f"it holds {q['depth']}; send less at once",
-            )
+        depth = int(q["depth"])
         waiting = int(q["words"]) + words
-        if waiting > q["depth"]:
+        if waiting > depth:
+            if words > depth:
+                raise UsageError(
+                    f"{words} words never fit into {Fifo(fifo).name}",
+                    hint=f"it holds {depth}; send less at once",
+                )
             return False
         tail, size = int(q["tail"]), ring.shape[0]
         for k, cell in enumerate(cells):
