@@ -369,7 +369,7 @@ class _Driver:
             "D": number if record.d is None else float(record.d),
         }
         self.output.state("TOOL_CHANGE", record.line, words)
-        self.motion.moved_by_macro()
+        self.motion.tool_changed()
 
     def _spindle(self, record: Spindle) -> None:
         self.drilling.close()
