@@ -24,6 +24,7 @@ from polycnc.post.tool_path._records import (
     Home,
     Record,
     Retract,
+    Spindle,
     Text,
     Tool,
     ToolShape,
@@ -258,7 +259,9 @@ REFUSED = {
     "LOCAL_ORIGIN, 0.00000, 130.00000, 0.000000": "LOCAL_ORIGIN moves the tool",
     "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
     "CYCLE/DRILL,12,2,3,4,5": "the numbers of the cycle from 4 on are not known",
-    "CYCLE/BORE,14.5,0,0,2,85,1,355,ON,0,0,1000": "the numbers of the cycle from 2 on are not known",
+    "CYCLE/BORE,14.5,0,0,2,85,1,355,ON,0,0,1000": "ON,0 in a cycle is not known",
+    "CYCLE/BORE,14.5,0,0,2,85": "the numbers of the cycle from 2 on are not known",
+    "CYCLE/DRILL,DEPTH,5,CLEAR,2,FOO,7": "FOO,7 in a cycle is not known",
     "CYCLE/DRILL,126,85,1,MMPM": "which of the numbers 85 and 1 is the feed",
     "GOTO/1,2,3,0,0.6,0.8\nMULTAX/OFF\nGOTO/1,2,9": "MULTAX/OFF while the tool is tilted",
     "TLAXIS/0,0.6,0.8\nMULTAX/OFF\n" + "GOTO/1,2,9\n" * 9: "MULTAX/OFF while the tool is tilted",
@@ -279,6 +282,7 @@ REFUSED = {
     "CUTCOM/ON\nGOTO/1,2,3": "CUTCOM/ON without a side",
     "CYCLE/BORE,BACK,DEPTH,5,CLEAR,1": "cuts from below",
     "CYCLE/TAP,DEEP,DEPTH,5,CLEAR,1,STEP,2": "a thread tapped in pecks",
+    "SPINDL/ORIENT,90": "SPINDL/ORIENT is not known",
 }
 
 
@@ -397,6 +401,26 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
         "CYCLE/INIT\nCYCLE/DEEP2,DEPTH,17,STEP,3,MMPM,120,CLEAR,2",
         [Cycle(2, "deep", 17.0, 2.0, 2.0, 120.0, peck=3.0)],
     ),
+    "SolidWorks CAM: a first peck and the others": (
+        "CYCLE/INIT\nCYCLE/DEEP2,FEDTO,34.,1STPECK,6.,SUBPECK,2.5,MMPM,410.5,RAPTO,3.,RTRCTO,21.",
+        [Cycle(2, "deep", 34.0, 3.0, 21.0, 410.5, peck=2.5)],
+    ),
+    "SolidWorks CAM: INSERT is a note": (
+        "INSERT/[HOLDER=A-32] 9MM X 90DEG SPOT DRILL\nINSERT/Stock Size X9. Y8. Z7.\n"
+        "INSERT/M123 (On)\nINSERT/G91 G28 Z0.",
+        [
+            Text(1, "comment", "[HOLDER=A-32] 9MM X 90DEG SPOT DRILL"),
+            Text(2, "comment", "Stock Size X9. Y8. Z7."),
+            Text(3, "insert", "M123 (On)"),
+            Text(4, "insert", "G91 G28 Z0."),
+        ],
+    ),
+    "SolidWorks CAM: what the part's coordinates are is said again": (
+        "TRNTYP/WORLD,0,0,0\nCSI_SET_FLUTE_LENGTH/19.\nCSI_SET_EXTENSION_LENGTH/25.\nGOTO/1,2,3",
+        [Goto(4, 1.0, 2.0, 3.0)],
+    ),
+    "NCL: the offset of a tool": ("LOADTL/7,LENGTH,90,OFFSET,17", [Tool(1, 7, None, 90.0, 17)]),
+    "the spindle is locked": ("SPINDL/LOCK", [Spindle(1, "off")]),
 }
 
 
@@ -615,3 +639,23 @@ def test_a_left_hand_thread_is_tapped_left_handed(name: str, sense: str, code: s
     assert result.ok
     assert re.findall(r"G[78]4", result.text or "") == [code]
     assert f"{'G98' if back else 'G99'} {code} X10. Y10. Z-12. R3. F800." in (result.text or "")
+
+
+CYLINDER = """GOTO/20,7,-3
+INDIRV/0,0,{way}
+TLON,GOFWD/ (CYLNDR / 20.00000,    7.00000,    9.00000, 0.000000,-1.000000,$
+             0.000000,   12.00000),ON,$
+            (PLANE/PERPTO,(PLANE/(POINT/ 20.00000,  7.00000,  9.00000),PERPTO,$
+            (VECTOR/ 0.000000,-1.000000, 0.000000)),(POINT/ 20.00000,  7.00000,  9.00000),$
+            (POINT/ {end},  7.00000,  9.00000))
+"""
+
+
+@pytest.mark.parametrize(("way", "end", "sense"), [("1", "32", 1.0), ("-1", "32", -1.0), ("1", "8", 1.0)])
+def test_an_arc_in_space_of_catia_goes_round_its_cylinder(way: str, end: str, sense: float) -> None:
+    # It begins beside the axis, at X8, so that INDIRV along Z says which way it goes.
+    text = CYLINDER.format(way=way, end=end).replace("GOTO/20,7,-3", "GOTO/8,7,9")
+    arc = records(text)[-1]
+    assert isinstance(arc, Circle)
+    assert (arc.center, arc.x, arc.y, arc.z) == ((20.0, 7.0, 9.0), float(end), 7.0, 9.0)
+    assert arc.normal == (0.0, sense, 0.0)

@@ -201,16 +201,23 @@ def direction(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def follow_circle(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read TLON,GOFWD/(CIRCLE/...),ON,(LINE/...): the arc begins in the direction of INDIRV."""
+    """Read TLON,GOFWD/(CIRCLE/...),ON,(LINE/...): the arc begins in the direction of INDIRV.
+
+    In space CATIA writes (CYLNDR/centre, axis, radius),ON,(PLANE/...,(POINT/centre),(POINT/end)).
+    """
     found: dict[str, list[float]] = {}
     for token in statement:
-        if token.text in ("CIRCLE", "LINE"):
+        if token.text in ("CIRCLE", "CYLNDR", "LINE", "POINT", "VECTOR"):
             found[token.text] = [number * reading.scale for number in statement.numbers()]
-        elif token.number is None and token.text not in ("ON", "INTOF"):
+        elif token.number is None and token.text not in ("ON", "INTOF", "PLANE", "PERPTO"):
             raise statement.fail(
-                f"'{token.text}' in a move along a circle", "Only (CIRCLE/...),ON,(LINE/...) is known.", token
+                f"'{token.text}' in a move along a circle",
+                "Only (CIRCLE/...),ON,(LINE/...) and (CYLNDR/...),ON,(PLANE/...) are known.",
+                token,
             )
     circle, line = found.get("CIRCLE", []), found.get("LINE", [])
+    if "CYLNDR" in found and "CIRCLE" not in found:  # the last point is the end
+        circle, line = found["CYLNDR"], found.get("CYLNDR", [])[:3] + found.get("POINT", [])
     if len(circle) not in (4, 7) or len(line) not in (4, 6) or reading.direction is None:
         raise statement.fail(
             "a move along a circle without its circle, its end or its direction",

@@ -33,6 +33,9 @@ from polycnc.units import MM_PER_INCH
 TEXTS = re.compile(r"\s*(PARTNO|PPRINT|INSERT|REMARK|TPRINT)\b\s*/?\s?(.*)", re.IGNORECASE)
 """Statements whose text is taken as it stands, with or without a slash."""
 
+_NOTE = re.compile(r"\[|[A-Z][a-z]+\b(?!\s*[(=\[])")
+"""How the text of an INSERT begins that is no block of a control: CAM systems write notes as INSERT, too."""
+
 IGNORED = frozenset(
     (
         *(
@@ -47,6 +50,7 @@ IGNORED = frozenset(
             "CUT",
             "CLPRNT",
         ),
+        *("CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH"),
         *("NOPOST", "PLABEL", "LEADER", "REWIND", "CATPROCESS", "AUTOPS", "TLONPS", "TLOFPS", "PSIS"),
     )
 )
@@ -117,7 +121,8 @@ def _text(kind: Literal["part", "comment", "insert"]) -> Handler:
         text = text.strip()
         if len(text) > 1 and text[0] == text[-1] and text[0] in "'\"" and kind != "insert":
             text = text[1:-1].strip()
-        yield Text(statement.line, kind, text)
+        is_note = kind == "insert" and _NOTE.match(text) is not None
+        yield Text(statement.line, "comment" if is_note else kind, text)
 
     return read
 
@@ -202,8 +207,9 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     length = statement.value_of("LENGTH", "a length")
     more = statement.numbers()
     offset = statement.value_of("ADJUST", "an offset number")
-    if offset is None:
-        offset = statement.value_of("OSETNO", "an offset number")
+    for word in ("OSETNO", "OFFSET"):
+        if offset is None:
+            offset = statement.value_of(word, "an offset number")
     radius = statement.value_of("CUTCOM", "an offset number")
     if len(more) == 3 and statement.peek() is None:  # of ISO 4343: pocket, length, number of the offset
         length = more[1] if length is None else length
@@ -227,6 +233,10 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    if "ORIENT" in words:
+        raise statement.fail(
+            "SPINDL/ORIENT is not known", "Write the block of the control, like INSERT M19, or leave it out."
+        )
     highest = statement.value_of("MAXRPM", "a highest speed") or 0.0
     speed = None
     for token in statement:
@@ -237,7 +247,7 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
                 f"a spindle speed of {speed:g}", "Give a speed from 0 up; CCLW turns it round.", token
             )
     sense: Literal["cw", "ccw", "off", "on"] = "on"
-    if "OFF" in words:
+    if words & {"OFF", "LOCK", "NEUTRL"}:
         sense = "off"
     elif words & {"CCLW", "CCW"}:
         sense = "ccw"
@@ -392,6 +402,18 @@ def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:
         yield Dwell(statement.line, seconds=value)
 
 
+def _transformation(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read TRNTYP: points in the coordinates of the part are what is read anyway."""
+    first = statement.peek()
+    if first is None or first.text != "WORLD" or any(token.number for token in statement):
+        raise statement.fail(
+            "TRNTYP with other coordinates than those of the part",
+            "Let the CAM system write all points in one coordinate system (TRNTYP/WORLD,0,0,0).",
+            first,
+        )
+    return iter(())
+
+
 def _mode(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read MODE: absolute milling or turning is what is read anyway."""
     for token in statement:
@@ -430,6 +452,7 @@ HANDLERS: dict[str, Handler] = {
     "UNITS": _units,
     "UNIT": _units,
     "MODE": _mode,
+    "TRNTYP": _transformation,
     "MSYS": _cl_moves.coordinate_system,
     "CSYS": _cl_moves.coordinate_system,
     "TOOLPATH": _tool_path,
