@@ -22,6 +22,7 @@ from polycnc.post.tool_path._records import (
     From,
     Goto,
     Home,
+    Rapid,
     Record,
     Retract,
     Spindle,
@@ -254,7 +255,14 @@ REFUSED = {
     "TLAXIS/NORMPS": "TLAXIS with something else than a direction",
     "TLAXIS/0,0,0": "a direction without a length",
     "SAFPOS/1,2,3": "SAFPOS moves the tool",
-    "SET/OFSETL,12": "SET moves the tool",
+    "SET/OFSETL,12": "length offset 12 for a tool that has moved with none",
+    "LOADTL/3\nRAPID\nGOTO/1,2,3\nSET/OFSETL,12": "length offset 12 for a tool that has moved with 3",
+    "LOADTL/3\nSET/OFSETL,12,OFF": "SET with something else than OFSETL",
+    "LOADTL/3\nSET/HOLDER,12": "SET with something else than OFSETL",
+    "CYCLE81/10,0,2,-25,0": "CYCLE81 moves the tool",
+    "TLCOMP/ON,LEFT": "TLCOMP moves the tool",
+    "CALLSUB/1001": "CALLSUB moves the tool",
+    "TRNTYP/LOCAL,0,0,0": "TRNTYP with other coordinates",
     "LATHE/ROUGH,SH1,SH2": "LATHE moves the tool",
     "LOCAL_ORIGIN, 0.00000, 130.00000, 0.000000": "LOCAL_ORIGIN moves the tool",
     "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
@@ -420,6 +428,10 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
         [Goto(4, 1.0, 2.0, 3.0)],
     ),
     "NCL: the offset of a tool": ("LOADTL/7,LENGTH,90,OFFSET,17", [Tool(1, 7, None, 90.0, 17)]),
+    "an offset behind the tool change": (
+        "LOADTL/3\nSPINDL/RPM,500,CLW\nSET/OFSETL,13\nRAPID\nGOTO/1,2,3\nSET/OFSETL,13,ON\nLOADTL/3",
+        [Tool(1, 3, None, None, 13), Spindle(2, "cw", 500.0), Rapid(4), Goto(5, 1.0, 2.0, 3.0)],
+    ),
     "the spindle is locked": ("SPINDL/LOCK", [Spindle(1, "off")]),
 }
 
@@ -466,6 +478,30 @@ def test_a_highest_speed_is_not_lost() -> None:
     blocks, summary = posted(text, clamped)
     assert "G50R2600.000" in blocks
     assert summary.remarks == ()
+
+
+def test_a_highest_speed_that_would_be_lost_with_a_surface_speed_is_an_error() -> None:
+    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\n"
+    without = control(macros={"SPINDLE_CW": "<R=SPINDLEMODE>\n$S$"})
+    with pytest.raises(ProgramError, match="a highest speed of 2600 rpm, and SPINDLE_CW"):
+        posted(text, without)
+    clamped = control(macros={"SPINDLE_CW": "<R=SPINDLEMODE>\n<R=MAXRPM>\nG50$R$"})
+    assert "G50R2600.000" in posted(text, clamped)[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "macro"),
+    [
+        ("LOADTL/1\nCUTCOM/LEFT\n", "COMP_LEFT"),
+        ("LOADTL/1\nCUTCOM/RIGHT\n", "COMP_RIGHT"),
+        ("INSERT M71\n", "INSERT"),
+        ("LOADTL/1\nLOADTL/2\n", "TOOL_CHANGE"),
+    ],
+)
+def test_a_macro_without_which_another_part_would_be_cut_must_be_there(text: str, macro: str) -> None:
+    with pytest.raises(ProgramError, match=f"the control file has no macro {macro}"):
+        posted(text + "RAPID\nGOTO/1,2,3\n", control(macros={macro: ""}))
+    assert "= here" in posted(text + "RAPID\nGOTO/1,2,3\n", control(macros={macro: '"= here"'}))[0]
 
 
 def test_the_way_of_an_arc_is_as_long_as_it_turns() -> None:

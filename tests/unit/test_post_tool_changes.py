@@ -116,3 +116,18 @@ def test_holes_behind_a_tool_change_are_the_first_move(name: str) -> None:
     blocks, proof = blocks_of(text, name)
     assert "G00 X1 Y2 Z30" in blocks
     assert proof.ok
+
+
+@pytest.mark.parametrize(("name", "word"), [("fanuc-mill", "G43 H13 Z34."), ("fanuc-lathe", "T0413")])
+def test_the_length_offset_of_set_ofsetl_is_written(name: str, word: str) -> None:
+    text = TOOL + "SET/OFSETL,13\nRAPID\nGOTO/12,0,34\nFINI\n"
+    blocks, proof = blocks_of(text, name)
+    assert word in blocks or f"N10 {word}" in blocks
+    assert proof.ok
+
+
+@pytest.mark.parametrize("name", [*MILLS, "fanuc-lathe"])
+def test_an_auxiliary_function_is_its_m_code(name: str) -> None:
+    blocks, proof = blocks_of(TOOL + "RAPID\nGOTO/12,0,34\nAUXFUN/71\nRAPID\nGOTO/12,0,35\nFINI\n", name)
+    assert "M71" in blocks
+    assert proof.ok

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
@@ -18,9 +18,13 @@ from polycnc.post.tool_path._records import (
     UPRIGHT,
     Circle,
     Compensation,
+    Delta,
+    End,
     Goto,
+    Home,
     Points,
     Record,
+    Retract,
     Tool,
     Vector,
     WorkOffset,
@@ -32,6 +36,7 @@ ArcAxis: TypeAlias = Literal["auto", "counterclockwise", "clockwise"]
 
 
 _SAME_FRAME = 1e-6
+_MOVES = (Goto, Circle, Delta, Home, Retract, End)
 
 
 @dataclass(slots=True)
@@ -78,6 +83,10 @@ class Reading:
     """The last PITCH, in mm."""
     tool: Tool | None = None
     """The last tool change."""
+    offset: int | None = None
+    """The number of the length offset in force."""
+    held: list[Record] = field(default_factory=list)
+    """A tool change and what stands behind it, up to the first move: an offset may follow."""
     cycle_began: int = 0
     """How many moves came before the last CYCLE."""
     units_said: bool = False
@@ -96,6 +105,40 @@ class Reading:
     def waits(self) -> bool:
         """Whether the next point needs a look: a CUTCOM/ON waits for its side, a tool for its change."""
         return self.resumes or self.announced is not None or self.axis_unsure is not None
+
+    def hold(self, records: Iterable[Record]) -> Iterator[Record]:
+        """Yield records, but a tool change and what stands behind it only before the first move."""
+        for record in records:
+            if isinstance(record, Tool):
+                yield from self.release()
+                self.held.append(record)
+                self.offset = record.number if record.h is None else record.h
+            elif self.held and not isinstance(record, _MOVES):
+                self.held.append(record)
+            else:
+                yield from self.release()
+                yield record
+
+    def release(self) -> Iterator[Record]:
+        """Yield what is held."""
+        held, self.held = self.held, []
+        yield from held
+
+    def take_offset(self, statement: Statement, number: int) -> None:
+        """Take the number of the length offset.
+
+        Raises:
+            ProgramError: the tool has moved with another one.
+        """
+        if self.held and isinstance(self.held[0], Tool):
+            self.held[0] = self.held[0]._replace(h=number)
+        elif number != self.offset:
+            raise statement.fail(
+                f"length offset {number} for a tool that has moved with "
+                + ("none" if self.offset is None else str(self.offset)),
+                "Write it right behind the tool change, before the tool moves.",
+            )
+        self.offset = number
 
     def resume(self, statement: Statement) -> Compensation:
         """Return the compensation that CUTCOM/ON takes up again.

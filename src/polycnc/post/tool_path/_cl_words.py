@@ -62,7 +62,6 @@ LEFT_OUT_MOTION = frozenset(
         *("ROTATE", "ROTHED", "TRACUT", "COPY", "TRANS", "ORIGIN", "DNTCUT", "SPLINE", "NURBS", "GOCLER"),
         *(
             "SAFPOS",
-            "SET",
             "HOMEPT",
             "LCS",
             "CALSUB",
@@ -73,6 +72,7 @@ LEFT_OUT_MOTION = frozenset(
             "SCURV",
             "MATRIX",
         ),
+        *("MIRROR", "SCALE", "REFSYS", "CALL", "CALLSUB", "LOOPST", "JUMPTO", "TLCOMP"),
         *("LATHE", "LOCAL_ORIGIN", "PROFIL", "SCRUB", "CONTUR", "AREA", "FMILL", "AMILL", "RMILL", "SMILL"),
     )
 )
@@ -86,7 +86,6 @@ HINTS = {
     "SPLINE": "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead.",
     "SAFPOS": "Write the way to the safe position as RAPID and GOTO.",
     "HOMEPT": "Write FROM/x,y,z, or give the point with GOHOME/x,y,z.",
-    "SET": _OFFSETS,
     "OFSTNO": _OFFSETS,
     "OFSETL": _OFFSETS,
     "LATHE": _PASSES,
@@ -94,6 +93,9 @@ HINTS = {
     "CONTUR": _PASSES,
     "AREA": _PASSES,
     "LOCAL_ORIGIN": "Let the CAM system write all operations in one coordinate system.",
+    "CALLSUB": "Let the CAM system write out what the sub-program does.",
+    "CALL": "Let the CAM system write out what the macro does.",
+    "TLCOMP": "Write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF.",
     "CALSUB": "Let the CAM system write out what the sub-program does.",
 }
 """What to do instead, where it is something else than points and arcs."""
@@ -229,6 +231,19 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     elif reading.cycle_on:
         yield CycleOff(statement.line)
     reading.cycle_on = False
+
+
+def _set(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read SET/OFSETL,n: the register of the tool's length offset."""
+    if (token := statement.peek()) is not None and token.text == "OFSETL":
+        next(iter(statement))
+        number = statement.whole(statement.number("the number of an offset"), "the number of an offset")
+        strange = next((each for each in statement if each.text != "ON"), None)
+        if strange is None and number is not None:
+            reading.take_offset(statement, number)
+            return iter(())
+        token = strange
+    raise statement.fail("SET with something else than OFSETL and the number of an offset", _OFFSETS, token)
 
 
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
@@ -463,6 +478,7 @@ HANDLERS: dict[str, Handler] = {
     "LOAD": _tool,
     "TOOLNO": _tool,
     "TURRET": _tool,
+    "SET": _set,
     "SPINDL": _spindle,
     "FEDRAT": _feed,
     "RAPID": _cl_moves.rapid,
