@@ -131,3 +131,11 @@ def test_an_auxiliary_function_is_its_m_code(name: str) -> None:
     blocks, proof = blocks_of(TOOL + "RAPID\nGOTO/12,0,34\nAUXFUN/71\nRAPID\nGOTO/12,0,35\nFINI\n", name)
     assert "M71" in blocks
     assert proof.ok
+
+
+def test_the_table_turns_at_the_start_while_the_tool_is_home() -> None:
+    text = "RAPID\nGOTO/12,3,40,1,0,0\nRAPID\nGOTO/9,3,40\nFEDRAT/300\nGOTO/5,3,40\nFINI\n"
+    blocks, proof = blocks_of(text, "fanuc-5axis")
+    first = blocks.index("G90 G00 A0. C0.")
+    assert blocks[first + 1 : first + 4] == ["X3. Y40. A90. C90.", "Z12.", "Z9."]
+    assert proof.ok
