@@ -428,6 +428,22 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
         [Goto(4, 1.0, 2.0, 3.0)],
     ),
     "NCL: the offset of a tool": ("LOADTL/7,LENGTH,90,OFFSET,17", [Tool(1, 7, None, 90.0, 17)]),
+    "Autodesk: with FEDTO, RAPTO is a level": (
+        "CYCLE/DRILL, FEDTO, 9.5, MMPM, 120, CLEAR, 14, RTRCTO, 13, RAPTO, 11",
+        [Cycle(1, "drill", 9.5, 11.0, 13.0, 120.0)],
+    ),
+    "Autodesk: RAPTO goes down from the clearance": (
+        "CYCLE/DRILL, 9.5, MMPM, 120, 14, RAPTO, 11",
+        [Cycle(1, "drill", 9.5, 3.0, 14.0, 120.0)],
+    ),
+    "CATIA: TOOLNO of a mill without its kind": (
+        "TOOLNO/7, 18.000000, 2.000000,, 110.000000,$\n\nLOADTL/7,1\nRAPID\nGOTO/1,2,3",
+        [Tool(3, 7), Rapid(4), Goto(5, 1.0, 2.0, 3.0)],
+    ),
+    "NCL: TOOLNO/ADJUST is the length offset": (
+        "LOADTL/7\nTOOLNO/ADJUST,17\nRAPID\nGOTO/1,2,3",
+        [Tool(1, 7, None, None, 17), Rapid(3), Goto(4, 1.0, 2.0, 3.0)],
+    ),
     "an offset behind the tool change": (
         "LOADTL/3\nSPINDL/RPM,500,CLW\nSET/OFSETL,13\nRAPID\nGOTO/1,2,3\nSET/OFSETL,13,ON\nLOADTL/3",
         [Tool(1, 3, None, None, 13), Spindle(2, "cw", 500.0), Rapid(4), Goto(5, 1.0, 2.0, 3.0)],
@@ -695,3 +711,50 @@ def test_an_arc_in_space_of_catia_goes_round_its_cylinder(way: str, end: str, se
     assert isinstance(arc, Circle)
     assert (arc.center, arc.x, arc.y, arc.z) == ((20.0, 7.0, 9.0), float(end), 7.0, 9.0)
     assert arc.normal == (0.0, sense, 0.0)
+
+
+QUARTERS = "GOTO/6,0,0\nMOVARC/0,0,0,0,0,{axis},6,ANGLE,{angle}\nGOTO/0,6,0\n"
+
+
+@pytest.mark.parametrize(
+    ("axis", "angle", "sense"),
+    [
+        (1, 90, 1.0),
+        (-1, 90, 1.0),
+        (1, 270, -1.0),
+        (-1, 270, -1.0),
+        (1, 450, 1.0),
+        (-1, 450.2, 1.0),
+        (1, -90, 1.0),
+    ],
+)
+def test_the_angle_says_which_way_an_arc_turns_where_the_axis_does_not(
+    axis: int, angle: float, sense: float
+) -> None:
+    arc = records(QUARTERS.format(axis=axis, angle=angle))[-1]
+    assert isinstance(arc, Circle)
+    assert (arc.normal[2], arc.turns) == (sense, 2 if abs(angle) > 360 else 1)
+
+
+def test_an_angle_that_fits_no_way_is_refused() -> None:
+    with pytest.raises(ProgramError, match="ANGLE,120 of an arc whose points are 90 degree apart"):
+        records(QUARTERS.format(axis=1, angle=120))
+    # Said on purpose, the sense of the axes counts.
+    assert senses(QUARTERS.format(axis=1, angle=270), "clockwise") == [-1.0]
+
+
+HALF = "MOVARC/-6,6,0,0,0,1,6,ANGLE,180\nGOTO/-12,6,0\n"
+
+
+@pytest.mark.parametrize("text", [QUARTERS + HALF, "GOTO/0,6,0\n" + HALF + QUARTERS])
+def test_half_a_turn_is_refused_where_axes_do_not_tell_the_sense(text: str) -> None:
+    assert len(senses(text.format(axis=1, angle=90))) == 2
+    with pytest.raises(ProgramError, match="an arc that may turn either way") as caught:
+        records(text.format(axis=-1, angle=90))
+    assert caught.value.position is not None
+    assert "180" in caught.value.position.text
+
+
+def test_an_arc_by_its_words() -> None:
+    text = "GOTO/6,0,0\nMOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 6, TIMES, 2\nGOTO/0,6,0\n"
+    assert records(text)[-1] == Circle(2, 0.0, 6.0, 0.0, (0.0, 0.0, 0.0), (-0.0, -0.0, -1.0), 2)

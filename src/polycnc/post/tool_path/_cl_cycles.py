@@ -1,8 +1,8 @@
 """Drilling cycles in APT words: by name (DEPTH, CLEAR, ...) as CAM systems write them today, or by place.
 
 By name the levels count from the point: DEPTH or FEDTO downwards, CLEAR upwards; RAPTO goes further down from
-CLEAR, or is the level itself where there is no CLEAR; RETURN or RTRCTO is the level to leave to. By place the
-numbers are the depth, the feed with its unit, and the clearance.
+CLEAR, or is the level itself with FEDTO or where there is no CLEAR; RETURN or RTRCTO is the level to leave to. By
+place the numbers are the depth, the feed with its unit, and the clearance.
 """
 
 from __future__ import annotations
@@ -67,7 +67,9 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
             bare.pop(0)  # threads per inch
         clear = bare.pop(0)
     rapid_to = values.get("RAPTO", 0.0)
-    start = rapid_to if clear is None else clear - rapid_to
+    # With FEDTO, RAPTO is a level like the others; with DEPTH, and by place, it goes further down from CLEAR.
+    is_level = clear is None or ("FEDTO" in values and "RAPTO" in values)
+    start = rapid_to if is_level or clear is None else clear - rapid_to
     out = values.get("RETURN", values.get("RTRCTO", start if clear is None else clear))
     dwell = values.get("DWELL", 0.0)
     if kind == "drill" and dwell > 0.0:

@@ -166,9 +166,15 @@ def coordinate_system(reading: Reading, statement: Statement) -> Iterator[Record
 def circle(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read CIRCLE or MOVARC; the arc comes with the point behind it.
 
-    The axis is by the right-hand rule, in a CLSF of NX it is for a clockwise direction.
+    The axis is by the right-hand rule, in a CLSF of NX it is for a clockwise direction. The numbers stand by place, or
+    behind CENTER, AXIS and RADIUS.
     """
     numbers = statement.numbers()
+    if not numbers and (first := statement.peek()) is not None and first.text == "CENTER":
+        for word in ("CENTER", "AXIS", "RADIUS"):
+            if (token := statement.peek()) is not None and token.text == word:
+                next(iter(statement))
+                numbers += statement.numbers()
     if len(numbers) not in (4, 6) and len(numbers) < 7:
         raise statement.fail(
             f"{statement.major} needs a centre, an axis and a radius, and has {len(numbers)} numbers",

@@ -195,12 +195,22 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read a tool change; the tool that is in the spindle with the same offsets is not changed again."""
     if (token := statement.peek()) is not None and token.text in ("TOOL", "TURRET"):
         next(iter(statement))
+    elif token is not None and token.text == "ADJUST" and statement.major == "TOOLNO":
+        next(iter(statement))
+        register = statement.number("the number of an offset")
+        reading.take_offset(statement, statement.whole(register, "the number of an offset") or 0)
+        return
     number = statement.number("a tool number")
     if not number.is_integer() or number < 0:
         raise statement.fail(
             f"a tool number must be a whole number, not {number:g}", "Write it like LOADTL/3."
         )
-    if statement.major == "TOOLNO" and (kind := statement.peek()) is not None and kind.text in _TOOL_KINDS:
+    kind = statement.peek()
+    if (
+        statement.major == "TOOLNO"
+        and kind is not None
+        and (kind.text in _TOOL_KINDS or kind.number is not None)
+    ):
         # CATIA describes the tool; LOADTL changes it, or nothing does before it moves.
         reading.announced = Tool(statement.line, int(number))
         reading.is_lathe = kind.text in ("TURN", "LATHE")
