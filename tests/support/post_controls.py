@@ -22,6 +22,7 @@ MACROS = {
     "ELSE\n!-G19!!-G02!$X$$Y$$Z$$J$$K$$F$\nENDIF",
     "ARC_CCW": "<N=PLANE>\nIF(N==17)\n!-G17!!-G03!$X$$Y$$Z$$I$$J$$F$\nELSE IF(N==18)\n!-G18!!-G03!$X$$Y$$Z$$I$$K$$F$\n"
     "ELSE\n!-G19!!-G03!$X$$Y$$Z$$J$$K$$F$\nENDIF",
+    "COMP_LEFT": '"G41"',
     "DWELL": "<P=DWELL>!G04!$P$",
     "STOP": "!M00!",
     "OPTIONAL_STOP": "!M01!",

@@ -79,7 +79,7 @@ def test_post_prints_the_program_and_tells_the_rest_beside(tmp_path: Path) -> No
     (tmp_path / "a.cl").write_text("PARTNO A\nLOADTL/1\nFOO\nRAPID\nGOTO/1,2,3\nFINI\n")
     done = polycnc("post", "a.cl", "-c", "din", cwd=tmp_path)
     assert done.stdout.splitlines()[:2] == ["%", "N10 (A)"]
-    assert "X1.000 Y2.000 Z3.000" in done.stdout
+    assert "G0 X1.000 Y2.000\nN80 Z3.000\n" in done.stdout
     told = done.stderr.splitlines()
     assert told[0] == "tool path  a.cl"
     assert told[1].split() == ["6", "records,", "1", "tool,", "0", "arcs,", "0", "holes"]

@@ -66,6 +66,37 @@ def test_without_such_a_macro_it_is_remarked() -> None:
     ]
 
 
+NEEDED = {
+    "AUXFUN/17": "AUXFUN/17 is an M code",
+    "PREFUN/68": "PREFUN/68 is a G code",
+    "OPSKIP/ON": "OPSKIP/ON says which blocks",
+    "SYNC/3": "SYNC/3 waits for another channel",
+    "CHANNEL/1\nCHANNEL/2": "CHANNEL/2 goes to another channel",
+    "HEAD/1\nHEAD/ 2": "HEAD/2 goes to another head",
+    "SWITCH/9\nRAPID\nGOTO/1,1,1\nSWITCH/3": "SWITCH/3 takes another point of the tool",
+}
+
+
+@pytest.mark.parametrize("text", NEEDED)
+def test_what_would_change_the_part_needs_a_macro(text: str) -> None:
+    path = f"{text}\nRAPID\nGOTO/1,2,3\n"
+    with pytest.raises(ProgramError) as caught:
+        posted(path)
+    assert NEEDED[text] in caught.value.what
+    assert "WORD_" in caught.value.hint
+    word = text.rpartition("\n")[2].partition("/")[0]
+    blocks, summary = posted(path, control(macros={f"WORD_{word}": '"= "$WORDTEXT$'}))
+    assert f"= {text.rpartition('/')[2].strip()}" in [block.replace("=  ", "= ") for block in blocks]
+    assert summary.remarks == ()
+
+
+def test_what_says_what_holds_anyway_is_remarked() -> None:
+    text = "OPSKIP/OFF\nCHANNEL/1\nSWITCH/9\nRAPID\nGOTO/1,2,3\nCHANNEL/ 1\nLOADTL/2\nSWITCH/7\nGOTO/1,2,4\n"
+    _, summary = posted(text.replace("GOTO/1,2,4", "RAPID\nGOTO/1,2,4"))
+    names = [remark.text.partition(" ")[0] for remark in summary.remarks]
+    assert names == ["OPSKIP", "CHANNEL", "SWITCH"]
+
+
 def test_a_record_that_moves_stays_an_error_whatever_macros_there_are() -> None:
     with pytest.raises(ProgramError, match="TRACUT moves the tool"):
         posted("TRACUT/1,0,0,5\nGOTO/1,2,3\n", control(macros={"WORD_TRACUT": "X", "WORD": "Y"}))

@@ -22,8 +22,10 @@ from polycnc.post.tool_path._records import (
     From,
     Goto,
     Home,
+    Rapid,
     Record,
     Retract,
+    Spindle,
     Text,
     Tool,
     ToolShape,
@@ -253,12 +255,21 @@ REFUSED = {
     "TLAXIS/NORMPS": "TLAXIS with something else than a direction",
     "TLAXIS/0,0,0": "a direction without a length",
     "SAFPOS/1,2,3": "SAFPOS moves the tool",
-    "SET/OFSETL,12": "SET moves the tool",
+    "SET/OFSETL,12": "length offset 12 for a tool that has moved with none",
+    "LOADTL/3\nRAPID\nGOTO/1,2,3\nSET/OFSETL,12": "length offset 12 for a tool that has moved with 3",
+    "LOADTL/3\nSET/OFSETL,12,OFF": "SET with something else than OFSETL",
+    "LOADTL/3\nSET/HOLDER,12": "SET with something else than OFSETL",
+    "CYCLE81/10,0,2,-25,0": "CYCLE81 moves the tool",
+    "TLCOMP/ON,LEFT": "TLCOMP moves the tool",
+    "CALLSUB/1001": "CALLSUB moves the tool",
+    "TRNTYP/LOCAL,0,0,0": "TRNTYP with other coordinates",
     "LATHE/ROUGH,SH1,SH2": "LATHE moves the tool",
     "LOCAL_ORIGIN, 0.00000, 130.00000, 0.000000": "LOCAL_ORIGIN moves the tool",
     "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
     "CYCLE/DRILL,12,2,3,4,5": "the numbers of the cycle from 4 on are not known",
-    "CYCLE/BORE,14.5,0,0,2,85,1,355,ON,0,0,1000": "the numbers of the cycle from 2 on are not known",
+    "CYCLE/BORE,14.5,0,0,2,85,1,355,ON,0,0,1000": "ON,0 in a cycle is not known",
+    "CYCLE/BORE,14.5,0,0,2,85": "the numbers of the cycle from 2 on are not known",
+    "CYCLE/DRILL,DEPTH,5,CLEAR,2,FOO,7": "FOO,7 in a cycle is not known",
     "CYCLE/DRILL,126,85,1,MMPM": "which of the numbers 85 and 1 is the feed",
     "GOTO/1,2,3,0,0.6,0.8\nMULTAX/OFF\nGOTO/1,2,9": "MULTAX/OFF while the tool is tilted",
     "TLAXIS/0,0.6,0.8\nMULTAX/OFF\n" + "GOTO/1,2,9\n" * 9: "MULTAX/OFF while the tool is tilted",
@@ -279,6 +290,7 @@ REFUSED = {
     "CUTCOM/ON\nGOTO/1,2,3": "CUTCOM/ON without a side",
     "CYCLE/BORE,BACK,DEPTH,5,CLEAR,1": "cuts from below",
     "CYCLE/TAP,DEEP,DEPTH,5,CLEAR,1,STEP,2": "a thread tapped in pecks",
+    "SPINDL/ORIENT,90": "SPINDL/ORIENT is not known",
 }
 
 
@@ -397,6 +409,46 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
         "CYCLE/INIT\nCYCLE/DEEP2,DEPTH,17,STEP,3,MMPM,120,CLEAR,2",
         [Cycle(2, "deep", 17.0, 2.0, 2.0, 120.0, peck=3.0)],
     ),
+    "SolidWorks CAM: a first peck and the others": (
+        "CYCLE/INIT\nCYCLE/DEEP2,FEDTO,34.,1STPECK,6.,SUBPECK,2.5,MMPM,410.5,RAPTO,3.,RTRCTO,21.",
+        [Cycle(2, "deep", 34.0, 3.0, 21.0, 410.5, peck=2.5)],
+    ),
+    "SolidWorks CAM: INSERT is a note": (
+        "INSERT/[HOLDER=A-32] 9MM X 90DEG SPOT DRILL\nINSERT/Stock Size X9. Y8. Z7.\n"
+        "INSERT/M123 (On)\nINSERT/G91 G28 Z0.",
+        [
+            Text(1, "comment", "[HOLDER=A-32] 9MM X 90DEG SPOT DRILL"),
+            Text(2, "comment", "Stock Size X9. Y8. Z7."),
+            Text(3, "insert", "M123 (On)"),
+            Text(4, "insert", "G91 G28 Z0."),
+        ],
+    ),
+    "SolidWorks CAM: what the part's coordinates are is said again": (
+        "TRNTYP/WORLD,0,0,0\nCSI_SET_FLUTE_LENGTH/19.\nCSI_SET_EXTENSION_LENGTH/25.\nGOTO/1,2,3",
+        [Goto(4, 1.0, 2.0, 3.0)],
+    ),
+    "NCL: the offset of a tool": ("LOADTL/7,LENGTH,90,OFFSET,17", [Tool(1, 7, None, 90.0, 17)]),
+    "Autodesk: with FEDTO, RAPTO is a level": (
+        "CYCLE/DRILL, FEDTO, 9.5, MMPM, 120, CLEAR, 14, RTRCTO, 13, RAPTO, 11",
+        [Cycle(1, "drill", 9.5, 11.0, 13.0, 120.0)],
+    ),
+    "Autodesk: RAPTO goes down from the clearance": (
+        "CYCLE/DRILL, 9.5, MMPM, 120, 14, RAPTO, 11",
+        [Cycle(1, "drill", 9.5, 3.0, 14.0, 120.0)],
+    ),
+    "CATIA: TOOLNO of a mill without its kind": (
+        "TOOLNO/7, 18.000000, 2.000000,, 110.000000,$\n\nLOADTL/7,1\nRAPID\nGOTO/1,2,3",
+        [Tool(3, 7), Rapid(4), Goto(5, 1.0, 2.0, 3.0)],
+    ),
+    "NCL: TOOLNO/ADJUST is the length offset": (
+        "LOADTL/7\nTOOLNO/ADJUST,17\nRAPID\nGOTO/1,2,3",
+        [Tool(1, 7, None, None, 17), Rapid(3), Goto(4, 1.0, 2.0, 3.0)],
+    ),
+    "an offset behind the tool change": (
+        "LOADTL/3\nSPINDL/RPM,500,CLW\nSET/OFSETL,13\nRAPID\nGOTO/1,2,3\nSET/OFSETL,13,ON\nLOADTL/3",
+        [Tool(1, 3, None, None, 13), Spindle(2, "cw", 500.0), Rapid(4), Goto(5, 1.0, 2.0, 3.0)],
+    ),
+    "the spindle is locked": ("SPINDL/LOCK", [Spindle(1, "off")]),
 }
 
 
@@ -442,6 +494,30 @@ def test_a_highest_speed_is_not_lost() -> None:
     blocks, summary = posted(text, clamped)
     assert "G50R2600.000" in blocks
     assert summary.remarks == ()
+
+
+def test_a_highest_speed_that_would_be_lost_with_a_surface_speed_is_an_error() -> None:
+    text = "SPINDL/SMM,180,CLW,MAXRPM,2600\n"
+    without = control(macros={"SPINDLE_CW": "<R=SPINDLEMODE>\n$S$"})
+    with pytest.raises(ProgramError, match="a highest speed of 2600 rpm, and SPINDLE_CW"):
+        posted(text, without)
+    clamped = control(macros={"SPINDLE_CW": "<R=SPINDLEMODE>\n<R=MAXRPM>\nG50$R$"})
+    assert "G50R2600.000" in posted(text, clamped)[0]
+
+
+@pytest.mark.parametrize(
+    ("text", "macro"),
+    [
+        ("LOADTL/1\nCUTCOM/LEFT\n", "COMP_LEFT"),
+        ("LOADTL/1\nCUTCOM/RIGHT\n", "COMP_RIGHT"),
+        ("INSERT M71\n", "INSERT"),
+        ("LOADTL/1\nLOADTL/2\n", "TOOL_CHANGE"),
+    ],
+)
+def test_a_macro_without_which_another_part_would_be_cut_must_be_there(text: str, macro: str) -> None:
+    with pytest.raises(ProgramError, match=f"the control file has no macro {macro}"):
+        posted(text + "RAPID\nGOTO/1,2,3\n", control(macros={macro: ""}))
+    assert "= here" in posted(text + "RAPID\nGOTO/1,2,3\n", control(macros={macro: '"= here"'}))[0]
 
 
 def test_the_way_of_an_arc_is_as_long_as_it_turns() -> None:
@@ -615,3 +691,70 @@ def test_a_left_hand_thread_is_tapped_left_handed(name: str, sense: str, code: s
     assert result.ok
     assert re.findall(r"G[78]4", result.text or "") == [code]
     assert f"{'G98' if back else 'G99'} {code} X10. Y10. Z-12. R3. F800." in (result.text or "")
+
+
+CYLINDER = """GOTO/20,7,-3
+INDIRV/0,0,{way}
+TLON,GOFWD/ (CYLNDR / 20.00000,    7.00000,    9.00000, 0.000000,-1.000000,$
+             0.000000,   12.00000),ON,$
+            (PLANE/PERPTO,(PLANE/(POINT/ 20.00000,  7.00000,  9.00000),PERPTO,$
+            (VECTOR/ 0.000000,-1.000000, 0.000000)),(POINT/ 20.00000,  7.00000,  9.00000),$
+            (POINT/ {end},  7.00000,  9.00000))
+"""
+
+
+@pytest.mark.parametrize(("way", "end", "sense"), [("1", "32", 1.0), ("-1", "32", -1.0), ("1", "8", 1.0)])
+def test_an_arc_in_space_of_catia_goes_round_its_cylinder(way: str, end: str, sense: float) -> None:
+    # It begins beside the axis, at X8, so that INDIRV along Z says which way it goes.
+    text = CYLINDER.format(way=way, end=end).replace("GOTO/20,7,-3", "GOTO/8,7,9")
+    arc = records(text)[-1]
+    assert isinstance(arc, Circle)
+    assert (arc.center, arc.x, arc.y, arc.z) == ((20.0, 7.0, 9.0), float(end), 7.0, 9.0)
+    assert arc.normal == (0.0, sense, 0.0)
+
+
+QUARTERS = "GOTO/6,0,0\nMOVARC/0,0,0,0,0,{axis},6,ANGLE,{angle}\nGOTO/0,6,0\n"
+
+
+@pytest.mark.parametrize(
+    ("axis", "angle", "sense"),
+    [
+        (1, 90, 1.0),
+        (-1, 90, 1.0),
+        (1, 270, -1.0),
+        (-1, 270, -1.0),
+        (1, 450, 1.0),
+        (-1, 450.2, 1.0),
+        (1, -90, 1.0),
+    ],
+)
+def test_the_angle_says_which_way_an_arc_turns_where_the_axis_does_not(
+    axis: int, angle: float, sense: float
+) -> None:
+    arc = records(QUARTERS.format(axis=axis, angle=angle))[-1]
+    assert isinstance(arc, Circle)
+    assert (arc.normal[2], arc.turns) == (sense, 2 if abs(angle) > 360 else 1)
+
+
+def test_an_angle_that_fits_no_way_is_refused() -> None:
+    with pytest.raises(ProgramError, match="ANGLE,120 of an arc whose points are 90 degree apart"):
+        records(QUARTERS.format(axis=1, angle=120))
+    # Said on purpose, the sense of the axes counts.
+    assert senses(QUARTERS.format(axis=1, angle=270), "clockwise") == [-1.0]
+
+
+HALF = "MOVARC/-6,6,0,0,0,1,6,ANGLE,180\nGOTO/-12,6,0\n"
+
+
+@pytest.mark.parametrize("text", [QUARTERS + HALF, "GOTO/0,6,0\n" + HALF + QUARTERS])
+def test_half_a_turn_is_refused_where_axes_do_not_tell_the_sense(text: str) -> None:
+    assert len(senses(text.format(axis=1, angle=90))) == 2
+    with pytest.raises(ProgramError, match="an arc that may turn either way") as caught:
+        records(text.format(axis=-1, angle=90))
+    assert caught.value.position is not None
+    assert "180" in caught.value.position.text
+
+
+def test_an_arc_by_its_words() -> None:
+    text = "GOTO/6,0,0\nMOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 6, TIMES, 2\nGOTO/0,6,0\n"
+    assert records(text)[-1] == Circle(2, 0.0, 6.0, 0.0, (0.0, 0.0, 0.0), (-0.0, -0.0, -1.0), 2)

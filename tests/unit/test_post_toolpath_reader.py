@@ -126,7 +126,7 @@ CYCLES: dict[str, Cycle] = {
     "DEEP,30,100,MMPM,2,5": Cycle(1, "deep", 30.0, 2.0, 2.0, 100.0, peck=5.0),
     "CSINK,DEPTH,3,MMPM,80,CLEAR,1,DWELL,0.2": Cycle(1, "dwell", 3.0, 1.0, 1.0, 80.0, dwell_s=0.2),
     "FACE,DEPTH,3,MMPM,80,CLEAR,1": Cycle(1, "dwell", 3.0, 1.0, 1.0, 80.0),
-    "DEEP,DEPTH,30,STEP,5,4,3,MMPR,0.1,CLEAR,2": Cycle(1, "deep", 30.0, 2.0, 2.0, 0.1, True, 5.0),
+    "DEEP,DEPTH,30,STEP,5,4,3,MMPR,0.1,CLEAR,2": Cycle(1, "deep", 30.0, 2.0, 2.0, 0.1, True, 3.0),
     "DRILL,DEEP,STEP,6,FEDTO,-30,RAPTO,2": Cycle(1, "deep", 30.0, 2.0, 2.0, peck=6.0),
     "BRKCHP,DEPTH,20,STEP,4,CLEAR,1": Cycle(1, "chip_break", 20.0, 1.0, 1.0, peck=4.0),
     "TAP,DEPTH,12,PITCH,1.5,CLEAR,5": Cycle(1, "tap", 12.0, 5.0, 5.0, 1.5, True),

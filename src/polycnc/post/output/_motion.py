@@ -42,6 +42,7 @@ class Motion:
         self._parameters = output.parameters
         self._scale = output.scale
         self._must_write = True
+        self._elsewhere = False  # a macro moved the machine: nobody knows where it stands
         self._first = 0.0
         self._tilt = self._turn = 0.0
         self._rotary: dict[str, float] = {}
@@ -160,7 +161,7 @@ class Motion:
                 self.feed_mm += length
             here = step.point
         self.position = end
-        self._must_write = False
+        self._must_write = self._elsewhere = False
 
     def set_position(self, position: Vector | None) -> None:
         """Take where the tool stands; its axis is written with the next move."""
@@ -181,6 +182,10 @@ class Motion:
         """Know that the machine may stand elsewhere: the next move is written, wherever it goes."""
         self._must_write = True
 
+    def tool_changed(self) -> None:
+        """Know that the machine stands where tools are changed."""
+        self._must_write = self._elsewhere = True
+
     def move(self, act: Straight) -> None:
         """Go straight to a point."""
         line, _, end, axis, rapid = act
@@ -199,7 +204,7 @@ class Motion:
         start = self.position
         if start == end and not self._must_write:
             return
-        self._must_write = False
+        elsewhere, self._elsewhere, self._must_write = self._elsewhere, False, False
         x, y, z = end
         if self._flat and abs(y) > _OFF_PLANE_MM:
             raise self._off_plane(line, y)
@@ -222,6 +227,12 @@ class Motion:
             self._check("RAPID", line)
             self._call("RAPID", words)
         elif self._thread is not None:
+            if elsewhere:
+                raise self._output.fail(
+                    line,
+                    "a thread that begins where the tool was changed",
+                    "Write RAPID and a GOTO to its start before it.",
+                )
             self.feed_mm += math.dist(start, end)
             self._check("THREAD", line)
             words["LEAD"] = self._lead(line, self._thread) * scale
@@ -260,8 +271,10 @@ class Motion:
         start = self.position
         if start == end and not self._must_write:
             return
-        self._must_write = False
         after = self.angles
+        if self._elsewhere:
+            start, before = None, after
+        self._elsewhere = self._must_write = False
         length = self._reach(line, kinematics, after)
         tolerance = self._parameters.tolerance_mm
         pieces: Iterable[tuple[Vector, Angles]] = ((end, after),)

@@ -16,6 +16,11 @@ from polycnc.units import MM_PER_INCH
 Words = Mapping[str, float | str]
 _NOTHING: Words = {}
 _MANY = 64
+_NEEDED = {
+    "COMP_LEFT": "the control is to compensate the radius of the tool",
+    "COMP_RIGHT": "the control is to compensate the radius of the tool",
+    "INSERT": "a block for the control",
+}
 
 
 class Output:
@@ -83,8 +88,18 @@ class Output:
         self.call(macro, words)
 
     def state(self, macro: str, line: int, words: Words = _NOTHING) -> None:
-        """Call a macro whose absence is remarked."""
+        """Call a macro whose absence is remarked, or an error where another part would be cut without it.
+
+        Raises:
+            ProgramError: it is so.
+        """
         if not self.control.has(macro):
+            if macro in _NEEDED:
+                raise self.fail(
+                    line,
+                    f"{_NEEDED[macro]}, and the control file has no macro {macro}",
+                    f"Add {macro} to [nc_macros] of the control file, or take the statement out of the tool path.",
+                )
             self._tool_path.remarks.add(
                 line, f"the control file has no macro {macro}, so nothing was written"
             )

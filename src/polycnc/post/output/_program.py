@@ -17,6 +17,7 @@ from polycnc.post.output._drilling import Drilling
 from polycnc.post.output._motion import Motion
 from polycnc.post.output._output import Output
 from polycnc.post.tool_path._course import Act, Course, CourseError, Hole, Straight, Turn
+from polycnc.post.tool_path._needed import Needed
 from polycnc.post.tool_path._records import (
     Axis,
     Circle,
@@ -186,6 +187,7 @@ class _Driver:
         self._spindle_words: tuple[str, dict[str, float | str], int] | None = None
         self._coolant_mode: tuple[str, int] = ("off", 0)
         self._resumes = False
+        self._needed = Needed()
 
     def handlers(self) -> dict[type[Any], Callable[[Any], None]]:
         """Return the function for each kind of record."""
@@ -348,10 +350,11 @@ class _Driver:
         self._take(record)
         self.drilling.close()
         self._resumes = True
+        self._needed.tool_changed()
         self.motion.thread(None)
         self._tool_shape(ToolShape(record.line, record.name, None, record.length))
         self.tools += 1
-        self._tool_number = record.number
+        before, self._tool_number = float(self._tool_number), record.number
         # A length that was said of an earlier tool is not that of this one.
         self.motion.tool_length_mm = self._shape.length if self._length_said else None
         self._length_said = False
@@ -368,8 +371,14 @@ class _Driver:
             "H": number if record.h is None else float(record.h),
             "D": number if record.d is None else float(record.d),
         }
+        if self.tools > 1 and number != before and not self.output.control.has("TOOL_CHANGE"):
+            raise self.output.fail(
+                record.line,
+                f"another tool, {record.number}, and the control file has no macro TOOL_CHANGE",
+                "Add TOOL_CHANGE to its [nc_macros], or make a tool path of its own for each tool.",
+            )
         self.output.state("TOOL_CHANGE", record.line, words)
-        self.motion.moved_by_macro()
+        self.motion.tool_changed()
 
     def _spindle(self, record: Spindle) -> None:
         self.drilling.close()
@@ -395,6 +404,13 @@ class _Driver:
                 record.line,
                 f"a surface speed, and {macro} of the control file does not tell it from revolutions",
                 "Let the CAM system write RPM, or ask for SPINDLEMODE in the macro if the control has G96.",
+            )
+        if surface and record.max_rpm and control.has(macro) and not control.uses(macro, "MAXRPM"):
+            raise self.output.fail(
+                record.line,
+                f"a highest speed of {record.max_rpm:g} rpm, and {macro} of the control file does not write it",
+                "Ask for MAXRPM in the macro if the control has a clamp (G50 S, G92 S), or let the CAM system write "
+                "RPM.",
             )
         self._turning = Spindle(record.line, "cw" if sense == "on" else sense, speed, surface)
         self.drilling.rpm = 0.0 if surface else speed
@@ -537,6 +553,8 @@ class _Driver:
         control = self.output.control
         macro = next((each for each in word_macros(record.name, record.first) if control.has(each)), None)
         if macro is None or self.output.parameters.strict:
+            if (why := self._needed.why(record)) is not None:
+                raise self.output.fail(record.line, *why)
             self.output.remark(record.line, f"{record.name} is not known and was left out")
             return
         if not self._in_path:

@@ -1,8 +1,8 @@
 """Drilling cycles in APT words: by name (DEPTH, CLEAR, ...) as CAM systems write them today, or by place.
 
 By name the levels count from the point: DEPTH or FEDTO downwards, CLEAR upwards; RAPTO goes further down from
-CLEAR, or is the level itself where there is no CLEAR; RETURN or RTRCTO is the level to leave to. By place the
-numbers are the depth, the feed with its unit, and the clearance.
+CLEAR, or is the level itself with FEDTO or where there is no CLEAR; RETURN or RTRCTO is the level to leave to. By
+place the numbers are the depth, the feed with its unit, and the clearance.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _KINDS: dict[str, CycleKind] = {
 _TURNING = ("TURN", "ROUGH", "FINISH", "GROOVE", "THREAD", "PROFIL", "CONTUR", "AREA", "LATHE", "TURNIN")
 _PASSES = "Let the CAM system write each pass as points (GOTO, RAPID), not a cycle of the control."
 _SLOW_MM_MIN = 20.0  # no drill is as slow, and no clearance as high
-_PECKS = ("STEP", "INCR")
+_PECKS = ("STEP", "INCR", "1STPECK", "SUBPECK")
 _NUMBERED = ("DEPTH", "FEDTO", "CLEAR", "RAPTO", "RETURN", "RTRCTO", "DWELL", *_PECKS)
 
 
@@ -67,12 +67,16 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
             bare.pop(0)  # threads per inch
         clear = bare.pop(0)
     rapid_to = values.get("RAPTO", 0.0)
-    start = rapid_to if clear is None else clear - rapid_to
+    # With FEDTO, RAPTO is a level like the others; with DEPTH, and by place, it goes further down from CLEAR.
+    is_level = clear is None or ("FEDTO" in values and "RAPTO" in values)
+    start = rapid_to if is_level or clear is None else clear - rapid_to
     out = values.get("RETURN", values.get("RTRCTO", start if clear is None else clear))
     dwell = values.get("DWELL", 0.0)
     if kind == "drill" and dwell > 0.0:
         kind = "dwell"
-    peck = next((values[word] for word in _PECKS if word in values), bare.pop(0) if bare else 0.0)
+    pecks = [values[word] for word in _PECKS if word in values]
+    # A control pecks by one depth: of several the smallest takes no more than any.
+    peck = min(pecks) if pecks else bare.pop(0) if bare else 0.0
     if kind == "drill" and any(word in values for word in _PECKS):
         kind = "deep"
     elif kind == "tap" and any(word in values for word in _PECKS):
@@ -95,6 +99,11 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
         raise statement.fail("a cycle whose feed begins below its depth", "Check CLEAR, RAPTO and DEPTH.")
     leave = None if (out == 0.0 and "RETURN" in values) or "AUTO" in words else max(out, start)
     return Cycle(statement.line, kind, bottom, start, leave, feed, per_revolution, peck, dwell)
+
+
+def _is_kind(word: str) -> bool:
+    """Return whether numbers by place may stand behind a word."""
+    return word in _KINDS or word in _TURNING
 
 
 def _split(
@@ -128,8 +137,16 @@ def _split(
         elif token.text in _NUMBERED:
             value = statement.number(f"a number behind {token.text}")
             values[token.text] = value if token.text == "DWELL" else value * scale
-            if token.text in _PECKS:
-                statement.numbers()  # further, smaller pecks
+            if token.text in _PECKS:  # several pecks, each smaller than the one before
+                values[token.text] = min((value, *(n for n in statement.numbers() if n > 0.0))) * scale
+        elif (
+            (after := statement.peek()) is not None and after.number is not None and not _is_kind(token.text)
+        ):
+            raise statement.fail(
+                f"{token.text},{after.text} in a cycle is not known",
+                "Take it out of the tool path, or let the CAM system write the moves of the holes as points.",
+                token,
+            )
     if feed is not None and not feed > 0.0:
         raise statement.fail(f"a cycle with a feed of {feed:g}", "Give a feed above 0.")
     return values, bare, feed, per_revolution

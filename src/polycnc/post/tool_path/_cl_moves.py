@@ -166,9 +166,15 @@ def coordinate_system(reading: Reading, statement: Statement) -> Iterator[Record
 def circle(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read CIRCLE or MOVARC; the arc comes with the point behind it.
 
-    The axis is by the right-hand rule, in a CLSF of NX it is for a clockwise direction.
+    The axis is by the right-hand rule, in a CLSF of NX it is for a clockwise direction. The numbers stand by place, or
+    behind CENTER, AXIS and RADIUS.
     """
     numbers = statement.numbers()
+    if not numbers and (first := statement.peek()) is not None and first.text == "CENTER":
+        for word in ("CENTER", "AXIS", "RADIUS"):
+            if (token := statement.peek()) is not None and token.text == word:
+                next(iter(statement))
+                numbers += statement.numbers()
     if len(numbers) not in (4, 6) and len(numbers) < 7:
         raise statement.fail(
             f"{statement.major} needs a centre, an axis and a radius, and has {len(numbers)} numbers",
@@ -201,16 +207,23 @@ def direction(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def follow_circle(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read TLON,GOFWD/(CIRCLE/...),ON,(LINE/...): the arc begins in the direction of INDIRV."""
+    """Read TLON,GOFWD/(CIRCLE/...),ON,(LINE/...): the arc begins in the direction of INDIRV.
+
+    In space CATIA writes (CYLNDR/centre, axis, radius),ON,(PLANE/...,(POINT/centre),(POINT/end)).
+    """
     found: dict[str, list[float]] = {}
     for token in statement:
-        if token.text in ("CIRCLE", "LINE"):
+        if token.text in ("CIRCLE", "CYLNDR", "LINE", "POINT", "VECTOR"):
             found[token.text] = [number * reading.scale for number in statement.numbers()]
-        elif token.number is None and token.text not in ("ON", "INTOF"):
+        elif token.number is None and token.text not in ("ON", "INTOF", "PLANE", "PERPTO"):
             raise statement.fail(
-                f"'{token.text}' in a move along a circle", "Only (CIRCLE/...),ON,(LINE/...) is known.", token
+                f"'{token.text}' in a move along a circle",
+                "Only (CIRCLE/...),ON,(LINE/...) and (CYLNDR/...),ON,(PLANE/...) are known.",
+                token,
             )
     circle, line = found.get("CIRCLE", []), found.get("LINE", [])
+    if "CYLNDR" in found and "CIRCLE" not in found:  # the last point is the end
+        circle, line = found["CYLNDR"], found.get("CYLNDR", [])[:3] + found.get("POINT", [])
     if len(circle) not in (4, 7) or len(line) not in (4, 6) or reading.direction is None:
         raise statement.fail(
             "a move along a circle without its circle, its end or its direction",

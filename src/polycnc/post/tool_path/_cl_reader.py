@@ -36,6 +36,7 @@ _MOVES = frozenset(
 )
 _CATIA_FRAME = re.compile(r"\$\$\s*\*CATIA\d", re.IGNORECASE)
 _MATRIX = 12
+_CONTROL_CYCLE = re.compile(r"CYCLE\d+")
 _CREO = re.compile(r"(->\s*)(?=(CUTTER|CSYS)\b)", re.IGNORECASE)
 
 
@@ -60,6 +61,7 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
         if isinstance(raw, Points):
             if end is not None:
                 raise _behind_the_end(source, number)
+            yield from reading.release()
             yield raw
             continue
         if not pieces and not reading.waits and (rest := _behind_goto(raw)):
@@ -67,6 +69,8 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
             if point is not None:
                 if end is not None:
                     raise _behind_the_end(source, number)
+                if reading.held:
+                    yield from reading.release()
                 yield point
                 continue
         text = decoded(raw)
@@ -81,7 +85,7 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
             pieces.clear()
             if end is not None and whole[0].part.strip().upper() == "FINI":
                 break
-            for record in _statement(source, reading, whole):
+            for record in reading.hold(_statement(source, reading, whole)):
                 if record.__class__ is End:
                     _check_recognised(source, reading)
                     end = End(record.line)
@@ -92,10 +96,11 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
             if end is not None and whole[0].part.strip().upper() == "FINI":
                 break
     if pieces and end is None:
-        yield from _statement(source, reading, pieces)
+        yield from reading.hold(_statement(source, reading, pieces))
     if reading.circle is not None:
         raise reading.circle.statement.fail("an arc without an end point", "Write a GOTO behind it.")
     _check_recognised(source, reading)
+    yield from reading.release()
     if end is not None:
         yield end
 
@@ -222,7 +227,7 @@ def _statement(source: Source, reading: Reading, pieces: list[Piece]) -> Iterato
     if handler is not None:
         reading.known += 1
         yield from handler(reading, statement)
-    elif major in LEFT_OUT_MOTION:
+    elif major in LEFT_OUT_MOTION or _CONTROL_CYCLE.fullmatch(major):
         raise statement.fail(
             f"{major} moves the tool or its coordinates in a way that is not known here",
             HINTS.get(major, "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead."),

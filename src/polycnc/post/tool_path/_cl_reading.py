@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.post.tool_path._arcs import off_circle, sweep_of
+from polycnc.post.tool_path._arcs import off_circle, radius_at, sweep_of
 from polycnc.post.tool_path._cl_statement import Statement
 from polycnc.post.tool_path._records import (
     LARGEST_MM,
@@ -18,9 +18,13 @@ from polycnc.post.tool_path._records import (
     UPRIGHT,
     Circle,
     Compensation,
+    Delta,
+    End,
     Goto,
+    Home,
     Points,
     Record,
+    Retract,
     Tool,
     Vector,
     WorkOffset,
@@ -32,6 +36,9 @@ ArcAxis: TypeAlias = Literal["auto", "counterclockwise", "clockwise"]
 
 
 _SAME_FRAME = 1e-6
+_ANGLE_DEG = 0.5
+_OFF_ANGLE_MM = 0.05
+_MOVES = (Goto, Circle, Delta, Home, Retract, End)
 
 
 @dataclass(slots=True)
@@ -59,6 +66,10 @@ class Reading:
     """The first word that only the CLSF of NX has, empty if there was none."""
     right_handed: int = 0
     """The line of the first CIRCLE/ that was read by the right-hand rule because nothing said otherwise, 0 if none."""
+    both_ways: Statement | None = None
+    """The first arc whose angle fits either sense of rotation."""
+    turned_round: bool = False
+    """Whether the angle of an arc said that its axis does not tell the sense of rotation."""
     frames: list[tuple[float, ...]] = field(default_factory=list)
     """The coordinate systems in the order in which they were first given (MSYS, CSYS)."""
     frame: int = 0
@@ -78,6 +89,10 @@ class Reading:
     """The last PITCH, in mm."""
     tool: Tool | None = None
     """The last tool change."""
+    offset: int | None = None
+    """The number of the length offset in force."""
+    held: list[Record] = field(default_factory=list)
+    """A tool change and what stands behind it, up to the first move: an offset may follow."""
     cycle_began: int = 0
     """How many moves came before the last CYCLE."""
     units_said: bool = False
@@ -96,6 +111,40 @@ class Reading:
     def waits(self) -> bool:
         """Whether the next point needs a look: a CUTCOM/ON waits for its side, a tool for its change."""
         return self.resumes or self.announced is not None or self.axis_unsure is not None
+
+    def hold(self, records: Iterable[Record]) -> Iterator[Record]:
+        """Yield records, but a tool change and what stands behind it only before the first move."""
+        for record in records:
+            if isinstance(record, Tool):
+                yield from self.release()
+                self.held.append(record)
+                self.offset = record.number if record.h is None else record.h
+            elif self.held and not isinstance(record, _MOVES):
+                self.held.append(record)
+            else:
+                yield from self.release()
+                yield record
+
+    def release(self) -> Iterator[Record]:
+        """Yield what is held."""
+        held, self.held = self.held, []
+        yield from held
+
+    def take_offset(self, statement: Statement, number: int) -> None:
+        """Take the number of the length offset.
+
+        Raises:
+            ProgramError: the tool has moved with another one.
+        """
+        if self.held and isinstance(self.held[0], Tool):
+            self.held[0] = self.held[0]._replace(h=number)
+        elif number != self.offset:
+            raise statement.fail(
+                f"length offset {number} for a tool that has moved with "
+                + ("none" if self.offset is None else str(self.offset)),
+                "Write it right behind the tool change, before the tool moves.",
+            )
+        self.offset = number
 
     def resume(self, statement: Statement) -> Compensation:
         """Return the compensation that CUTCOM/ON takes up again.
@@ -209,14 +258,41 @@ class Reading:
                 f"the end point of the arc lies {off:.4g} mm off the circle through its start",
                 "Check the centre, and the points before and behind the arc.",
             )
-        turns = circle.turns
+        turns, normal = circle.turns, circle.normal
         if circle.angle_deg is not None:
-            sweep = sweep_of(start, end, circle.center, circle.normal)
-            turns = max(1, round((abs(circle.angle_deg) - math.degrees(sweep)) / 360.0) + 1)
+            sweep = math.degrees(sweep_of(start, end, circle.center, normal))
+            angle = abs(circle.angle_deg)
+            if self.arc_axis == "auto" and self._turns_round(circle, start, angle, sweep):
+                normal, sweep = (-normal[0], -normal[1], -normal[2]), 360.0 - sweep
+            turns = max(1, round((angle - sweep) / 360.0) + 1)
         if turns > MOST_TURNS:
             raise statement.fail(f"an arc of {turns} turns", f"Write at most {MOST_TURNS} turns in one arc.")
         self.position = end
-        return Circle(statement.line, *end, circle.center, circle.normal, turns)
+        return Circle(statement.line, *end, circle.center, normal, turns)
+
+    def _turns_round(self, circle: PendingCircle, start: Vector, angle: float, sweep: float) -> bool:
+        """Return whether an arc turns against its axis, as its ANGLE has it: some systems give the plane's normal.
+
+        Raises:
+            ProgramError: the angle fits neither sense, or both where axes do not tell it.
+        """
+        radius = radius_at(start, circle.center, circle.normal)
+        near = _ANGLE_DEG + math.degrees(_OFF_ANGLE_MM / max(radius, _OFF_ANGLE_MM))
+        with_axis, against = (abs((angle - each + 180.0) % 360.0 - 180.0) <= near for each in (sweep, -sweep))
+        if not with_axis and not against:
+            raise circle.statement.fail(
+                f"ANGLE,{angle:g} of an arc whose points are {sweep:.5g} degree apart",
+                "Check the angle, the centre, and the points before and behind the arc.",
+            )
+        if with_axis and against:
+            self.both_ways = self.both_ways or circle.statement
+        self.turned_round |= not with_axis
+        if self.turned_round and self.both_ways is not None:
+            raise self.both_ways.fail(
+                "an arc that may turn either way: other arcs show that their axes do not tell the sense of rotation",
+                "Let the CAM system write the axis by the right-hand rule, or split half and whole turns.",
+            )
+        return not with_axis
 
 
 def _same_frame(one: tuple[float, ...], other: tuple[float, ...]) -> bool:

@@ -33,6 +33,9 @@ from polycnc.units import MM_PER_INCH
 TEXTS = re.compile(r"\s*(PARTNO|PPRINT|INSERT|REMARK|TPRINT)\b\s*/?\s?(.*)", re.IGNORECASE)
 """Statements whose text is taken as it stands, with or without a slash."""
 
+_NOTE = re.compile(r"\[|[A-Z][a-z]+\b(?!\s*[(=\[])")
+"""How the text of an INSERT begins that is no block of a control: CAM systems write notes as INSERT, too."""
+
 IGNORED = frozenset(
     (
         *(
@@ -47,6 +50,7 @@ IGNORED = frozenset(
             "CUT",
             "CLPRNT",
         ),
+        *("CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH"),
         *("NOPOST", "PLABEL", "LEADER", "REWIND", "CATPROCESS", "AUTOPS", "TLONPS", "TLOFPS", "PSIS"),
     )
 )
@@ -58,7 +62,6 @@ LEFT_OUT_MOTION = frozenset(
         *("ROTATE", "ROTHED", "TRACUT", "COPY", "TRANS", "ORIGIN", "DNTCUT", "SPLINE", "NURBS", "GOCLER"),
         *(
             "SAFPOS",
-            "SET",
             "HOMEPT",
             "LCS",
             "CALSUB",
@@ -69,6 +72,7 @@ LEFT_OUT_MOTION = frozenset(
             "SCURV",
             "MATRIX",
         ),
+        *("MIRROR", "SCALE", "REFSYS", "CALL", "CALLSUB", "LOOPST", "JUMPTO", "TLCOMP"),
         *("LATHE", "LOCAL_ORIGIN", "PROFIL", "SCRUB", "CONTUR", "AREA", "FMILL", "AMILL", "RMILL", "SMILL"),
     )
 )
@@ -82,7 +86,6 @@ HINTS = {
     "SPLINE": "Let the CAM system write points (GOTO) and arcs (CIRCLE, MOVARC) instead.",
     "SAFPOS": "Write the way to the safe position as RAPID and GOTO.",
     "HOMEPT": "Write FROM/x,y,z, or give the point with GOHOME/x,y,z.",
-    "SET": _OFFSETS,
     "OFSTNO": _OFFSETS,
     "OFSETL": _OFFSETS,
     "LATHE": _PASSES,
@@ -90,6 +93,9 @@ HINTS = {
     "CONTUR": _PASSES,
     "AREA": _PASSES,
     "LOCAL_ORIGIN": "Let the CAM system write all operations in one coordinate system.",
+    "CALLSUB": "Let the CAM system write out what the sub-program does.",
+    "CALL": "Let the CAM system write out what the macro does.",
+    "TLCOMP": "Write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF.",
     "CALSUB": "Let the CAM system write out what the sub-program does.",
 }
 """What to do instead, where it is something else than points and arcs."""
@@ -117,7 +123,8 @@ def _text(kind: Literal["part", "comment", "insert"]) -> Handler:
         text = text.strip()
         if len(text) > 1 and text[0] == text[-1] and text[0] in "'\"" and kind != "insert":
             text = text[1:-1].strip()
-        yield Text(statement.line, kind, text)
+        is_note = kind == "insert" and _NOTE.match(text) is not None
+        yield Text(statement.line, "comment" if is_note else kind, text)
 
     return read
 
@@ -188,12 +195,22 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read a tool change; the tool that is in the spindle with the same offsets is not changed again."""
     if (token := statement.peek()) is not None and token.text in ("TOOL", "TURRET"):
         next(iter(statement))
+    elif token is not None and token.text == "ADJUST" and statement.major == "TOOLNO":
+        next(iter(statement))
+        register = statement.number("the number of an offset")
+        reading.take_offset(statement, statement.whole(register, "the number of an offset") or 0)
+        return
     number = statement.number("a tool number")
     if not number.is_integer() or number < 0:
         raise statement.fail(
             f"a tool number must be a whole number, not {number:g}", "Write it like LOADTL/3."
         )
-    if statement.major == "TOOLNO" and (kind := statement.peek()) is not None and kind.text in _TOOL_KINDS:
+    kind = statement.peek()
+    if (
+        statement.major == "TOOLNO"
+        and kind is not None
+        and (kind.text in _TOOL_KINDS or kind.number is not None)
+    ):
         # CATIA describes the tool; LOADTL changes it, or nothing does before it moves.
         reading.announced = Tool(statement.line, int(number))
         reading.is_lathe = kind.text in ("TURN", "LATHE")
@@ -202,8 +219,9 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     length = statement.value_of("LENGTH", "a length")
     more = statement.numbers()
     offset = statement.value_of("ADJUST", "an offset number")
-    if offset is None:
-        offset = statement.value_of("OSETNO", "an offset number")
+    for word in ("OSETNO", "OFFSET"):
+        if offset is None:
+            offset = statement.value_of(word, "an offset number")
     radius = statement.value_of("CUTCOM", "an offset number")
     if len(more) == 3 and statement.peek() is None:  # of ISO 4343: pocket, length, number of the offset
         length = more[1] if length is None else length
@@ -225,8 +243,25 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     reading.cycle_on = False
 
 
+def _set(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read SET/OFSETL,n: the register of the tool's length offset."""
+    if (token := statement.peek()) is not None and token.text == "OFSETL":
+        next(iter(statement))
+        number = statement.whole(statement.number("the number of an offset"), "the number of an offset")
+        strange = next((each for each in statement if each.text != "ON"), None)
+        if strange is None and number is not None:
+            reading.take_offset(statement, number)
+            return iter(())
+        token = strange
+    raise statement.fail("SET with something else than OFSETL and the number of an offset", _OFFSETS, token)
+
+
 def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
     words = statement.words()
+    if "ORIENT" in words:
+        raise statement.fail(
+            "SPINDL/ORIENT is not known", "Write the block of the control, like INSERT M19, or leave it out."
+        )
     highest = statement.value_of("MAXRPM", "a highest speed") or 0.0
     speed = None
     for token in statement:
@@ -237,7 +272,7 @@ def _spindle(reading: Reading, statement: Statement) -> Iterator[Record]:
                 f"a spindle speed of {speed:g}", "Give a speed from 0 up; CCLW turns it round.", token
             )
     sense: Literal["cw", "ccw", "off", "on"] = "on"
-    if "OFF" in words:
+    if words & {"OFF", "LOCK", "NEUTRL"}:
         sense = "off"
     elif words & {"CCLW", "CCW"}:
         sense = "ccw"
@@ -392,6 +427,18 @@ def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:
         yield Dwell(statement.line, seconds=value)
 
 
+def _transformation(reading: Reading, statement: Statement) -> Iterator[Record]:
+    """Read TRNTYP: points in the coordinates of the part are what is read anyway."""
+    first = statement.peek()
+    if first is None or first.text != "WORLD" or any(token.number for token in statement):
+        raise statement.fail(
+            "TRNTYP with other coordinates than those of the part",
+            "Let the CAM system write all points in one coordinate system (TRNTYP/WORLD,0,0,0).",
+            first,
+        )
+    return iter(())
+
+
 def _mode(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read MODE: absolute milling or turning is what is read anyway."""
     for token in statement:
@@ -430,6 +477,7 @@ HANDLERS: dict[str, Handler] = {
     "UNITS": _units,
     "UNIT": _units,
     "MODE": _mode,
+    "TRNTYP": _transformation,
     "MSYS": _cl_moves.coordinate_system,
     "CSYS": _cl_moves.coordinate_system,
     "TOOLPATH": _tool_path,
@@ -440,6 +488,7 @@ HANDLERS: dict[str, Handler] = {
     "LOAD": _tool,
     "TOOLNO": _tool,
     "TURRET": _tool,
+    "SET": _set,
     "SPINDL": _spindle,
     "FEDRAT": _feed,
     "RAPID": _cl_moves.rapid,

@@ -126,7 +126,7 @@ class Course:
                     before is not None and math.dist(before, self.here) > _SAME_MM and not self._changed
                 )
                 self._jumped = record.line if elsewhere else 0
-                self._changed = elsewhere
+                self._changed |= elsewhere
                 self.axis = record.axis or self.axis
             case Axis():
                 self.axis = record.axis
@@ -232,7 +232,13 @@ class Course:
         if self.cycle is not None:
             raise CourseError(record.line, "an arc within a drilling cycle", "Write CYCLE/OFF before it.")
         self._arrive(record.line, False)
-        start, self._rapid, self._changed = self.here, False, False
+        if self._changed and self.here is not None:
+            raise CourseError(
+                record.line,
+                "an arc right behind a tool change, from where the tool is not yet",
+                "Write a GOTO to the start of the arc before it.",
+            )
+        start, self._rapid = self.here, False
         if start is None:
             raise CourseError(record.line, "an arc without a start point", "Write FROM or GOTO before it.")
         end = (record.x, record.y, record.z)
