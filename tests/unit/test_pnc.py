@@ -97,6 +97,7 @@ def test_g92_shifts_are_read_in_the_own_channel_only(example: Example) -> None:
     assert example.refuses('AXO("X2")') == "1970"
     assert example.refuses('AXO("Q")') == "1938"
     assert example.refuses("AXO(1,2)") == ""
+    assert example.refuses("AXO(1,TRUE)") == ""
 
 
 @pytest.mark.covers("cpl.ex.1420", "cpl.CPOS", "cpl.axis.logical", "cpl.axis.physical", "cpl.axis.example")
