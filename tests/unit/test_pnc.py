@@ -484,3 +484,43 @@ def test_a_host_lends_it_time(example: Example) -> None:
         host.call(lambda pnc: pnc.advance(400))
         assert host.call(lambda pnc: pnc.run_state()) is RunState.COMPLETED
     assert example.pnc.variables()["#A"] == 2
+
+
+# ---------------------------------------------------------------------- the NCS coupling
+
+ASKS = "10 DIM B%(2) : V=0\n20 E%=MCODS(32,1,V,B%,2) : #S%=B%(1)\n"
+
+
+@pytest.mark.covers("cpl.MCODS")
+def test_what_changes_and_changes_back_between_two_questions_is_new(example: Example) -> None:
+    """Channel 1 is inactive, runs a short program, and is inactive again while channel 2 dwells."""
+    example.start(ASKS + "30 WAIT(,300)\n40 E%=MCODS(32,1,V,B%,2) : #T%=B%(1) : #E%=E%", channel=2)
+    example.pnc.advance(5)
+    example.start("N1 G0 X1")
+    example.pnc.advance(2000)
+    assert example.pnc.run_state(2) is RunState.COMPLETED
+    found = example.pnc.variables(2)
+    assert [found[name] for name in ("#S%", "#T%", "#E%")] == [1, 1, 0]
+
+
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
+def test_another_control_is_asked_and_serves_without_further_calls(example: Example, tmp_path: Path) -> None:
+    root = tmp_path / "second"
+    root.mkdir()
+    (root / "main.npg").write_text(
+        ASKS + '25 #F%=MCOPS(4,1,"short.npg",,,128)\n30 WAIT(,300)\n40 E%=MCODS(32,1,V,B%,2) : #T%=B%(1)\n'
+    )
+    example.write("short.npg", "N1 G1 X3 F6000")
+    second = Pnc(root, example.machine, server=example.pnc.ncs)
+    try:
+        second.select_program("main.npg")
+        second.cycle_start()
+        for _ in range(100):  # two clocks of one time, a while each
+            second.advance(20)
+            example.pnc.advance(20)
+        assert second.run_state() is RunState.COMPLETED, second.status().alarms
+        found = second.variables()
+    finally:
+        second.close()
+    assert [found[name] for name in ("#S%", "#F%", "#T%")] == [1, 0, 1]
+    assert example.pnc.axes["X"].setpoint == 3

@@ -57,8 +57,8 @@ class Pnc:
     `root` is the control's directory: part programs, files, tables and everything permanent lie in it. `channels` are
     the names of each channel's axes, one channel with all of them if there are none; `numbers` are the physical indices
     of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
-    the control that programs ask by MCODS and MCOPS, this one if None. `script` says how the PLC answers functions.
-    With `stepping` programs are linked so that a debugger can stop at each of their lines.
+    the control that programs ask by MCODS and MCOPS, like the `ncs` of another one; this one if None. `script` says how
+    the PLC answers functions. With `stepping` programs are linked so that a debugger can stop at each of their lines.
     """
 
     def __init__(
@@ -96,7 +96,10 @@ class Pnc:
             name for name, done in self._control.manual.referenced.items() if done
         )
         self.services = Services(self.system, self)
-        self.server = server or NcsServer(self.services)
+        self.ncs = NcsServer(self.services)
+        """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
+        self.server = server or self.ncs
+        self._control.be_watched(self.ncs)
         self._modes: dict[int, BoschMode] = {}
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
