@@ -524,3 +524,76 @@ def test_another_control_is_asked_and_serves_without_further_calls(example: Exam
         second.close()
     assert [found[name] for name in ("#S%", "#F%", "#T%")] == [1, 0, 1]
     assert example.pnc.axes["X"].setpoint == 3
+
+
+# ---------------------------------------------------------------------- block search
+
+SEARCHED = """1 OPENW(1,"R",200) : @5=@5+1 : #S%=SD(13)
+10 FOR I%=1 TO 3
+N20 G91 G1 X[I%*2] F6000
+30 NEXT I%
+35 WAIT(,5000,#W%)
+36 WAIT(IC(1),,#X%)
+37 #P=SDR(1,1) : #Q=MPOS(1)
+40 CALL side
+N50 G90 G1 Y8
+60 #T%=SD(13) : #A=SDR(1,1) : #B=SDR(1,2) : #C=SDR(1,3) : WHO%=3
+N70 G1 Z[WHO%]
+80 WAIT
+90 #D=MPOS(1) : #E=MPOS(2)
+"""
+
+
+@pytest.mark.covers(
+    "cpl.SD.13", "cpl.SD.13.val.10", "cpl.SD.13.val.11", "cpl.SD.13.val.0", "cpl.SD.13.val.1", "cpl.SDR.1.n"
+)
+@pytest.mark.parametrize(
+    ("mode", "seen"), [(Mode.AUTOMATIC, (11, 1)), (Mode.SINGLE_BLOCK, (10, 0)), (Mode.PROGRAM_BLOCK, (10, 2))]
+)
+def test_a_block_is_searched_through_statements(example: Example, mode: Mode, seen: tuple[int, int]) -> None:
+    """Three moves of 2, 4 and 6 mm and one of 1.5 in a sub-program stand before N50; nothing of them is moved."""
+    example.run("1 @5=0")
+    example.write("side", "1 P%=5\nN1 G1 X[P%*0.3] Y4")
+    example.write("main1.npg", SEARCHED)
+    pnc = example.pnc
+    pnc.select_mode(mode)
+    pnc.select_program("main1.npg")
+    assert pnc.search_block("N50") == 9
+    assert (pnc.axes["X"].setpoint, pnc.axes["Y"].setpoint) == (0, 0)
+    for _ in range(30):
+        if pnc.run_state() is RunState.COMPLETED:
+            break
+        pnc.cycle_start()
+        pnc.advance(2000, until=lambda: pnc.run_state() is not RunState.ACTIVE)
+    found = pnc.variables()
+    assert (found["#S%"], found["#T%"]) == seen
+    assert [found[name] for name in ("#W%", "#X%", "#P", "#Q")] == [1, 2, 12, 0]
+    assert [found[name] for name in ("#A", "#B", "#C", "#D", "#E", "@5")] == [13.5, 4, 0, 13.5, 8, 1]
+    assert pnc.axes["Z"].setpoint == 3
+    assert example.run("1 #A=SDR(1,1) : #S%=SD(13)")["#A"] == 0
+
+
+def test_searches_that_come_to_nothing_leave_the_program_at_its_beginning(example: Example) -> None:
+    loops = "10 GOTO 10\nN30 X1\n"
+    for program, what in (
+        ("10 GOTO 40\nN30 X1\n40 A=1", "the program ends before line 2"),
+        (loops, "waits or loops without a block before line 2"),
+        ("10 A=1/0\nN30 X1", "the program ends before line 2"),
+    ):
+        example.write("main1.npg", program)
+        example.pnc.select_program("main1.npg")
+        with pytest.raises(ControlError, match=what):
+            example.pnc.search_block("30")
+    with pytest.raises(ControlError, match="no block N31"):
+        example.pnc.search_block("N31")
+    assert example.run("N1 G0 X2\n2 WAIT\n3 #A=MPOS(1)")["#A"] == 2
+
+
+@pytest.mark.covers("cpl.MCOPS.3")
+def test_a_program_has_another_channel_search_a_block(example: Example) -> None:
+    example.write("other.npg", "1 A=4\nN10 G91 G1 X2=[A] F6000\nN20 X2=[A]\nN30 Y2=[A]")
+    found = example.run(
+        '1 #A%=MCOPS(4,2,"other.npg") : #B%=MCOPS(3,2,"30") : #C%=MCOPS(3,2,"N40") : #D%=MCOPS(6,2)\n2 WAIT(,500)'
+    )
+    assert [found[name] for name in ("#A%", "#B%", "#C%", "#D%")] == [0, 0, 14, 0]
+    assert (example.pnc.axes["X2"].setpoint, example.pnc.axes["Y2"].setpoint) == (8, 4)

@@ -1,5 +1,6 @@
 """The NCS coupling: what part programs ask of other channels and controls by MCODS, MCOPS and MMC."""
 
+from polycnc.controllers.bosch.ncs._blocks import find_block
 from polycnc.controllers.bosch.ncs._clients import Client, ClientError, Clients, Mmc, MmcResult, Sent
 from polycnc.controllers.bosch.ncs._codes import NcsCode, NcsError
 from polycnc.controllers.bosch.ncs._coupling import MAGIC, Control, Coupling, NcsServer
@@ -67,4 +68,5 @@ __all__ = [
     "ToolCompensation",
     "Unit",
     "Wait",
+    "find_block",
 ]
