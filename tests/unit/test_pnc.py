@@ -597,3 +597,39 @@ def test_a_program_has_another_channel_search_a_block(example: Example) -> None:
     )
     assert [found[name] for name in ("#A%", "#B%", "#C%", "#D%")] == [0, 0, 14, 0]
     assert (example.pnc.axes["X2"].setpoint, example.pnc.axes["Y2"].setpoint) == (8, 4)
+
+
+# ---------------------------------------------------------------------- the spindle
+
+SENSES = " : ".join(
+    f"#{name}%=SD({place})" for name, place in zip("ABC", ("12,1", "12,2", "212,1,1"), strict=True)
+)
+
+
+@pytest.mark.covers("cpl.SD.12.val.19", "cpl.SD.12.1", "cpl.SD.12.2", "cpl.MCODS.63.val.6")
+def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
+    machine = tmp_path / "spindle.toml"
+    machine.write_text(
+        MACHINE + "[spindle]\nmax_rpm = 6000\norientation_deg = 37.5\n[times]\nspindle_start_s = 0.25\n"
+    )
+    ask = f'DIM B%(8) : V=0 : E%=MCODS(63,-1,V,B%,8) : #M%=B%(1) : {SENSES} : #T$=NCF("M5")'
+    pnc = Pnc(tmp_path, machine)
+    try:
+        for before, sense, movement, oriented in (
+            ("N1 M3 S1200\nN2 M19\nN3 M8", 19, 6, True),
+            ("N1 M19\nN2 M4 S900", 4, 3, False),
+            ("N1 M19\nN2 M5", 0, 5, False),
+        ):
+            (tmp_path / "main.npg").write_text(f"{before}\n10 WAIT\n20 {ask}\n")
+            pnc.select_program("main.npg")
+            pnc.cycle_start()
+            pnc.advance(5000, until=lambda: pnc.run_state() is not RunState.ACTIVE)
+            assert pnc.run_state() is RunState.COMPLETED, pnc.status().alarms
+            found = pnc.variables()
+            assert [found[f"#{name}%"] for name in "ABCM"] == [sense, sense, sense, movement]
+            state = pnc.control.spindle.state()
+            assert state.oriented is oriented
+            if oriented:
+                assert (state.actual_rpm, state.angle_deg % 360) == (0, 37.5)
+    finally:
+        pnc.close()

@@ -13,7 +13,7 @@ from polycnc.nc import Dialect, Event, Group, MAction
 
 _ACTIONS = {action.title: action for action in MAction}
 _STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
-_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
+_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP, MAction.SPINDLE_ORIENT})
 
 
 class AuxiliaryFunctions:
@@ -33,7 +33,10 @@ class AuxiliaryFunctions:
             modal = block.modal
             # Constant surface speed has no speed of its own here: the spindle keeps the last one.
             rpm = None if modal.g.get(Group.SPINDLE_MODE) == _surface_speed(dialect) else modal.speed
-            self._spindle.turn(rpm=rpm, direction=modal.spindle_direction)
+            oriented = modal.spindle_oriented
+            self._spindle.turn(rpm=rpm, direction=None if oriented else modal.spindle_direction)
+            if oriented and not self._spindle.is_orienting:
+                self._spindle.orient()
         serials = [
             self._plc.strobe(
                 Function(letter), number, default_s=self._default_s(channel, letter, number, dialect)

@@ -22,6 +22,7 @@ _SINGLE_BLOCK, _AUTOMATIC, _PROGRAM_BLOCK = range(3)
 _SEARCH = 10
 """Added to the machining mode while a block is sought: 10 with single blocks, 11 in automatic."""
 _SENSES = {1: 3, -1: 4, 0: 0}
+_ORIENTED = 19
 _OFF = (53, 153, 253, 67, 39, 146, 167)
 """What is in force of groups of which nothing was programmed."""
 _STATED = (
@@ -128,7 +129,7 @@ class ChannelData:
                 shifts_268=self._by_axis(placement.additive, scales),
                 axes={channel: tuple(numbers) for channel, numbers in axes.channels.items()},
                 speeds_rpm={_SPINDLE: words.speed},
-                senses={_SPINDLE: _SENSES[words.spindle_direction]},
+                senses={_SPINDLE: _ORIENTED if words.spindle_oriented else _SENSES[words.spindle_direction]},
             )
             if own
             else Moment()
@@ -207,7 +208,7 @@ class ChannelData:
             if any(code in group for group in numbered):
                 last.program(f"G{code}")
         for name in (
-            {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
+            "M19" if words.spindle_oriented else {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
             *(f"M{code}" for code in words.m),
         ):
             if any(name in group for group in _M_GROUPS):
