@@ -13,6 +13,8 @@ from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import Signals
 from polycnc.machine import Host
+from polycnc.post import parse_tool_path
+from polycnc.runner import post_file
 
 LINEAR = "vmax_mm_s = 500\namax_mm_s2 = 5000\n"
 ROTARY = 'kind = "rotary"\nvmax_deg_s = 100\namax_deg_s2 = 400\n'
@@ -633,3 +635,36 @@ def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
                 assert (state.actual_rpm, state.angle_deg % 360) == (0, 37.5)
     finally:
         pnc.close()
+
+
+TAPPED = (
+    "PARTNO/TAPS\nUNITS/MM\nLOADTL/3\nSPINDL/RPM,400,{}\nRAPID\nGOTO/0,0,20\nCYCLE/TAP,DEPTH,12,MMPR,1.25,CLEAR,5\n"
+    "GOTO/10,10,0\nCYCLE/OFF\nRAPID\nGOTO/0,0,50\nFINI\n"
+)
+
+
+@pytest.mark.parametrize("name", ["bosch-pnc", "bosch-pnc-cpl"])
+@pytest.mark.parametrize(("sense", "turn"), [("CLW", 1), ("CCLW", -1)])
+def test_a_posted_thread_is_cut_with_the_turn_and_left_against_it(
+    tmp_path: Path, name: str, sense: str, turn: int
+) -> None:
+    posted = post_file(parse_tool_path(TAPPED.format(sense)), name, verify=True)
+    assert posted.ok
+    (tmp_path / "tap.npg").write_text(posted.text or "")
+    pnc = Pnc(tmp_path, "mill3")
+    seen: list[tuple[int, float]] = []
+
+    def look() -> bool:
+        direction = pnc.control.spindle.state().direction
+        if not seen or seen[-1][0] != direction:
+            seen.append((direction, round(pnc.axes["Z"].setpoint, 3)))
+        return pnc.run_state() is not RunState.ACTIVE
+
+    try:
+        pnc.select_program("tap.npg")
+        pnc.cycle_start()
+        pnc.advance(20_000, until=look)
+        assert pnc.run_state() is RunState.COMPLETED, pnc.status().alarms
+    finally:
+        pnc.close()
+    assert seen == [(0, 0), (turn, 0), (0, -12), (-turn, -12), (0, 5), (turn, 5), (0, 50)]
