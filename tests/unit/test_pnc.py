@@ -281,6 +281,16 @@ def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> 
     assert found["#G"] == pytest.approx(3)
 
 
+def test_the_rest_of_a_way_is_not_cancelled_by_another_channel(example: Example) -> None:
+    example.start("N1 G1 X2=9 F600", channel=2)
+    ask = "{0}0 #{1}%=MCOPS(1,{2})\n"
+    found = example.run(
+        "".join(ask.format(*each) for each in ((1, "A", 2), (2, "B", 3), (3, "C", 4)))
+        + "40 #D%=MCOPS(2,2)\n50 WAIT(,500)\n60 #E%=MCOPS(7,2,1) : #F%=MCOPS(1,2)"
+    )
+    assert [found[f"#{name}%"] for name in "ABCDEF"] == [2, 10, 1, 0, 0, 8]
+
+
 @pytest.mark.covers("cpl.ex.2607", "cpl.err.1938", "cpl.err.1970")
 def test_errors_of_another_channel_are_told_in_their_order(example: Example) -> None:
     example.start("1 A=CPOS(9)", channel=2)

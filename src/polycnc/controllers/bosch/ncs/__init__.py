@@ -22,6 +22,7 @@ from polycnc.controllers.bosch.ncs._image import (
 )
 from polycnc.controllers.bosch.ncs._partner import Partner, Station
 from polycnc.controllers.bosch.ncs._process_services import (
+    AUTOMATIC,
     MODES,
     PROCESS_SERVICES,
     WHOLE_SYSTEM,
@@ -31,6 +32,7 @@ from polycnc.controllers.bosch.ncs._process_services import (
 )
 
 __all__ = [
+    "AUTOMATIC",
     "DATA_SERVICES",
     "MAGIC",
     "MODES",
