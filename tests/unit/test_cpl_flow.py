@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from typing import Any
 
+import numpy as np
 import pytest
 
 from polycnc.errors import ProgramError
@@ -527,6 +528,35 @@ def test_wait_names_its_condition_duration_and_result(
     assert ran.run.globals == ({"#E%": 2} if "#E%" in text else {})
 
 
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("WAIT(,-5)", "INVALID PARAMETER"),
+        ("WAIT(,T%)", "INVALID PARAMETER"),
+        ("WAIT(IC(1),T%,E%)", "INVALID PARAMETER"),
+        ("WAIT(,N%)", "INVALID VARIABLE: a variable without a value (NUL)"),
+        ("WAIT(,2.5)", "INVALID ASSIGNMENT"),
+    ],
+)
+def test_wait_takes_no_time_below_zero_and_none_without_a_value(text: str, what: str) -> None:
+    error = at_run_time(f"5 T%=-1\n10 {text}", RecordingHost({"IC": lambda bit: True}))
+    assert error.what == what
+    assert error.position is not None
+    assert (error.position.line, error.position.column) == (2, 4)
+    assert Ran("10 WAIT(,0)").events == [Waiting(1, None, 0)]
+
+
+@pytest.mark.parametrize(
+    "text", ["MID$(A$,1,N%)", "MID$(A$,N%,1)", 'INSTR("B",A$,N%)', "TRIM$(A$,N$)", 'MID$(A$,1,N%)="X"']
+)
+def test_a_place_without_a_value_is_none_that_was_left_out(text: str) -> None:
+    target = "" if text.endswith('"X"') else "#X%=" if text.startswith("INSTR") else "#X$="
+    error = at_run_time(f'5 DIM A$(9) : A$="ABC"\n10 {target}{text}')
+    assert error.what in ("INVALID VARIABLE: a variable without a value (NUL)", "INVALID PARAMETER")
+    assert error.position is not None
+    assert error.position.line == 2
+
+
 def test_functions_of_the_control_get_their_arguments_and_set_variables() -> None:
     seen: list[tuple[object, ...]] = []
 
@@ -593,8 +623,26 @@ def test_a_choice_of_many_branches_and_a_sum_of_many_texts_are_not_too_long() ->
     assert ran["#A$"].text == "".join(str(number % 7) for number in range(500))  # type: ignore[attr-defined]
 
 
-def test_a_sum_too_long_for_python_is_refused_where_it_stands() -> None:
-    text = f"10 B=2.5\n20 A=B{'+B' * 450}\n30 C=B"
+def test_an_expression_has_500_operands_and_one_longer_is_refused_where_it_goes_on() -> None:
+    whole = np.float32(0.0)
+    for _ in range(500):
+        whole = np.float32(whole + np.float32(0.1))
+    terms = "+".join(["B"] * 500)
+    ran = Ran(
+        f"10 B=0.1\n20 #A={terms}\n30 #C=2*({terms})\nN40 X[{terms}]\n50 #D={'*'.join(['1.0'] * 499)}*B\n"
+        f"60 #E?=1=1{'=TRUE' * 498}"
+    )
+    assert (ran["#A"], ran["#C"], ran["#D"], ran["#E?"]) == (whole, 2 * whole, np.float32(0.1), True)
+    assert ran.blocks == [f"X{whole:g}"]
+    for operands in (501, 5000):
+        assert errors(f"20 A={'+'.join(['B'] * operands)}") == ["1:1005 more than 500 operands in a row"]
+    for opening in ("(", "SIN(", "A("):
+        (error,) = errors(f"20 B={opening * 5000}1{')' * 5000}")
+        assert error.endswith(("NESTING TOO DEEP", "more than 40 brackets inside each other"))
+
+
+def test_what_is_too_deep_for_python_is_refused_where_it_stands() -> None:
+    text = f"10 B=2.5\n20 A={'SIN(' * 39}B{'+B+B+B+B+B+B+B+B)' * 39}\n30 C=B"
     assert errors(text) == ["2:4 one expression or statement is too long or nested too deeply"]
 
 

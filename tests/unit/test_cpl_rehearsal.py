@@ -53,8 +53,32 @@ def test_what_comes_before_the_end_of_a_rehearsal_is_remarked(
     ]
 
 
+def test_blocks_that_are_wrong_are_errors_with_their_places(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    main = "10 A=7\nN20 G0 X[A]\nN30 G999 X1\n40 CALL DRILL\nN50 G0 Y[A*2] Q1=2\nM30\n"
+    (tmp_path / "main.npg").write_text(main)
+    (tmp_path / "DRILL").write_text("1 B=2\nN2 G2 X[B] Y0 I99 J0 F500\n")
+    found = check(tmp_path / "main.npg", MILL, root=tmp_path, strict=True)
+    places = [str(each).splitlines()[0] for each in found]
+    assert [place.partition(": ")[0].rpartition("/")[2] for place in places] == [
+        "main.npg:3:5", "DRILL:2:15", "main.npg:5:15",
+    ]  # fmt: skip
+    assert "G999" in places[0]
+    assert check(tmp_path / "main.npg", MILL, root=tmp_path) == []
+    assert [*map(str, inspect(tmp_path / "main.npg", MILL, root=tmp_path).errors)] == [*map(str, found)]
+    assert caplog.messages == []
+
+
+def test_where_a_rehearsal_ends_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    (tmp_path / "DRILL").write_text("1 A=1/0\n")
+    (tmp_path / "main.npg").write_text("N1 G0 X5\n20 CALL DRILL\nN30 G999\n")
+    assert check(tmp_path / "main.npg", MILL, root=tmp_path, strict=True) == []
+    assert caplog.messages == ["DRILL:1:3: rehearsed up to here: division by zero"]
+
+
 def test_a_program_with_errors_and_one_in_a_large_folder_are_not_rehearsed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     (tmp_path / "main.npg").write_text("10 A=\nN20 G1 Z-4 F300\n")
     report = inspect(tmp_path / "main.npg", MILL, root=tmp_path)
@@ -65,4 +89,6 @@ def test_a_program_with_errors_and_one_in_a_large_folder_are_not_rehearsed(
     monkeypatch.setattr(_rehearsal, "MOST_FILES", 5)
     monkeypatch.setattr(_rehearsal, "MOST_BYTES", 30)
     assert remarked(tmp_path) == []
+    assert check(tmp_path / "main.npg", MILL, root=tmp_path, strict=True) == []
+    assert [each.partition("npg: ")[2].partition(":")[0] for each in caplog.messages] == ["not rehearsed"] * 3
     assert list(tmp_path.parent.glob("polycnc-*")) == []

@@ -75,6 +75,7 @@ def test_dsp_puts_numbers_into_formats_wherever_they_stand(tmp_path: Path) -> No
         ("1 GMD(5)", "1: INVALID PARAMETER"),
         ("1 COL(8)", "1: INVALID PARAMETER"),
         ("1 COL(,,,4)", "1: INVALID PARAMETER"),
+        ("1 COL(,,,TRUE)", "1: INVALID PARAMETER"),
         ("1 RGB(3,256,0,0)", "1: INVALID PARAMETER"),
         ("1 TFO(11)", "1: INVALID PARAMETER"),
         ("1 TFO(,501)", "1: INVALID PARAMETER"),

@@ -13,6 +13,8 @@ from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import Signals
 from polycnc.machine import Host
+from polycnc.post import parse_tool_path
+from polycnc.runner import post_file
 
 LINEAR = "vmax_mm_s = 500\namax_mm_s2 = 5000\n"
 ROTARY = 'kind = "rotary"\nvmax_deg_s = 100\namax_deg_s2 = 400\n'
@@ -97,6 +99,7 @@ def test_g92_shifts_are_read_in_the_own_channel_only(example: Example) -> None:
     assert example.refuses('AXO("X2")') == "1970"
     assert example.refuses('AXO("Q")') == "1938"
     assert example.refuses("AXO(1,2)") == ""
+    assert example.refuses("AXO(1,TRUE)") == ""
 
 
 @pytest.mark.covers("cpl.ex.1420", "cpl.CPOS", "cpl.axis.logical", "cpl.axis.physical", "cpl.axis.example")
@@ -276,6 +279,16 @@ def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> 
     )
     assert [found[f"#{name}"] for name in ("A%", "B%", "C%", "D%", "E%", "F%")] == [13, 0, 0, 0, 0, 18]
     assert found["#G"] == pytest.approx(3)
+
+
+def test_the_rest_of_a_way_is_not_cancelled_by_another_channel(example: Example) -> None:
+    example.start("N1 G1 X2=9 F600", channel=2)
+    ask = "{0}0 #{1}%=MCOPS(1,{2})\n"
+    found = example.run(
+        "".join(ask.format(*each) for each in ((1, "A", 2), (2, "B", 3), (3, "C", 4)))
+        + "40 #D%=MCOPS(2,2)\n50 WAIT(,500)\n60 #E%=MCOPS(7,2,1) : #F%=MCOPS(1,2)"
+    )
+    assert [found[f"#{name}%"] for name in "ABCDEF"] == [2, 10, 1, 0, 0, 8]
 
 
 @pytest.mark.covers("cpl.ex.2607", "cpl.err.1938", "cpl.err.1970")
@@ -483,3 +496,185 @@ def test_a_host_lends_it_time(example: Example) -> None:
         host.call(lambda pnc: pnc.advance(400))
         assert host.call(lambda pnc: pnc.run_state()) is RunState.COMPLETED
     assert example.pnc.variables()["#A"] == 2
+
+
+# ---------------------------------------------------------------------- the NCS coupling
+
+ASKS = "10 DIM B%(2) : V=0\n20 E%=MCODS(32,1,V,B%,2) : #S%=B%(1)\n"
+
+
+@pytest.mark.covers("cpl.MCODS")
+def test_what_changes_and_changes_back_between_two_questions_is_new(example: Example) -> None:
+    """Channel 1 is inactive, runs a short program, and is inactive again while channel 2 dwells."""
+    example.start(ASKS + "30 WAIT(,300)\n40 E%=MCODS(32,1,V,B%,2) : #T%=B%(1) : #E%=E%", channel=2)
+    example.pnc.advance(5)
+    example.start("N1 G0 X1")
+    example.pnc.advance(2000)
+    assert example.pnc.run_state(2) is RunState.COMPLETED
+    found = example.pnc.variables(2)
+    assert [found[name] for name in ("#S%", "#T%", "#E%")] == [1, 1, 0]
+
+
+@pytest.mark.covers("cpl.MCODS", "cpl.MCOPS")
+def test_another_control_is_asked_and_serves_without_further_calls(example: Example, tmp_path: Path) -> None:
+    root = tmp_path / "second"
+    root.mkdir()
+    (root / "main.npg").write_text(
+        ASKS + '25 #F%=MCOPS(4,1,"short.npg",,,128)\n30 WAIT(,300)\n40 E%=MCODS(32,1,V,B%,2) : #T%=B%(1)\n'
+    )
+    example.write("short.npg", "N1 G1 X3 F6000")
+    second = Pnc(root, example.machine, server=example.pnc.ncs)
+    try:
+        second.select_program("main.npg")
+        second.cycle_start()
+        for _ in range(100):  # two clocks of one time, a while each
+            second.advance(20)
+            example.pnc.advance(20)
+        assert second.run_state() is RunState.COMPLETED, second.status().alarms
+        found = second.variables()
+    finally:
+        second.close()
+    assert [found[name] for name in ("#S%", "#F%", "#T%")] == [1, 0, 1]
+    assert example.pnc.axes["X"].setpoint == 3
+
+
+# ---------------------------------------------------------------------- block search
+
+SEARCHED = """1 OPENW(1,"R",200) : @5=@5+1 : #S%=SD(13)
+10 FOR I%=1 TO 3
+N20 G91 G1 X[I%*2] F6000
+30 NEXT I%
+35 WAIT(,5000,#W%)
+36 WAIT(IC(1),,#X%)
+37 #P=SDR(1,1) : #Q=MPOS(1)
+40 CALL side
+N50 G90 G1 Y8
+60 #T%=SD(13) : #A=SDR(1,1) : #B=SDR(1,2) : #C=SDR(1,3) : WHO%=3
+N70 G1 Z[WHO%]
+80 WAIT
+90 #D=MPOS(1) : #E=MPOS(2)
+"""
+
+
+@pytest.mark.covers(
+    "cpl.SD.13", "cpl.SD.13.val.10", "cpl.SD.13.val.11", "cpl.SD.13.val.0", "cpl.SD.13.val.1", "cpl.SDR.1.n"
+)
+@pytest.mark.parametrize(
+    ("mode", "seen"), [(Mode.AUTOMATIC, (11, 1)), (Mode.SINGLE_BLOCK, (10, 0)), (Mode.PROGRAM_BLOCK, (10, 2))]
+)
+def test_a_block_is_searched_through_statements(example: Example, mode: Mode, seen: tuple[int, int]) -> None:
+    """Three moves of 2, 4 and 6 mm and one of 1.5 in a sub-program stand before N50; nothing of them is moved."""
+    example.run("1 @5=0")
+    example.write("side", "1 P%=5\nN1 G1 X[P%*0.3] Y4")
+    example.write("main1.npg", SEARCHED)
+    pnc = example.pnc
+    pnc.select_mode(mode)
+    pnc.select_program("main1.npg")
+    assert pnc.search_block("N50") == 9
+    assert (pnc.axes["X"].setpoint, pnc.axes["Y"].setpoint) == (0, 0)
+    for _ in range(30):
+        if pnc.run_state() is RunState.COMPLETED:
+            break
+        pnc.cycle_start()
+        pnc.advance(2000, until=lambda: pnc.run_state() is not RunState.ACTIVE)
+    found = pnc.variables()
+    assert (found["#S%"], found["#T%"]) == seen
+    assert [found[name] for name in ("#W%", "#X%", "#P", "#Q")] == [1, 2, 12, 0]
+    assert [found[name] for name in ("#A", "#B", "#C", "#D", "#E", "@5")] == [13.5, 4, 0, 13.5, 8, 1]
+    assert pnc.axes["Z"].setpoint == 3
+    assert example.run("1 #A=SDR(1,1) : #S%=SD(13)")["#A"] == 0
+
+
+def test_searches_that_come_to_nothing_leave_the_program_at_its_beginning(example: Example) -> None:
+    loops = "10 GOTO 10\nN30 X1\n"
+    for program, what in (
+        ("10 GOTO 40\nN30 X1\n40 A=1", "the program ends before line 2"),
+        (loops, "waits or loops without a block before line 2"),
+        ("10 A=1/0\nN30 X1", "the program ends before line 2"),
+    ):
+        example.write("main1.npg", program)
+        example.pnc.select_program("main1.npg")
+        with pytest.raises(ControlError, match=what):
+            example.pnc.search_block("30")
+    with pytest.raises(ControlError, match="no block N31"):
+        example.pnc.search_block("N31")
+    assert example.run("N1 G0 X2\n2 WAIT\n3 #A=MPOS(1)")["#A"] == 2
+
+
+@pytest.mark.covers("cpl.MCOPS.3")
+def test_a_program_has_another_channel_search_a_block(example: Example) -> None:
+    example.write("other.npg", "1 A=4\nN10 G91 G1 X2=[A] F6000\nN20 X2=[A]\nN30 Y2=[A]")
+    found = example.run(
+        '1 #A%=MCOPS(4,2,"other.npg") : #B%=MCOPS(3,2,"30") : #C%=MCOPS(3,2,"N40") : #D%=MCOPS(6,2)\n2 WAIT(,500)'
+    )
+    assert [found[name] for name in ("#A%", "#B%", "#C%", "#D%")] == [0, 0, 14, 0]
+    assert (example.pnc.axes["X2"].setpoint, example.pnc.axes["Y2"].setpoint) == (8, 4)
+
+
+# ---------------------------------------------------------------------- the spindle
+
+SENSES = " : ".join(
+    f"#{name}%=SD({place})" for name, place in zip("ABC", ("12,1", "12,2", "212,1,1"), strict=True)
+)
+
+
+@pytest.mark.covers("cpl.SD.12.val.19", "cpl.SD.12.1", "cpl.SD.12.2", "cpl.MCODS.63.val.6")
+def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
+    machine = tmp_path / "spindle.toml"
+    machine.write_text(
+        MACHINE + "[spindle]\nmax_rpm = 6000\norientation_deg = 37.5\n[times]\nspindle_start_s = 0.25\n"
+    )
+    ask = f'DIM B%(8) : V=0 : E%=MCODS(63,-1,V,B%,8) : #M%=B%(1) : {SENSES} : #T$=NCF("M5")'
+    pnc = Pnc(tmp_path, machine)
+    try:
+        for before, sense, movement, oriented in (
+            ("N1 M3 S1200\nN2 M19\nN3 M8", 19, 6, True),
+            ("N1 M19\nN2 M4 S900", 4, 3, False),
+            ("N1 M19\nN2 M5", 0, 5, False),
+        ):
+            (tmp_path / "main.npg").write_text(f"{before}\n10 WAIT\n20 {ask}\n")
+            pnc.select_program("main.npg")
+            pnc.cycle_start()
+            pnc.advance(5000, until=lambda: pnc.run_state() is not RunState.ACTIVE)
+            assert pnc.run_state() is RunState.COMPLETED, pnc.status().alarms
+            found = pnc.variables()
+            assert [found[f"#{name}%"] for name in "ABCM"] == [sense, sense, sense, movement]
+            state = pnc.control.spindle.state()
+            assert state.oriented is oriented
+            if oriented:
+                assert (state.actual_rpm, state.angle_deg % 360) == (0, 37.5)
+    finally:
+        pnc.close()
+
+
+TAPPED = (
+    "PARTNO/TAPS\nUNITS/MM\nLOADTL/3\nSPINDL/RPM,400,{}\nRAPID\nGOTO/0,0,20\nCYCLE/TAP,DEPTH,12,MMPR,1.25,CLEAR,5\n"
+    "GOTO/10,10,0\nCYCLE/OFF\nRAPID\nGOTO/0,0,50\nFINI\n"
+)
+
+
+@pytest.mark.parametrize("name", ["bosch-pnc", "bosch-pnc-cpl"])
+@pytest.mark.parametrize(("sense", "turn"), [("CLW", 1), ("CCLW", -1)])
+def test_a_posted_thread_is_cut_with_the_turn_and_left_against_it(
+    tmp_path: Path, name: str, sense: str, turn: int
+) -> None:
+    posted = post_file(parse_tool_path(TAPPED.format(sense)), name, verify=True)
+    assert posted.ok
+    (tmp_path / "tap.npg").write_text(posted.text or "")
+    pnc = Pnc(tmp_path, "mill3")
+    seen: list[tuple[int, float]] = []
+
+    def look() -> bool:
+        direction = pnc.control.spindle.state().direction
+        if not seen or seen[-1][0] != direction:
+            seen.append((direction, round(pnc.axes["Z"].setpoint, 3)))
+        return pnc.run_state() is not RunState.ACTIVE
+
+    try:
+        pnc.select_program("tap.npg")
+        pnc.cycle_start()
+        pnc.advance(20_000, until=look)
+        assert pnc.run_state() is RunState.COMPLETED, pnc.status().alarms
+    finally:
+        pnc.close()
+    assert seen == [(0, 0), (turn, 0), (0, -12), (-turn, -12), (0, 5), (turn, 5), (0, 50)]

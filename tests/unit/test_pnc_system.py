@@ -388,6 +388,28 @@ def test_parameters_say_which_data_modules_a_program_may_write(cell: Cell) -> No
     assert cell.error("1 PLC(4,99,2,2)=5") == "1: INVALID PARAMETER"
 
 
+@pytest.mark.covers(
+    "cpl.SD.200.1", "cpl.SD.200.1.i", "cpl.SD.200.3.i",
+    *(f"cpl.{name}.581.{row}" for name in ("SD", "SDR") for row in ("0.m", "s.0", "s.1", "s.2", "s.3")),
+)  # fmt: skip
+def test_a_control_without_areas_and_couplings_says_so(cell: Cell) -> None:
+    areas = ["SD(200,1)", *(f"SD(200,{index},{area})" for index in (1, 3) for area in (1, 10))]
+    couplings = [
+        f"{name}(581,{slave},{index})" for name in ("SD", "SDR") for slave in (0, 1, 8) for index in (1, 2, 3)
+    ]
+    masters = [f"{name}(581,{slave},0)" for name in ("SD", "SDR") for slave in (1, 8)]
+    assert set(cell.values("N1 G0 X2", *areas, *couplings, *masters)) == {0}
+    for nothing in ("SD(200,1,11)", "SD(200,2,1)", "SD(581,9,0)", "SD(581,1,4)", "SDR(581,0,9)"):
+        assert cell.error(f"10 A={nothing}") == "1: INVALID PARAMETER"
+
+
+@pytest.mark.parametrize(
+    "data", ["SD(131,1)", "SD(131,2)", "SDR(131,4)", "SD(328)", "SDR(328,2)", "SD(200,11,1)"]
+)
+def test_system_data_of_functions_that_no_program_can_program_are_0(cell: Cell, data: str) -> None:
+    assert cell.values("N1 G0 X2", data) == [0]
+
+
 # ---------------------------------------------------------------------- NCS coupling, MMC
 
 

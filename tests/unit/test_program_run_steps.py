@@ -9,8 +9,10 @@ import pytest
 
 from polycnc.cnc import Breakpoint, ProgramRun
 from polycnc.errors import UsageError
-from polycnc.nc import Event, Group, ProgramText
-from support.programs import FIVE, LINEAR, SPINDLE, TIMES, machine_config
+from polycnc.machine import Machine
+from polycnc.nc import Event, Group, ProgramText, load_dialect
+from polycnc.nc.macro import MacroLanguage
+from support.programs import FIVE, LINEAR, MILL, SPINDLE, TIMES, machine_config
 from support.runs import program_run, stands, to_the_end, undisturbed
 
 MAIN = "N1 G0 X5 Y2\nN2 G91 F1200\nN3 M98 P815\nN4 G90 G1 X1 Y7\nM30\n"
@@ -209,6 +211,19 @@ def test_a_search_with_calculation_goes_through_sub_programs(nested: ProgramText
     run.step_into()
     to_the_end(run)
     assert run.position == {"X": 5.0 + 12.75 - 4.25, "Y": 2.0 + 3.0, "Z": 0.0}
+
+
+def test_a_search_with_calculation_executes_macro_statements() -> None:
+    """Three moves of 2, 4 and 6 mm stand before N50, which goes on from there."""
+    text = "#1=0\nWHILE[#1LT3]DO1\n#1=#1+1\nN20 G91 G1 X[#1*2] F600\nEND1\nN50 Y#1\nN60 X-#1\nM30\n"
+    program = ProgramText.from_text(text, "test")
+    run = ProgramRun(Machine(MILL), program, load_dialect("fanuc"), language=MacroLanguage())
+    assert run.search(sequence=50, calculate=True) == 6
+    assert run.searched == (12.0, 0.0, 0.0)
+    assert run.machine.setpoints["X"] == 0.0
+    run.start()
+    to_the_end(run)
+    assert run.machine.setpoints == {"X": 9.0, "Y": 3.0, "Z": 0.0}
 
 
 @pytest.mark.parametrize(

@@ -9,11 +9,16 @@ from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._plc import Function, PlcModel, functions_of
 from polycnc.cnc._spindle import Spindle
 from polycnc.machine import Clock, TimesConfig
-from polycnc.nc import Dialect, Event, Group, MAction
+from polycnc.nc import Dialect, Event, Group, MAction, ModalWords
 
 _ACTIONS = {action.title: action for action in MAction}
+_SENSES: dict[MAction | None, int | None] = {
+    MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0, MAction.SPINDLE_ORIENT: None,
+}  # fmt: skip
+_ORIENTS = 19
+"""The M code that cycles orient the spindle with."""
 _STOPS = frozenset({MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END})
-_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP})
+_SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_STOP, MAction.SPINDLE_ORIENT})
 
 
 class AuxiliaryFunctions:
@@ -33,7 +38,10 @@ class AuxiliaryFunctions:
             modal = block.modal
             # Constant surface speed has no speed of its own here: the spindle keeps the last one.
             rpm = None if modal.g.get(Group.SPINDLE_MODE) == _surface_speed(dialect) else modal.speed
-            self._spindle.turn(rpm=rpm, direction=modal.spindle_direction)
+            direction = _direction(event, modal, dialect)
+            self._spindle.turn(rpm=rpm, direction=direction)
+            if direction is None and not self._spindle.is_orienting:
+                self._spindle.orient()
         serials = [
             self._plc.strobe(
                 Function(letter), number, default_s=self._default_s(channel, letter, number, dialect)
@@ -89,6 +97,21 @@ class AuxiliaryFunctions:
     def restore(self, waiting: Iterable[tuple[int, tuple[int, ...]]]) -> None:
         """Go back to what each channel waited for."""
         self._waiting = {path: list(serials) for path, serials in waiting if serials}
+
+
+def _direction(event: Event, modal: ModalWords, dialect: Dialect) -> int | None:
+    """Return how the spindle turns from an event on, None if it is oriented.
+
+    Cycles stop it, turn it back and orient it on their way, by events of their own: what the program says stays.
+    """
+    direction = None if modal.spindle_oriented else modal.spindle_direction
+    for letter, number in functions_of(event.word):
+        action = _ACTIONS.get(dialect.m.get(f"{number}", "")) if letter == "M" else None
+        if action in _SENSES:
+            direction = _SENSES[action]
+        elif letter == "M" and number == _ORIENTS and number not in modal.m:
+            direction = None
+    return direction
 
 
 def _surface_speed(dialect: Dialect) -> str:

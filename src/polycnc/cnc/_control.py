@@ -36,7 +36,7 @@ from polycnc.cnc._control_data import (
 from polycnc.cnc._control_moment import moment_of, put_back
 from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot
-from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime
+from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime, CycleWatch
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import PlcModel, Script
 from polycnc.cnc._program_edit import ProgramEdit, ProgramEdits
@@ -572,6 +572,10 @@ class Control:
         `until`, looked at in every cycle, holds.
         """
         return self._time.advance(cycles, until=until)
+
+    def be_watched(self, watch: CycleWatch | None) -> None:
+        """Let somebody look at every cycle for as long as it is awake; time passes slower then."""
+        self._time.watch = watch
 
     def _sub_program(self, number: int) -> ProgramText | None:
         for name in self.data.sub_program_names:

@@ -168,6 +168,7 @@ class ControlChannel:
             raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
         with self._whole_or_nothing():
             self._load(text, mdi=False)
+            self.set_switches(self.switches)  # statements may ask for them
             line = self._find(search)
         self.search = search
         return line
@@ -209,9 +210,10 @@ class ControlChannel:
             ControlError: The axes are still braking, or the program cannot begin at the block that is wanted.
         """
         self.check_rest()
-        self._load(text, mdi=mdi)
-        if search is not None:
-            self._find(search)
+        if not self._has_found(text, search):
+            self._load(text, mdi=mdi)
+            if search is not None:
+                self._find(search)
         assert self.run is not None
         self.search = None
         self.is_mdi = mdi
@@ -222,6 +224,13 @@ class ControlChannel:
         self.run.skip_signal = self.skip_signal
         self.run.on_skip = self.on_skip
         self._go(step)
+
+    def _has_found(self, text: ProgramText, search: Search | None) -> bool:
+        """Tell whether the run stands before the block of a search; its statements are not executed a second time."""
+        run = self.run
+        if run is None or self._changed or search is None or search != self.search:
+            return False
+        return run.program is text and run.state is RunState.READY and run.channel.holds_searched
 
     def _load(self, text: ProgramText, *, mdi: bool) -> None:
         if self.run is None or self._changed:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from enum import IntFlag
-from typing import TypeAlias
+from typing import Protocol, TypeAlias
 
 from polycnc.cnc._alarms import Alarm
 from polycnc.cnc._control_channel import ControlChannel
@@ -28,13 +28,28 @@ class ControlEvent(IntFlag):
     FUNCTION = 8  # an auxiliary function was handed to the PLC, or answered
 
 
+class CycleWatch(Protocol):
+    """Somebody who looks at a control in every cycle, as long as it `is_awake`."""
+
+    @property
+    def is_awake(self) -> bool:
+        """Whether anything has to be looked at."""
+
+    def look(self) -> None:
+        """Look at the control, behind a cycle."""
+
+
 class ControlTime:
-    """Let time pass; `raised` is what happened in the last stretch and since, `fail` stops what alarms stop."""
+    """Let time pass; `raised` is what happened in the last stretch and since, `fail` stops what alarms stop.
+
+    A `watch` that is awake looks at every cycle.
+    """
 
     def __init__(self, of: ControlParts, fail: Callable[[Iterable[Alarm]], None]) -> None:
         self._of = of
         self._fail = fail
         self.raised = ControlEvent.NONE
+        self.watch: CycleWatch | None = None
 
     def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
@@ -67,6 +82,9 @@ class ControlTime:
         if due is not None:
             cycles = min(cycles, max(1, due - self._of.clock.cycles))
         cycles = min(cycles, self._of.manual.horizon())
+        watch = self.watch
+        if watch is not None and watch.is_awake:
+            cycles = min(cycles, 1)
         cutting_s = self._cutting_s()
         reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
         passed = self._of.machine.advance(cycles, until=int(row["mask"]) | reasons)
@@ -77,6 +95,8 @@ class ControlTime:
             tool=self._tool(),
         )
         self._look(passed, states)
+        if watch is not None and watch.is_awake:
+            watch.look()
         if [channel.run_state for channel in self._of.channels] != states:
             self.raised |= ControlEvent.RUN_STATE
         if any(alarm not in alarms for alarm in self._of.alarms.active):

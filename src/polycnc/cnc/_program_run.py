@@ -239,8 +239,16 @@ class ProgramRun:
         except UsageError:
             self._replace_channel(self.program, keeps_modal=False)
             raise
-        self._moment.approach = (tuple(self.channel.state.modal.position.tolist()), target)
+        self._moment.searched = tuple(self.channel.state.modal.position.tolist())
+        self._moment.approach = (self._moment.searched, target)
         return target
+
+    @property
+    def searched(self) -> tuple[float, ...] | None:
+        """Where the calculated search of a block has come to (machine coordinates, mm or degree), None if none was."""
+        if self.channel.seeking:
+            return tuple(self.channel.state.modal.position.tolist())
+        return self._moment.searched
 
     def step_into(self) -> None:
         """Go on to the end of the next block, into a sub-program if it calls one.
@@ -606,7 +614,7 @@ class ProgramRun:
         channel = self._new_channel(program, self.channel, self.block_delete, keeps_modal=keeps_modal)
         channel.state.tool = tool
         self._conduct.channel = channel
-        self._moment.met = self._moment.approach = None  # blocks of the program before
+        self._moment.met = self._moment.approach = self._moment.searched = None  # of the program before
         self.feed.clear()
 
     def _give_axes(self) -> None:

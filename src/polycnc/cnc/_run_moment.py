@@ -17,7 +17,7 @@ class RunMoment:
     `hold` is a feed hold; a stop holds the path as well. `held_back` is one that comes when the program lets it.
     `stop` is the stop at which the program stands, `met` the segment count and the tag of the event at which the path
     rests, `unanswered` an auxiliary function at which it stands. `approach` is where a searched block begins, and its
-    line. `suppressed` is what the program keeps from acting now.
+    line, `searched` where a calculated search has come to. `suppressed` is what the program keeps from acting now.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -37,6 +37,7 @@ class RunMoment:
     tool_times: ToolTimes = field(default_factory=ToolTimes)
     approach: tuple[tuple[float, ...], int] | None = None
     probing: Probing | None = None
+    searched: tuple[float, ...] | None = None
 
     def copy(self) -> RunMoment:
         """Return a moment that changes no more with this one."""

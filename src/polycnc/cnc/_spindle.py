@@ -142,6 +142,11 @@ class Spindle:
             end_angle_deg=target % 360.0,
         )
 
+    @property
+    def is_orienting(self) -> bool:
+        """Whether the spindle is brought to an angle, or stands there."""
+        return self._motion.orienting
+
     def stop(self) -> None:
         """Stop the spindle (emergency, reset); the programmed speed stays known."""
         self.turn(direction=0)

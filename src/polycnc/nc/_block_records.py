@@ -114,6 +114,7 @@ class ModalWords:
     zero: tuple[float, ...]
     work: tuple[str, ...] = ()
     placement: Placement = NO_PLACEMENT
+    spindle_oriented: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -351,6 +352,7 @@ class BlockRecords:
             zero=tuple(np.frombuffer(modal.offset).tolist()),
             work=modal.work,
             placement=modal.placement,
+            spindle_oriented=spindle.oriented,
         )
 
     def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:

@@ -160,6 +160,22 @@ class Language(Protocol):
 
 
 @runtime_checkable
+class HastyLanguage(Language, Protocol):
+    """A language whose programs may wait for time to pass."""
+
+    hasty: bool
+    """Whether no time passes: what waits for it goes on at once."""
+
+    def loops(self) -> bool:
+        """Tell whether programs have come back to a state in which they were when this was asked before."""
+        ...
+
+    def moves_on(self) -> None:
+        """Take note that something has happened since `loops` was asked."""
+        ...
+
+
+@runtime_checkable
 class SearchingLanguage(Language, Protocol):
     """A language whose programs may begin at another line than their first."""
 

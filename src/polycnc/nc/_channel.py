@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
@@ -19,6 +20,7 @@ from polycnc.nc._block_source import (
     CallProgram,
     Drain,
     EndSource,
+    HastyLanguage,
     Language,
     LastingLanguage,
     Pause,
@@ -55,6 +57,7 @@ from polycnc.nc.text._scan_plain import Block
 ORDINARY_BLOCKS = 2000
 _MOST_ERRORS = 1000
 _MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
+_MOST_IDLE_TURNS = 100  # of a calculated search without a block: nothing ends its wait or loop
 
 
 class Channel:
@@ -149,11 +152,24 @@ class Channel:
             language.attach(self)
         self._begun = False
         self._turns = 0  # of a language, since it gave a block
-        self._seeking = False
+        self._sought: Place | None = None
+        self._held: SourceItem | None = (
+            None  # what the source of the main program has given of the block sought
+        )
 
     def sub_program(self, number: int) -> ProgramText | None:
         """Return the text that a sub-program stands in, None if there is none."""
         return self._calls.text_of(number)
+
+    @property
+    def seeking(self) -> bool:
+        """Whether a block is sought by carrying out what stands before it."""
+        return self._sought is not None
+
+    @property
+    def holds_searched(self) -> bool:
+        """Whether statements have led to a block that was sought, which comes next."""
+        return self._held is not None
 
     @property
     def depth(self) -> int:
@@ -247,17 +263,19 @@ class Channel:
 
         `drop` is called to throw away what has come into the queue. Afterwards the program goes on at the line.
 
+        Statements of a language are executed too; what they wait for goes on at once.
+
         Raises:
-            UsageError: a language executes the program, or radius compensation is active there.
+            UsageError: statements wait or loop without end before the line, or radius compensation is active there.
         """
         place = self._target(line)
-        self._begun = self._seeking = True
-        self._reading.end = place.offset
-        while not self._ended and not self._is_at(place):
-            self.fill()
-            drop()
-            self.writer.clear()
-        self._seeking = False
+        self._begun = True
+        self._sought = place
+        try:
+            self._seek(place, drop)
+        finally:
+            self._sought = None
+            self._be_hasty(False)
         if self._ended:
             return False
         if self.state.compensation.active:
@@ -265,8 +283,34 @@ class Channel:
                 f"radius compensation is active at line {line}",
                 hint="Search a block before G41 or G42, or behind G40.",
             )
-        self._reading.jump(place, len(place.text))
+        if self._held is None:
+            self._reading.jump(place, len(place.text))
         return True
+
+    def _seek(self, place: Place, drop: Callable[[], None]) -> None:
+        self._be_hasty(True)
+        self._begin()
+        language = self._language if isinstance(self._language, HastyLanguage) else None
+        if self._calls.running.source is None:
+            self._reading.end = place.offset
+        idle, before = 0, (-1, -1)
+        while not self._ended and not self._is_at(place):
+            self.fill()
+            drop()
+            self.writer.clear()
+            now = self.blocks, self._calls.depth
+            idle, before = idle + 1 if now == before else 0, now
+            if language is not None and not idle:
+                language.moves_on()
+            if idle > _MOST_IDLE_TURNS or (idle and language is not None and language.loops()):
+                raise UsageError(
+                    f"the program waits or loops without a block before line {place.line}",
+                    hint="Let it look at the search (SD(13) of a Typ3 osa or PNC), or search another block.",
+                )
+
+    def _be_hasty(self, on: bool) -> None:
+        if isinstance(self._language, HastyLanguage):
+            self._language.hasty = on
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:
         """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
@@ -283,12 +327,11 @@ class Channel:
         return Place(text, text.line_start(line), line)
 
     def _is_at(self, place: Place) -> bool:
-        return (
-            self._calls.depth == 0
-            and self._reading.is_through
-            and self._reading.place.offset >= place.offset
-            and not self.writer.backlog
-        )
+        if self._calls.depth or not self._reading.is_through or self.writer.backlog:
+            return False
+        if self._calls.running.source is not None:
+            return self._held is not None
+        return self._reading.place.offset >= place.offset
 
     def snapshot(self) -> ChannelSnapshot:
         """Return where preparation stands and all that it has found, to go back to with `restore`.
@@ -318,6 +361,11 @@ class Channel:
         )
 
     def _language_state(self) -> object:
+        if self._held is not None:
+            raise SnapshotError(
+                "a block of a program with statements has been searched",
+                hint="Take the snapshot behind its start.",
+            )
         under_way = [(each.arguments, each.source) for each in self._calls.under_way]
         if isinstance(self._language, LastingLanguage):
             return self._language.save(under_way)
@@ -368,6 +416,7 @@ class Channel:
     def close(self) -> None:
         """Give up the program: what a language holds for it ends."""
         self._ended = True
+        self._held = None
         self._calls.close()
 
     def _first_state(self, config: MachineConfig) -> ChannelState:
@@ -381,7 +430,7 @@ class Channel:
             return True
         if self._calls.running.source is not None:
             return self._from_source()
-        if self._seeking and self._calls.depth == 0:
+        if self._sought is not None and self._calls.depth == 0:
             return False
         self._leave()
         return True
@@ -410,8 +459,10 @@ class Channel:
         running = self._calls.running
         assert running.source is not None
         try:
-            item = running.source.next()
+            item, self._held = (running.source.next() if self._held is None else self._held), None
             running.begun = True
+            if self._sought is not None and self._calls.depth == 0:
+                item = self._before_sought(item, self._sought)
             if item is Pause.PAUSE:
                 return False
             self._source_item(item)
@@ -422,6 +473,20 @@ class Channel:
         except ProgramError as error:
             self._note(error)
         return True
+
+    def _before_sought(self, item: SourceItem | None, place: Place) -> SourceItem | None:
+        """Return what of an item stands before the block sought, and hold the rest; a pause if nothing does."""
+        if not isinstance(item, WordsBlock | TextSpan | Drain | Statement | CallProgram) or (
+            not isinstance(item, CallProgram) and (item.calls or (item.text or place.text) is not place.text)
+        ):
+            return item
+        if isinstance(item, TextSpan) and item.offset < place.offset < item.end:
+            self._held = replace(item, offset=place.offset, line=place.line)
+            return replace(item, end=place.offset)
+        if item.line == place.line:
+            self._held = item
+            return Pause.PAUSE
+        return item
 
     def _source_item(self, item: SourceItem | None) -> None:
         text = self._calls.running.begin.text

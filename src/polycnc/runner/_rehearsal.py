@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from itertools import takewhile
 from pathlib import Path
+from typing import NamedTuple
 
 from polycnc.cnc import ProgramRun, RunOptions
-from polycnc.errors import PolycncError
+from polycnc.errors import PolycncError, ProgramError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._execution import run_to_end
@@ -21,13 +24,28 @@ MOST_FILES = 500
 MOST_BYTES = 32 << 20
 """A folder with more is not copied, and a program in it not rehearsed."""
 _LOOP_LIMIT_S = 1.0
+_LOG = logging.getLogger(__name__)
 
 
-def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, root: Path) -> list[Remark]:
-    """Return what a machinist would remark on the motion of a program, as far as it comes without keys and inputs."""
+class Rehearsal(NamedTuple):
+    """What a rehearsal has found: blocks that are wrong, and what a machinist would remark on the motion."""
+
+    errors: list[ProgramError]
+    remarks: list[Remark]
+
+
+def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, root: Path) -> Rehearsal:
+    """Return what is wrong with the blocks of a program and remarked on it, as far as it comes without keys and inputs.
+
+    Where it ends early, and that it has not been rehearsed at all, is logged.
+    """
     with _copy(root) as folder:
         if folder is None:
-            return []
+            _LOG.warning(
+                "%s: not rehearsed: %s cannot be copied, or holds more than %d files or %d MB",
+                program.name, root, MOST_FILES, MOST_BYTES >> 20,
+            )  # fmt: skip
+            return Rehearsal([], [])
         machine = Machine(config)
         control = control_for(dialect, program, machine, Surroundings(folder))
         assert control is not None
@@ -35,19 +53,41 @@ def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, roo
             machine,
             program,
             dialect,
-            options=RunOptions(stands_at_stops=False),
+            options=RunOptions(stands_at_stops=False, collect_errors=True),
             language=control.language,
             config=control.config,
         )
         control.attach(run)
         watch = MachiningWatch(run.channel)
-        run.channel.on_filled = watch.look
+        errors = run.channel.errors
+
+        def look() -> None:
+            watch.look()
+            if any(map(_is_of_a_statement, errors)):
+                run.channel.close()
+
+        run.channel.on_filled = look
+        ended: PolycncError | None = None
         try:
             run_to_end(run, every_cycle=False, control=control, loop_limit_s=_LOOP_LIMIT_S)
             control.finish()
-        except PolycncError:
-            pass  # it waits for what only a real run has: what came before is seen
-        return watch.remarks
+        except PolycncError as error:
+            ended = error
+        wrong = list(takewhile(lambda each: not _is_of_a_statement(each), errors))
+        ended = next(filter(_is_of_a_statement, errors), ended)
+        if ended is not None:
+            _LOG.warning("%s", _as_far_as(ended, program))
+        return Rehearsal(wrong, watch.remarks)
+
+
+def _is_of_a_statement(error: ProgramError) -> bool:
+    """Tell whether a statement has failed: what it reads decides that, and in a real run it may read something else."""
+    return error.__cause__ is not None
+
+
+def _as_far_as(error: PolycncError, program: ProgramText) -> str:
+    place = error.position if isinstance(error, ProgramError) else None
+    return f"{program.name if place is None else place}: rehearsed up to here: {error.what}"
 
 
 @contextmanager

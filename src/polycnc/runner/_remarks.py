@@ -14,7 +14,9 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import Channel, Dialect, MAction, ProgramText, line_of
 
 Floats = npt.NDArray[np.float64]
-_TURNS = {MAction.SPINDLE_CW: True, MAction.SPINDLE_CCW: True, MAction.SPINDLE_STOP: False}
+_TURNS = {
+    MAction.SPINDLE_CW: True, MAction.SPINDLE_CCW: True, MAction.SPINDLE_STOP: False, MAction.SPINDLE_ORIENT: False,
+}  # fmt: skip
 _ACROSS = "XY"
 
 
@@ -180,7 +182,7 @@ def times_remark(config: MachineConfig, dialect: Dialect, words: list[str]) -> s
         is_change = action is MAction.TOOL_CHANGE or word.startswith("T")
         if is_change and times.tool_change_s == 0.0:
             counts["tool change"] += 1
-        elif action in (MAction.SPINDLE_CW, MAction.SPINDLE_CCW) and not spindle_counts:
+        elif action in _STARTS and not spindle_counts:
             counts["spindle start"] += 1
         elif action in _OTHERS and times.auxiliary_s == 0.0:
             counts["other function"] += 1
@@ -191,6 +193,7 @@ def times_remark(config: MachineConfig, dialect: Dialect, words: list[str]) -> s
     return f"{listed} counted 0 s: a machine file says in [times] how long they take (preset vmc3 does)"
 
 
+_STARTS = (MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_ORIENT)
 _OTHERS = (
     MAction.AUXILIARY,
     MAction.COOLANT_FLOOD,

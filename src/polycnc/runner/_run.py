@@ -220,7 +220,7 @@ def check(
     too.
 
     A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run; with `strict`
-    in a copy of that folder.
+    in a copy of that folder, which finds what is wrong with the blocks that it gives.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -253,8 +253,8 @@ def inspect(
 
     Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut,
     program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
-    without an error is run in a copy of `root` for that, unless `rehearse` is off or the folder is larger than 500
-    files or 32 MB.
+    without an error is run in a copy of `root` for that, and for errors of the blocks that it gives, unless `rehearse`
+    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged.
 
     Raises:
         UsageError: no such file, machine or dialect.
@@ -265,9 +265,9 @@ def inspect(
     control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
     if control is not None and control.has_statements(text):
         errors = control.check(text)
-        rehearses = rehearse and not errors
-        folder = root_of(program, root)
-        return CheckReport(errors, rehearsed(text, simulated.config, chosen, folder) if rehearses else [])
+        if errors or not rehearse:
+            return CheckReport(errors, [])
+        return CheckReport(*rehearsed(text, simulated.config, chosen, root_of(program, root)))
     options = RunOptions(stands_at_stops=False, collect_errors=True)
     language = language_for(chosen) if control is None else control.language
     config = None if control is None else control.config

@@ -99,7 +99,7 @@ class SystemAxes:
         Raises:
             Fault: There is none, a physical axis is given with a channel, or `kind` is neither 0 nor 1.
         """
-        if kind is not OMITTED and kind not in (PHYSICAL, OWN):
+        if kind is not OMITTED and (isinstance(kind, bool) or kind not in (PHYSICAL, OWN)):
             raise Fault(INVALID_PARAMETER, "0 selects the physical axis, 1 that of the channel")
         if channel is not OMITTED and (type(channel) is not int or channel not in self.channels):
             raise Fault(INVALID_PARAMETER, f"there is no channel {channel}")

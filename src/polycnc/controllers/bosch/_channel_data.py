@@ -19,7 +19,10 @@ from polycnc.nc import Group, ModalWords
 
 _SPINDLE = 1
 _SINGLE_BLOCK, _AUTOMATIC, _PROGRAM_BLOCK = range(3)
+_SEARCH = 10
+"""Added to the machining mode while a block is sought: 10 with single blocks, 11 in automatic."""
 _SENSES = {1: 3, -1: 4, 0: 0}
+_ORIENTED = 19
 _OFF = (53, 153, 253, 67, 39, 146, 167)
 """What is in force of groups of which nothing was programmed."""
 _STATED = (
@@ -91,13 +94,15 @@ class ChannelData:
             test_without_motion=run.machine_lock,
             axis_names=dict(zip(axes.names, axes.numbers, strict=True)),
             logical_names=axes.logical_names(),
+            search_positions=dict(enumerate(self._by_axis(run.searched or (), state.modal.scale), 1)),
             machining_axes=frozenset(range(1, len(axes.channels[self._number]) + 1)),
         )
 
     def _machining_mode(self) -> int:
-        if self._modes(self._number) is Mode.PROGRAM_BLOCK:
-            return _PROGRAM_BLOCK
-        return _SINGLE_BLOCK if self.run.single_block else _AUTOMATIC
+        mode = _SINGLE_BLOCK if self.run.single_block else _AUTOMATIC
+        if self.run.channel.seeking:
+            return _SEARCH + mode
+        return _PROGRAM_BLOCK if self._modes(self._number) is Mode.PROGRAM_BLOCK else mode
 
     def programmed(self) -> ModalWords:
         """Return the words that were programmed last."""
@@ -124,7 +129,7 @@ class ChannelData:
                 shifts_268=self._by_axis(placement.additive, scales),
                 axes={channel: tuple(numbers) for channel, numbers in axes.channels.items()},
                 speeds_rpm={_SPINDLE: words.speed},
-                senses={_SPINDLE: _SENSES[words.spindle_direction]},
+                senses={_SPINDLE: _ORIENTED if words.spindle_oriented else _SENSES[words.spindle_direction]},
             )
             if own
             else Moment()
@@ -203,7 +208,7 @@ class ChannelData:
             if any(code in group for group in numbered):
                 last.program(f"G{code}")
         for name in (
-            {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
+            "M19" if words.spindle_oriented else {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
             *(f"M{code}" for code in words.m),
         ):
             if any(name in group for group in _M_GROUPS):

@@ -29,7 +29,7 @@ from polycnc.controllers.bosch._services import Services
 from polycnc.controllers.bosch._system import BoschSystem
 from polycnc.controllers.bosch.files import SelectedBlock
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
-from polycnc.controllers.bosch.ncs import NcsServer
+from polycnc.controllers.bosch.ncs import NcsServer, find_block
 from polycnc.controllers.bosch.system import Tab
 from polycnc.machine import Clock, MachineConfig, Snapshot, load_machine
 from polycnc.nc import ProgramText, load_dialect
@@ -57,8 +57,8 @@ class Pnc:
     `root` is the control's directory: part programs, files, tables and everything permanent lie in it. `channels` are
     the names of each channel's axes, one channel with all of them if there are none; `numbers` are the physical indices
     of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
-    the control that programs ask by MCODS and MCOPS, this one if None. `script` says how the PLC answers functions.
-    With `stepping` programs are linked so that a debugger can stop at each of their lines.
+    the control that programs ask by MCODS and MCOPS, like the `ncs` of another one; this one if None. `script` says how
+    the PLC answers functions. With `stepping` programs are linked so that a debugger can stop at each of their lines.
     """
 
     def __init__(
@@ -96,7 +96,10 @@ class Pnc:
             name for name, done in self._control.manual.referenced.items() if done
         )
         self.services = Services(self.system, self)
-        self.server = server or NcsServer(self.services)
+        self.ncs = NcsServer(self.services)
+        """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
+        self.server = server or self.ncs
+        self._control.be_watched(self.ncs)
         self._modes: dict[int, BoschMode] = {}
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
@@ -195,6 +198,22 @@ class Pnc:
         """
         self._control.cycle_start(channel=self._path(channel))
         self.system.reset_signal(channel, False)
+
+    def search_block(self, start: str, *, channel: int = 1) -> int:
+        """Let the selected program begin at the first block that begins with `start`; return its line.
+
+        What stands before is carried out without moving, statements too, and the next start goes straight to where the
+        block begins (Manual 003, 4.14.2: MCOPS(3)).
+
+        Raises:
+            ControlError: There is no such block, or the program does not come to it; see `Control.search`.
+        """
+        program = self._control.channels[self._path(channel)].program
+        blocks = [] if program is None else program.content.decode("latin-1").splitlines()
+        found = find_block(blocks, start)
+        if found is None:
+            raise ControlError(Refusal.NOT_FOUND, f"there is no block {start}", hint="Give its beginning.")
+        return self._control.search(line=found + 1, calculate=True, channel=self._path(channel))
 
     @property
     def dialogs(self) -> tuple[str, ...]:
@@ -325,11 +344,8 @@ class Pnc:
 
     def search(self, channel: int, start: str) -> bool:
         """Let the selected program begin at a block; tell whether there is such a block."""
-        digits = start.removeprefix("N")
-        if not digits.isdigit():
-            return False
         try:
-            self._control.search(sequence=int(digits), channel=self._path(channel))
+            self.search_block(start, channel=channel)
         except ControlError:
             return False
         return True

@@ -7,6 +7,7 @@ from typing import Protocol
 
 from polycnc.controllers.bosch._system import BoschSystem
 from polycnc.controllers.bosch.ncs import (
+    AUTOMATIC,
     MODES,
     WHOLE_SYSTEM,
     Channel,
@@ -23,6 +24,7 @@ from polycnc.controllers.bosch.system import MODE_BY_PLC
 LONGEST_PATH = 100
 LONGEST_BLOCK = 511
 WITHOUT_RESELECTION = 2
+_PROGRAM_MODES = AUTOMATIC | {Mode.MDI, Mode.DEBUG_BLOCK, Mode.DEBUG_AUTOMATIC}
 _READY = (Sav.AT_START, Sav.READY)
 
 
@@ -70,7 +72,11 @@ class Services:
         shown = self._channel(channel)
         if shown.sav == Sav.INACTIVE:
             raise NcsError(NcsCode.NOTHING_SELECTED)
-        raise NcsError(NcsCode.OCCUPIED)
+        if shown.mode not in _PROGRAM_MODES:
+            raise NcsError(NcsCode.WRONG_MODE)
+        raise NcsError(
+            NcsCode.OCCUPIED
+        )  # statements before prepared blocks must not be executed a second time
 
     def control_reset(self, channel: int, kind: int) -> None:
         _check_kind(kind)

@@ -229,7 +229,8 @@ class Shown:
         cutting = words is not None and words.g.get(Group.SPINDLE_MODE) in _CUTTING
         return Spindle(
             programmed=speed, actual=speed if direction else 0.0, limits=(0.0, top), gear_limits=(0.0, top),
-            motion=_MOTIONS[direction], cutting_m_min=(speed if direction else 0.0) if cutting else None,
+            motion=SpindleMotion.ORIENTATION if words is not None and words.spindle_oriented else _MOTIONS[direction],
+            cutting_m_min=(speed if direction else 0.0) if cutting else None,
         )  # fmt: skip
 
 

@@ -257,6 +257,7 @@ class MAction(Enum):
     SPINDLE_CW = ("spindle_cw", "spindle")
     SPINDLE_CCW = ("spindle_ccw", "spindle")
     SPINDLE_STOP = ("spindle_stop", "spindle")
+    SPINDLE_ORIENT = ("spindle_orient", "")
     TOOL_CHANGE = ("tool_change", "tool")
     COOLANT_MIST = ("coolant_mist", "")
     COOLANT_FLOOD = ("coolant_flood", "")

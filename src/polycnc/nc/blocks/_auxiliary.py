@@ -24,6 +24,7 @@ _BEFORE_MOTION = (
     MAction.SPINDLE_CW,
     MAction.SPINDLE_CCW,
     MAction.SPINDLE_STOP,
+    MAction.SPINDLE_ORIENT,
     MAction.COOLANT_MIST,
     MAction.COOLANT_FLOOD,
     MAction.COOLANT_OFF,
@@ -32,7 +33,9 @@ _BEFORE_MOTION = (
 )
 _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
-_DIRECTION = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
+_DIRECTION = {
+    MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0, MAction.SPINDLE_ORIENT: 0,
+}  # fmt: skip
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 LARGEST_NUMBER = 99_999_999
@@ -181,13 +184,16 @@ class Auxiliary:
         if m.action is MAction.RIGID_TAP:
             turned = self.state.spindle.direction != 0
             self.state.rigid_tap = True
-            self.state.spindle = replace(self.state.spindle, direction=0)
+            self.state.spindle = replace(self.state.spindle, direction=0, oriented=False)
             word = name if speed is None else f"{name} S{code_text(speed.value)}"
             return Wait(times.spindle_start_s if turned else times.auxiliary_s, line, (word,))
         if m.action in _DIRECTION:
             spindle = self.state.spindle
-            changed = spindle.direction != _DIRECTION[m.action] or speed is not None
-            self.state.spindle = replace(spindle, direction=_DIRECTION[m.action])
+            now = replace(
+                spindle, direction=_DIRECTION[m.action], oriented=m.action is MAction.SPINDLE_ORIENT
+            )
+            changed = now != spindle or speed is not None
+            self.state.spindle = now
             word = name if speed is None else f"{name} S{code_text(speed.value)}"
             return Wait(times.spindle_start_s if changed else 0.0, line, (word,))
         return Wait(times.auxiliary_s, line, (name,))

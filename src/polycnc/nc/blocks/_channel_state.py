@@ -26,7 +26,7 @@ from polycnc.nc.blocks._turning import Turning
 
 @dataclass(frozen=True, slots=True)
 class Spindle:
-    """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped.
+    """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped or `oriented`.
 
     `speed` is in revolutions per minute, or in m/min with constant surface speed; then the spindle turns with `clamp`
     revolutions per minute at the most.
@@ -36,6 +36,7 @@ class Spindle:
     direction: int = 0
     surface_speed: bool = False
     clamp: float = math.inf
+    oriented: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -90,6 +90,8 @@ class CplLanguage:
         self.linker = Linker(host.program, stepping=stepping, tables=tables, codes=codes)
         self.running: list[CplSource] = []
         """The sources under way, that of the main program first."""
+        self.hasty = False
+        """Whether a WAIT is over at once: a block is sought, and no time passes."""
         self.at_line: Callable[[str, int], bool] | None = None
         """What tells a debugger's wish to stand before a line, of programs linked for stepping."""
         self._control = host
@@ -294,7 +296,7 @@ class CplSource:
             if (item := self._left_over()) is not None:
                 return item
             if self._waiting is not None:
-                self._answer = self._waiting.answer()
+                self._answer = self._waiting.answer(hasty=self._language.hasty)
                 if self._answer is None:
                     return Pause.PAUSE
                 self._waiting = None
@@ -471,14 +473,19 @@ class _Wait:
             return None
         return self.began_ms + self._wait.duration_ms
 
-    def answer(self) -> int | None:
-        """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet."""
+    def answer(self, *, hasty: bool = False) -> int | None:
+        """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet.
+
+        Where it is `hasty` all that is waited for comes at once.
+        """
         wait = self._wait
         first = self.began_ms is None
         if self.began_ms is None:
             self.began_ms = self._milliseconds() if wait.duration_ms is not None else 0
         if wait.condition is not None and wait.condition():
             return 0 if first else 2
+        if hasty:
+            return 2 if wait.duration_ms is None else 1
         if wait.duration_ms is not None and self._milliseconds() - self.began_ms >= wait.duration_ms:
             return 1
         return None

@@ -53,7 +53,7 @@ class Compiler:
         self._source = source
         self._stepping = stepping
         self._hosts: dict[str, tuple[str, int]] = {}
-        self._values = Values(self._use, self._host, self._box)
+        self._values = Values(self._use, self._host, self._box, self._temporary)
         self._boxes: list[tuple[str, Name]] = []
         self._count = 0
         self._out: Emitter[int] = Emitter(0)
@@ -302,7 +302,7 @@ class Compiler:
             first, *others = target.arguments
             if not isinstance(first, Name) or first.variable.kind != "S" or None in others:
                 raise Flaw(target.at, "MID$ sets a part of a character field", "MID$(A$,start[,number])=text")
-            places = [self._values.integer(tree) for tree in others if tree is not None]
+            places = [self._values.assigned(tree) for tree in others if tree is not None]
             start, number = (*places, "None")[:2]
             field, text = self._values.stored(first), self._values.text(statement.value)
             return f"put_part({field}, {start}, {number}, {text})"
@@ -394,7 +394,11 @@ class Compiler:
             state = "True" if statement.state is None else self._values.condition(statement.state)
             asked = self._host("IC", statement.condition.at), *self._values.arguments(statement.condition)
             condition = f"ic_condition({state}, {statement.negated}, {', '.join(asked)})"
-        duration = "None" if statement.duration_ms is None else self._values.integer(statement.duration_ms)
+        duration = (
+            "None"
+            if statement.duration_ms is None
+            else f"duration({self._values.integer(statement.duration_ms)})"
+        )
         answer = self._temporary()
         self._open_boxes(boxes)
         self._out.put(f"{answer} = yield Waiting({statement.line}, {condition}, {duration})")

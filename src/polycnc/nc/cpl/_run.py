@@ -320,6 +320,20 @@ def _ic_condition(
     return lambda: function(*arguments) == wanted
 
 
+def _assigned(value: object) -> object:
+    if value is None:
+        raise _numbers.not_assigned()
+    return value
+
+
+def _duration(value: object) -> int:
+    milliseconds = _numbers.to_integer(_assigned(value))
+    assert milliseconds is not None
+    if milliseconds < 0:
+        raise Fault(INVALID_PARAMETER, f"WAIT takes 0 ms or more, not {milliseconds}")
+    return milliseconds
+
+
 def _root(value: float) -> float:
     if value < 0:
         raise Fault(INVALID_PARAMETER, "SQRT takes no negative number")
@@ -341,6 +355,7 @@ _SCOPE: dict[str, object] = {
     "length": _strings.length, "position": _strings.position, "code": _strings.code,
     "character": _strings.character, "written": _strings.written, "number": _strings.number,
     "added": _strings.added, "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept,
+    "assigned": _assigned, "duration": _duration,
     "as_word": _as_word, "inserted": _inserted, "ic_condition": _ic_condition,
 }  # fmt: skip
 """What a running program knows of Python."""

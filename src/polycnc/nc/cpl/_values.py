@@ -24,6 +24,8 @@ _DEGREES |= {"ASIN": "arc_sine", "ACOS": "arc_cosine", "ATAN": "arc_tangent"}
 _WHOLE = {"INT": "whole", "ROUND": "nearest", "BCD": "to_bcd", "BIN": "from_bcd"}
 _TEXT_CODES = {"LEN": "length", "ASC": "code", "VAL": "number"}
 _CHAIN_DEPTH = 3
+_IN_ONE = 10
+"""So many operands are rounded inside each other; what they give is kept: Python nests only so deep."""
 
 
 class Typed(NamedTuple):
@@ -42,15 +44,20 @@ class Values:
     """Turn expressions of one program into Python.
 
     `use` notes a variable and returns the Python for it; `host` does so for a function of the control, `box` for
-    a variable that such a function sets.
+    a variable that such a function sets; `temporary` returns a new name of Python.
     """
 
     def __init__(
-        self, use: Callable[[Variable, int], str], host: Callable[[str, int], str], box: Callable[[Name], str]
+        self,
+        use: Callable[[Variable, int], str],
+        host: Callable[[str, int], str],
+        box: Callable[[Name], str],
+        temporary: Callable[[], str],
     ) -> None:
         self._use = use
         self._host = host
         self._box = box
+        self._temporary = temporary
         self.fields: dict[str, int] = {}
         """Local variables that a DIM makes a field, with the number of their indices."""
         self._known: dict[Variable, Typed] = {}
@@ -96,6 +103,15 @@ class Values:
         if typed.kind not in ("X", "R", "D"):
             raise Flaw(tree.at, f"an INTEGER is needed, not {KIND_NAMES[typed.kind]}")
         return f"to_integer({typed.python.text})"
+
+    def assigned(self, tree: Expression) -> str:
+        """Return an expression that must be INTEGER and have a value.
+
+        Raises:
+            Flaw: It has another type.
+        """
+        text = self.integer(tree)
+        return text if isinstance(tree, Number) else f"assigned({text})"
 
     def text(self, tree: Expression) -> str:
         """Return the text that a string expression has.
@@ -211,7 +227,7 @@ class Values:
     def _section(self, call: Call) -> str:
         """Return a part of a character field that a command sets."""
         first, *others = call.arguments
-        places = [self.integer(tree) for tree in others if tree is not None]
+        places = [self.assigned(tree) for tree in others if tree is not None]
         if not isinstance(first, Name) or len(places) != len(others):
             raise Flaw(call.at, "MID$ sets a part of a character field", "MID$(A$,start[,number])")
         return f"section({', '.join((self.stored(first), *places))})"
@@ -299,7 +315,12 @@ class Values:
 
     def _chain(self, tree: Chain[Leaf]) -> Typed:
         typed = self._typed(tree.first)
-        for link in tree.links:
+        kept: list[str] = []
+        for place, link in enumerate(tree.links):
+            if place and place % _IN_ONE == 0 and not self._is_flat(typed):
+                name = self._temporary()
+                kept.append(f"{name} := {typed.python.text}")
+                typed = typed._replace(python=Python(name))
             right = self._typed(link.operand)
             if link.operator in _COMPARISONS:
                 typed = self._compared(typed, link.operator, right, link.at)
@@ -307,7 +328,14 @@ class Values:
                 typed = _logical(typed, link.operator, right, link.at)
             else:
                 typed = self._reckoned(typed, link.operator, right, link.at)
+        if kept:
+            whole = Python(f"({', '.join((*kept, typed.python.text))})[-1]")
+            typed = typed._replace(python=whole)
         return typed
+
+    def _is_flat(self, typed: Typed) -> bool:
+        """Tell whether Python reckons on with a value without a further parenthesis around it."""
+        return typed.kind != "B" and (typed.exact or self._double)
 
     def _compared(self, left: Typed, operator: str, right: Typed, at: int) -> Typed:
         if "N" in (left.kind, right.kind):
@@ -349,7 +377,7 @@ class Values:
             )
         if call.function == "INSTR":
             texts = [self.text(tree) for tree in call.arguments[:2] if tree is not None]
-            start = [self.integer(tree) for tree in call.arguments[2:] if tree is not None]
+            start = [self.assigned(tree) for tree in call.arguments[2:] if tree is not None]
             return Typed(Python(f"position({', '.join(texts + start)})"), "I")
         return self._own_number(call.function, first)
 
@@ -384,12 +412,12 @@ class Values:
                 form = [self.text(first)] if others else []
                 return f"written({', '.join((repr(typed.kind), self.rounded(typed).text, *form))})"
             case "MID$":
-                places = [self.integer(tree) for tree in others if tree is not None]
+                places = [self.assigned(tree) for tree in others if tree is not None]
                 if len(places) != len(others):
                     raise Flaw(call.at, "MID$ has an argument left out", function.usage)
                 return f"middle({', '.join((self.stored(first), *places))})"
             case "TRIM$":
-                side = [self.text(tree) for tree in others if tree is not None]
+                side = [f"assigned({self.text(tree)})" for tree in others if tree is not None]
                 return f"trimmed({', '.join((self.stored(first), *side))})"
         raise Flaw(call.at, f"{call.function} is no text")
 

@@ -1,5 +1,6 @@
 """The NCS coupling: what part programs ask of other channels and controls by MCODS, MCOPS and MMC."""
 
+from polycnc.controllers.bosch.ncs._blocks import find_block
 from polycnc.controllers.bosch.ncs._clients import Client, ClientError, Clients, Mmc, MmcResult, Sent
 from polycnc.controllers.bosch.ncs._codes import NcsCode, NcsError
 from polycnc.controllers.bosch.ncs._coupling import MAGIC, Control, Coupling, NcsServer
@@ -21,6 +22,7 @@ from polycnc.controllers.bosch.ncs._image import (
 )
 from polycnc.controllers.bosch.ncs._partner import Partner, Station
 from polycnc.controllers.bosch.ncs._process_services import (
+    AUTOMATIC,
     MODES,
     PROCESS_SERVICES,
     WHOLE_SYSTEM,
@@ -30,6 +32,7 @@ from polycnc.controllers.bosch.ncs._process_services import (
 )
 
 __all__ = [
+    "AUTOMATIC",
     "DATA_SERVICES",
     "MAGIC",
     "MODES",
@@ -67,4 +70,5 @@ __all__ = [
     "ToolCompensation",
     "Unit",
     "Wait",
+    "find_block",
 ]

@@ -45,6 +45,11 @@ class NcsServer:
         if magic != self.magic:
             raise NcsError(NcsCode.BAD_MAGIC)
 
+    @property
+    def is_awake(self) -> bool:
+        """Whether there is anything to note: data were asked for that can change and change back."""
+        return self.ledger.is_used
+
     def look(self) -> None:
         """Note what changed; once in every cycle of the control, so that nothing is missed between two calls."""
         self.ledger.look(self.control.image)

@@ -10,6 +10,7 @@ from polycnc.controllers.bosch.ncs._data_services import DATA_SERVICES, Asked, V
 from polycnc.controllers.bosch.ncs._image import Image
 
 Key: TypeAlias = tuple[int, int, tuple[int | None, ...]]
+_CHANGING = ("E", "S")
 LARGEST = 2**24 - 1
 """Versions fit into a REAL variable without rounding."""
 
@@ -35,6 +36,11 @@ class Ledger:
             self.last = self.last % LARGEST + 1
             entry = self.entries[key] = (stamp, self.last)
         return values, entry[1]
+
+    @property
+    def is_used(self) -> bool:
+        """Whether data were asked for that can change and change back."""
+        return any(DATA_SERVICES[number].refresh in _CHANGING for number, _, _ in self.entries)
 
     def look(self, image: Image) -> None:
         """Note what changed of the data asked for before, in every cycle: they may change back."""

@@ -149,7 +149,7 @@ class Dialog:
     def _col(self, *codes: object) -> int:
         given = [*codes, *[OMITTED] * (6 - len(codes))]
         table = given.pop(3)
-        if table is not OMITTED and table not in _TABLES:
+        if table is not OMITTED and (isinstance(table, bool) or table not in _TABLES):
             raise Fault("INVALID PARAMETER", "tables of colours are 1, 7 (table 2) and 10 (table 3)")
         now = (self._drawing.colour, *self._text_colours, *self.surface.softkey_colours)
         new = [old if code is OMITTED else colour_code(code) for code, old in zip(given, now, strict=True)]
