@@ -5,7 +5,7 @@ lies on that side, -1 / radius where it lies on the other, 0 of a line. With q, 
 respect to the touching circle, both conditions are linear in the normals n of the elements: centre . n = r + kappa q.
 The circles grow from the corner on until the elements leave no room for larger ones.
 
-Lengths in mm, angles in rad.
+Units: lengths in mm, angles in rad.
 """
 
 from __future__ import annotations
