@@ -8,7 +8,9 @@ import math
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.spatial import cKDTree
 
+import polycnc
 from polycnc.kernel import (
     EXACT_PATH,
     RAPID,
@@ -23,6 +25,7 @@ from polycnc.kernel import (
 )
 from polycnc.kernel._geometry import segment_tangent
 from polycnc.kernel._segments import ARC, LINE, RADIUS_END, RADIUS_START, ROUNDING, SWEEP_RAD
+from polycnc.machine import load_machine
 from support.random_paths import CYCLE_S, PathSettings, machine, overload, prepare, run_recorded, seeds
 
 Floats = npt.NDArray[np.float64]
@@ -245,6 +248,90 @@ def test_what_leaves_the_plane_stays_as_it_is(lifted: str) -> None:
     assert [int(kind) for kind in path.rows()["kind"]] == [LINE, ARC]
 
 
+def test_a_machine_of_two_axes_rounds_too() -> None:
+    state = make_state(2, segments=16)
+    state.limits.speed[:], state.limits.acceleration[:] = 150.0, 800.0
+    state.paths.row[0]["tolerance_mm"] = 0.1
+    append_line(state.seg, state.paths, 0, state.limits, np.array([10.0, 0.0]), 60.0, 0, 1)
+    append_arc(
+        state.seg,
+        state.paths,
+        0,
+        state.limits,
+        np.array([14.0, -4.0]),
+        0,
+        1,
+        14.0,
+        0.0,
+        math.pi / 2,
+        60.0,
+        0,
+        2,
+    )
+    assert [int(kind) for kind in state.seg.row["kind"][:3]] == [LINE, ARC, ARC]
+
+
+@pytest.mark.parametrize("bend", [0.0, 0.2])
+def test_what_may_be_rounded_waits_for_the_corner_behind_it(bend: float) -> None:
+    path = chain(0.1)
+    row = path.state.paths.row[0]
+    path.go(0.0, 0.0, 10.0)
+    path.go(0.9, bend, 10.0)
+    prepare(path.state, closed=False)
+    waiting = int(row["tail"]) - 1
+    assert row["prepared"] == waiting
+    path.go(0.9, 0.2 - bend, 10.0)
+    assert len(path.rows()) == waiting + 3
+    prepare(path.state)
+    assert row["prepared"] == row["tail"]
+
+
+def test_what_has_been_planned_is_not_shortened() -> None:
+    path = chain(0.1)
+    path.go(0.0, 0.1, 10.0)
+    prepare(path.state)
+    path.go(0.9, 0.2, 10.0)
+    assert [int(kind) for kind in path.rows()["kind"]] == [ARC, ARC]
+    assert path.rows()["length"] == pytest.approx([10.0, 10.0])
+
+
+PROGRAM = """G21 G90 G17 {code}
+F9000
+G1 X20
+G2 X30 Y-10 I0 J-10
+G1 X42 Y-3
+G1 X42.5 Y-2.7
+G1 X43 Y-2.4
+G3 X43 Y9.6 I-3 J6
+G3 X31 Y9.6 I-6 J-1
+G1 Z4
+G2 X20 Y2 R9
+G18
+G2 X14 Z4 R5
+G1 X10 Z0
+G19
+G3 Y10 Z2 R6
+G1 Y14
+M30
+"""
+
+
+def test_a_program_of_lines_and_arcs_keeps_tolerance_and_limits() -> None:
+    machine = load_machine("mill3")
+    exact, rounded = (
+        polycnc.run(PROGRAM.format(code=code), machine, dialect="linuxcnc", trace=True)
+        for code in ("G61", "G64 P0.05 Q0.01")
+    )
+    assert exact.trace is not None
+    assert rounded.trace is not None
+    assert rounded.time_s < 0.97 * exact.time_s
+    assert polycnc.verify_trace(rounded.trace, machine) == []
+    assert tuple(rounded.trace.setpoint[-1]) == tuple(exact.trace.setpoint[-1])
+    off, _ = cKDTree(exact.trace.setpoint).query(rounded.trace.setpoint)
+    # Of a step of 0.15 mm in a cycle the nearest point is 0.075 mm at most away along the path.
+    assert 0.03 < float(off.max()) < math.hypot(0.05, 0.075) + 0.002
+
+
 def random_chain(seed: int, settings: PathSettings, *, stops: bool = False) -> Chain:
     """Return a random chain of lines and arcs at corners of every angle, ready to start."""
     rng = np.random.default_rng(seed)
@@ -270,6 +357,7 @@ ROUNDED = (
     PathSettings(tolerance=0.02),
     PathSettings(tolerance=math.inf),
     PathSettings(tolerance=0.05, jerkrel=0.4),
+    PathSettings(tolerance=0.05, jerk=2e5),
     PathSettings(tolerance=0.05, shares=(0.1, 0.5, 0.5)),
     PathSettings(tolerance=math.inf, shares=(0.1, 0.5, 0.5)),
 )

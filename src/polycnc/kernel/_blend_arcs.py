@@ -59,7 +59,7 @@ LARGEST_TURN = math.radians(175.0)  # a reversal has no room for an arc
 SMALLEST_ARC = 1e-6  # mm
 FREE_SHARE = 0.25  # of the shorter element is the tolerance where none is set
 QUARTER_TURN = 0.5 * math.pi
-MOST_TAKEN = 0.98  # of what is left of an arc
+MOST_TAKEN = 0.98  # of what is left of an arc, or of a line beside a spiral
 MOST_GROWTH = 0.05  # of the radius, per rad: spirals that grow faster are left alone
 MOST_OVER = 1.01  # of what may be taken is what an arc with a growing radius is taken of
 SMALLEST_GROWN = 1e-9  # mm; no arc that bends by more is as long as SMALLEST_ARC
@@ -185,7 +185,9 @@ def _round(
     if by_share or math.isinf(tolerance):
         tolerance = min(tolerance, FREE_SHARE * min(length_before, length_after))
     left = abs(seg.geo[k, SWEEP_RAD]) if before[2] > 0.0 else 0.0
-    most = _most_of(before[2], length_before, line["length"], left, LAST_SHARE if by_share else 0.0)
+    spiral = 2.0 * (_growth(before) + _growth(after))
+    kept = SMALLEST_ARC if spiral == 0.0 else (1.0 - MOST_TAKEN) * line["length"]
+    most = _most_of(before[2], length_before, line["length"] - kept, left, LAST_SHARE if by_share else 0.0)
     most_after = _most_of(after[2], length_after, length_after, sweep_after, FIRST_SHARE if by_share else 0.0)
     largest, speed = LARGEST_RADIUS, 0.0
     if by_share:
@@ -197,7 +199,7 @@ def _round(
     if largest * turn < SMALLEST_GROWN:
         return 0.0
     # What bends a spiral a little further than its circle comes off the tolerance.
-    tolerance *= 1.0 - 2.0 * (_growth(before) + _growth(after))
+    tolerance *= 1.0 - spiral
     radius = fitting_radius(turn, kappa, kappa_after, largest, tolerance, most, most_after)
     if radius * turn < SMALLEST_GROWN:
         return 0.0
@@ -244,7 +246,7 @@ def _growth(element: Element) -> float:
 def _most_of(radius: float, whole_mm: float, left_mm: float, sweep_rad: float, share: float) -> float:
     """Return how much of an element an arc may take, mm or rad: a share of its angle, or half of what it was."""
     if radius <= 0.0:
-        return min(0.5 * whole_mm, left_mm - SMALLEST_ARC)
+        return min(0.5 * whole_mm, left_mm)
     most = share * sweep_rad if share > 0.0 else 0.5 * whole_mm / radius
     return min(most, QUARTER_TURN, MOST_TAKEN * sweep_rad)
 
