@@ -100,6 +100,8 @@ def made_programs() -> Iterator[tuple[str, str]]:
     )
     yield "islands", islands(rng.uniform(0.0, 60.0, size=(8, 2)), 3000.0)
     yield "slots", slots(25, 4500.0)
+    yield "scallops", scallops(24, 5.0, 4000.0)
+    yield "chain", chain(np.random.default_rng(1), 40, 3000.0)
 
 
 def lines(x: np.ndarray, y: np.ndarray, z: np.ndarray, feed: float) -> str:
@@ -146,6 +148,39 @@ def slots(count: int, feed: float) -> str:
         found.append(f"G1 X{x:.4f} Y{y - 6.0:.4f}")
         y = -6.0 if number % 2 else -2.0
         found.append(f"G1 X{x + 1.5:.4f} Y{y:.4f}")
+    return "\n".join(found)
+
+
+def scallops(count: int, radius: float, feed: float) -> str:
+    """Return a program of arcs that meet in cusps, every third on the other side."""
+    width = 2.0 * radius * math.sin(1.0)
+    codes = [f"G{2 if number % 3 else 3}" for number in range(count)]
+    blocks = (f"{code} X{width * number:.4f} Y0 R{radius:.4f}" for number, code in enumerate(codes, 1))
+    return f"F{feed:g}\n" + "\n".join(blocks)
+
+
+def chain(rng: np.random.Generator, count: int, feed: float) -> str:
+    """Return a program of lines of 1 to 20 mm and arcs of 1 to 12 mm radius that meet at any angle."""
+    found, x, y, heading = [f"F{feed:g}"], 0.0, 0.0, 0.0
+    for _ in range(count):
+        heading += rng.uniform(-2.6, 2.6)
+        if rng.random() < 0.5:
+            radius, side = math.exp(rng.uniform(0.0, math.log(12.0))), rng.choice([-1, 1])
+            sweep = side * rng.uniform(0.3, 4.5)
+            center_x = round(x - side * radius * math.sin(heading), 5)
+            center_y = round(y + side * radius * math.cos(heading), 5)
+            radius = math.hypot(x - center_x, y - center_y)
+            angle = math.atan2(y - center_y, x - center_x) + sweep
+            end_x = round(center_x + radius * math.cos(angle), 5)
+            end_y = round(center_y + radius * math.sin(angle), 5)
+            word = f"G{3 if side > 0 else 2} X{end_x:.5f} Y{end_y:.5f}"
+            found.append(f"{word} I{center_x - x:.5f} J{center_y - y:.5f}")
+            heading += sweep
+        else:
+            length = math.exp(rng.uniform(0.0, math.log(20.0)))
+            end_x, end_y = round(x + length * math.cos(heading), 5), round(y + length * math.sin(heading), 5)
+            found.append(f"G1 X{end_x:.5f} Y{end_y:.5f}")
+        x, y = end_x, end_y
     return "\n".join(found)
 
 

@@ -25,7 +25,17 @@ UNITS = ("_mm", "_deg", "_rad", "_s", "_mm_s", "_mm_s2", "_mm_s3", "_cycles")
 
 # Algebra that holds in any unit: the module says at its top which ones its numbers are in.
 STATED_AT_THE_TOP = frozenset(
-    ["_braking", "_jerk", "_plant", "_point_to_point", "_profile", "_profile_shape", "_ramps", "_servo"]
+    [
+        "_braking",
+        "_jerk",
+        "_plant",
+        "_point_to_point",
+        "_profile",
+        "_profile_shape",
+        "_ramps",
+        "_servo",
+        "_touching",
+    ]
 )
 # A field of these words is a trap: programs give mm/min and deg for the same thing.
 TRAPS = frozenset(["angle", "dwell", "feed", "sweep", "tolerance"])

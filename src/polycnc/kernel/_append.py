@@ -7,6 +7,7 @@ The caller sees to free slots, and closes the last line (`close_line`) where the
 from __future__ import annotations
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._blend_arcs import round_to_arc
 from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._lines import appended, mark_last, set_ends
 from polycnc.kernel._path import Paths, slot
@@ -37,7 +38,13 @@ def append_arc(
     flags: int,
     tag: int,
 ) -> bool:
-    """Append an arc or helix to path `g`; False if it has no length."""
+    """Append an arc or helix to path `g`; False if it has no length. It may take two slots.
+
+    With a path tolerance the corner before it is rounded where that is possible.
+    """
+    sweep_rad = round_to_arc(
+        seg, paths, g, limits, end, (axis_p, axis_q), (center_p, center_q), sweep_rad, speed_mm_s, tag
+    )
     k = slot(paths, g, paths.row[g]["tail"])
     start = paths.queued[g]
     if not set_arc(

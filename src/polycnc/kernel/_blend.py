@@ -1,4 +1,4 @@
-"""Round the corner between two lines with an arc, so that it can be passed with speed.
+"""Round the corner between two lines with an arc, so that it can be passed with speed; `_blend_arcs` has those of arcs.
 
 The arc touches both lines and stays within a tolerance of the corner. It takes at most half of the line before it and
 half of the line after it, so every line keeps room for arcs at both ends. An infinite tolerance is a quarter of the
@@ -9,56 +9,54 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._blend_arcs import (
+    FREE_SHARE,
+    LARGEST_TURN,
+    SMALLEST_ARC,
+    SMALLEST_TURN,
+    may_be_rounded,
+    round_to_line,
+)
+from polycnc.kernel._blend_speed import (
+    AFTER,
+    BEFORE,
+    CENTER,
+    CUT,
+    CUT_LINE,
+    NORMAL,
+    START,
+    cut_by_share,
+    saves_time,
+)
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
 from polycnc.kernel._corner_rules import BY_SHARE
 from polycnc.kernel._jit import compiled
-from polycnc.kernel._limits import CENTRIPETAL_SHARE
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import (
+    ARC,
     CIRCLE3D,
     CIRCLE3D_LENGTH,
-    CORNER_STOP,
-    LINE,
     RAPID,
     ROUNDING,
-    STOP,
     Floats,
     Segments,
     set_common,
 )
-
-SMALLEST_TURN = 1e-6  # rad; a smaller corner is passed as it is
-LARGEST_TURN = math.radians(175.0)  # a reversal has no room for an arc
-SMALLEST_ARC = 1e-6  # mm
-FREE_SHARE = 0.25  # of the shorter line is the tolerance where none is set
-
-# Columns of the scratch `paths.blend`.
-_BEFORE, _AFTER, _START, _CENTER, _NORMAL = 0, 3, 6, 9, 12
-_CUT, _CUT_LINE = 15, 16  # what the last arc took of the line behind it, mm, and which line that is
-
-
-@compiled
-def may_be_rounded(path: np.void, row: np.void) -> bool:
-    """Tell whether a corner behind a segment may be rounded: it is a line, and at feed but for BY_SHARE."""
-    stops = STOP | CORNER_STOP | (0 if path["corner_rule"] == BY_SHARE else RAPID)
-    return bool(row["kind"] == LINE and not row["flags"] & stops)
 
 
 @compiled
 def blend_corner(
     seg: Segments, paths: Paths, g: int, limits: AxisLimits, end: Floats, speed_mm_s: float, tag: int
 ) -> bool:
-    """Append an arc at the end of path `g` towards `end`, if its last segment is a line that may be rounded.
+    """Append an arc at the end of path `g` towards `end`, if its last segment is one that may be rounded.
 
-    Shortens that line; the arc goes on in the direction of `end`. Only where no axis moves but the first three
+    Shortens that segment; the arc goes on in the direction of `end`. Only where no axis moves but the first three
     that count in the path length.
     """
     row = paths.row[g]
     work = paths.blend[g]
-    cut_before = work[_CUT] if work[_CUT_LINE] == row["tail"] - 1 else 0.0
+    cut_before = work[CUT] if work[CUT_LINE] == row["tail"] - 1 else 0.0
     tolerance = row["tolerance_mm"]
     if tolerance <= 0.0 or row["tail"] <= row["prepared"]:  # what has been planned cannot be shortened
         return False
@@ -66,16 +64,18 @@ def blend_corner(
     line = seg.row[k]
     if not may_be_rounded(row, line) or math.isinf(speed_mm_s) != (line["flags"] & RAPID != 0):
         return False
+    if line["kind"] == ARC:
+        return round_to_line(seg, paths, g, limits, end, speed_mm_s, tag)
     p, q, r = counting_axes(seg, k, limits, end)
     if p < 0:
         return False
-    before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
+    before, after = work[BEFORE:AFTER], work[AFTER:START]
     length_before = _direction(seg.start[k], seg.end[k], p, q, r, before)
     length_after = _direction(seg.end[k], end, p, q, r, after)
     if length_before <= 0.0 or length_after <= 0.0:
         return False
     cosine = before[0] * after[0] + before[1] * after[1] + before[2] * after[2]
-    turn = math.atan2(_cross(before, after, work[_NORMAL:_CUT]), cosine)
+    turn = math.atan2(_cross(before, after, work[NORMAL:CUT]), cosine)
     if turn < SMALLEST_TURN or turn > LARGEST_TURN:
         return False
     length_before += cut_before
@@ -90,97 +90,18 @@ def blend_corner(
     cut = min(cut, 0.5 * length_before, 0.5 * length_after, line["length"] - SMALLEST_ARC)
     speed = 0.0
     if row["corner_rule"] == BY_SHARE:
-        cut, speed = _cut_by_share(row, line, limits, (p, q, r), work, cut, turn, speed_mm_s)
+        cut, speed = cut_by_share(row, line, limits, (p, q, r), work, cut, turn, speed_mm_s, 1.0)
     radius = cut / tangent
     if radius * turn < SMALLEST_ARC:
         return False
-    if row["corner_rule"] != BY_SHARE and not _saves_time(
+    if row["corner_rule"] != BY_SHARE and not saves_time(
         line, limits, (p, q, r), work, cut, radius, turn, speed_mm_s
     ):
         return False
     if line["length"] - cut < row["rounding_gap_s"] * speed:
         line["flags"] |= ROUNDING
-    work[_CUT], work[_CUT_LINE] = cut, row["tail"] + 1
+    work[CUT], work[CUT_LINE] = cut, row["tail"] + 1
     return _append_arc(seg, paths, g, k, (p, q, r), cut, radius, turn, speed_mm_s, tag)
-
-
-@compiled
-def _cut_by_share(
-    path: np.void,
-    line: np.void,
-    limits: AxisLimits,
-    axes: tuple[int, int, int],
-    work: Floats,
-    cut_mm: float,
-    turn_rad: float,
-    speed_mm_s: float,
-) -> tuple[float, float]:
-    """Return how much of both lines the arc of a path with BY_SHARE takes, up to `cut_mm`; 0 where it has none.
-
-    It is as large as the speed needs that the largest would allow, and at least half as long as the ramps are that
-    overlap in the corner with half the acceleration.
-    """
-    sine = math.sqrt(work[_NORMAL] ** 2 + work[_NORMAL + 1] ** 2 + work[_NORMAL + 2] ** 2)
-    speed = min(line["feed_mm_s"], speed_mm_s)
-    accel, accel_after, busiest = math.inf, math.inf, 0.0
-    for j in range(3):
-        allowed, most = limits.acceleration[axes[j]], limits.speed[axes[j]]
-        u, w, normal = work[_BEFORE + j], work[_AFTER + j], work[_NORMAL + j] / sine
-        if u != 0.0:
-            speed = min(speed, most / abs(u))
-        if w != 0.0:
-            speed, accel_after = min(speed, most / abs(w)), min(accel_after, allowed / abs(w))
-        busiest = max(busiest, abs(w - u) / allowed)
-        in_plane = math.sqrt(max(0.0, 1.0 - normal * normal))  # of the axis; nothing turns along the others
-        if in_plane > 0.0:
-            accel = min(accel, allowed / in_plane)
-            speed = min(speed, most / in_plane)
-    if busiest * (speed / path["corner_cycle_s"] + accel_after) < path["corner_share"]:
-        return 0.0, 0.0
-    tangent = math.tan(0.5 * turn_rad)
-    largest = cut_mm / tangent
-    speed = min(speed, math.sqrt(CENTRIPETAL_SHARE * accel * largest))
-    overlap_s = 2.0 * min(math.sqrt(accel * cut_mm), speed) / accel
-    radius = max(speed * speed / (CENTRIPETAL_SHARE * accel), min(overlap_s * speed / turn_rad, largest))
-    return min(cut_mm, radius * tangent), speed
-
-
-@compiled
-def _saves_time(
-    line: np.void,
-    limits: AxisLimits,
-    axes: tuple[int, int, int],
-    work: Floats,
-    cut_mm: float,
-    radius_mm: float,
-    turn_rad: float,
-    speed_mm_s: float,
-) -> bool:
-    """Tell whether the arc, gone along with the lower feed, is quicker than both lines with a rest between them."""
-    before_mm_s, after_mm_s = line["feed_mm_s"], speed_mm_s
-    accel_before, accel_after, accel = math.inf, math.inf, math.inf
-    for j in range(3):
-        allowed, speed = limits.acceleration[axes[j]], limits.speed[axes[j]]
-        u, w = abs(work[_BEFORE + j]), abs(work[_AFTER + j])
-        if u > 0.0:
-            before_mm_s, accel_before = min(before_mm_s, speed / u), min(accel_before, allowed / u)
-        if w > 0.0:
-            after_mm_s, accel_after = min(after_mm_s, speed / w), min(accel_after, allowed / w)
-        if u > 0.0 or w > 0.0:
-            accel = min(accel, allowed)
-    turning = min(before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
-    stopping = _stop_s(cut_mm, before_mm_s, accel_before) + _stop_s(cut_mm, after_mm_s, accel_after)
-    rounding = radius_mm * turn_rad / turning
-    slower, later = before_mm_s - turning, after_mm_s - turning
-    rounding += slower * slower / (2.0 * accel_before * before_mm_s)
-    rounding += later * later / (2.0 * accel_after * after_mm_s)
-    return bool(rounding < stopping)
-
-
-@compiled
-def _stop_s(way_mm: float, speed_mm_s: float, accel_mm_s2: float) -> float:
-    """Return the time that the last `way_mm` before a rest and what slowing down takes of the way before cost."""
-    return float(way_mm / speed_mm_s + 0.5 * speed_mm_s / accel_mm_s2)
 
 
 @compiled
@@ -240,8 +161,8 @@ def _append_arc(
     """Shorten line `k` by `cut_mm` and append the arc of `radius_mm` through `turn_rad` that touches it there."""
     p, q, r = axes
     work = paths.blend[g]
-    before, after = work[_BEFORE:_AFTER], work[_AFTER:_START]
-    start, center = work[_START:_CENTER], work[_CENTER:_NORMAL]
+    before, after = work[BEFORE:AFTER], work[AFTER:START]
+    start, center = work[START:CENTER], work[CENTER:NORMAL]
     corner = seg.end[k]
     start[0] = corner[p] - cut_mm * before[0]
     start[1] = corner[q] - cut_mm * before[1]
@@ -251,7 +172,7 @@ def _append_arc(
         center[i] = start[i] + radius_mm * (after[i] - cosine * before[i]) / sine
     arc = slot(paths, g, paths.row[g]["tail"])
     geo = seg.geo[arc]
-    if circle3d_setup(start, center, work[_NORMAL:_CUT], math.degrees(turn_rad), geo) != 0:
+    if circle3d_setup(start, center, work[NORMAL:CUT], math.degrees(turn_rad), geo) != 0:
         return False
     line = seg.row[k]
     seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]

@@ -130,20 +130,24 @@ def _limit_curve(
     is_spline = seg.row[k]["kind"] == SPLINE
     bend_share = SPLINE_CENTRIPETAL_SHARE if is_spline else CENTRIPETAL_SHARE
     whole = path["accel_limit_mm_s2"]
-    cap = min(asked_mm_s, path["speed_limit_mm_s"])
+    most = math.inf
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
-            cap = min(cap, limits.speed[i] / tangent[i])
+            most = min(most, limits.speed[i] / tangent[i])
         if bend[i] > 0.0:
-            cap = min(cap, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
+            most = min(most, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
+    cap = min(asked_mm_s, path["speed_limit_mm_s"], most)
     # With BY_SHARE the lines beside a corner do without what it takes, and an arc has nothing put aside for it.
-    share = 1.0 if path["corner_rule"] == BY_SHARE and not is_spline else CURVE_SHARE
+    # What an arc needs to turn counts as if it were gone along with all that its axes allow, whatever the feed.
+    by_share = path["corner_rule"] == BY_SHARE and not is_spline
+    share = 1.0 if by_share else CURVE_SHARE
+    turning = most if by_share else cap
     rounds = path["rounding_share"] > 0.0 and seg.row[k]["flags"] & ROUNDING != 0
     accel = share * whole
     for i in range(tangent.shape[0]):
         if tangent[i] > 0.0:
             allowed = min(limits.acceleration[i], whole)
-            used = cap * cap * bend[i] / allowed if bend[i] > 0.0 else 0.0
+            used = turning * turning * bend[i] / allowed if bend[i] > 0.0 else 0.0
             left = share - used if is_spline else math.sqrt(share * share - used * used)
             accel = min(accel, (path["rounding_share"] if rounds else left) * allowed / tangent[i])
     return cap, accel

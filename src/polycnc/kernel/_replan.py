@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
-from polycnc.kernel._blend import may_be_rounded
+from polycnc.kernel._blend_arcs import may_be_rounded
 from polycnc.kernel._braking import GONE, RATE, SPEED_NOW
 from polycnc.kernel._cruise import first_open, limit_cruise
 from polycnc.kernel._follow import follows

@@ -79,7 +79,7 @@ class PathConfig(StrictModel):
     )
     path_tolerance_mm: Annotated[float | Literal["free"], BeforeValidator(_path_tolerance)] = Field(
         default=0.0,
-        description='How far the path may leave a corner, mm: 0 or more, or "free", a quarter of the shorter line.',
+        description='How far the path may leave a corner, mm: 0 or more, or "free", a quarter of the shorter move.',
     )
     merge_mm: NotNegative = Field(
         default=0.0,

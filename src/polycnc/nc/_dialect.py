@@ -244,7 +244,7 @@ class Dialect(StrictModel):
     rapid_exact_stop: bool = Field(default=True, description="Rapid moves come to rest at both ends.")
     free_corners: bool = Field(
         default=False,
-        description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter line.",
+        description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter move.",
     )
     merges_lines: bool = Field(
         default=False,
