@@ -141,6 +141,11 @@ def test_axes_do_not_touch_each_other() -> None:
     plant_cycle(1, plant, 5.0, DT)
     assert plant.row["position"].tolist() == [0.0, 0.005, 0.0]
     assert plant.row["velocity"].tolist() == [0.0, 5.0, 0.0]
+    plant_place(2, plant, 3.7, -1.9)
+    assert plant.row["position"].tolist() == [0.0, 0.005, 3.7]
+    assert plant.row["drive_position"].tolist() == [0.0, 0.005, 3.7]
+    assert plant.row["velocity"].tolist() == [0.0, 5.0, -1.9]
+    assert [measured(i, plant) for i in range(3)] == [0.0, 0.005, 3.7]
 
 
 def test_changed_lag_takes_effect_in_the_next_cycle() -> None:

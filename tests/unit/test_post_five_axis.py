@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -417,3 +418,29 @@ def test_the_ring_is_posted_for_the_head_too() -> None:
     ring = (SWIVEL.parent / "ring.cl").read_text()
     proof = head_proof(path=ring.replace("LOADTL/4,LENGTH,95", "LOADTL/3"))
     assert proof.ok
+
+
+@pytest.mark.parametrize(
+    ("rotary", "letter", "axis"),
+    [
+        (
+            "ac_table",
+            "A",
+            lambda tilt, turn: (np.sin(tilt) * np.sin(turn), -np.sin(tilt) * np.cos(turn), np.cos(tilt)),
+        ),
+        (
+            "bc_table",
+            "B",
+            lambda tilt, turn: (np.sin(tilt) * np.cos(turn), np.sin(tilt) * np.sin(turn), np.cos(tilt)),
+        ),
+    ],
+)
+def test_two_turning_tables_lean_the_tool_over_the_part(
+    rotary: str, letter: str, axis: Callable[..., object]
+) -> None:
+    frame = PartFrame(Parameters.model_validate({"rotary": rotary}))
+    assert frame.letters == ("C", letter)
+    assert frame.compared.startswith(f"X Y Z, tool axis by C and {letter}")
+    turns, tilts = np.array([0.0, 37.0, -110.0, 190.0]), np.array([0.0, 23.0, -61.0, 90.0])
+    for turn, tilt, found in zip(turns, tilts, frame.tool_axes(np.column_stack((turns, tilts))), strict=True):
+        assert found == pytest.approx(axis(np.radians(tilt), np.radians(turn)), abs=1e-12)

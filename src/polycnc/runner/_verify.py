@@ -25,8 +25,9 @@ class Violation:
     limit: float
 
     def __str__(self) -> str:
+        side = "below" if self.value < self.limit else "above"
         return (
-            f"axis {self.axis}: {self.what} {self.value:.6g} above {self.limit:.6g} "
+            f"axis {self.axis}: {self.what} {self.value:.6g} {side} {self.limit:.6g} "
             f"at {self.time_s:.6f} s, block {self.block}"
         )
 
@@ -48,16 +49,16 @@ def verify_trace(trace: Trace, machine: MachineConfig) -> list[Violation]:
         noise = 16.0 * np.finfo(float).eps * size
         low, high = axis.soft_limits
         limits = (
-            ("speed", np.abs(speed), axis.vmax, noise / dt),
-            ("acceleration", np.abs(acceleration), axis.amax + (axis.jump or 0.0) / dt, noise / dt**2),
-            ("position", position, high, 0.0),
-            ("position", -position, -low, 0.0),
+            ("speed", 1.0, np.abs(speed), axis.vmax, noise / dt),
+            ("acceleration", 1.0, np.abs(acceleration), axis.amax + (axis.jump or 0.0) / dt, noise / dt**2),
+            ("position", 1.0, position, high, 0.0),
+            ("position", -1.0, position, low, 0.0),
         )
-        for what, values, limit, slack in limits:
+        for what, side, values, limit, slack in limits:
             if not len(values) or not np.isfinite(limit):
                 continue
-            worst = int(np.argmax(values))
-            if values[worst] > limit + abs(limit) * ROUNDING + slack:
+            worst = int(np.argmax(side * values))
+            if side * (values[worst] - limit) > abs(limit) * ROUNDING + slack:
                 found.append(
                     Violation(
                         axis.name,
