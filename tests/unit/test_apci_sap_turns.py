@@ -58,6 +58,14 @@ REAL = (
         "2.75",
     ),
     *("SQRT (ABS (A1.rp))", "SQR (A1.dp)", "TRAC", "trovr"),
+    *(
+        "SIN (A1.rp)",
+        "COS (CD4)",
+        "TAN (A2.dp)",
+        "ARCTAN (y)",
+        "LN (ABS (A1.rp) + 0.1)",
+        "EXP (SIN (A1.rv) * 9.0)",
+    ),
 )
 
 
@@ -113,7 +121,7 @@ class Programs:
             f"CD[{self.rng.randrange(20, 24)}] := {self.real()}",
             f"wt ({self.rng.uniform(0.0, 9.0):.2f})",
             self.one(
-                "wt (A1)", "poll (1.75)", "A1.digo := CI7", "y := A1.lp", "WRITE (CI7)", "x := SIN (A1.rp)"
+                "wt (A1)", "poll (1.75)", "A1.digo := CI7", "y := A1.lp", "WRITE (CI7)", "x := LN (A1.rp)"
             ),
         )
         if depth == 0 or self.rng.random() < 0.5:
@@ -236,6 +244,8 @@ def test_a_program_too_large_for_the_compiled_scan_runs_all_the_same() -> None:
         ("CD1 := A1.vardbl[CI3 * 5]", 2),
         ("CI1 := TRUNC (CD3 * 1.0e9)", 3),
         ("CD1 := SQRT (0.0 - CD3)", 4),
+        ("CD1 := LN (4.5 - CD3)", 4),
+        ("CD1 := EXP (CD3 * 200.0)", 3),
         ("CI1 := RDCBI (CI3 * 40)", 8),
     ],
 )

@@ -30,6 +30,7 @@ _HALF = 1 << 31
 _MASK = (1 << 32) - 1
 _PARTS = 2.0**52  # of a double between two powers of 2
 _SMALLEST = 2.0**-1022
+_GREATEST_POWER = 709.0  # of e that is a double
 
 _STATUS_BITS = (
     Axst.mpe,
@@ -129,6 +130,24 @@ def _whole_of(what: int, a: float) -> tuple[float, int]:
 
 
 @compiled
+def _of_curve(what: int, a: float) -> tuple[float, int]:
+    """Return a transcendental function; where Python may raise an error it is left to it."""
+    if not math.isfinite(a):
+        return 0.0, -1
+    if what == ts.SINE:
+        return math.sin(a), DOUBLE
+    if what == ts.COSINE:
+        return math.cos(a), DOUBLE
+    if what == ts.TANGENT:
+        return math.tan(a), DOUBLE
+    if what == ts.ARC_TANGENT:
+        return math.atan(a), DOUBLE
+    if what == ts.LOGARITHM:
+        return (math.log(a), DOUBLE) if a > 0.0 else (0.0, -1)
+    return (math.exp(a), DOUBLE) if a < _GREATEST_POWER else (0.0, -1)
+
+
+@compiled
 def of_one(what: int, a: float, kind: int) -> tuple[float, int]:
     """Return what a function of one value gives, and its kind."""
     if what == ts.NOT:
@@ -139,6 +158,8 @@ def of_one(what: int, a: float, kind: int) -> tuple[float, int]:
         return a, DOUBLE
     if what == ts.ROOT:
         return (0.0, -1) if a < 0.0 else (math.sqrt(a), DOUBLE)
+    if what >= ts.SINE:
+        return _of_curve(what, a)
     if kind == DOUBLE:
         if what == ts.NEGATE:
             return -a, DOUBLE

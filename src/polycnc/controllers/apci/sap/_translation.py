@@ -27,27 +27,25 @@ _KIND_OF_LETTER = {"i": INTEGER, "d": DOUBLE, "b": BOOLEAN}
 ILLEGAL = (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, struct.error)
 """What forged instructions raise: a program file may hold any."""
 
-_ONE = dict(
-    zip(
-        (
-            "negi",
-            "negd",
-            "noti",
-            "notb",
-            "double",
-            "absi",
-            "absd",
-            "sqri",
-            "sqrd",
-            "sqrt",
-            "trunc",
-            "round",
-            "odd",
-        ),
-        range(13),
-        strict=True,
-    )
+_OF_ONE = (
+    *(
+        "negi",
+        "negd",
+        "noti",
+        "notb",
+        "double",
+        "absi",
+        "absd",
+        "sqri",
+        "sqrd",
+        "sqrt",
+        "trunc",
+        "round",
+        "odd",
+    ),
+    *("sin", "cos", "tan", "arctan", "ln", "exp"),
 )
+_ONE = dict(zip(_OF_ONE, range(19), strict=True))
 _WHOLE = ("addi", "subi", "muli", "divi", "modi", "andi", "ori", "xori", "shli", "shri")
 _OTHERS = ("addd", "subd", "muld", "slashd", "lt", "le", "gt", "ge", "eq", "ne")
 _TWO = dict(
