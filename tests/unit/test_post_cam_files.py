@@ -83,7 +83,7 @@ def test_the_axis_of_an_arc_in_other_apt_is_by_the_right_hand_rule() -> None:
 
 def test_a_file_that_shows_too_late_what_it_is_is_refused() -> None:
     text = SLOT.format(1).replace("RAPID\nGOTO/0,-3.5,5\nEND", "PAINT/COLOR,3\nEND")
-    with pytest.raises(ProgramError, match="PAINT is of an NX CLSF, but the arc on line 6"):
+    with pytest.raises(ProgramError, match="PAINT is of a file with clockwise axes, but the arc on line 6"):
         records(text)
     assert senses(text, "counterclockwise") == [1.0, 1.0]
 
@@ -263,6 +263,7 @@ REFUSED = {
     "TLCOMP/ON,LEFT": "TLCOMP moves the tool",
     "CALLSUB/1001": "CALLSUB moves the tool",
     "TRNTYP/LOCAL,0,0,0": "TRNTYP with other coordinates",
+    "MODE/MILL\nRAPID\nGOTO/5,6,14\nCYCLE/DRILL,9,MMPM,120,14\nGOTO/5,6,-9": "a cycle whose clearance, 14, is",
     "LATHE/ROUGH,SH1,SH2": "LATHE moves the tool",
     "LOCAL_ORIGIN, 0.00000, 130.00000, 0.000000": "LOCAL_ORIGIN moves the tool",
     "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
@@ -458,6 +459,26 @@ def test_a_statement_means_what_its_system_means(name: str) -> None:
     path = parse_tool_path(text + "\n")
     assert list(path) == wanted
     assert path.remarks.all() == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "MODE/MILL\nRAPID\nGOTO/5,6,14\nCYCLE/DRILL, 9, MMPM, 120, 14\nGOTO/5,6,0",
+        "MODE/MILL\nRAPID\nGOTO/5,6,14\nCYCLE/DRILL, 9, MMPM, 120, 3\nGOTO/5,6,-9",
+        "RAPID\nGOTO/5,6,3\nCYCLE/DRILL, 9, MMPM, 120, 3\nGOTO/5,6,-9",
+        "MODE/MILL\nRAPID\nGOTO/5,6,3\nCYCLE/DRILL,DEPTH,9,MMPM,120,CLEAR,3\nGOTO/5,6,-9",
+    ],
+)
+def test_levels_of_a_cycle_that_count_from_the_point_are_read(text: str) -> None:
+    assert [name for name, _ in moves_of(text + "\nGOTO/9,6,-9\n")].count("CYCLE_DRILL") == 2
+
+
+def test_another_mcs_is_another_coordinate_system() -> None:
+    text = "MCS/1,0,0, $\n0,1,0, $\n0,0,1, $\n0,0,0\nRAPID\nGOTO/1,2,3\n"
+    moves_of(text + text)
+    with pytest.raises(ProgramError, match="the coordinate system changes"):
+        moves_of(text + text.replace("0,0,1, $", "0,0.6,0.8, $"))
 
 
 def test_clear_ends_a_cycle_that_has_had_its_points() -> None:

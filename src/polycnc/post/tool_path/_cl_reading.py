@@ -10,7 +10,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.post.tool_path._arcs import off_circle, radius_at, sweep_of
+from polycnc.post.tool_path._arcs import SAME_POINT_MM, off_circle, radius_at, sweep_of
 from polycnc.post.tool_path._cl_statement import Statement
 from polycnc.post.tool_path._records import (
     LARGEST_MM,
@@ -96,6 +96,10 @@ class Reading:
     cycle_began: int = 0
     """How many moves came before the last CYCLE."""
     units_said: bool = False
+    mode_said: bool = False
+    """Whether there was a MODE, which Autodesk writes: its points of cycles by place are the bottoms of holes."""
+    unsure_cycle: tuple[Statement, float] | None = None
+    """Such a cycle and its clearance, up to its first hole."""
     known: int = 0
     unknown: int = 0
     moves: int = 0
@@ -226,6 +230,8 @@ class Reading:
         if self.scale != 1.0:
             x, y, z = x * self.scale, y * self.scale, z * self.scale
         self.moves += 1
+        if self.unsure_cycle is not None:
+            self._check_surface(*self.unsure_cycle, z)
         if self.circle is not None:
             circle, self.circle = self.circle, None
             return self.arc(circle, (x, y, z))
@@ -233,15 +239,31 @@ class Reading:
         return Goto(line, x, y, z, axis)
 
     def points(self, line: int, xyz: npt.NDArray[np.float64]) -> Points | None:
-        """Return the moves to points; None if one is too far away."""
+        """Return the moves to points; None if one is too far away, or the first needs a look."""
         if self.scale != 1.0:
             xyz = xyz * self.scale
-        if not np.abs(xyz).max() <= LARGEST_MM:
+        if not np.abs(xyz).max() <= LARGEST_MM or self.unsure_cycle is not None:
             return None
         self.moves += len(xyz)
         x, y, z = xyz[-1].tolist()
         self.position = (x, y, z)
         return Points(line, xyz)
+
+    def _check_surface(self, cycle: Statement, clearance: float, z: float) -> None:
+        """Refuse a first hole that is no surface: its cycle's clearance is the height of the tool, so levels are absolute.
+
+        Raises:
+            ProgramError: it is so.
+        """
+        self.unsure_cycle = None
+        if self.position is None or not self.cycle_on:
+            return
+        if abs(self.position[2] - clearance) <= SAME_POINT_MM < abs(z):
+            raise cycle.fail(
+                f"a cycle whose clearance, {clearance / self.scale:g}, is the height of the tool, and whose first "
+                f"point at Z{z / self.scale:g} seems to be the bottom of the hole, not its surface",
+                "Let the CAM system write the moves of the holes as points, or name the levels (DEPTH, CLEAR).",
+            )
 
     def arc(self, circle: PendingCircle, end: Vector) -> Circle:
         """Return the arc to an end point.
