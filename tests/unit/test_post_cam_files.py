@@ -779,3 +779,27 @@ def test_half_a_turn_is_refused_where_axes_do_not_tell_the_sense(text: str) -> N
 def test_an_arc_by_its_words() -> None:
     text = "GOTO/6,0,0\nMOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 6, TIMES, 2\nGOTO/0,6,0\n"
     assert records(text)[-1] == Circle(2, 0.0, 6.0, 0.0, (0.0, 0.0, 0.0), (-0.0, -0.0, -1.0), 2)
+
+
+def test_rapids_before_the_first_tool_change_are_left_out() -> None:
+    # CATIA goes to where tools are changed; the tool in the spindle is one of which nothing is known.
+    text = "COOLNT/ON\nRAPID\nGOTO/0,0,90\nRAPID\nGOTO/1,0,91\nCUTTER/8\nLOADTL/2\nRAPID\nGOTO/1,2,3\n"
+    path = parse_tool_path(text)
+    assert [record for record in path if not isinstance(record, ToolShape)] == [
+        Coolant(1, "flood"),
+        Tool(7, 2),
+        Rapid(8),
+        Goto(9, 1.0, 2.0, 3.0),
+    ]
+    assert [(remark.line, remark.count) for remark in path.remarks.all()] == [(3, 2)]
+
+
+@pytest.mark.parametrize(
+    "between", ["GOTO/2,0,90\n", "SPINDL/RPM,500,CLW\n", "CYCLE/DRILL,DEPTH,5,CLEAR,2\n"]
+)
+def test_rapids_before_work_without_a_tool_change_stay(between: str) -> None:
+    text = f"FEDRAT/90\nRAPID\nGOTO/0,0,90\nRAPID\nGOTO/1,0,91\n{between}LOADTL/2\nRAPID\nGOTO/1,2,3\n"
+    path = parse_tool_path(text)
+    assert [record.line for record in path if isinstance(record, Goto)][:2] == [3, 5]
+    assert path.remarks.all() == []
+    assert [record.line for record in parse_tool_path("RAPID\nGOTO/0,0,90\n")] == [1, 2]

@@ -70,8 +70,9 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
                 if end is not None:
                     raise _behind_the_end(source, number)
                 if reading.held:
-                    yield from reading.release()
-                yield point
+                    yield from reading.hold((point,))
+                else:
+                    yield point
                 continue
         text = decoded(raw)
         part = _statement_of(text).rstrip()

@@ -16,16 +16,23 @@ from polycnc.post.tool_path._records import (
     LARGEST_MM,
     MOST_TURNS,
     UPRIGHT,
+    Axis,
     Circle,
     Compensation,
+    Coolant,
     Delta,
     End,
+    From,
     Goto,
     Home,
+    Path,
     Points,
+    Rapid,
     Record,
     Retract,
+    Text,
     Tool,
+    ToolShape,
     Vector,
     WorkOffset,
 )
@@ -39,6 +46,8 @@ _SAME_FRAME = 1e-6
 _ANGLE_DEG = 0.5
 _OFF_ANGLE_MM = 0.05
 _MOVES = (Goto, Circle, Delta, Home, Retract, End)
+_RAPIDS = (Rapid, Goto, Home, Retract)
+_BEFORE_TOOLS = (Rapid, Home, Retract, Text, ToolShape, Axis, From, Path, Coolant, Compensation)
 
 
 @dataclass(slots=True)
@@ -92,7 +101,9 @@ class Reading:
     offset: int | None = None
     """The number of the length offset in force."""
     held: list[Record] = field(default_factory=list)
-    """A tool change and what stands behind it, up to the first move: an offset may follow."""
+    """A tool change and what stands behind it, up to the first move: an offset may follow. At first what comes before."""
+    before_tools: bool = True
+    """Whether nothing but rapids came so far."""
     cycle_began: int = 0
     """How many moves came before the last CYCLE."""
     units_said: bool = False
@@ -117,13 +128,16 @@ class Reading:
         return self.resumes or self.announced is not None or self.axis_unsure is not None
 
     def hold(self, records: Iterable[Record]) -> Iterator[Record]:
-        """Yield records, but a tool change and what stands behind it only before the first move."""
+        """Yield records, but a tool change and what stands behind it only before the first move.
+
+        Rapids before the first tool change are left out: the length of the tool that is in the spindle then is unknown.
+        """
         for record in records:
             if isinstance(record, Tool):
-                yield from self.release()
+                yield from self._without_rapids()
                 self.held.append(record)
                 self.offset = record.number if record.h is None else record.h
-            elif self.held and not isinstance(record, _MOVES):
+            elif self._holds(record):
                 self.held.append(record)
             else:
                 yield from self.release()
@@ -131,8 +145,29 @@ class Reading:
 
     def release(self) -> Iterator[Record]:
         """Yield what is held."""
-        held, self.held = self.held, []
+        held, self.held, self.before_tools = self.held, [], False
         yield from held
+
+    def _holds(self, record: Record) -> bool:
+        if not self.before_tools:
+            return bool(self.held) and not isinstance(record, _MOVES)
+        if not isinstance(record, Goto):
+            return isinstance(record, _BEFORE_TOOLS)
+        moves = (each for each in reversed(self.held) if isinstance(each, _RAPIDS))
+        return isinstance(next(moves, None), Rapid)
+
+    def _without_rapids(self) -> Iterator[Record]:
+        """Yield what is held before a tool change; rapids only where tools were changed before."""
+        first = self.before_tools
+        for record in self.release():
+            if not first or not isinstance(record, _RAPIDS):
+                yield record
+            elif not isinstance(record, Rapid):
+                self.remarks.add(
+                    record.line,
+                    "a rapid before the first tool change is left out: the length of the tool in the spindle is not "
+                    "known",
+                )
 
     def take_offset(self, statement: Statement, number: int) -> None:
         """Take the number of the length offset.
@@ -250,7 +285,7 @@ class Reading:
         return Points(line, xyz)
 
     def _check_surface(self, cycle: Statement, clearance: float, z: float) -> None:
-        """Refuse a first hole that is no surface: its cycle's clearance is the height of the tool, so levels are absolute.
+        """Refuse a first hole that is no surface: the cycle's clearance is the height of the tool, so it is absolute.
 
         Raises:
             ProgramError: it is so.
