@@ -101,7 +101,7 @@ class Reading:
     offset: int | None = None
     """The number of the length offset in force."""
     held: list[Record] = field(default_factory=list)
-    """A tool change and what stands behind it, up to the first move: an offset may follow. At first what comes before."""
+    """A tool change and what stands behind it up to the first move, for its offset; at first what comes before it."""
     before_tools: bool = True
     """Whether nothing but rapids came so far."""
     cycle_began: int = 0
