@@ -16,15 +16,15 @@ has set the words that the macro may write. What statements of a tool path are w
 _MISSING = """
 What happens if the control file has no such macro: without RAPID and LINEAR a tool path that moves is an error; holes
 become moves (RAPID, LINEAR, DWELL) and arcs become lines; for the events marked * it is remarked that nothing was
-written; the others need no macro.
+written, but COMP_LEFT, COMP_RIGHT, INSERT and TOOL_CHANGE (for a second tool) are errors; the others need no macro.
 
 Macros marked + are additions to those of Manual 001, as are the words marked so; with `strict = true` in the
 [control file](post-control-file.md) there are none of them, and their names are free for variables.
 
 A record that nothing here takes calls `WORD`. A condition cannot compare texts, so a macro of its own can take it: by
 its name, like `WORD_AUXFUN`, or by its name and the first word behind the slash, like `WORD_OPSKIP_ON`. The narrowest
-is called; without any the record is remarked. What moves the tool or its coordinates is an error, whatever macros there
-are.
+is called; without any the record is remarked, or an error where it would change the part (`PREFUN`, `SYNC`, ...:
+[tool paths](post-tool-paths.md)). What moves the tool or its coordinates is an error, whatever macros there are.
 
 ```toml
 [nc_macros]

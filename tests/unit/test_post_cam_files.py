@@ -83,7 +83,7 @@ def test_the_axis_of_an_arc_in_other_apt_is_by_the_right_hand_rule() -> None:
 
 def test_a_file_that_shows_too_late_what_it_is_is_refused() -> None:
     text = SLOT.format(1).replace("RAPID\nGOTO/0,-3.5,5\nEND", "PAINT/COLOR,3\nEND")
-    with pytest.raises(ProgramError, match="PAINT is of an NX CLSF, but the arc on line 6"):
+    with pytest.raises(ProgramError, match="PAINT is of a file with clockwise axes, but the arc on line 6"):
         records(text)
     assert senses(text, "counterclockwise") == [1.0, 1.0]
 
@@ -263,6 +263,7 @@ REFUSED = {
     "TLCOMP/ON,LEFT": "TLCOMP moves the tool",
     "CALLSUB/1001": "CALLSUB moves the tool",
     "TRNTYP/LOCAL,0,0,0": "TRNTYP with other coordinates",
+    "MODE/MILL\nRAPID\nGOTO/5,6,14\nCYCLE/DRILL,9,MMPM,120,14\nGOTO/5,6,-9": "a cycle whose clearance, 14, is",
     "LATHE/ROUGH,SH1,SH2": "LATHE moves the tool",
     "LOCAL_ORIGIN, 0.00000, 130.00000, 0.000000": "LOCAL_ORIGIN moves the tool",
     "CYCLE/TURN,2,0.5": "the cycle 'TURN' is not known",
@@ -458,6 +459,26 @@ def test_a_statement_means_what_its_system_means(name: str) -> None:
     path = parse_tool_path(text + "\n")
     assert list(path) == wanted
     assert path.remarks.all() == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "MODE/MILL\nRAPID\nGOTO/5,6,14\nCYCLE/DRILL, 9, MMPM, 120, 14\nGOTO/5,6,0",
+        "MODE/MILL\nRAPID\nGOTO/5,6,14\nCYCLE/DRILL, 9, MMPM, 120, 3\nGOTO/5,6,-9",
+        "RAPID\nGOTO/5,6,3\nCYCLE/DRILL, 9, MMPM, 120, 3\nGOTO/5,6,-9",
+        "MODE/MILL\nRAPID\nGOTO/5,6,3\nCYCLE/DRILL,DEPTH,9,MMPM,120,CLEAR,3\nGOTO/5,6,-9",
+    ],
+)
+def test_levels_of_a_cycle_that_count_from_the_point_are_read(text: str) -> None:
+    assert [name for name, _ in moves_of(text + "\nGOTO/9,6,-9\n")].count("CYCLE_DRILL") == 2
+
+
+def test_another_mcs_is_another_coordinate_system() -> None:
+    text = "MCS/1,0,0, $\n0,1,0, $\n0,0,1, $\n0,0,0\nRAPID\nGOTO/1,2,3\n"
+    moves_of(text + text)
+    with pytest.raises(ProgramError, match="the coordinate system changes"):
+        moves_of(text + text.replace("0,0,1, $", "0,0.6,0.8, $"))
 
 
 def test_clear_ends_a_cycle_that_has_had_its_points() -> None:
@@ -758,3 +779,27 @@ def test_half_a_turn_is_refused_where_axes_do_not_tell_the_sense(text: str) -> N
 def test_an_arc_by_its_words() -> None:
     text = "GOTO/6,0,0\nMOVARC/ CENTER, 0, 0, 0, AXIS, 0, 0, -1, RADIUS, 6, TIMES, 2\nGOTO/0,6,0\n"
     assert records(text)[-1] == Circle(2, 0.0, 6.0, 0.0, (0.0, 0.0, 0.0), (-0.0, -0.0, -1.0), 2)
+
+
+def test_rapids_before_the_first_tool_change_are_left_out() -> None:
+    # CATIA goes to where tools are changed; the tool in the spindle is one of which nothing is known.
+    text = "COOLNT/ON\nRAPID\nGOTO/0,0,90\nRAPID\nGOTO/1,0,91\nCUTTER/8\nLOADTL/2\nRAPID\nGOTO/1,2,3\n"
+    path = parse_tool_path(text)
+    assert [record for record in path if not isinstance(record, ToolShape)] == [
+        Coolant(1, "flood"),
+        Tool(7, 2),
+        Rapid(8),
+        Goto(9, 1.0, 2.0, 3.0),
+    ]
+    assert [(remark.line, remark.count) for remark in path.remarks.all()] == [(3, 2)]
+
+
+@pytest.mark.parametrize(
+    "between", ["GOTO/2,0,90\n", "SPINDL/RPM,500,CLW\n", "CYCLE/DRILL,DEPTH,5,CLEAR,2\n"]
+)
+def test_rapids_before_work_without_a_tool_change_stay(between: str) -> None:
+    text = f"FEDRAT/90\nRAPID\nGOTO/0,0,90\nRAPID\nGOTO/1,0,91\n{between}LOADTL/2\nRAPID\nGOTO/1,2,3\n"
+    path = parse_tool_path(text)
+    assert [record.line for record in path if isinstance(record, Goto)][:2] == [3, 5]
+    assert path.remarks.all() == []
+    assert [record.line for record in parse_tool_path("RAPID\nGOTO/0,0,90\n")] == [1, 2]

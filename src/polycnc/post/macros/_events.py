@@ -32,7 +32,7 @@ class EventRow:
     """An event of a tool path: the macro it calls, when, and the words it sets.
 
     `group` says what happens if the control file has no such macro: "motion" is an error, "cycle" is expanded
-    into moves, "arc" becomes lines, "state" emits nothing and is remarked, "frame" emits nothing.
+    into moves, "arc" becomes lines, "state" emits nothing and is remarked or an error, "frame" emits nothing.
     """
 
     macro: str

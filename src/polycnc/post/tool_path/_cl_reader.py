@@ -70,8 +70,9 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
                 if end is not None:
                     raise _behind_the_end(source, number)
                 if reading.held:
-                    yield from reading.release()
-                yield point
+                    yield from reading.hold((point,))
+                else:
+                    yield point
                 continue
         text = decoded(raw)
         part = _statement_of(text).rstrip()
@@ -219,7 +220,8 @@ def _statement(source: Source, reading: Reading, pieces: list[Piece]) -> Iterato
     if major in CLSF_WORDS and not reading.clsf_word:
         if reading.right_handed and reading.arc_axis == "auto":
             raise statement.fail(
-                f"{major} is of an NX CLSF, but the arc on line {reading.right_handed} was read by the right-hand rule",
+                f"{major} is of a file with clockwise axes, but the arc on line {reading.right_handed} was read by the "
+                "right-hand rule",
                 "Say with --arc-axis which way the axes of CIRCLE/ are meant: clockwise as NX writes them, or "
                 "counterclockwise.",
             )

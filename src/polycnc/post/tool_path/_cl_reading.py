@@ -10,22 +10,29 @@ from typing import Literal, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.post.tool_path._arcs import off_circle, radius_at, sweep_of
+from polycnc.post.tool_path._arcs import SAME_POINT_MM, off_circle, radius_at, sweep_of
 from polycnc.post.tool_path._cl_statement import Statement
 from polycnc.post.tool_path._records import (
     LARGEST_MM,
     MOST_TURNS,
     UPRIGHT,
+    Axis,
     Circle,
     Compensation,
+    Coolant,
     Delta,
     End,
+    From,
     Goto,
     Home,
+    Path,
     Points,
+    Rapid,
     Record,
     Retract,
+    Text,
     Tool,
+    ToolShape,
     Vector,
     WorkOffset,
 )
@@ -39,6 +46,8 @@ _SAME_FRAME = 1e-6
 _ANGLE_DEG = 0.5
 _OFF_ANGLE_MM = 0.05
 _MOVES = (Goto, Circle, Delta, Home, Retract, End)
+_RAPIDS = (Rapid, Goto, Home, Retract)
+_BEFORE_TOOLS = (Rapid, Home, Retract, Text, ToolShape, Axis, From, Path, Coolant, Compensation)
 
 
 @dataclass(slots=True)
@@ -92,10 +101,16 @@ class Reading:
     offset: int | None = None
     """The number of the length offset in force."""
     held: list[Record] = field(default_factory=list)
-    """A tool change and what stands behind it, up to the first move: an offset may follow."""
+    """A tool change and what stands behind it up to the first move, for its offset; at first what comes before it."""
+    before_tools: bool = True
+    """Whether nothing but rapids came so far."""
     cycle_began: int = 0
     """How many moves came before the last CYCLE."""
     units_said: bool = False
+    mode_said: bool = False
+    """Whether there was a MODE, which Autodesk writes: its points of cycles by place are the bottoms of holes."""
+    unsure_cycle: tuple[Statement, float] | None = None
+    """Such a cycle and its clearance, up to its first hole."""
     known: int = 0
     unknown: int = 0
     moves: int = 0
@@ -113,13 +128,16 @@ class Reading:
         return self.resumes or self.announced is not None or self.axis_unsure is not None
 
     def hold(self, records: Iterable[Record]) -> Iterator[Record]:
-        """Yield records, but a tool change and what stands behind it only before the first move."""
+        """Yield records, but a tool change and what stands behind it only before the first move.
+
+        Rapids before the first tool change are left out: the length of the tool that is in the spindle then is unknown.
+        """
         for record in records:
             if isinstance(record, Tool):
-                yield from self.release()
+                yield from self._without_rapids()
                 self.held.append(record)
                 self.offset = record.number if record.h is None else record.h
-            elif self.held and not isinstance(record, _MOVES):
+            elif self._holds(record):
                 self.held.append(record)
             else:
                 yield from self.release()
@@ -127,8 +145,29 @@ class Reading:
 
     def release(self) -> Iterator[Record]:
         """Yield what is held."""
-        held, self.held = self.held, []
+        held, self.held, self.before_tools = self.held, [], False
         yield from held
+
+    def _holds(self, record: Record) -> bool:
+        if not self.before_tools:
+            return bool(self.held) and not isinstance(record, _MOVES)
+        if not isinstance(record, Goto):
+            return isinstance(record, _BEFORE_TOOLS)
+        moves = (each for each in reversed(self.held) if isinstance(each, _RAPIDS))
+        return isinstance(next(moves, None), Rapid)
+
+    def _without_rapids(self) -> Iterator[Record]:
+        """Yield what is held before a tool change; rapids only where tools were changed before."""
+        first = self.before_tools
+        for record in self.release():
+            if not first or not isinstance(record, _RAPIDS):
+                yield record
+            elif not isinstance(record, Rapid):
+                self.remarks.add(
+                    record.line,
+                    "a rapid before the first tool change is left out: the length of the tool in the spindle is not "
+                    "known",
+                )
 
     def take_offset(self, statement: Statement, number: int) -> None:
         """Take the number of the length offset.
@@ -226,6 +265,8 @@ class Reading:
         if self.scale != 1.0:
             x, y, z = x * self.scale, y * self.scale, z * self.scale
         self.moves += 1
+        if self.unsure_cycle is not None:
+            self._check_surface(*self.unsure_cycle, z)
         if self.circle is not None:
             circle, self.circle = self.circle, None
             return self.arc(circle, (x, y, z))
@@ -233,15 +274,31 @@ class Reading:
         return Goto(line, x, y, z, axis)
 
     def points(self, line: int, xyz: npt.NDArray[np.float64]) -> Points | None:
-        """Return the moves to points; None if one is too far away."""
+        """Return the moves to points; None if one is too far away, or the first needs a look."""
         if self.scale != 1.0:
             xyz = xyz * self.scale
-        if not np.abs(xyz).max() <= LARGEST_MM:
+        if not np.abs(xyz).max() <= LARGEST_MM or self.unsure_cycle is not None:
             return None
         self.moves += len(xyz)
         x, y, z = xyz[-1].tolist()
         self.position = (x, y, z)
         return Points(line, xyz)
+
+    def _check_surface(self, cycle: Statement, clearance: float, z: float) -> None:
+        """Refuse a first hole that is no surface: the cycle's clearance is the height of the tool, so it is absolute.
+
+        Raises:
+            ProgramError: it is so.
+        """
+        self.unsure_cycle = None
+        if self.position is None or not self.cycle_on:
+            return
+        if abs(self.position[2] - clearance) <= SAME_POINT_MM < abs(z):
+            raise cycle.fail(
+                f"a cycle whose clearance, {clearance / self.scale:g}, is the height of the tool, and whose first "
+                f"point at Z{z / self.scale:g} seems to be the bottom of the hole, not its surface",
+                "Let the CAM system write the moves of the holes as points, or name the levels (DEPTH, CLEAR).",
+            )
 
     def arc(self, circle: PendingCircle, end: Vector) -> Circle:
         """Return the arc to an end point.

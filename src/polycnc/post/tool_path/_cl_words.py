@@ -50,7 +50,7 @@ IGNORED = frozenset(
             "CUT",
             "CLPRNT",
         ),
-        *("CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH"),
+        *("CSI_SET_FLUTE_LENGTH", "CSI_SET_EXTENSION_LENGTH", "CSI_TOOL_PATH"),
         *("NOPOST", "PLABEL", "LEADER", "REWIND", "CATPROCESS", "AUTOPS", "TLONPS", "TLOFPS", "PSIS"),
     )
 )
@@ -100,8 +100,8 @@ HINTS = {
 }
 """What to do instead, where it is something else than points and arcs."""
 
-CLSF_WORDS = frozenset(("TOOLPATH", "TLDATA", "MSYS", "PAINT", "END-OF-PATH"))
-"""Words that only the CLSF of NX has; its axes of arcs are for a clockwise direction."""
+CLSF_WORDS = frozenset(("TOOLPATH", "TLDATA", "MSYS", "PAINT", "END-OF-PATH", "MCS", "CSI_TOOL_PATH"))
+"""Words of files whose axes of arcs are for a clockwise direction: the CLSF of NX, and APT for CAMplete (MCS, CSI_)."""
 
 _HIGHEST_SPEED = 1e6
 _FIRST_G_CODE = 54  # from here on a number may be meant as a G code
@@ -318,7 +318,11 @@ def _cycle(reading: Reading, statement: Statement) -> Iterator[Record]:
     else:
         reading.check_units(statement)
         reading.cycle_began = reading.moves
-        yield read_cycle(statement, reading.scale, _FEED_UNITS)
+        cycle = read_cycle(statement, reading.scale, _FEED_UNITS)
+        by_place = not words & {"DEPTH", "FEDTO", "CLEAR"}
+        leaves_to = cycle.out if reading.mode_said and by_place else None
+        reading.unsure_cycle = None if leaves_to is None else (statement, leaves_to)
+        yield cycle
 
 
 def _thread(reading: Reading, statement: Statement) -> Iterator[Record]:
@@ -441,6 +445,7 @@ def _transformation(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 def _mode(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read MODE: absolute milling or turning is what is read anyway."""
+    reading.mode_said = True
     for token in statement:
         if token.text not in ("MILL", "TURN", "ABSOL"):
             raise statement.fail(
@@ -480,6 +485,7 @@ HANDLERS: dict[str, Handler] = {
     "TRNTYP": _transformation,
     "MSYS": _cl_moves.coordinate_system,
     "CSYS": _cl_moves.coordinate_system,
+    "MCS": _cl_moves.coordinate_system,
     "TOOLPATH": _tool_path,
     "END-OF-PATH": _end_of_path,
     "TLDATA": _tool_data,
