@@ -284,6 +284,25 @@ def test_what_is_programmed_and_what_is_active_are_told_apart(cell: Cell) -> Non
     assert dict(zip(wanted, cell.values(blocks, *wanted), strict=True)) == wanted
 
 
+GROUPS = {
+    3: ("G70", "G71"), 4: ("G91", "G90"), 5: ("G63", "G66"), 7: ("G95", "G94"), 8: ("G42 D3 G1 X50 F500", "G40"),
+    9: ("G7", "G6"), 10: ("G18", "G19"), 11: ("G9", "G8"), 13: ("G15", "G14"), 17: ("G59", "G53"),
+    18: ("G157", "G153"), 19: ("G258", "G253"), 20: ("G60 X1", "G67"), 21: ("G38 X2", "G39"), 22: ("G61", "G62"),
+    25: ("G65", "G64"), 26: ("G68", "G69"), 28: ("G645", "G146"), 29: ("G114", "G115"), 30: ("G160", "G167"),
+}  # fmt: skip
+
+
+@pytest.mark.covers(*(f"cpl.SD.group.{group}" for group in GROUPS), "cpl.SD.1.i.1", "cpl.SD.1.i.2")
+def test_g_functions_of_each_group_are_told_while_they_hold(cell: Cell) -> None:
+    lines, wanted = ["1 WAIT", "N1 M3 S100"], []
+    for group, words in GROUPS.items():
+        for word in words:
+            lines += [f"N5 {word}", f"N6 G1 Y{len(lines)} F1000", "7 WAIT"]
+            lines += [f'8 A={ask} : PRN#(1,"###",A)' for ask in (f"SD(1,{group},1)", f"SD(1,{group},2)")]
+            wanted += [int(word.split()[0][1:])] * 2
+    assert [int(each) for each in cell.report("\n".join(lines))] == wanted
+
+
 def test_what_holds_for_one_block_is_seen_in_the_next(cell: Cell) -> None:
     assert cell.values("N1 G4 F0.25\n2 A%=SD(1,1,2)\nN3 G1 X1 F100", "A%", "SD(1,1,2)") == [4, 0]
 
