@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
@@ -11,6 +12,7 @@ from polycnc.controllers.bosch.ncs import (
     OVERVIEW,
     Coupling,
     Image,
+    Ipo,
     Mode,
     NcsServer,
     Partner,
@@ -328,6 +330,24 @@ def test_modes_have_the_numbers_of_the_manual(name: str, number: int) -> None:
     assert asking.values(31, 1, "I", 1) == [number]
     if number < 12:
         assert asking.values(48, 1, "I", 2) == [number, number]
+
+
+SAVS = {
+    "INACTIVE": 1, "READY": 2, "ACTIVE": 3, "ERROR": 6, "RESET": 8, "PREPARING": 9, "CANCELLING": 10, "AT_START": 11,
+    "BUFFER_EMPTY": 12,
+}  # fmt: skip
+IPOS = {"RUNNING": 1, "RUNNING_DOWN": 2, "STOPPED": 3}
+
+
+@pytest.mark.covers(
+    *(f"cpl.MCODS.32.sav.{number}" for number in SAVS.values()),
+    *(f"cpl.MCODS.32.ipo.{number}" for number in IPOS.values()),
+)
+def test_states_have_the_numbers_of_the_manual() -> None:
+    asking = Asking()
+    for (sav, number), (ipo, other) in itertools.product(SAVS.items(), IPOS.items()):
+        asking.image.channels[1].sav, asking.image.channels[1].ipo = Sav[sav], Ipo[ipo]
+        assert asking.values(32, 1, "I", 2) == [number, other]
 
 
 @pytest.mark.covers("cpl.MCODS.6.val.0", "cpl.MCODS.6.val.1")

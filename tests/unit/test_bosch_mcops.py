@@ -405,6 +405,7 @@ def test_blocks_are_entered_while_others_are_executed() -> None:
     assert rig(4, 2, "X30", OMITTED, OMITTED, 32 + 4096) == 0
     assert rig.channel.sav == Sav.ACTIVE
     rig.until(Sav.BUFFER_EMPTY)
+    assert rig.state() == (12, 3)
     assert rig.channel.blocks == 3
     assert rig.image.axes[1].setpoint == 33.5
     assert rig(4, 2, "X" + "0" * 4095, OMITTED, OMITTED, 32 + 4096) == 26

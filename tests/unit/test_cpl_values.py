@@ -237,6 +237,8 @@ def test_permanent_variables_outlive_the_program() -> None:
     assert Ran("10 #A=@36+@ABCD% : #B!=@_R(100)*2", host).run.globals == {"#A": 7.0, "#B!": 2.24691357802468}
     assert failure("@36=NUL").what == "INVALID ASSIGNMENT"
     assert failure("@36=X%").what == "INVALID ASSIGNMENT"
+    Ran("10 @1=7 : @100=8", host)
+    assert (host.permanent["@1"], host.permanent["@100"]) == (7, 8)
     assert failure("@101=1").what == "there is no permanent variable @101"
     assert failure("@0=1").what == "there is no permanent variable @0"
     assert failure("@" + "9" * 5000 + "=1").what.startswith("there is no permanent variable @999")

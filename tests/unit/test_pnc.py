@@ -647,6 +647,31 @@ def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
         pnc.close()
 
 
+@pytest.mark.covers(
+    *(f"cpl.SD.{row}" for row in (
+        "2.1", "2.3", "2.4", "5.1.1", "5.2.1", "5.3.1", "5.3.3", "5.4.1", "8", "15", "20.1", "20.2", "21.n.1", "21.n.2",
+        "22.m.1", "22.m.2", "23.m.1", "23.m.2", "24.m.n.1", "24.m.n.2", "25.m", "202.s", "205.1.s", "205.3.s",
+    )),
+    "cpl.SDR.2.1", "cpl.SDR.2.3", "cpl.SDR.202.s",
+)  # fmt: skip
+def test_system_data_are_those_of_the_running_control(example: Example) -> None:
+    example.pnc.control.set_overrides(feed=0.85, spindle=0.5)
+    example.pnc.control.set_switches(machine_lock=True)
+    wanted = {
+        "SD(2,1)": 85, "SD(2,3)": 50, "SD(2,4)": 0, "SD(5,1,1)": 340, "SD(5,2,1)": 30000, "SD(5,3,1)": 600,
+        "SD(5,3,3)": 600, "SD(5,4,1)": 0, "SD(8)": 1, "SD(15)": 1, "SD(20)": 3, "SD(20,2)": 3, "SD(21,3)": 1,
+        "SD(21,2,2)": 3, 'SD(22,"Z")': 3, "SD(22,4,2)": 0, "SD(23,2)": 2, 'SD(23,"Z",2)': 3, "SD(24,1,3)": 8,
+        'SD(24,"Y2",2,2)': 5, 'SD(25,"A")': 3, "SD(25,6)": 2, "SD(202,1)": 50, "SD(205,1,1)": 600,
+        "SD(205,3,1)": 600, "SDR(2,1)": 85, "SDR(2,3)": 50, "SDR(202,1)": 50,
+    }  # fmt: skip
+    asked = "\n".join(f"{place} #V{place}!={each}" for place, each in enumerate(wanted, 10))
+    found = example.run(f"N1 M3 S1200\nN2 G1 X1 F400\n3 WAIT\n{asked}")
+    assert {each: found[f"#V{place}!"] for place, each in enumerate(wanted, 10)} == wanted
+    example.pnc.control.set_switches(machine_lock=False)
+    assert example.value("SD(8)", 2) == 2
+    assert example.value("SD(15)") == 0
+
+
 TAPPED = (
     "PARTNO/TAPS\nUNITS/MM\nLOADTL/3\nSPINDL/RPM,400,{}\nRAPID\nGOTO/0,0,20\nCYCLE/TAP,DEPTH,12,MMPR,1.25,CLEAR,5\n"
     "GOTO/10,10,0\nCYCLE/OFF\nRAPID\nGOTO/0,0,50\nFINI\n"

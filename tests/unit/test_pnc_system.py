@@ -176,6 +176,13 @@ def test_external_shifts_hold_while_they_are_on(cell: Cell) -> None:
     ]  # fmt: skip
 
 
+@pytest.mark.covers("cpl.nc.G53_G59_G153_G159_G253_G259")
+def test_each_group_of_zero_shifts_is_switched_off_by_itself(cell: Cell) -> None:
+    shifts = '1 FXC("X",59,1)=10 : FXC("X",159,1)=20 : FXC("X",259,1)=40\nN2 G59 G0\nN3 G159\nN4 G259\n'
+    for off, left in (("", 70), ("G53", 60), ("G153", 50), ("G253", 30)):
+        assert cell.values(f"{shifts}N5 {off}\nN6 G1 X1 F900\n7 WAIT", "MPOS(1)") == [left + 1]
+
+
 @pytest.mark.covers("cpl.nc.G145_G845", "cpl.nc.G147_G847")
 def test_tool_compensations_add_up(cell: Cell) -> None:
     blocks = (
@@ -252,6 +259,50 @@ def test_active_functions_feeds_and_positions_are_read(cell: Cell) -> None:
     ]
 
 
+@pytest.mark.covers(
+    *(f"cpl.SD.{row}" for row in (
+        "5.1.1", "5.1.2", "5.3.1", "5.3.2", "5.3.3", "11.1.1", "11.1.2", "11.2.1", "11.2.2", "12.1", "12.2", "12.3",
+        "12.val.-1", "12.val.3", "12.val.4", "14", "68.1.n", "68.2.n", "168.1.n", "168.2.n", "268.1.n", "268.2.n",
+        "202.s", "205.1.s", "205.2.s", "205.3.s", "212.1.s", "212.2.s",
+    )),
+    *(f"cpl.SDR.{row}" for row in ("68.1.n", "68.2.n", "168.1.n", "168.2.n", "268.1.n", "268.2.n", "202.s")),
+)  # fmt: skip
+def test_what_is_programmed_and_what_is_active_are_told_apart(cell: Cell) -> None:
+    (cell.folder / "macoda.dat").write_text("6010 00010 = 33\n")
+    blocks = (
+        "N1 G18\nN2 M4 S600\nN3 G168 X1.5 Y2\nN4 G268 Y0.25\nN5 G1 X5 F300\n6 WAIT\n"
+        "N7 G17\nN8 G168 X7.25\nN9 G268 Y4.5\nN10 M3 S700\nN11 G1 X300 F900"
+    )
+    wanted = {
+        "SD(5,1,1)": 300, "SD(5,1,2)": 900, "SD(5,3,1)": 600, "SD(5,3,2)": 700, "SD(5,3,3)": 600, "SD(11,1,1)": 1,
+        "SD(11,2,1)": 2, "SD(11,1,2)": 3, "SD(11,2,2)": 1, "SD(12,1)": 4, "SD(12,2)": 3, "SD(12,3)": -1, "SD(14)": 33,
+        "SDR(168,1,1)": 7.25, "SDR(168,2,1)": 1.5, "SDR(268,1,2)": 4.5, "SDR(268,2,2)": 0.25, "SDR(68,2,2)": 2.25,
+        "SDR(68,1,1)": 7.25, "SD(168,1,1)": 7, "SD(168,2,2)": 2, "SD(268,1,2)": 5, "SD(268,2,2)": 0, "SD(68,1,1)": 7,
+        "SD(68,2,1)": 2, "SD(202,1)": 100, "SDR(202,2)": 0, "SD(205,1,1)": 600, "SD(205,2,1)": 700,
+        "SD(205,3,1)": 600, "SD(212,1,1)": 4, "SD(212,2,1)": 3, "SD(212,2,2)": -1,
+    }  # fmt: skip
+    assert dict(zip(wanted, cell.values(blocks, *wanted), strict=True)) == wanted
+
+
+GROUPS = {
+    3: ("G70", "G71"), 4: ("G91", "G90"), 5: ("G63", "G66"), 7: ("G95", "G94"), 8: ("G42 D3 G1 X50 F500", "G40"),
+    9: ("G7", "G6"), 10: ("G18", "G19"), 11: ("G9", "G8"), 13: ("G15", "G14"), 17: ("G59", "G53"),
+    18: ("G157", "G153"), 19: ("G258", "G253"), 20: ("G60 X1", "G67"), 21: ("G38 X2", "G39"), 22: ("G61", "G62"),
+    25: ("G65", "G64"), 26: ("G68", "G69"), 28: ("G645", "G146"), 29: ("G114", "G115"), 30: ("G160", "G167"),
+}  # fmt: skip
+
+
+@pytest.mark.covers(*(f"cpl.SD.group.{group}" for group in GROUPS), "cpl.SD.1.i.1", "cpl.SD.1.i.2")
+def test_g_functions_of_each_group_are_told_while_they_hold(cell: Cell) -> None:
+    lines, wanted = ["1 WAIT", "N1 M3 S100"], []
+    for group, words in GROUPS.items():
+        for word in words:
+            lines += [f"N5 {word}", f"N6 G1 Y{len(lines)} F1000", "7 WAIT"]
+            lines += [f'8 A={ask} : PRN#(1,"###",A)' for ask in (f"SD(1,{group},1)", f"SD(1,{group},2)")]
+            wanted += [int(word.split()[0][1:])] * 2
+    assert [int(each) for each in cell.report("\n".join(lines))] == wanted
+
+
 def test_what_holds_for_one_block_is_seen_in_the_next(cell: Cell) -> None:
     assert cell.values("N1 G4 F0.25\n2 A%=SD(1,1,2)\nN3 G1 X1 F100", "A%", "SD(1,1,2)") == [4, 0]
 
@@ -265,11 +316,12 @@ def test_the_block_that_is_executed_is_not_the_one_that_is_prepared(cell: Cell) 
 @pytest.mark.covers("cpl.ex.2108")
 def test_a_function_is_programmed_again_by_its_name(cell: Cell) -> None:
     lines = cell.report(
-        '10 DIM A$(4)\nN15 G2 X10 Y0 R5 F500\n20 A$=NCF("G1") : PRN#(1,A$)\nN40 G1 Y0\nN80 [A$] X20 Y0 R5\n'
+        '10 DIM A$(4) : DIM B$(4)\nN15 G2 X10 Y0 R5 F500\n20 A$=NCF("G1") : PRN#(1,A$)\nN40 G1 Y0\n'
+        '41 B$=NCF("G2") : PRN#(1,B$)\nN80 [A$] X20 Y0 R5\n'
         '81 A$=NCF("G0") : PRN#(1,A$)\n82 A$=NCF("M3") : PRN#(1,A$)\n83 A$=NCF("G153") : PRN#(1,A$)\nN84 M4 S50\n'
         '85 A$=NCF("M3") : PRN#(1,A$)'
     )
-    assert lines == ["G2", "G2", "M5", "G153", "M4"]
+    assert lines == ["G2", "G1", "G2", "M5", "G153", "M4"]
     assert cell.last.path_mm == pytest.approx(2 * 15.70796, abs=1e-4)
     assert cell.error('1 DIM A$(4)\n2 A$=NCF("G999")') == "2: INVALID PARAMETER"
 

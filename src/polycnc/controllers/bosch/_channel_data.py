@@ -34,7 +34,10 @@ _OTHER_GROUPS = ((138, 139), (168, 169), (268, 269), (147, 148, 247, 347, 447, 5
 
 
 class ChannelData:
-    """The system data of channel `number`; `language` is the country code of MACODA 6010 00010, `modes` tells modes."""
+    """The system data of channel `number`; `language` is the country code of MACODA 6010 00010, `modes` tells modes.
+
+    `spindle` tells the override of the spindle and its actual speed (rpm), None where that is the programmed one.
+    """
 
     def __init__(
         self,
@@ -43,12 +46,14 @@ class ChannelData:
         runs: Callable[[int], ProgramRun | None],
         modes: Callable[[int], Mode],
         language: int,
+        spindle: Callable[[], tuple[float, float | None]] = lambda: (1.0, None),
     ) -> None:
         self._axes = axes
         self._number = number
         self._runs = runs
         self._modes = modes
         self._language = language
+        self._spindle = spindle
         self.functions: Mapping[str, Callable[..., object]] = {
             "SD": lambda *place: self.system_data().sd(*place),
             "SDR": lambda *place: self.system_data().sdr(*place),
@@ -74,8 +79,11 @@ class ChannelData:
         programmed, executed = self.programmed(), run.modal
         once = programmed.placement.once
         modal_codes = {code for group in SD_GROUPS.values() for code in group}
-        overrides = {_SPINDLE: 100.0}
-        rpm = state.spindle.speed if state.spindle.direction else 0.0
+        override, rpm = self._spindle()
+        overrides = {_SPINDLE: override * 100.0}
+        turning = programmed if executed is None else executed
+        if rpm is None:
+            rpm = turning.speed if turning.spindle_direction else 0.0
         probe = state.probe
         config = run.machine.config
         return SystemData(

@@ -92,6 +92,7 @@ class Pnc:
         self.system.run_of = self._run_of
         self.system.mode_of = self._shown_mode
         self.system.selected = self._selected
+        self.system.spindle_now = self._spindle_now
         self.system.referenced = lambda: frozenset(
             name for name, done in self._control.manual.referenced.items() if done
         )
@@ -363,6 +364,10 @@ class Pnc:
         )
         self.hosts[channel - 1].files.block = block
         self.cycle_start(channel=channel)
+
+    def _spindle_now(self) -> tuple[float, float]:
+        now = self._control.spindle.state()
+        return now.override, abs(now.actual_rpm)
 
     def _path(self, channel: int) -> int:
         return channel - 1

@@ -91,6 +91,8 @@ class BoschSystem:
         self.mode_of: Callable[[int], Mode] = lambda number: Mode.AUTOMATIC
         self.referenced: Callable[[], frozenset[str]] = lambda: frozenset(config.axis_names)
         self.selected: Callable[[int], str] = lambda number: ""
+        self.spindle_now: Callable[[], tuple[float, float | None]] = lambda: (1.0, None)
+        """The override of the spindle and its actual speed (rpm), None where that is the programmed one."""
         self.clients = Clients()
         self.open_files: dict[Path, StoredFile] = {}
         self.running_files: list[Callable[[], set[Path]]] = []
@@ -129,6 +131,7 @@ class BoschSystem:
                 lambda each: self.run_of(each),
                 lambda each: self.mode_of(each),
                 int(str(self.parameter(LANGUAGE))),
+                lambda: self.spindle_now(),
             )
             for number in self.axes.channels
         }
