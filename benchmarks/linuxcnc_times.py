@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
+from itertools import cycle
 from pathlib import Path
 
 import numpy as np
@@ -87,7 +88,8 @@ def made_programs() -> Iterator[tuple[str, str]]:
     boxes = [(b * k, b * j) for b in np.arange(4.0, 25.0, 3.0) for k, j in ((1, 0), (1, 1), (0, 1), (0, 0))]
     yield "box offsets", lines(np.array(boxes)[:, 0], np.array(boxes)[:, 1], np.zeros(len(boxes)), 5400.0)
     corners = np.cumsum(rng.uniform(-25.0, 25.0, size=(40, 2)), axis=0)
-    yield "facets", lines(corners[:, 0], corners[:, 1], np.zeros(40), 4200.0)
+    facets = lines(corners[:, 0], corners[:, 1], np.zeros(40), 4200.0)
+    yield "facets", facets
     yield (
         "long chords",
         lines(30 * np.sin(turn[::4]), 30 - 30 * np.cos(turn[::4]), 0.0 * turn[::4], 6000.0),
@@ -102,6 +104,7 @@ def made_programs() -> Iterator[tuple[str, str]]:
     yield "slots", slots(25, 4500.0)
     yield "scallops", scallops(24, 5.0, 4000.0)
     yield "chain", chain(np.random.default_rng(1), 40, 3000.0)
+    yield "feeds", with_feeds(facets, (1500, 3000, 4500, 2400))
 
 
 def lines(x: np.ndarray, y: np.ndarray, z: np.ndarray, feed: float) -> str:
@@ -182,6 +185,14 @@ def chain(rng: np.random.Generator, count: int, feed: float) -> str:
             found.append(f"G1 X{end_x:.5f} Y{end_y:.5f}")
         x, y = end_x, end_y
     return "\n".join(found)
+
+
+def with_feeds(program: str, feeds: tuple[int, ...]) -> str:
+    """Return a program whose blocks have these feeds in turn."""
+    first, *blocks = program.splitlines()
+    return "\n".join(
+        [first, *(f"{block} F{feed}" for block, feed in zip(blocks, cycle(feeds), strict=False))]
+    )
 
 
 def run_linuxcnc(folder: Path, files: list[Path]) -> dict[str, float]:

@@ -138,8 +138,9 @@ def arc_of(
     """Return radius and highest speed of the arc between two lines, from the rule in words.
 
     The largest arc keeps the tolerance, which is at most a quarter of the shorter line, and takes half of each line.
-    The path goes along it with what the axes allow in its plane. It is as small as that speed lets it be, but no
-    smaller than what the path covers, by angle, in the time in which two ramps of half the acceleration overlap.
+    The path goes along it with the higher feed or what the axes allow in its plane. It is as small as that speed lets
+    it be, but no smaller than what the path covers, by angle, in the time in which two ramps of half the acceleration
+    overlap.
     """
     turn = math.acos(np.clip(u @ w, -1.0, 1.0))
     normal = np.cross(u, w) / np.linalg.norm(np.cross(u, w))
@@ -147,7 +148,7 @@ def arc_of(
     with np.errstate(divide="ignore"):
         accel = float(np.min(ACCELERATION / in_plane))
         speed = min(
-            *feeds, *(float(np.min(SPEED / np.abs(v))) for v in (u, w)), float(np.min(SPEED / in_plane))
+            max(feeds), *(float(np.min(SPEED / np.abs(v))) for v in (u, w)), float(np.min(SPEED / in_plane))
         )
     within = min(tolerance, 0.25 * min(lengths)) / (1.0 / math.cos(0.5 * turn) - 1.0)
     room = 0.5 * min(lengths) / math.tan(0.5 * turn)
@@ -174,7 +175,7 @@ def test_the_arc_is_as_large_as_its_speed_needs(seed: int, tolerance: float) -> 
     turn = math.acos(u @ w)
     assert arc["kind"] == CIRCLE3D
     assert arc["length"] == pytest.approx(radius * turn, rel=1e-6)
-    assert min(arc["cap"], *feeds) == pytest.approx(speed, rel=1e-6)
+    assert min(arc["cap"], max(feeds)) == pytest.approx(speed, rel=1e-6)
     assert radius * (1.0 / math.cos(0.5 * turn) - 1.0) <= min(tolerance, 0.25 * min(lengths)) * (1.0 + 1e-9)
     assert before["length"] == pytest.approx(lengths[0] - radius * math.tan(0.5 * turn), rel=1e-6)
 

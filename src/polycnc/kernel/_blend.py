@@ -27,6 +27,7 @@ from polycnc.kernel._blend_speed import (
     NORMAL,
     START,
     cut_by_share,
+    feed_along,
     saves_time,
 )
 from polycnc.kernel._circle3d import circle3d_point, circle3d_setup
@@ -178,7 +179,8 @@ def _append_arc(
     seg.end[k, p], seg.end[k, q], seg.end[k, r] = start[0], start[1], start[2]
     line["length"] -= cut_mm
     flags = ROUNDING | line["flags"] & RAPID
-    set_common(seg, arc, seg.end[k], seg.end[k], min(speed_mm_s, line["feed_mm_s"]), flags, tag)
+    feed = feed_along(paths.row[g], line["feed_mm_s"], speed_mm_s)
+    set_common(seg, arc, seg.end[k], seg.end[k], feed, flags, tag)
     circle3d_point(geo, 1.0, start)
     seg.end[arc, p], seg.end[arc, q], seg.end[arc, r] = start[0], start[1], start[2]
     seg.row[arc]["kind"] = CIRCLE3D

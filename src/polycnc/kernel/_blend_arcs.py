@@ -22,6 +22,7 @@ from polycnc.kernel._blend_speed import (
     CUT_LINE,
     NORMAL,
     cut_by_share,
+    feed_along,
     saves_time_in_plane,
 )
 from polycnc.kernel._corner_rules import BY_SHARE
@@ -223,7 +224,7 @@ def _round(
     work[CUT], work[CUT_LINE] = ways[1], row["tail"] + 1
     end = paths.queued[g]
     end[p], end[q] = end_p, end_q
-    feed, arc = min(feeds[0], feeds[1]), slot(paths, g, row["tail"])
+    feed, arc = feed_along(row, feeds[0], feeds[1]), slot(paths, g, row["tail"])
     set_arc(seg, arc, limits.feed_axis, seg.end[k], end, p, q, center_p, center_q, angle, feed, ROUNDING, tag)
     seg.geo[arc, RADIUS_END] = seg.geo[arc, RADIUS_START]  # they differ by rounding
     row["tail"] += 1

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from polycnc.kernel._axis_limits import AxisLimits
+from polycnc.kernel._corner_rules import BY_SHARE
 from polycnc.kernel._jit import compiled
 from polycnc.kernel._limits import CENTRIPETAL_SHARE, CURVE_SHARE
 from polycnc.kernel._segments import Floats
@@ -15,6 +16,14 @@ from polycnc.kernel._touching import Element
 # Columns of the scratch `paths.blend`: directions before and after the corner, start and centre of the arc, normal.
 BEFORE, AFTER, START, CENTER, NORMAL = 0, 3, 6, 9, 12
 CUT, CUT_LINE = 15, 16  # what the last arc took of the line or arc behind it, mm, and which segment that is
+
+
+@compiled
+def feed_along(path: np.void, feed_mm_s: float, feed_after_mm_s: float) -> float:
+    """Return the feed along an arc between two moves: the lower one; with BY_SHARE the higher one."""
+    if path["corner_rule"] == BY_SHARE:
+        return max(feed_mm_s, feed_after_mm_s)
+    return min(feed_mm_s, feed_after_mm_s)
 
 
 @compiled
@@ -36,7 +45,7 @@ def cut_by_share(
     is, all on lines, less on arcs; where that is passed as fast there is no arc either.
     """
     sine = math.sqrt(work[NORMAL] ** 2 + work[NORMAL + 1] ** 2 + work[NORMAL + 2] ** 2)
-    speed = min(line["feed_mm_s"], speed_mm_s)
+    speed = feed_along(path, line["feed_mm_s"], speed_mm_s)
     accel, accel_after, busiest = math.inf, math.inf, 0.0
     for j in range(3):
         allowed, most = limits.acceleration[axes[j]], limits.speed[axes[j]]
@@ -50,10 +59,11 @@ def cut_by_share(
         if in_plane > 0.0:
             accel = min(accel, allowed / in_plane)
             speed = min(speed, most / in_plane)
-    needed = busiest * (speed / path["corner_cycle_s"] + accel_after) / part_beside
+    passing = min(speed, line["feed_mm_s"], speed_mm_s)
+    needed = busiest * (passing / path["corner_cycle_s"] + accel_after) / part_beside
     if needed < path["corner_share"]:
         return 0.0, 0.0
-    stepped = speed * path["corner_share"] / needed if part_beside < 1.0 else 0.0
+    stepped = passing * path["corner_share"] / needed if part_beside < 1.0 else 0.0
     tangent = math.tan(0.5 * turn_rad)
     largest = cut_mm / tangent
     speed = min(speed, math.sqrt(CENTRIPETAL_SHARE * accel * largest))
