@@ -96,6 +96,29 @@ def test_a_hold_stands_and_a_start_goes_on_to_the_same_end() -> None:
     assert x_of(made) == 12.5
 
 
+def test_a_program_is_in_use_while_it_runs_stands_or_was_broken_off_by_an_alarm() -> None:
+    made = started()
+    (channel,) = made.channels
+    assert channel.programs == {"PART"}
+    made.advance(100)
+    made.feed_hold()
+    made.advance(400)
+    assert channel.programs == {"PART"}
+    refused(Refusal.IN_USE, lambda: made.programs.delete("PART"), made)
+    made.cycle_start()
+    made.advance(3000)
+    assert channel.programs == frozenset()
+    made.programs.delete("PART")
+
+
+def test_a_reset_tells_whoever_waits_for_a_change_of_state() -> None:
+    made = started()
+    made.advance(100)
+    assert not made.raised & ControlEvent.RUN_STATE
+    made.reset()
+    assert made.raised & ControlEvent.RUN_STATE
+
+
 def test_a_start_while_the_axes_still_brake_is_refused() -> None:
     made = started()
     made.advance(300)

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from polycnc.cnc import AlarmList, ControlError, ManualData, ManualKind, ManualMotion, Refusal
 from polycnc.errors import UsageError
+from polycnc.kernel import REFERENCE
 from polycnc.machine import Machine
-from support.cnc_machine import cnc_machine
+from support.cnc_machine import B, X, Y, Z, cnc_machine
 
 
 class Rig:
@@ -245,6 +246,21 @@ def test_a_search_that_finds_nothing_ends_with_an_alarm() -> None:
     assert not rig.manual.referenced["Y"]
 
 
+@pytest.mark.parametrize(("axis", "start", "end"), [("Y", 0.0, -33.5), ("X", 12.5, -53.5)])
+def test_a_search_that_finds_nothing_gives_up_a_margin_behind_all_there_is(
+    axis: str, start: float, end: float
+) -> None:
+    x = {name: value for name, value in X.items() if name != "limit_switches_mm"}
+    rig = Rig(ManualData(search_margin=3.5), referenced=False, axis=(x, Y, Z, B))
+    rig.machine.state.switches.switch["XYZ".index(axis), REFERENCE]["on_from"] = np.inf
+    rig.machine.state.switches.switch["XYZ".index(axis), REFERENCE]["on_to"] = -np.inf
+    assert rig.at(axis) == start
+    rig.manual.reference(axis)
+    rig.run(20_000)
+    assert rig.at(axis) == end
+    assert [(alarm.number, alarm.axis) for alarm in rig.alarms.active] == [(220, axis)]
+
+
 def test_a_limit_switch_stops_everything_and_the_axis_can_only_leave_it() -> None:
     rig = Rig(referenced=False)
     rig.manual.jog("X", 1, rapid=True)
@@ -273,6 +289,15 @@ def test_a_machine_that_is_switched_on_on_a_limit_switch_knows_it() -> None:
     rig.machine.state.switches.switch[0][1]["on_from"] = 12.0
     assert rig.manual.check_limit_switches()
     refused(Refusal.TRAVEL, lambda: rig.manual.jog("X", 1))
+    other = Rig(referenced=False)
+    other.machine.state.switches.switch[1][0]["on_to"] = 2.5  # of Y alone, below
+    other.machine.state.switches.switch[1][0]["on_from"] = -99.0
+    assert other.manual.check_limit_switches()
+    assert [(alarm.number, alarm.axis) for alarm in other.alarms.active] == [(212, "Y")]
+    refused(Refusal.TRAVEL, lambda: other.manual.jog("Y", -1))
+    assert not other.manual.blocked("Y", 1)
+    assert not other.manual.blocked("X", -1)
+    other.manual.jog("Y", 1)
 
 
 def test_what_cannot_be_meant_is_refused_and_moves_nothing() -> None:

@@ -144,6 +144,8 @@ def test_an_edit_changes_lines_and_keeps_the_other_bytes(memory: ProgramMemory) 
         assert edit.line(4) == "G1 Y2.5 F80"
         before = memory.read("P")
         refused(Refusal.NOT_FOUND, lambda: edit.delete(5))
+        refused(Refusal.NOT_FOUND, lambda: edit.delete(0, 2))
+        refused(Refusal.NOT_FOUND, lambda: edit.delete(2, 5))
         refused(Refusal.NOT_FOUND, lambda: edit.line(0))
         refused(Refusal.NOT_FOUND, lambda: edit.insert(6, "M30"))
         refused(Refusal.DATA, lambda: edit.delete(3, 2))

@@ -80,6 +80,33 @@ def test_speed_reached_may_have_a_band() -> None:
     assert spindle.reached_cycle() == 1700
 
 
+def test_a_change_that_changes_no_speed_is_reached_at_once() -> None:
+    clock = Clock(0.001)
+    spindle = Spindle(clock, machine({"spindle_start_s": 1.5}, reached_share=0.07))
+    spindle.turn(rpm=9100.0, direction=1)
+    assert spindle.reached_cycle() == 1395  # 93 % of the way to 8000
+    clock.tick(1600)
+    spindle.set_override(1.3)  # beyond the highest speed before and after
+    assert spindle.reached_cycle() <= 1600
+    assert spindle.state().actual_rpm == pytest.approx(8000.0)
+    assert spindle.state().reached
+
+
+def test_an_orientation_from_full_turn_begins_with_the_speed_that_it_has() -> None:
+    clock = Clock(0.001)
+    spindle = Spindle(clock, machine(acceleration_rpm_s=2500.0, orientation_rpm=90.0))
+    spindle.turn(rpm=2000.0, direction=-1)
+    clock.tick(900)
+    spindle.orient(37.5)
+    clock.tick(100)
+    assert spindle.state().actual_rpm == pytest.approx(-1750.0)
+    clock.tick(664)  # down to 90 rpm, of which some is left to turn
+    assert spindle.state().actual_rpm == pytest.approx(-90.0, abs=1e-9)
+    clock.tick(2000)
+    assert spindle.state().actual_rpm == 0.0
+    assert spindle.state().angle_deg == pytest.approx(37.5)
+
+
 def test_a_change_in_the_middle_of_a_ramp_goes_on_from_the_speed_and_angle_there() -> None:
     clock = Clock(0.001)
     spindle = Spindle(clock, machine(acceleration_rpm_s=1000.0))

@@ -280,6 +280,7 @@ def test_first_difference_is_of_words_and_not_of_dress() -> None:
     assert lines("N10 G1 X10 F5\nN20 Y7\n", "(part)\n\nG1 X10 F05 (slow)\r\nN999 Y7\n") is None
     assert lines("G1 X10\nY7\n", "G1 X10\nY7\nM30\n") == (0, 3)
     assert lines("G1 X10\n/Y7\n", "G1 X10\nY7\n") == (2, 2)
+    assert lines("G1 X10\nY7\nZ3\nX1\n", "G1 X10\n\nY7\n(part)\nZ3\nX2\n") == (4, 6)
 
 
 def test_refusals(mill: Path) -> None:

@@ -335,6 +335,97 @@ def test_fanuc_whole_numbers_count_increments_and_inches_are_inches(tmp_path: Pa
     assert config.axes[0].soft_limits == pytest.approx((-0.2 * 25.4, 31.05 * 25.4))
 
 
+def test_grbl_without_a_pull_off_is_homed_on_its_switches(tmp_path: Path) -> None:
+    config, _ = made(tmp_path, GRBL.replace("$27=1.500\n", "") + OFFSETS)
+    assert [axis.home for axis in config.axes] == [0.0, -420.0, 0.0]
+    other, _ = made(tmp_path, GRBL.replace("$23=2", "$23=5").replace("$22=1", "$22=0") + OFFSETS)
+    assert [axis.home for axis in other.axes] == [0.0, 0.0, 0.0]
+    sides, _ = made(tmp_path, GRBL.replace("$23=2", "$23=5") + OFFSETS)
+    assert [axis.home for axis in sides.axes] == [-408.5, -1.5, -81.5]
+
+
+@pytest.mark.parametrize(
+    ("lines", "acceleration"),
+    [
+        ("N01660Q1A1P3100.0A2P2700.0", (3100.0, 2700.0)),  # before interpolation, that of each axis
+        ("N01660Q1A1P0A2P2700.0", (400.0 / 0.12, 2700.0)),
+        ("N01770Q1A1P24000.0A2P18000.0\nN01771Q1A1P160A2P150", (2500.0, 2000.0)),
+        ("N01660Q1A1P3100.0\nN01770Q1A1P24000.0A2P18000.0\nN01771Q1A1P160A2P150", (3100.0, 2000.0)),
+        ("N01770P21000.0\nN01771P140", (2500.0, 2500.0)),  # one for all
+        ("N01770P21000.0", (400.0 / 0.12, 350.0 / 0.15)),
+    ],
+)
+def test_fanuc_accelerations_before_interpolation_come_before_those_of_rapids(
+    tmp_path: Path, lines: str, acceleration: tuple[float, float]
+) -> None:
+    config, _ = made(tmp_path, FANUC.replace("N01620", f"{lines}\nN01620"))
+    assert tuple(axis.amax for axis in config.axes[:2]) == pytest.approx(acceleration)
+
+
+def test_fanuc_names_that_are_not_given_are_those_of_the_places(tmp_path: Path) -> None:
+    config, toml = made(
+        tmp_path, FANUC.replace("N01020Q1A1P88A2P89A3P90\n", "").replace("N01783Q1A1P300.0", "N01783Q1A1P0")
+    )
+    assert [axis.name for axis in config.axes] == ["X", "Y", "Z"]
+    assert [axis.jump for axis in config.axes] == [None, 4.5, 2.5]
+    named, _ = made(tmp_path, FANUC.replace("A1P88A2P89", "A1P85A2P65"))
+    assert [(axis.name, axis.kind) for axis in named.axes] == [
+        ("U", "linear"),
+        ("A", "rotary"),
+        ("Z", "linear"),
+    ]
+    assert "1825" in toml
+    assert "other parameters" not in toml
+    free, _ = made(tmp_path, FANUC.replace("A1P510.0", "A1P99999.0").replace("A1P-1.0", "A1P-99999.0"))
+    assert [axis.soft_limits for axis in free.axes] == [NO_END, (-1.5, 420.5), (-3.0, 251.0)]
+
+
+@pytest.mark.parametrize(
+    ("lines", "path"),
+    [
+        ("PLANNER_TYPE = 1\nMAX_LINEAR_JERK = 1", {"jerk_mm_s3": 25.4}),
+        ("ARC_BLEND_GAP_CYCLES = 9000", {"rounding_gap_s": 1.0}),  # 4.5 s
+        ("ARC_BLEND_GAP_CYCLES = -3", {"rounding_gap_s": 0.0}),
+        ("ARC_BLEND_KINK_RATIO = 0.9", {"corner_share": 0.5}),
+        ("ARC_BLEND_KINK_RATIO = 0", {"corner_share": 0.001}),
+        ("MAX_LINEAR_ACCELERATION = 17", {"acceleration_limit_mm_s2": pytest.approx(17 * 25.4)}),
+    ],
+)
+def test_linuxcnc_paths_keep_to_what_a_machine_may_have(
+    tmp_path: Path, lines: str, path: dict[str, object]
+) -> None:
+    config, _ = made(tmp_path, LINUXCNC.replace("[TRAJ]", f"[TRAJ]\n{lines}"))
+    assert {name: getattr(config.path, name) for name in path} == path
+
+
+@pytest.mark.parametrize(
+    ("start", "tolerance_mm", "merge_mm"),
+    [
+        ("G17 G64 P0.013", 0.013 * 25.4, 0.013 * 25.4),  # the machine's inches
+        ("G20 G64 P0.002 Q0.01", 0.002 * 25.4, 0.01 * 25.4),
+        ("G21 G64 P0.07 Q0.02", 0.07, 0.02),
+        ("G61", "free", 0.0),
+    ],
+)
+def test_linuxcnc_start_codes_are_in_the_unit_that_they_name(
+    tmp_path: Path, start: str, tolerance_mm: float | str, merge_mm: float
+) -> None:
+    config, _ = made(tmp_path, LINUXCNC.replace("G17 G21 G64 P0.013", start))
+    wanted = tolerance_mm if isinstance(tolerance_mm, str) else pytest.approx(tolerance_mm)
+    assert config.path.path_tolerance_mm == wanted
+    assert config.path.merge_mm == pytest.approx(merge_mm)
+
+
+def test_a_fluidnc_file_that_is_no_yaml_is_refused_at_its_place(tmp_path: Path) -> None:
+    pytest.importorskip("yaml", reason="pip install 'polycnc[yaml]'")
+    with pytest.raises(ConfigurationError) as caught:
+        made(tmp_path, FLUIDNC.replace("    max_travel_mm: 60", "    max_travel_mm: [60"))
+    assert "machine.cfg:" in str(caught.value)
+    assert "this is no YAML" in str(caught.value)
+    with pytest.raises(ConfigurationError, match=r"machine\.cfg:8:20:"):
+        made(tmp_path, FLUIDNC.replace("max_travel_mm: 303.000", "max_travel_mm: far"))
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -355,7 +446,11 @@ def test_fanuc_whole_numbers_count_increments_and_inches_are_inches(tmp_path: Pa
         (LINUXCNC.replace("[AXIS_A]\nMAX_VELOCITY = 60", "[AXIS_A]"), ("axis A has no MAX_VELOCITY",)),
         (LINUXCNC.replace("MIN_LIMIT = -1", "MIN_LIMIT = 1"), ("outside", "HOME inside")),
         (FANUC.replace("N01620", "N01621"), ("axis X has no acceleration", "1620")),
-        (FANUC.replace("A2P21000.0", "A2P2.1.0"), ("machine.cfg:9:", "is no number")),
+        (FANUC.replace("A2P21000.0", "A2P2.1.0"), ("machine.cfg:9:22:", "is no number")),
+        (
+            LINUXCNC.replace("X Y Z A", "").replace("coordinates=XYYZA", ""),
+            ("machine.cfg:6:", "no axis is named", "X Y Z"),
+        ),
     ],
 )
 def test_what_is_missing_or_wrong_is_named_with_its_place(

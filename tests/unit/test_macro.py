@@ -201,6 +201,51 @@ def test_a_modal_call_follows_every_move_until_g67() -> None:
     assert variables.get(100) == 6.0
 
 
+@pytest.mark.parametrize(
+    "block",
+    ["G4 X.1", "G10 L2 P2 X3", "G28 X2", "G30 P2 X2", "G52 X3", "G68 X0 Y0 R20", "G51 X0 Y0 P500", "G50", "G92 X5",
+     "G51.1 X2", "G50.1 X2", "M8", "T3", "F300"],
+)  # fmt: skip
+def test_what_is_no_move_calls_nothing(block: str) -> None:
+    text = f"#100=0\nG66 P9000\n{block}\nG67\nM30\nO9000\n#100=#100+1\nM99\n"
+    made, variables = run(text)
+    assert made.error is None, str(made.error)
+    assert variables.get(100) == 0.0
+    _, variables = run(text.replace(block, f"{block}\nY3"))
+    assert variables.get(100) == 1.0
+
+
+def test_values_in_addresses_are_what_their_functions_give() -> None:
+    made, _ = run("G90 G0 X[ABS[-2.3456]] Y[FIX[-7.9]+ROUND[1.23456]] Z[FUP[3.2]]\nM30\n")
+    assert made.error is None
+    # ROUND in an address is to the least increment; elsewhere to a whole number.
+    assert made.position == {"X": pytest.approx(2.346), "Y": pytest.approx(-5.765), "Z": pytest.approx(4.0)}
+    _, variables = run("G1 X1 F[1000/3]\n#100=#4109\nF[50/7]\n#101=#4109\nM30\n")
+    assert [variables.get(n) for n in (100, 101)] == pytest.approx([333.3333, 7.1429], abs=1e-9)
+
+
+def test_a_condition_of_a_loop_is_reckoned_anew_in_every_round() -> None:
+    text = "#1=0\n#101=5\n#102=4\n#103=2\n#104=9\n"
+    text += "WHILE[#[101+#1]GT3]DO1\n#1=#1+1\n#110=#110+#[100+#1]\nEND1\nM30\n"
+    made, variables = run(text)
+    assert made.error is None
+    assert (variables.get(1), variables.get(110)) == (2.0, 9.0)
+    text = "#1=5\nWHILE[#[5040+#2+1]LT7.5]DO1\nG91 G1 X2 F5000\n#1=#1+1\nEND1\nM30\n"  # where the axis stands
+    made, variables = run(text)
+    assert made.error is None
+    assert variables.get(1) == 9.0
+
+
+@pytest.mark.parametrize(("degree", "sine"), [
+    (0, 0.0), (30, 0.5), (90, 1.0), (150, 0.5), (180, 0.0), (210, -0.5), (270, -1.0), (330, -0.5), (360, 0.0),
+    (-30, -0.5),
+    (390, 0.5), (-150, -0.5), (720, 0.0),
+])  # fmt: skip
+def test_sines_that_are_whole_or_half_are_exact(degree: int, sine: float) -> None:
+    assert value(f"SIN[{degree}]") == sine
+    assert value(f"COS[{90 - degree}]") == sine
+
+
 def test_a_return_to_a_block_goes_on_there() -> None:
     _, variables = run(
         "M98 P9000\n#100=1\nN50 #101=2\nM98 P9000\nM30\nO9000\n#102=#102+1\nIF[#102 EQ 1]GOTO 1\nM99\nN1 M99 P50\n"

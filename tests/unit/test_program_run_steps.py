@@ -154,6 +154,20 @@ def test_a_breakpoint_of_no_program_holds_in_every_one_and_one_set_in_motion_cou
     assert stops == [30.0, 46.0, 59.0]
 
 
+def test_a_breakpoint_that_comes_to_others_in_motion_counts_in_what_is_prepared() -> None:
+    run = program_run("".join(f"G1 X{n} F3000\n" for n in range(1, 60)))
+    run.breakpoints = [Breakpoint(line=55)]
+    run.start()
+    run.advance(60)
+    run.breakpoints = [Breakpoint(line=31), Breakpoint(line=55)]
+    to_the_end(run)
+    assert run.position["X"] == 30.0
+    run.breakpoints = []  # and one that is taken away does not
+    run.resume()
+    to_the_end(run)
+    assert (stands(run), run.position["X"]) == ("COMPLETED", 59.0)
+
+
 def test_a_condition_stops_where_it_has_become_true_and_prepares_no_further() -> None:
     run = program_run("".join(f"G1 X{n} F3000\n" for n in range(1, 60)))
     run.breakpoints = [Breakpoint(condition=lambda: run.channel.state.modal.position[0] > 17.5)]

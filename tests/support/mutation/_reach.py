@@ -39,8 +39,12 @@ class Reach:
         """
         seen = self.tests.get(file, {})
         found = {test for line in lines for test in seen.get(line, ()) if test}
-        if not found and any(line in seen for line in lines):  # an import ran it: the module's tests may tell
-            found = {test for tests in seen.values() for test in tests if test} or set(self.times_s)
+        telling: set[str] = set()
+        if not found and any(
+            line in seen for line in lines
+        ):  # an import ran it: the module's tests may tell, or any
+            telling = {test for tests in seen.values() for test in tests if test}
+            found = set(self.times_s)
         by_file = defaultdict[str, list[str]](list)
         for test in sorted(found, key=lambda test: (self.times_s.get(test, 0.0), test)):
             by_file[test.partition("::")[0]].append(test)
@@ -52,7 +56,10 @@ class Reach:
         )
         return sorted(
             (test for _, tests in files for test in tests if test in chosen),
-            key=lambda test: -self.noticed[file][test] / (0.05 + self.times_s.get(test, 0.0)),
+            key=lambda test: (
+                -self.noticed[file][test] / (0.05 + self.times_s.get(test, 0.0)),
+                test not in telling,
+            ),
         )
 
     def note(self, file: str, test: str) -> None:
