@@ -146,14 +146,23 @@ def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = F
         return
     if not target.name or target.is_dir():
         raise UsageError(f"{path} is a folder", hint="Give the name of a file.")
-    try:
-        sweep(target)
-        partial, descriptor = _opened(target)
-    except OSError as error:
-        raise UsageError(
-            f"{path} cannot be written: {error.strerror}", hint="Check the folder and its access rights."
-        ) from error
-    try:
+    partial, descriptor = target, -1
+    try:  # a signal may come at any time: what is made has its name noted before
+        try:
+            sweep(target)
+            for _ in range(_ATTEMPTS):
+                partial = target.with_name(_partial_name(target))
+                descriptor = _made(partial)
+                if descriptor >= 0:
+                    break
+            else:
+                raise FileNotFoundError(2, "somebody removes the file while it is written")
+        except OSError as error:
+            if isinstance(error, FileExistsError):  # that of somebody else
+                partial = target
+            raise UsageError(
+                f"{path} cannot be written: {error.strerror}", hint="Check the folder and its access rights."
+            ) from error
         yield partial
         if durable:
             _synchronize(partial)
@@ -169,8 +178,9 @@ def complete_or_absent(path: Path, *, durable: bool = False, rewritten: bool = F
         if descriptor >= 0 and not RENAMES_OPEN_FILES:  # nor removes them
             os.close(descriptor)
             descriptor = -1
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
+        if partial != target:
+            with suppress(OSError):
+                partial.unlink(missing_ok=True)
         if descriptor >= 0:
             os.close(descriptor)
 
@@ -212,19 +222,20 @@ def _remove_if_left(path: Path) -> None:
         os.close(descriptor)
 
 
-def _opened(target: Path) -> tuple[Path, int]:
-    """Make the file beside `target` and lock it for as long as it is written."""
-    for _ in range(_ATTEMPTS):
-        name = f".{target.stem}.{secrets.token_hex(_TOKEN_BYTES)}.partial{target.suffix}"
-        partial = target.with_name(name)
-        descriptor = os.open(partial, os.O_RDWR | os.O_CREAT | os.O_EXCL | _NO_LINK, 0o666)
-        with suppress(OSError):  # a file system without locks
-            _lock(descriptor)
-        with suppress(OSError):
-            if os.path.samestat(os.fstat(descriptor), partial.stat()):  # nobody has swept it before the lock
-                return partial, descriptor
-        os.close(descriptor)
-    raise FileNotFoundError(2, "somebody removes the file while it is written")
+def _partial_name(target: Path) -> str:
+    return f".{target.stem}.{secrets.token_hex(_TOKEN_BYTES)}.partial{target.suffix}"
+
+
+def _made(partial: Path) -> int:
+    """Make a file and lock it for as long as it is written; return -1 if somebody has swept it before the lock."""
+    descriptor = os.open(partial, os.O_RDWR | os.O_CREAT | os.O_EXCL | _NO_LINK, 0o666)
+    with suppress(OSError):  # a file system without locks
+        _lock(descriptor)
+    with suppress(OSError):
+        if os.path.samestat(os.fstat(descriptor), partial.stat()):
+            return descriptor
+    os.close(descriptor)
+    return -1
 
 
 def is_special(path: Path) -> bool:

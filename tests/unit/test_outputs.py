@@ -164,6 +164,23 @@ def test_a_temporary_name_cannot_be_taken_before(here: Path) -> None:
     assert all(len(name) >= len(".t..partial.csv") + 16 for name in names)
 
 
+@pytest.mark.parametrize("moment", ["_lock", "sweep", "_synchronize"])
+def test_a_signal_at_any_moment_leaves_no_file(
+    moment: str, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken_off(_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = sorted(here.iterdir())
+    monkeypatch.setattr(outputs, moment, broken_off)
+    with (
+        pytest.raises(KeyboardInterrupt),
+        outputs.complete_or_absent(here / "new.txt", durable=True) as partial,
+    ):
+        partial.write_text("half of it")
+    assert sorted(here.iterdir()) == before
+
+
 def test_an_error_within_leaves_the_old_file(here: Path) -> None:
     target = here / "t.csv"
     target.write_text("old")
