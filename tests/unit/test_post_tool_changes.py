@@ -165,3 +165,17 @@ def test_compensation_in_another_plane_is_refused_on_a_mill() -> None:
             blocks_of(text.format(plane), "fanuc-mill")
     assert "G41 D04" in blocks_of(text.format("XYPLAN"), "fanuc-mill")[0]
     assert "G41" in blocks_of(text.format("ZXPLAN"), "fanuc-lathe")[0]
+
+
+@pytest.mark.parametrize("name", ["fanuc-mill", "fanuc-5axis"])
+@pytest.mark.parametrize("change", ["LOADTL/5", "CUTCOM/ADJUST,2"])
+def test_the_plane_is_xy_before_the_length_of_a_tool(name: str, change: str) -> None:
+    # Controls may compensate the length along the axis across the plane that is in force.
+    text = (
+        TOOL
+        + "RAPID\nGOTO/20,-30,9\nFEDRAT/300,MMPM\nGOTO/20,-30,1\nCIRCLE/20,-29,1,1,0,0,1\nGOTO/20,-29,0\n"
+        f"{change}\nRAPID\nGOTO/1,2,30\nFINI\n"
+    )
+    blocks, proof = blocks_of(text, name)
+    assert "G17 G90 G49" in blocks
+    assert proof.ok
