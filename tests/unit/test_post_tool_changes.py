@@ -139,3 +139,43 @@ def test_the_table_turns_at_the_start_while_the_tool_is_home() -> None:
     first = blocks.index("G90 G00 A0. C0.")
     assert blocks[first + 1 : first + 4] == ["X3. Y40. A90. C90.", "Z12.", "Z9."]
     assert proof.ok
+
+
+@pytest.mark.parametrize("name", MILLS)
+def test_the_plane_is_xy_before_the_control_compensates_the_radius(name: str) -> None:
+    # Down along an upright arc, as many systems go in: G19 is still in force behind it.
+    text = (
+        TOOL
+        + "RAPID\nGOTO/20,-30,9\nFEDRAT/300,MMPM\nGOTO/20,-30,1\nCIRCLE/20,-29,1,1,0,0,1\nGOTO/20,-29,0\n"
+        "CUTCOM/LEFT,4\nGOTO/20,10,0\nCIRCLE/15,10,0,0,0,1,5\nGOTO/10,10,0\nGOTO/10,0,0\nCUTCOM/OFF\n"
+        "GOTO/15,0,0\nFINI\n"
+    )
+    blocks, proof = blocks_of(text, name)
+    assert any("G19" in block for block in blocks)
+    (compensates,) = (block for block in blocks if "G41" in block)
+    assert compensates.startswith("G17 G41 D")
+    assert proof.run.alarms == []
+    assert proof.ok
+
+
+def test_compensation_in_another_plane_is_refused_on_a_mill() -> None:
+    text = TOOL + "RAPID\nGOTO/20,0,9\nFEDRAT/300,MMPM\nCUTCOM/LEFT,{}\nGOTO/20,0,0\nFINI\n"
+    for plane in ("YZPLAN", "ZXPLAN", "XZPLAN"):
+        with pytest.raises(ProgramError, match="radius compensation in another plane"):
+            blocks_of(text.format(plane), "fanuc-mill")
+    assert "G41 D04" in blocks_of(text.format("XYPLAN"), "fanuc-mill")[0]
+    assert "G41" in blocks_of(text.format("ZXPLAN"), "fanuc-lathe")[0]
+
+
+@pytest.mark.parametrize("name", ["fanuc-mill", "fanuc-5axis"])
+@pytest.mark.parametrize("change", ["LOADTL/5", "CUTCOM/ADJUST,2"])
+def test_the_plane_is_xy_before_the_length_of_a_tool(name: str, change: str) -> None:
+    # Controls may compensate the length along the axis across the plane that is in force.
+    text = (
+        TOOL
+        + "RAPID\nGOTO/20,-30,9\nFEDRAT/300,MMPM\nGOTO/20,-30,1\nCIRCLE/20,-29,1,1,0,0,1\nGOTO/20,-29,0\n"
+        f"{change}\nRAPID\nGOTO/1,2,30\nFINI\n"
+    )
+    blocks, proof = blocks_of(text, name)
+    assert "G17 G90 G49" in blocks
+    assert proof.ok

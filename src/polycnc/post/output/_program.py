@@ -539,6 +539,13 @@ class _Driver:
     def _compensation(self, record: Compensation) -> None:
         self.drilling.close()
         words: dict[str, float | str] = {}
+        is_lathe = not self.output.control.uses("LINEAR", "Y")
+        if record.side != "off" and record.plane is not None and not (is_lathe and record.plane == 18):
+            raise self.output.fail(
+                record.line,
+                "radius compensation in another plane than XY",
+                "Let the CAM system compensate the radius there (CUTCOM/OFF).",
+            )
         if record.side != "off":
             words["D"] = float(self._tool_number if record.d is None else record.d)
         self.output.state(f"COMP_{record.side.upper()}", record.line, words)

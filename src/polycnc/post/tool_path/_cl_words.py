@@ -104,6 +104,7 @@ CLSF_WORDS = frozenset(("TOOLPATH", "TLDATA", "MSYS", "PAINT", "END-OF-PATH", "M
 """Words of files whose axes of arcs are for a clockwise direction: the CLSF of NX, and APT for CAMplete (MCS, CSI_)."""
 
 _HIGHEST_SPEED = 1e6
+_PLANES = {"ZXPLAN": 18, "XZPLAN": 18, "YZPLAN": 19}
 _FIRST_G_CODE = 54  # from here on a number may be meant as a G code
 
 _FEED_UNITS = {
@@ -400,7 +401,10 @@ def _compensation(reading: Reading, statement: Statement) -> Iterator[Record]:
     else:
         raise statement.fail("CUTCOM without a side", "Write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF.")
     number = statement.first_number()
-    compensation = Compensation(statement.line, side, statement.whole(number, "the number of an offset"))
+    plane = next((_PLANES[word] for word in sorted(words) if word in _PLANES), None)
+    compensation = Compensation(
+        statement.line, side, statement.whole(number, "the number of an offset"), plane
+    )
     if side != "off":
         reading.side = compensation
     yield compensation

@@ -216,11 +216,12 @@ class Coolant(NamedTuple):
 
 
 class Compensation(NamedTuple):
-    """Radius compensation by the control."""
+    """Radius compensation by the control; `plane` is 18 or 19 where another one than XY is said."""
 
     line: int
     side: Literal["left", "right", "off"]
     d: int | None = None
+    plane: int | None = None
 
 
 class Dwell(NamedTuple):
