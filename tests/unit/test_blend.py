@@ -70,6 +70,17 @@ def test_corners_that_stay_as_they_are(
     assert [tuple(end) for end in state.seg.end[: len(points)]] == [tuple(map(float, p)) for p in points]
 
 
+@pytest.mark.parametrize(("slow_mm_s", "found"), [(100.0, [LINE, LINE]), (400.0, [LINE, CIRCLE3D, LINE])])
+def test_an_arc_that_a_slow_axis_would_hold_up_is_none(slow_mm_s: float, found: list[int]) -> None:
+    """Y hardly moves, but along an arc of 20 mm it would be held to its speed; stopping costs 0.06 s."""
+    state = make_state(3, segments=64)
+    state.limits.speed[:], state.limits.acceleration[:] = (400.0, slow_mm_s, 100.0), 6000.0
+    state.paths.row["tolerance_mm"] = math.inf
+    for tag, point in enumerate([(20.0, 0.0, 0.0), (60.0, 0.004, 0.0)]):
+        append_line(state.seg, state.paths, 0, state.limits, np.array(point), 600.0, 0, tag)
+    assert kinds(state) == found
+
+
 @pytest.mark.parametrize(("closed", "found"), [(0, [LINE, CIRCLE3D, LINE]), (1, [LINE, LINE])])
 def test_a_line_waits_for_the_corner_behind_it_unless_the_path_is_closed(
     closed: int, found: list[int]

@@ -88,6 +88,7 @@ def saves_time(
     """Tell whether the arc, gone along with the lower feed, is quicker than both lines with a rest between them."""
     before_mm_s, after_mm_s = line["feed_mm_s"], speed_mm_s
     accel_before, accel_after, accel = math.inf, math.inf, math.inf
+    turning = math.inf  # every axis that moves is held to its limit all along the arc
     for j in range(3):
         allowed, speed = limits.acceleration[axes[j]], limits.speed[axes[j]]
         u, w = abs(work[BEFORE + j]), abs(work[AFTER + j])
@@ -96,8 +97,8 @@ def saves_time(
         if w > 0.0:
             after_mm_s, accel_after = min(after_mm_s, speed / w), min(accel_after, allowed / w)
         if u > 0.0 or w > 0.0:
-            accel = min(accel, allowed)
-    turning = min(before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
+            accel, turning = min(accel, allowed), min(turning, speed)
+    turning = min(turning, before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
     stopping = _stop_s(cut_mm, before_mm_s, accel_before) + _stop_s(cut_mm, after_mm_s, accel_after)
     rounding = radius_mm * turn_rad / turning
     slower, later = before_mm_s - turning, after_mm_s - turning
@@ -128,7 +129,8 @@ def saves_time_in_plane(
     before_mm_s, accel_before = _going(limits, p, q, before, feeds[0])
     after_mm_s, accel_after = _going(limits, p, q, after, feeds[1])
     accel = min(limits.acceleration[p], limits.acceleration[q])
-    turning = min(before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
+    turning = min(limits.speed[p], limits.speed[q], math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
+    turning = min(turning, before_mm_s, after_mm_s)
     stopping = _stop_s(cuts_mm[0], before_mm_s, accel_before) + _stop_s(cuts_mm[1], after_mm_s, accel_after)
     rounding = radius_mm * turn_rad / turning
     slower, later = before_mm_s - turning, after_mm_s - turning
