@@ -109,6 +109,7 @@ def test_inkey_returns_the_codes_of_keys_one_by_one(tmp_path: Path) -> None:
     assert shown.globals["#L%"] == 0
 
 
+@pytest.mark.covers("cpl.DLF", "cpl.CLG")
 def test_inkey_sees_keys_only_while_the_window_is_in_front(tmp_path: Path) -> None:
     shown = Shown("1 CLG\n2 #A%=INKEY\n3 DLF\n4 #B%=INKEY", tmp_path, "x")
     assert (shown.globals["#A%"], shown.globals["#B%"]) == (0, 120)
@@ -227,7 +228,7 @@ def test_fonts_have_size_cut_and_orientation(tmp_path: Path, font: int, family: 
     assert 'font-size="9"' in drawn[0]
 
 
-@pytest.mark.covers("cpl.CLS", "cpl.CLG", "cpl.CLR", "cpl.DLF")
+@pytest.mark.covers("cpl.CLS", "cpl.CLG", "cpl.CLR")
 def test_clearing_takes_all_or_the_window(tmp_path: Path) -> None:
     text = '1 DSP(1,1,"A") : DSP(30,20,"B") : LIN(10,300,10,350) : LIN(150,100,170,100) : GPR(160,150,"C")\n'
     shown = Shown(text + "2 GWD(100,250,50,200) : CLR", tmp_path)

@@ -335,6 +335,7 @@ def test_arithmetic_has_its_order() -> None:
 def test_division_is_never_whole() -> None:
     assert value("#A=4/3") == float(np.float32(4 / 3))
     assert value("#A!=37/3", "#A!") == 37 / 3
+    assert failure("I%=4/2").what == "INVALID ASSIGNMENT"
     error = failure("X=0\n#A=1/X")
     assert (error.what, error.position.line) == ("division by zero", 2)  # type: ignore[union-attr]
 

@@ -12,7 +12,7 @@ from polycnc.cnc import Mode as CncMode
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import Signals
-from polycnc.machine import Host
+from polycnc.machine import Host, SnapshotError
 from polycnc.post import parse_tool_path
 from polycnc.runner import post_file
 
@@ -571,6 +571,8 @@ def test_a_block_is_searched_through_statements(example: Example, mode: Mode, se
     pnc.select_mode(mode)
     pnc.select_program("main1.npg")
     assert pnc.search_block("N50") == 9
+    with pytest.raises(SnapshotError, match="has been searched"):
+        pnc.snapshot()
     assert (pnc.axes["X"].setpoint, pnc.axes["Y"].setpoint) == (0, 0)
     for _ in range(30):
         if pnc.run_state() is RunState.COMPLETED:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
@@ -30,6 +30,7 @@ _STATED = (
 )  # fmt: skip
 _PLANES = {17: (0, 1), 18: (2, 0), 19: (1, 2)}
 _M_GROUPS = (("M3", "M4", "M5", "M19"), ("M7", "M8", "M9"))
+_GROUP_OF = {code: group for group, codes in SD_GROUPS.items() for code in codes}
 _OTHER_GROUPS = ((138, 139), (168, 169), (268, 269), (147, 148, 247, 347, 447, 547, 647, 747, 847))
 
 
@@ -78,7 +79,6 @@ class ChannelData:
         state = run.channel.state
         programmed, executed = self.programmed(), run.modal
         once = programmed.placement.once
-        modal_codes = {code for group in SD_GROUPS.values() for code in group}
         override, rpm = self._spindle()
         overrides = {_SPINDLE: override * 100.0}
         turning = programmed if executed is None else executed
@@ -88,9 +88,9 @@ class ChannelData:
         config = run.machine.config
         return SystemData(
             channel=self._number,
-            programmed=self._moment(programmed),
-            active=self._moment(programmed if executed is None else executed),
-            block_function=0 if once in modal_codes else once,
+            programmed=_later(lambda: self._moment(programmed)),
+            active=_later(lambda: self._moment(turning)),
+            block_function=0 if once in _GROUP_OF else once,
             feed_override=run.feed_override * 100.0,
             rapid=max((axis.vmax * 60.0 for axis in config.axes if axis.unit == "mm"), default=0.0)
             / (25.4 if programmed.inch else 1.0),
@@ -153,12 +153,10 @@ class ChannelData:
         said += [int(name[1:]) for name in words.work if name[1:].isdigit()]
         if words.placement.plane is not None:
             said.append(20)
-        found = {_last_of(group, said) for group in SD_GROUPS.values()}
+        found = {_GROUP_OF[code]: code for code in said if code in _GROUP_OF}
         for off in _OFF:
-            codes = next(each for each in SD_GROUPS.values() if off in each)
-            if _last_of(codes, said) is None:
-                found.add(off)
-        return {code for code in found if code is not None}
+            found.setdefault(_GROUP_OF[off], off)
+        return set(found.values())
 
     def _letters(self) -> dict[str, int]:
         names = list(self.run.channel.state.axis_names)
@@ -222,6 +220,22 @@ class ChannelData:
             if any(name in group for group in _M_GROUPS):
                 last.program(name)
         return last
+
+
+class _Later:
+    """What is made when it is first looked at: most of what SD can read is not asked for."""
+
+    def __init__(self, make: Callable[[], Moment]) -> None:
+        self._make = make
+
+    def __getattr__(self, name: str) -> object:
+        found = self.__dict__.setdefault("_made", None) or self._make()
+        self.__dict__["_made"] = found
+        return getattr(found, name)
+
+
+def _later(make: Callable[[], Moment]) -> Moment:
+    return cast(Moment, _Later(make))
 
 
 def _last_of(group: tuple[int, ...], said: list[int] | set[int]) -> int | None:

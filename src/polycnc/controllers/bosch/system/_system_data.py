@@ -140,9 +140,19 @@ class _Row(NamedTuple):
     default: int | None = None
 
 
-def _find(rows: Sequence[_Row], data: SystemData, arguments: Sequence[object], name: str) -> float:
-    given = [_plain(each) for each in arguments]
+_Rows: TypeAlias = Mapping[object, Sequence[_Row]]
+
+
+def _by_group(rows: Sequence[_Row]) -> _Rows:
+    found: dict[object, list[_Row]] = {}
     for row in rows:
+        found.setdefault(row.group, []).append(row)
+    return found
+
+
+def _find(rows: _Rows, data: SystemData, arguments: Sequence[object], name: str) -> float:
+    given = [_plain(each) for each in arguments]
+    for row in rows.get(given[0], ()):
         wanted = (row.group, *row.indices)
         indices = (
             [*given, row.default] if row.default is not None and len(given) == len(wanted) - 1 else given
@@ -286,50 +296,54 @@ _OVERRIDES = [
     _Row(2, (4,), lambda d: d.spindle_overrides.get(2, 0.0)),
     _Row(202, (_EIGHT,), lambda d, s: d.spindle_overrides.get(s, 0.0)),
 ]
-_SD = [
-    _Row(1, (range(2, 49), 1), lambda d, g: _function(d.active, g)),
-    _Row(1, (range(1, 49), 2), _last_function),
-    *_OVERRIDES,
-    _Row(5, (1, 1), _feed),
-    _Row(5, (1, 2), lambda d: d.programmed.feed),
-    _Row(5, (2, 1), lambda d: d.rapid),
-    *(_Row(5, (2 + s, 1), lambda d, s=s: _speed(d, s)) for s in (1, 2)),
-    *(_Row(5, (2 + s, 2), lambda d, s=s: d.programmed.speeds_rpm.get(s, 0.0)) for s in (1, 2)),
-    *(_Row(5, (2 + s, 3), lambda d, s=s: d.actual_rpm.get(s, 0.0)) for s in (1, 2)),
-    _Row(8, (), lambda d: d.channel),
-    _Row(9, (), lambda d: d.probe_missing),
-    *(_Row(10, (1, n), lambda d, n=n: d.programmed.drilling_axes[n - 1]) for n in (1, 2)),
-    *(_Row(10, (2, n), lambda d, n=n: d.active.drilling_axes[n - 1]) for n in (1, 2)),
-    *(_Row(11, (n, 1), lambda d, n=n: d.programmed.plane[n - 1]) for n in (1, 2)),
-    *(_Row(11, (n, 2), lambda d, n=n: d.active.plane[n - 1]) for n in (1, 2)),
-    _Row(12, (1,), lambda d: _sense(d.active, 1)),
-    _Row(12, (2,), lambda d: _sense(d.programmed, 1)),
-    _Row(12, (3,), lambda d: _sense(d.active, 2)),
-    _Row(12, (4,), lambda d: _sense(d.programmed, 2)),
-    _Row(13, (), lambda d: d.machining_mode),
-    _Row(14, (), lambda d: d.language),
-    _Row(15, (), lambda d: d.test_without_motion),
-    *_axis_rows(),
-    *_shift_rows(),
-    *(_Row(131, (n,), lambda d, n=n: d.tangential[n - 1]) for n in (1, 2)),
-    _Row(200, (1,), lambda d: sum(area.active for area in d.areas)),
-    _Row(200, (1, range(1, 11)), lambda d, i: _area(d, i).active),
-    _Row(200, (3, range(1, 11)), lambda d, i: _area(d, i).kind),
-    *(_Row(200, (10 + n, range(1, 11)), lambda d, i, n=n: _area(d, i).centre[n - 1]) for n in (1, 2)),
-    *(_Row(200, (20 + n, range(1, 11)), lambda d, i, n=n: _area(d, i).extension[n - 1]) for n in (1, 2)),
-    _Row(205, (1, _EIGHT), _speed),
-    _Row(205, (2, _EIGHT), lambda d, s: d.programmed.speeds_rpm.get(s, 0.0)),
-    _Row(205, (3, _EIGHT), lambda d, s: d.actual_rpm.get(s, 0.0)),
-    _Row(212, (1, _EIGHT), lambda d, s: _sense(d.active, s)),
-    _Row(212, (2, _EIGHT), lambda d, s: _sense(d.programmed, s)),
-    *_PRECISION,
-    *_coupling_rows(),
-]
-_SDR = [
-    _Row(1, (_EIGHT,), _search_position),
-    *_OVERRIDES,
-    *_shift_rows(),
-    *(_Row(131, (n,), lambda d, n=n: d.tangential[n - 1]) for n in (3, 4)),
-    *_PRECISION,
-    *_coupling_rows(),
-]
+_SD = _by_group(
+    [
+        _Row(1, (range(2, 49), 1), lambda d, g: _function(d.active, g)),
+        _Row(1, (range(1, 49), 2), _last_function),
+        *_OVERRIDES,
+        _Row(5, (1, 1), _feed),
+        _Row(5, (1, 2), lambda d: d.programmed.feed),
+        _Row(5, (2, 1), lambda d: d.rapid),
+        *(_Row(5, (2 + s, 1), lambda d, s=s: _speed(d, s)) for s in (1, 2)),
+        *(_Row(5, (2 + s, 2), lambda d, s=s: d.programmed.speeds_rpm.get(s, 0.0)) for s in (1, 2)),
+        *(_Row(5, (2 + s, 3), lambda d, s=s: d.actual_rpm.get(s, 0.0)) for s in (1, 2)),
+        _Row(8, (), lambda d: d.channel),
+        _Row(9, (), lambda d: d.probe_missing),
+        *(_Row(10, (1, n), lambda d, n=n: d.programmed.drilling_axes[n - 1]) for n in (1, 2)),
+        *(_Row(10, (2, n), lambda d, n=n: d.active.drilling_axes[n - 1]) for n in (1, 2)),
+        *(_Row(11, (n, 1), lambda d, n=n: d.programmed.plane[n - 1]) for n in (1, 2)),
+        *(_Row(11, (n, 2), lambda d, n=n: d.active.plane[n - 1]) for n in (1, 2)),
+        _Row(12, (1,), lambda d: _sense(d.active, 1)),
+        _Row(12, (2,), lambda d: _sense(d.programmed, 1)),
+        _Row(12, (3,), lambda d: _sense(d.active, 2)),
+        _Row(12, (4,), lambda d: _sense(d.programmed, 2)),
+        _Row(13, (), lambda d: d.machining_mode),
+        _Row(14, (), lambda d: d.language),
+        _Row(15, (), lambda d: d.test_without_motion),
+        *_axis_rows(),
+        *_shift_rows(),
+        *(_Row(131, (n,), lambda d, n=n: d.tangential[n - 1]) for n in (1, 2)),
+        _Row(200, (1,), lambda d: sum(area.active for area in d.areas)),
+        _Row(200, (1, range(1, 11)), lambda d, i: _area(d, i).active),
+        _Row(200, (3, range(1, 11)), lambda d, i: _area(d, i).kind),
+        *(_Row(200, (10 + n, range(1, 11)), lambda d, i, n=n: _area(d, i).centre[n - 1]) for n in (1, 2)),
+        *(_Row(200, (20 + n, range(1, 11)), lambda d, i, n=n: _area(d, i).extension[n - 1]) for n in (1, 2)),
+        _Row(205, (1, _EIGHT), _speed),
+        _Row(205, (2, _EIGHT), lambda d, s: d.programmed.speeds_rpm.get(s, 0.0)),
+        _Row(205, (3, _EIGHT), lambda d, s: d.actual_rpm.get(s, 0.0)),
+        _Row(212, (1, _EIGHT), lambda d, s: _sense(d.active, s)),
+        _Row(212, (2, _EIGHT), lambda d, s: _sense(d.programmed, s)),
+        *_PRECISION,
+        *_coupling_rows(),
+    ]
+)
+_SDR = _by_group(
+    [
+        _Row(1, (_EIGHT,), _search_position),
+        *_OVERRIDES,
+        *_shift_rows(),
+        *(_Row(131, (n,), lambda d, n=n: d.tangential[n - 1]) for n in (3, 4)),
+        *_PRECISION,
+        *_coupling_rows(),
+    ]
+)
