@@ -209,7 +209,7 @@ class Calls:
     def _find(self, program: int | ProgramText) -> Place | None:
         """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
         if isinstance(program, ProgramText):
-            return Place(program)
+            return Place(self._known(program))
         for text in (self.running.begin.text, self._main):
             if text.name not in self._labels:
                 self._labels[text.name] = _labels(text)
