@@ -462,6 +462,15 @@ def test_what_is_missing_or_wrong_is_named_with_its_place(
         assert word in str(caught.value)
 
 
+def test_what_is_wrong_comes_before_what_to_do(tmp_path: Path) -> None:
+    text = LINUXCNC.replace("X Y Z A", "").replace("coordinates=XYYZA", "")
+    with pytest.raises(ConfigurationError) as caught:
+        machine_from(write(tmp_path, text))
+    first, *_, last = str(caught.value).splitlines()
+    assert "no axis is named" in first
+    assert last == "Write them like COORDINATES = X Y Z."
+
+
 def test_a_hostile_configuration_writes_no_key_into_the_file(tmp_path: Path) -> None:
     text = GRBL + "$12=0.002\n$999=1\x85vmax=9\n"
     config, toml = made(tmp_path, text)

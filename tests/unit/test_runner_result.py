@@ -219,3 +219,11 @@ def test_time_per_tool_is_in_the_result_and_in_its_json() -> None:
     assert json.loads(json.dumps(result.as_dict()))["tool_times"]["3"]["rapid_time_s"] == pytest.approx(
         result.rapid_time_s
     )
+
+
+def test_a_trace_in_a_notebook_has_the_ends_of_each_axis() -> None:
+    trace = polycnc.run("G0 X12.5 Y3 Z2\nG1 X-4.25 Y7.75 F6000\nM30\n", trace=True).trace
+    assert trace is not None
+    shown = trace._repr_html_()
+    for number in ("12.5", "-4.25", "7.75"):
+        assert number in shown
