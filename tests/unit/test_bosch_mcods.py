@@ -266,12 +266,15 @@ def test_a_change_between_two_calls_ends_the_wait_even_if_it_was_taken_back() ->
     buffer = Field("I", (1,))
     assert asking(39, 2, buffer, 1) == 0
     assert asking(39, 2, buffer, 1) is BLOCKED
+    assert asking.server.is_awake
     for dwell in (False, True):
         asking.image.channels[2].dwell = dwell
         asking.server.look()
+        assert not asking.server.is_awake  # they are new already: nothing is left to note
     assert asking(39, 2, buffer, 1) == 0
     assert buffer[1] == 1
     assert asking(39, 2, buffer, 1) is BLOCKED
+    assert asking.server.is_awake
 
 
 @pytest.mark.covers("cpl.MCODS", "cpl.ncs.return")

@@ -21,6 +21,8 @@ class Ledger:
 
     last: int = 0
     entries: dict[Key, tuple[object, int]] = field(default_factory=dict)
+    unchanged: set[Key] = field(default_factory=set)
+    """Those that can change and change back, and have not changed since they were asked for."""
 
     def read(self, image: Image, key: Key) -> tuple[Values, int]:
         """Return data and their version.
@@ -28,27 +30,36 @@ class Ledger:
         Raises:
             NcsError: There are none.
         """
-        number, channel, extra = key
-        values = DATA_SERVICES[number].read(Asked(image, channel, extra))
-        stamp = _stamp(image, number, channel, values)
+        values, stamp = _read(image, key)
         entry = self.entries.get(key)
-        if entry is None or entry[0] != stamp:
+        changes = DATA_SERVICES[key[0]].refresh in _CHANGING
+        if entry is None or entry[0] != stamp or (changes and key not in self.unchanged):
             self.last = self.last % LARGEST + 1
             entry = self.entries[key] = (stamp, self.last)
+        if changes:
+            self.unchanged.add(key)
         return values, entry[1]
 
     @property
     def is_used(self) -> bool:
-        """Whether data were asked for that can change and change back."""
-        return any(DATA_SERVICES[number].refresh in _CHANGING for number, _, _ in self.entries)
+        """Whether a change of data that were asked for, and may change back, is yet to be noted."""
+        return bool(self.unchanged)
 
     def look(self, image: Image) -> None:
         """Note what changed of the data asked for before, in every cycle: they may change back."""
-        for key in list(self.entries):
+        for key in list(self.unchanged):
             try:
-                self.read(image, key)
+                changed = _read(image, key)[1] != self.entries[key][0]
             except NcsError:
-                del self.entries[key]
+                changed = True
+            if changed:
+                self.unchanged.discard(key)
+
+
+def _read(image: Image, key: Key) -> tuple[Values, object]:
+    number, channel, extra = key
+    values = DATA_SERVICES[number].read(Asked(image, channel, extra))
+    return values, _stamp(image, number, channel, values)
 
 
 def _stamp(image: Image, number: int, channel: int, values: Values) -> object:
