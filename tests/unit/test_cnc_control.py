@@ -482,6 +482,24 @@ def test_the_spindle_follows_the_program_and_stops_with_a_reset() -> None:
     assert made.status().spindle.actual_rpm == 0.0
 
 
+@pytest.mark.parametrize(("end", "stops", "direction"), [
+    ("M30", True, 0), ("M2", True, 0), ("M30", False, -1), ("", True, -1),
+])  # fmt: skip
+def test_the_end_of_a_program_stops_the_spindle_after_its_motion(
+    end: str, stops: bool, direction: int
+) -> None:
+    made = control(data=ControlData(end_stops_spindle=stops))
+    made.programs.create("TURN", f"S900 M4\nG1 X2.5 F600 {end}\n")
+    made.select_program("TURN")
+    made.cycle_start()
+    made.advance(340)
+    assert made.status().spindle.direction == -1
+    made.advance(20_000, until=ControlEvent.RUN_STATE)
+    assert made.channels[0].run_state is RunState.COMPLETED
+    assert made.status().spindle.direction == direction
+    assert made.status().spindle.commanded_rpm == 900.0 * direction
+
+
 # ---------------------------------------------------------------------- emergency, limits
 
 

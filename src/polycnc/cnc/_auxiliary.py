@@ -22,13 +22,16 @@ _SPINDLE = frozenset({MAction.SPINDLE_CW, MAction.SPINDLE_CCW, MAction.SPINDLE_S
 
 
 class AuxiliaryFunctions:
-    """Hand functions over, and know which channel waits for which."""
+    """Hand functions over, and know which channel waits for which; with `end_stops` M2 and M30 stop the spindle."""
 
-    def __init__(self, clock: Clock, times: TimesConfig, spindle: Spindle, plc: PlcModel) -> None:
+    def __init__(
+        self, clock: Clock, times: TimesConfig, spindle: Spindle, plc: PlcModel, *, end_stops: bool = True
+    ) -> None:
         self._clock = clock
         self._times = times
         self._spindle = spindle
         self._plc = plc
+        self._end_stops = end_stops
         self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
 
     def meet(self, channel: ControlChannel, event: Event, dialect: Dialect) -> bool:
@@ -39,6 +42,8 @@ class AuxiliaryFunctions:
             # Constant surface speed has no speed of its own here: the spindle keeps the last one.
             rpm = None if modal.g.get(Group.SPINDLE_MODE) == _surface_speed(dialect) else modal.speed
             direction = _direction(event, modal, dialect)
+            if self._end_stops and _ends(event, dialect):
+                direction = 0
             self._spindle.turn(rpm=rpm, direction=direction)
             if direction is None and not self._spindle.is_orienting:
                 self._spindle.orient()
@@ -97,6 +102,14 @@ class AuxiliaryFunctions:
     def restore(self, waiting: Iterable[tuple[int, tuple[int, ...]]]) -> None:
         """Go back to what each channel waited for."""
         self._waiting = {path: list(serials) for path, serials in waiting if serials}
+
+
+def _ends(event: Event, dialect: Dialect) -> bool:
+    """Tell whether an event is the end of the program, which stops the spindle (ISO 6983-1, M02 and M30)."""
+    return any(
+        letter == "M" and _ACTIONS.get(dialect.m.get(f"{number}", "")) is MAction.PROGRAM_END
+        for letter, number in functions_of(event.word)
+    )
 
 
 def _direction(event: Event, modal: ModalWords, dialect: Dialect) -> int | None:

@@ -109,7 +109,9 @@ class Control:
         self.parts = PartCounter(store)
         self.spindle = Spindle(clock, machine_file)
         self.plc = PlcModel(clock, machine_file.times, script, limit_s=data.answer_limit_s)
-        self.functions = AuxiliaryFunctions(clock, machine_file.times, self.spindle, self.plc)
+        self.functions = AuxiliaryFunctions(
+            clock, machine_file.times, self.spindle, self.plc, end_stops=data.end_stops_spindle
+        )
         self.manual = ManualMotion(
             self.machine, self.alarms, data.manual, referenced=data.referenced_at_start
         )

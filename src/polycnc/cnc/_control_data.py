@@ -49,7 +49,7 @@ class ControlData:
     switched on. `reference_required`: no start of a program before all axes are referenced. `emergency_needs_reset`:
     after an emergency stop a reset comes first. `answer_limit_s`: how long the PLC may take (None: for ever).
     `dry_run_mm_min` is the feed of a dry run, `sub_program_names` are the names under which a called number is sought.
-    `reset_stops_spindle` and `count_parts` (at the program end) say so.
+    `reset_stops_spindle`, `end_stops_spindle` (M2, M30) and `count_parts` (at the program end) say so.
     """
 
     manual: ManualData = field(default_factory=ManualData)
@@ -62,6 +62,7 @@ class ControlData:
     reference_required: bool = True
     emergency_needs_reset: bool = True
     reset_stops_spindle: bool = True
+    end_stops_spindle: bool = True
     count_parts: bool = True
     most_feed_override: float = 2.0
     rapid_overrides: tuple[float, ...] = (0.0, 0.25, 0.5, 1.0)

@@ -78,7 +78,7 @@ class Pnc:
         shares = [tuple(each) for each in channels] or [machine.axis_names]
         axes = SystemAxes(machine.axis_names, numbers)
         axes.set_channels(shares)
-        data = ControlData(reference_required=False, reset_stops_spindle=False)
+        data = ControlData(reference_required=False, reset_stops_spindle=False, end_stops_spindle=False)
         dialect = load_dialect("bosch")
         hosts: list[ChannelHost] = []
         owners = [ChannelData(each, spindle=place == 0) for place, each in enumerate(shares)]
