@@ -22,6 +22,7 @@ import polycnc
 from polycnc.errors import UsageError
 from polycnc.nc import ProgramText, dialect_for
 from polycnc.runner import Trace, TraceWriter
+from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner.comparison import (
     BlockDifference,
     Boxes,
@@ -545,3 +546,24 @@ def test_differences_in_what_is_no_word() -> None:
     assert found("X2\n\nG1 X9 Q\n", "X2\nG1 X9 R\n") == BlockDifference(3, "G1 X9 Q", 2, "G1 X9 R")
     assert found("G1 X1\nM30\n", "G1 X1\n") == BlockDifference(2, "M30", 0, "")
     assert found("G1 X1\n", "G1 X1\n(end)\n") is None
+
+
+def _along_x(cut: tuple[float, float]) -> Trace:
+    """Return a trace to X30 and on, at a millimetre a cycle: a rapid, a cut, a rapid."""
+    x = sorted({*map(float, range(31)), *cut})
+    trace = _trace_of(x, [not cut[0] < at <= cut[1] for at in x])
+    return replace(trace, execution=execution_by_lines(trace.block))
+
+
+@pytest.mark.parametrize(
+    ("cut", "beyond"),
+    [((10.0, 20.0), 0.0), ((10.75, 20.75), 0.0), ((8.0, 20.0), 1.0), ((10.0, 23.0), 2.0), ((7.5, 21.0), 1.5)],
+)
+def test_where_a_cut_begins_and_ends_is_known_to_a_cycle(cut: tuple[float, float], beyond: float) -> None:
+    found = polycnc.compare(_along_x(cut), _along_x((10.0, 20.0)))
+    assert found.a_from_b.mm == found.b_from_a.mm == 0.0
+    assert found.cuts_a_from_b is not None
+    assert found.cuts_b_from_a is not None
+    assert found.cuts_a_from_b.mm == pytest.approx(beyond, abs=2e-5)
+    assert found.cuts_b_from_a.mm == pytest.approx(0.0, abs=2e-5)
+    assert found.ok is (beyond == 0.0)
