@@ -238,7 +238,7 @@ def test_rapids_are_thin_grey_and_dashed_and_tools_are_not() -> None:
         ]
     speeds = figure.axes[2].lines
     assert [line.get_color() for line in speeds] == ["#8a949d", "#0072b2", "#d55e00"]
-    assert speeds[0].get_linewidth() < speeds[1].get_linewidth()
+    assert 0.0 < speeds[0].get_linewidth() < speeds[1].get_linewidth()
     # A rapid begins where the cut before it ended: no gap in the picture.
     joined = _lines(figure.axes[0])["T5"]
     assert joined[0] == pytest.approx([10.0, 14.0])
@@ -304,6 +304,10 @@ def test_a_lathe_shows_its_axis_wherever_it_turns() -> None:
     assert line.get_color() == "#1b2228"
     colours = [each.get_color() for each in figure.axes[2].lines]
     assert colours == ["#0072b2", "#d55e00"]
+    figure.draw_without_rendering()
+    legend = figure.axes[2].legend_.get_window_extent()
+    assert figure.axes[2].bbox.x1 <= legend.x0  # beside the curves
+    assert legend.x1 <= figure.bbox.x1
 
 
 def test_names_in_the_legend_are_short_and_no_formulas() -> None:
@@ -336,3 +340,10 @@ def test_plunges_are_marked_once_for_each_place_and_tool() -> None:
         (line.get_color(), line.get_xydata().tolist()) for line in plan.lines if line.get_label() == "plunge"
     ]
     assert found == [("#0072b2", [[5.0, 3.0], [9.0, 3.0]]), ("#d55e00", [[14.0, 3.0]])]
+
+
+def test_of_more_than_twenty_tools_the_rest_is_counted() -> None:
+    program = "".join(f"T{tool} M6\nG1 X{3 * tool} F9000\n" for tool in range(1, 22))
+    assert _legend(_figure(program + "M30\n"))[19:21] == ["T20", "and 1 more tool"]
+    twenty = "".join(f"T{tool} M6\nG1 X{3 * tool} F9000\n" for tool in range(1, 21))
+    assert _legend(_figure(twenty + "M30\n"))[19:] == ["T20", "start", "end"]
