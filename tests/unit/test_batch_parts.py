@@ -525,3 +525,34 @@ def test_workers_with_another_version_are_refused() -> None:
     assert report_in(lost.text).errors == [
         "a.nc: the workers that ran it were lost, one after the other (ValueError)"
     ]
+
+
+class _Failing:
+    """A process whose hand has a fault of its own, at the second of its jobs."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+
+    def answers(self, jobs: Sequence[Job], setups: Sequence[Setup]) -> Iterator[Answer]:
+        for job in jobs:
+            if job.name == "b.nc":
+                raise ZeroDivisionError("a fault")
+            yield Answer("ok", job.name)
+
+    def close(self) -> None:
+        pass
+
+
+@pytest.mark.timeout(60)
+def test_a_fault_of_its_own_ends_a_batch_and_lets_nobody_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_workers, "Child", _Failing)
+    names = ("a.nc", "c.nc", "d.nc")
+    chunks = [[Job(name, name, b"", 0)] for name in names]
+    workers = _workers.LocalWorkers(2)
+    found = list(workers.run(iter(chunks), [Setup(MILL)], Limits()))
+    assert sorted(found) == [
+        [(str(number), Answer("ok", name))] for number, name in enumerate(("a.nc", "c.nc", "d.nc"))
+    ]
+    chunks.append([Job("3", "b.nc", b"", 0)])
+    with pytest.raises(ZeroDivisionError):
+        list(workers.run(iter(chunks), [Setup(MILL)], Limits()))
