@@ -388,3 +388,51 @@ def test_whatever_the_operator_does_no_axis_breaks_a_limit_in_any_cycle(
     assert positions.max() <= 80.0
     assert positions.min() >= -50.0
     assert speeds[-1] == 0.0
+
+
+def test_overrides_are_those_of_an_axis() -> None:
+    rig = Rig()
+    rig.manual.set_overrides(feed=0.5, axes=["X"])
+    rig.manual.set_overrides(rapid=0.25, axes=["Y"])
+    speeds = {}
+    for rapid in (False, True):
+        for axis in "XYZ":
+            rig.manual.jog(axis, -1, rapid=rapid)
+        rig.run(300)
+        speeds[rapid] = rig.machine.state.velocity[:3].tolist()
+        rig.manual.stop_all()
+        rig.run(400)
+    # Jogging goes with 0.2 of 120, 90 and 60 mm/s.
+    assert speeds[False] == pytest.approx([-0.5 * 24.0, -18.0, -12.0])
+    assert speeds[True] == pytest.approx([-120.0, -0.25 * 90.0, -60.0])
+    rig.manual.set_overrides(axes=["Z"], feed=0.1)
+    assert rig.manual.snapshot().feed_overrides == (0.5, 1.0, 0.1, 1.0)
+    assert rig.manual.snapshot().rapid_overrides == (1.0, 0.25, 1.0, 1.0)
+
+
+def test_how_fast_each_command_moves() -> None:
+    rig = Rig(ManualData(jog_speeds={"Y": 7.0, "Z": 500.0}, jog_share=0.3))
+
+    def speed(axis: str) -> float:
+        rig.run(250)
+        found = abs(rig.machine.state.velocity["XYZB".index(axis)])
+        rig.manual.stop(axis)
+        rig.run(400)
+        assert not rig.manual.moves([axis])
+        return float(found)
+
+    rig.manual.go_to("X", -48.0)
+    assert speed("X") == pytest.approx(0.3 * 120.0)
+    rig.manual.go_to("X", 79.0, rapid=True)
+    assert speed("X") == pytest.approx(120.0)
+    rig.manual.increment("X", -1, 60.0)
+    assert speed("X") == pytest.approx(36.0)
+    rig.manual.increment("X", 1, 60.0, rapid=True)
+    assert speed("X") == pytest.approx(120.0)
+    rig.manual.jog("Y", 1)
+    assert speed("Y") == pytest.approx(7.0)
+    rig.manual.jog("Z", -1)
+    assert speed("Z") == pytest.approx(60.0)  # no faster than it can
+    rig.manual.set_overrides(feed=0.1, rapid=0.1)
+    rig.manual.handwheel("X", -500, 0.1)
+    assert speed("X") == pytest.approx(120.0)  # it follows the hand

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import json
 import math
+import re
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,8 +21,16 @@ from hypothesis import strategies as st
 import polycnc
 from polycnc.errors import UsageError
 from polycnc.nc import ProgramText, dialect_for
-from polycnc.runner import TraceWriter
-from polycnc.runner.comparison import Boxes, first_difference, greatest_distance, in_one_order
+from polycnc.runner import Trace, TraceWriter
+from polycnc.runner._blocks import execution_by_lines
+from polycnc.runner.comparison import (
+    BlockDifference,
+    Boxes,
+    first_difference,
+    greatest_distance,
+    in_one_order,
+)
+from polycnc.runner.comparison._path import PathCollector
 from support.command import polycnc as command
 
 MILL = """name = "compared"
@@ -49,6 +62,13 @@ G1 X33
 G0 Z5
 M30
 """
+
+
+def _about(html: str) -> dict[str, Any]:
+    packed = re.search(r'id="about">([^<]*)<', html)
+    assert packed is not None
+    about: dict[str, Any] = json.loads(gzip.decompress(base64.b64decode(packed[1])))
+    return about
 
 
 def _from(a: Sequence[tuple[float, ...]], b: Sequence[tuple[float, ...]]) -> tuple[float, int, float]:
@@ -310,3 +330,240 @@ def test_the_command(mill: Path, tmp_path: Path) -> None:
     over = command("compare", "a.nc", "b.nc", "-o", "a.nc", cwd=tmp_path, status=2)
     assert "error:" in over.stderr
     assert (tmp_path / "a.nc").read_text() == PART
+
+
+def test_walks_that_just_stay_within_reach() -> None:
+    """By hand: a roof of 3, a way back of 6 of which half is waited for, and walkers that stand."""
+    line = np.array([[0.0, 0.0], [10.0, 0.0]])
+    roof = np.array([[0.0, 0.0], [5.0, 3.0], [10.0, 0.0]])
+    back = np.array([[0.0, 0.0], [8.0, 0.0], [2.0, 0.0], [10.0, 0.0]])
+    for other in (roof, back):
+        assert in_one_order(line, other, 3.0)[0]
+        assert in_one_order(other, line, 3.0)[0]
+        assert not in_one_order(line, other, 2.999)[0]
+        assert not in_one_order(other, line, 2.999)[0]
+    stands = np.array([[6.0, 0.0], [6.0, 0.0]])
+    assert in_one_order(stands, line, 6.0)[0]
+    assert in_one_order(line, stands, 6.0)[0]
+    assert not in_one_order(stands, line, 5.999)[0]
+    assert not in_one_order(line, stands, 5.999)[0]
+    assert in_one_order(stands, stands + (0.0, 2.0), 2.0)[0]
+    assert not in_one_order(stands, stands + (0.0, 2.0), 1.999)[0]
+
+
+def test_walks_part_where_they_part() -> None:
+    one = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
+    for other, where in (
+        (((0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (20.0, 10.0)), (2, 2)),
+        (((0.0, 0.0), (4.0, 0.0), (7.0, 0.0), (10.0, 0.0), (20.0, 0.0)), (1, 3)),
+        (((5.0, 0.0), (10.0, 0.0), (10.0, 10.0)), (0, 0)),
+    ):
+        assert in_one_order(one, np.array(other), 1.0) == (False, *where)
+
+
+def _trace_of(x: Sequence[float], rapid: Sequence[bool], unit: str = "mm") -> Trace:
+    rows = len(x)
+    return Trace(
+        ("X", "Y"), (unit, "mm"),
+        t_s=np.arange(1, rows + 1, dtype=np.float64) * 0.002,
+        block=np.arange(rows) // 3 + 4,
+        feed_mm_s=np.zeros(rows),
+        rapid=np.array(rapid, np.bool_),
+        setpoint=np.column_stack((x, np.zeros(rows))),
+    )  # fmt: skip
+
+
+def test_a_path_keeps_its_ends_and_where_the_block_changes() -> None:
+    """Along a line nothing else is kept; a rapid and a cut meet in cycles of which the longest is 3 mm."""
+    x = [0.0, 1.0, 3.0, 6.0, 10.0, 14.0, 15.0]
+    path = PathCollector(("X", "Y"), ("mm", "mm")).path_of(_trace_of(x, [True] * 3 + [False] * 4))
+    assert path.point.tolist() == [[0.0, 0.0], [3.0, 0.0], [14.0, 0.0], [15.0, 0.0]]
+    assert path.t_s.tolist() == pytest.approx([0.002, 0.006, 0.012, 0.014])
+    assert path.rapid.tolist() == [True, True, False, False]
+    assert [path.blocks[each].line for each in path.number.tolist()] == [4, 4, 5, 6]
+    assert (path.step, path.kinds_known, path.length()) == (3.0, False, 15.0)
+    ends = PathCollector(("X", "Y"), ("mm", "mm")).path_of(_trace_of([0.0, 5.0, 9.0], [False, False, True]))
+    assert ends.step == 5.0
+    plain = PathCollector(("X", "Y"), ("mm", "mm")).path_of(_trace_of(x, [False] * 7))
+    assert plain.step == 0.0
+
+
+def test_a_path_that_comes_in_pieces_has_no_points_between_them() -> None:
+    rows = 70_000
+    trace = _trace_of(np.arange(rows) * 0.007 % 360.0, [False] * rows, "deg")  # type: ignore[arg-type]
+    trace = replace(trace, block=np.full(rows, 4))
+    path = PathCollector(("X", "Y"), ("deg", "mm")).path_of(trace)
+    assert len(path.point) <= 3  # its pieces end at row 65536
+    assert path.point[-1, 0] == pytest.approx((rows - 1) * 0.007)  # more than a turn
+
+
+def test_a_comparison_as_data_and_as_text(mill: Path) -> None:
+    line = "G0 X5 Y5\nG1 X45 F900\nM30\n"
+    arc = line.replace("G1 X45 F900", "G3 X45 Y5 R41 F900")
+    found = polycnc.compare(line, arc, mill)
+    assert found.same_order is None  # too far apart anyway
+    data = found.as_dict()
+    assert data["deviation_mm"] == found.deviation_mm == max(found.a_from_b.mm, found.b_from_a.mm)
+    assert (data["ok"], data["tolerance_mm"], data["parts_at"]) == (False, 0.01, None)
+    assert data["tools"] == [[0], [0]]
+    assert data["lone_axes"] == []
+    assert data["first_difference"] == {
+        "a": {"line": 2, "text": "G1 X45 F900"}, "b": {"line": 2, "text": "G3 X45 Y5 R41 F900"},
+    }  # fmt: skip
+    assert data["a_from_b"]["position"] == found.a_from_b.position
+    assert data["cuts_b_from_a"]["mm"] == pytest.approx(data["b_from_a"]["mm"], abs=1e-4)
+    assert (data["a"]["cutting_path_mm"], data["a"]["ok"], data["a"]["machine"]) == (40.0, True, "compared")
+    assert data["b"]["extents_mm"]["X"] == [0.0, 45.0]
+    half_s = 41.0 * math.asin(20.0 / 41.0) / 15.0  # from the middle of the arc to its end
+    assert found.b_from_a.time_s == pytest.approx(found.b.time_s - half_s, abs=0.05)
+    assert found.b_from_a.program == "<text>"
+    assert str(found) == f"<text> and <text> differ: deviation {found.deviation_mm:.6f} mm"
+    assert str(polycnc.compare(line, line, mill)) == "<text> and <text> agree: deviation 0.000000 mm"
+    lines = PART.splitlines()
+    lines[3:7] = ["G1 Y22 F1700", "G1 X43", "G1 Y2", "G1 X3"]
+    parted = polycnc.compare(PART, "(round)\n" + "\n".join(lines) + "\n", mill).as_dict()
+    assert parted["parts_at"] == {
+        "a": {"program": "<text>", "line": 4}, "b": {"program": "<text>", "line": 5},
+    }  # fmt: skip
+
+
+def test_both_paths_in_one_view(mill: Path) -> None:
+    line = "G0 X5 Y5\nG1 X45 F900\nM30\n"
+    arc = line.replace("G1 X45 F900", "G3 X45 Y5 R41 F900")
+    found = polycnc.compare(line, arc, mill)
+    other = _about(found.view().html)["other"]
+    a, b = other["marks"]
+    assert a["text"] == f"A is farthest from B: {found.a_from_b.mm:.4f} mm, line 2"
+    assert a["position"] == [found.a_from_b.position[axis] for axis in "XYZ"]
+    assert a["time_s"] == found.a_from_b.time_s
+    assert b["text"] == f"B is farthest from A: {found.b_from_a.mm:.4f} mm, line 2"
+    assert b["position"] == [found.b_from_a.position[axis] for axis in "XYZ"]
+    assert b["time_s"] is None  # on the view's own clock nobody knows
+    assert _about(polycnc.compare(line, line, mill).view().html)["other"]["marks"] == []
+
+
+def test_a_trace_beside_its_program(mill: Path) -> None:
+    """A trace tells its end, its length and its extents; what was a cut is in the object and not in a file."""
+    result = polycnc.run(PART, mill, trace=True)
+    trace = result.trace
+    found = polycnc.compare(trace, PART, mill)
+    assert found.ok
+    assert (found.a.name, found.a.machine, found.a.result) == ("trace", "", None)
+    assert (found.a.time_s, found.a.top_feed_mm_min) == (result.time_s, None)
+    # The first cycle of the rapid has gone before the first row, a dry 0.003 mm of it.
+    assert found.a.path_mm == pytest.approx(result.path_mm, abs=0.01)
+    assert found.a.extents_mm["Z"] == result.extents_mm["Z"]
+    assert found.tools == ((0, 4, 7), (0, 4, 7))
+    assert found.first_difference is None  # nobody knows its text
+    assert "alarms" not in found.a.as_dict()
+    about = _about(found.view().html)
+    assert (about["machine"], about["time_s"]) == ("trace", result.time_s)
+    said = polycnc.compare(result, PART.replace("X33", "X34"), mill)
+    assert (said.a.name, said.a.machine, said.a.top_feed_mm_min) == (
+        "<text>",
+        "compared",
+        result.top_feed_mm_min,
+    )
+    assert said.first_difference is not None
+    assert (said.first_difference.line_a, said.first_difference.line_b) == (12, 12)
+    bare = replace(trace, execution=None)
+    assert polycnc.compare(bare, PART, mill).tools is None
+
+
+def test_rapids_alone_against_cuts(mill: Path) -> None:
+    found = polycnc.compare("G0 X5 Y3\nM30\n", "\nG1 X5 Y3 F900\nM30\n", mill)
+    assert found.cuts_a_from_b is not None
+    assert found.cuts_b_from_a is not None
+    assert found.cuts_a_from_b.as_dict() == {
+        "mm": 0.0,
+        "position": {},
+        "program": "",
+        "line": 0,
+        "time_s": 0.0,
+    }
+    assert (found.cuts_b_from_a.mm, found.cuts_b_from_a.line) == (math.inf, 2)
+    assert max(found.a_from_b.mm, found.b_from_a.mm) < 1e-2
+    assert (found.deviation_mm, found.ok) == (math.inf, False)
+
+
+def test_a_machine_that_stands_is_a_point(mill: Path) -> None:
+    assert polycnc.compare("G4 F0.1\nM30\n", "G4 F0.2\nM30\n", mill).ok
+    found = polycnc.compare("G4 F0.1\nM30\n", "G4 F0.1\nG1 X5 F100\nM30\n", mill)
+    assert found.a_from_b.mm == 0.0
+    assert found.b_from_a.mm == pytest.approx(5.0)
+    assert found.b_from_a.line == 2
+    assert found.b_from_a.position["X"] == pytest.approx(5.0)
+    assert found.b_from_a.time_s == pytest.approx(found.b.time_s)
+
+
+def test_the_tolerance_itself_is_within_it(mill: Path) -> None:
+    moved = PART.replace("G1 X33", "G1 X33.75")
+    assert polycnc.compare(PART, moved, mill, tolerance_mm=0.75).ok
+    assert not polycnc.compare(PART, moved, mill, tolerance_mm=0.7499).ok
+    assert polycnc.compare(PART, PART, mill, tolerance_mm=0.0).ok
+
+
+def test_each_side_has_its_machine_and_dialect(mill: Path, tmp_path: Path) -> None:
+    din, fanuc = "G70\nG1 X1 F10\nM30\n", "G20\nG1 X1. F10.\nM30\n"
+    found = polycnc.compare(din, fanuc, mill, "din", dialect_b="fanuc")
+    assert found.ok
+    assert found.b.extents_mm["X"] == pytest.approx((0.0, 25.4))
+    other = tmp_path / "other.toml"
+    other.write_text(MILL.replace('"Y"', '"V"').replace('"Z"', '"C"\nkind = "rotary"'
+                     ).replace("compared", "other"))  # fmt: skip
+    other.write_text(other.read_text().replace(
+        'kind = "rotary"\nvmax_mm_s = 250\namax_mm_s2 = 3000', 'kind = "rotary"\nvmax_deg_s = 90\namax_deg_s2 = 900'
+    ))  # fmt: skip
+    found = polycnc.compare("G1 C5 V3 X2 F90\nM30\n", "G1 X2 Y3 F90\nM30\n", other, machine_b=mill)
+    assert (found.lone_axes, found.ok, found.a.machine, found.b.machine) == (
+        ("V", "C", "Y"), False, "other", "compared",
+    )  # fmt: skip
+    assert [axis for axis, _ in found.axes] == ["X"]
+    lone = tmp_path / "lone.toml"
+    lone.write_text(MILL.partition("[[axis]]")[0] + '[[axis]]\nname = "U"\nvmax_mm_s = 9\namax_mm_s2 = 90\n')
+    with pytest.raises(UsageError, match="<text> and <text> have no axis in common") as caught:
+        polycnc.compare("G1 X2 F90\n", "G1 U2 F90\n", mill, machine_b=lone)
+    assert caught.value.hint == "Axes are X, Y, Z and U."
+
+
+def test_progress_is_that_of_both(mill: Path) -> None:
+    done: list[float] = []
+    polycnc.compare(PART, PART, mill, progress=done.append)
+    first, second = done
+    assert second == 0.5 + first
+    assert first == pytest.approx(0.5 * 13 / 14)  # the last line that moves
+
+
+def test_differences_in_what_is_no_word() -> None:
+    read = dialect_for("a.nc", "din")
+
+    def found(a: str, b: str) -> BlockDifference | None:
+        return first_difference(ProgramText.from_text(a), ProgramText.from_text(b), read, read)
+
+    assert found("G1 X1\rX2\rX3\n", "G1 X1\rX2\rX4\n") == BlockDifference(3, "X3", 3, "X4")
+    assert found("G1 X1\r\nX2\r\nX3\r\n", "G1 X1\r\nX2\r\nX4\r\n") == BlockDifference(3, "X3", 3, "X4")
+    assert found("G1 X9 Q\nX2\n", "G1 X9 Q \nX2\n") is None  # wrong in both in the same way
+    assert found("X2\n\nG1 X9 Q\n", "X2\nG1 X9 R\n") == BlockDifference(3, "G1 X9 Q", 2, "G1 X9 R")
+    assert found("G1 X1\nM30\n", "G1 X1\n") == BlockDifference(2, "M30", 0, "")
+    assert found("G1 X1\n", "G1 X1\n(end)\n") is None
+
+
+def _along_x(cut: tuple[float, float]) -> Trace:
+    """Return a trace to X30 and on, at a millimetre a cycle: a rapid, a cut, a rapid."""
+    x = sorted({*map(float, range(31)), *cut})
+    trace = _trace_of(x, [not cut[0] < at <= cut[1] for at in x])
+    return replace(trace, execution=execution_by_lines(trace.block))
+
+
+@pytest.mark.parametrize(
+    ("cut", "beyond"),
+    [((10.0, 20.0), 0.0), ((10.75, 20.75), 0.0), ((8.0, 20.0), 1.0), ((10.0, 23.0), 2.0), ((7.5, 21.0), 1.5)],
+)
+def test_where_a_cut_begins_and_ends_is_known_to_a_cycle(cut: tuple[float, float], beyond: float) -> None:
+    found = polycnc.compare(_along_x(cut), _along_x((10.0, 20.0)))
+    assert found.a_from_b.mm == found.b_from_a.mm == 0.0
+    assert found.cuts_a_from_b is not None
+    assert found.cuts_b_from_a is not None
+    assert found.cuts_a_from_b.mm == pytest.approx(beyond, abs=2e-5)
+    assert found.cuts_b_from_a.mm == pytest.approx(0.0, abs=2e-5)
+    assert found.ok is (beyond == 0.0)

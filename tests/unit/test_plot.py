@@ -195,3 +195,155 @@ def test_what_cannot_be_plotted(tmp_path: Path) -> None:
         with pytest.raises(polycnc.UsageError, match="a plot cannot be written to"):
             polycnc.plot(result, tmp_path / name)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_picture_shows_the_cuts_and_a_margin() -> None:
+    """Cuts of 40 by 10: 0.15 of the larger side around them, no further than anything moves; 0.03 of that as room."""
+    plan, solid, speed = _figure(MILLING).axes
+    room = 0.03 * (40.0 + 2.0 * 6.0)
+    assert plan.get_xlim() == pytest.approx((10.0 - 6.0 - room, 50.0 + 6.0 + room))
+    assert plan.get_ylim() == pytest.approx((10.0 - 6.0 - room, 20.0 + 6.0 + room))
+    assert solid.get_xlim() == pytest.approx(plan.get_xlim())
+    assert solid.get_zlim() == pytest.approx((-1.0 - room, 5.0 + room))
+    sides = solid.get_box_aspect if hasattr(solid, "get_box_aspect") else None
+    assert sides is not None
+    shares = solid._box_aspect / np.max(solid._box_aspect)
+    width = 52.0 + 2.0 * room
+    assert shares == pytest.approx([1.0, (22.0 + 2.0 * room) / width, 0.3])  # a flat part is drawn 0.3 high
+    assert [axis.get_major_locator()._nbins for axis in (solid.xaxis, solid.yaxis, solid.zaxis)] == [7, 4, 4]
+    end = speed.lines[0].get_xdata()
+    assert speed.get_xlim()[1] / speed.get_xlim()[0] == pytest.approx(-101.0)
+    assert speed.get_xlim()[1] > np.nanmax(end)
+
+
+def test_a_flat_path_has_room_on_both_sides() -> None:
+    plan = _figure("G1 X40 F600\nM30\n").axes[0]
+    assert plan.get_xlim() == pytest.approx((-1.2, 41.2), abs=0.01)  # nothing moves beyond its ends
+    assert plan.get_ylim() == pytest.approx((-6.0 - 1.2, 6.0 + 1.2), abs=0.01)
+    rapid = _figure("G0 X40 Y1\nM30\n").axes[0]  # with nothing that cuts, everything
+    assert rapid.get_xlim() == pytest.approx((-1.2, 41.2), abs=0.01)
+
+
+def test_rapids_are_thin_grey_and_dashed_and_tools_are_not() -> None:
+    figure = _figure(f"T3 M6\n{MILLING}T5 M6\nG0 X10 Y14\nG1 X22 F900\nM30\n")
+    for axes in (figure.axes[0], figure.axes[1]):
+        looks = {line.get_label(): line for line in axes.lines}
+        assert looks["rapid"].get_linewidth() < looks["T3"].get_linewidth()
+        assert looks["rapid"].is_dashed()
+        assert not looks["T3"].is_dashed()
+        assert [looks[name].get_color() for name in ("rapid", "T3", "T5")] == [
+            "#8a949d",
+            "#0072b2",
+            "#d55e00",
+        ]
+    speeds = figure.axes[2].lines
+    assert [line.get_color() for line in speeds] == ["#8a949d", "#0072b2", "#d55e00"]
+    assert 0.0 < speeds[0].get_linewidth() < speeds[1].get_linewidth()
+    # A rapid begins where the cut before it ended: no gap in the picture.
+    joined = _lines(figure.axes[0])["T5"]
+    assert joined[0] == pytest.approx([10.0, 14.0])
+
+
+def test_start_and_end_have_their_marks() -> None:
+    marks = {line.get_label(): line for line in _figure("G1 X4 F600\nX40 Y17\nM30\n").axes[0].lines}
+    start, end = marks["start"], marks["end"]
+    assert (start.get_marker(), start.get_markerfacecolor(), start.get_markeredgewidth()) == (
+        "o",
+        "none",
+        1.8,
+    )
+    assert (end.get_marker(), end.get_markerfacecolor(), end.get_markeredgewidth()) == ("X", "#1b2228", 0.8)
+    outside = _figure("G0 X400 Y300\nG1 X410 F600\nY310\nG0 X0 Y0\nM30\n").axes[0]
+    marks = {line.get_label(): line for line in outside.lines}
+    first, last = marks["start, further out"], marks["end, further out"]
+    assert (first.get_markerfacecolor(), first.get_markeredgewidth()) == ("none", 0.8)
+    assert (last.get_markerfacecolor(), last.get_markeredgewidth()) == ("white", 0.8)
+
+
+def test_rapids_that_are_hardly_faster_stay_in_the_picture_of_the_speed() -> None:
+    """mill3 goes at 30 m/min at rapid: no more than twice 20."""
+    speed = _figure("G0 X300\nG1 X0 F20000\nM30\n").axes[-1]
+    rapid = np.nanmax(speed.lines[0].get_ydata())
+    assert rapid > 20_100.0
+    assert speed.get_ylim() == (0.0, pytest.approx(1.2 * rapid))
+    assert speed.get_title(loc="left") == "Speed"
+    far = _figure("G0 X300\nG1 X200 F4000\nM30\n").axes[-1]
+    rapid = np.nanmax(far.lines[0].get_ydata())
+    assert far.get_title(loc="left") == f"Speed    (rapids leave the picture: they reach {rapid:,.0f} mm/min)"
+    only = _figure("G0 X300\nM30\n").axes[-1]
+    assert only.get_ylim() == (0.0, pytest.approx(1.2 * np.nanmax(only.lines[0].get_ydata())))
+
+
+def test_axes_beyond_three_have_rows_of_their_own_if_they_move() -> None:
+    figure = _figure("G91 G1 X10 U7 W5 F900\nM30\n", "card6")
+    assert _titles(figure) == ["Plan view", "Perspective", "Speed", "", ""]
+    assert [axes.get_ylabel() for axes in figure.axes[3:]] == ["U [mm]", "W [mm]"]
+    assert [axes.get_xlabel() for axes in figure.axes[2:]] == ["", "", "time [s]"]
+    shown = [axes.xaxis.get_tick_params()["labelbottom"] for axes in figure.axes[2:]]
+    assert shown == [False, False, True]
+    assert figure.get_size_inches().tolist() == [12.0, 9.0 + 1.5]  # the first row is in the 9
+    assert _lines(figure.axes[4])["W [mm]"][-1, 1] == 5.0
+    assert figure.axes[3].legend_ is None
+    assert _figure(MILLING).get_size_inches().tolist() == [12.0, 9.0]
+
+
+def test_one_axis_is_drawn_over_time_alone(tmp_path: Path) -> None:
+    machine = tmp_path / "slide.toml"
+    machine.write_text('name = "slide"\n[[axis]]\nname = "X"\nvmax_mm_s = 90\namax_mm_s2 = 900\n')
+    figure = _figure("G1 X5 F300\nM30\n", str(machine))
+    assert [axes.get_ylabel() for axes in figure.axes] == ["path speed\n[mm/min]", "X [mm]"]
+    assert figure.legends == []
+    assert _lines(figure.axes[1])["X [mm]"][-1, 1] == 5.0
+
+
+def test_a_lathe_shows_its_axis_wherever_it_turns() -> None:
+    figure = _figure("G0 X80 Z-5\nG1 Z-30 F500\nX70\nM30\n", "lathe2")
+    low, high = figure.axes[0].get_ylim()
+    assert (low, high) == pytest.approx((-0.03 * 80.0, 80.0 + 0.03 * 80.0))
+    (line,) = [each for each in figure.axes[0].lines if list(each.get_ydata()) == [0.0, 0.0]]
+    assert line.get_color() == "#1b2228"
+    colours = [each.get_color() for each in figure.axes[2].lines]
+    assert colours == ["#0072b2", "#d55e00"]
+    figure.draw_without_rendering()
+    legend = figure.axes[2].legend_.get_window_extent()
+    assert figure.axes[2].bbox.x1 <= legend.x0  # beside the curves
+    assert legend.x1 <= figure.bbox.x1
+
+
+def test_names_in_the_legend_are_short_and_no_formulas() -> None:
+    long = "a name that takes all of the space, and more"
+    program = f"({long})\nT2 M6\nG1 X5 F900\n(costs $5)\nT3 M6\nG1 X9\n(one)\nT4 M6\nG1 X12\n(two)\nM8\nG1 X15\nM30\n"
+    names = _legend(_figure(program))
+    assert names[:3] == ["T2  a name that takes all of the space…", "T3  costs \\$5", "T4"]
+    exact = _legend(_figure(f"({'m' * 36})\nT2 M6\nG1 X5 F900\n({'n' * 37})\nT3 M6\nG1 X9\nM30\n"))
+    assert exact[:2] == [f"T2  {'m' * 36}", f"T3  {'n' * 35}…"]
+
+
+def test_the_title_says_what_was_run(tmp_path: Path) -> None:
+    long = tmp_path / f"{'p' * 40}_{'q' * 20}.nc"
+    long.write_text("G1 X1500 F30000\n")
+    result = polycnc.run(long, trace=True)
+    title = polycnc.plot(result).get_suptitle()
+    assert title.split("    ") == [
+        f"{'p' * 35}…{'q' * 9}.nc", "on mill3", polycnc.runner.time_text(result.time_s), "1,500 mm", "1 block",
+    ]  # fmt: skip
+    fits = tmp_path / f"{'p' * 45}.nc"
+    fits.write_text("G1 X1 F900\n")
+    assert polycnc.plot(polycnc.run(fits, trace=True)).get_suptitle().startswith(f"{fits.name}    ")
+
+
+def test_plunges_are_marked_once_for_each_place_and_tool() -> None:
+    holes = "G0 X{0} Y3 Z5\nG1 Z-2 F700\nG0 Z5\n"
+    program = "T2 M6\n" + holes.format(5) * 2 + holes.format(9) + "T3 M6\n" + holes.format(14) + "M30\n"
+    plan = _figure(program).axes[0]
+    found = [
+        (line.get_color(), line.get_xydata().tolist()) for line in plan.lines if line.get_label() == "plunge"
+    ]
+    assert found == [("#0072b2", [[5.0, 3.0], [9.0, 3.0]]), ("#d55e00", [[14.0, 3.0]])]
+
+
+def test_of_more_than_twenty_tools_the_rest_is_counted() -> None:
+    program = "".join(f"T{tool} M6\nG1 X{3 * tool} F9000\n" for tool in range(1, 22))
+    assert _legend(_figure(program + "M30\n"))[19:21] == ["T20", "and 1 more tool"]
+    twenty = "".join(f"T{tool} M6\nG1 X{3 * tool} F9000\n" for tool in range(1, 21))
+    assert _legend(_figure(twenty + "M30\n"))[19:] == ["T20", "start", "end"]

@@ -34,6 +34,8 @@ def parse_sweep(text: str) -> tuple[str, tuple[float | str, ...]]:
         return name, machines
     try:
         numbers = _range(values) if ":" in values else tuple(float(each) for each in values.split(","))
+    except UsageError:  # it is a ValueError too
+        raise
     except ValueError:
         raise UsageError(f"'{text}' has values that are no numbers", hint=_EXAMPLE) from None
     if not numbers or not all(map(math.isfinite, numbers)):

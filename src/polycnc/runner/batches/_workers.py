@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any, Protocol
 
 from polycnc.errors import UsageError
-from polycnc.runner.batches._child import BatchError, Child, Limits
+from polycnc.runner.batches._child import Child, Limits
 from polycnc.runner.batches._job import Answer, Job, Setup, answer_of, blank_report
 from polycnc.runner.batches._store import version_digest
 
@@ -36,7 +36,7 @@ class LocalWorkers:
     def run(self, chunks: Iterator[Chunk], setups: Sequence[Setup], limits: Limits) -> Iterator[Reported]:
         """Yield the reports of each chunk as they come."""
         todo: queue.Queue[Chunk | None] = queue.Queue()
-        done: queue.Queue[Reported | BatchError] = queue.Queue()
+        done: queue.Queue[Reported | Exception] = queue.Queue()
         children = [Child(limits) for _ in range(self.count)]
         threads = [
             threading.Thread(
@@ -52,7 +52,7 @@ class LocalWorkers:
                 under_way += _next(chunks, todo)
             while under_way:
                 reported = done.get()
-                if isinstance(reported, BatchError):
+                if isinstance(reported, Exception):
                     raise reported
                 under_way += _next(chunks, todo) - 1
                 yield reported
@@ -76,14 +76,14 @@ def _next(chunks: Iterator[Chunk], todo: queue.Queue[Chunk | None]) -> int:
 def _work(
     child: Child,
     todo: queue.Queue[Chunk | None],
-    done: queue.Queue[Reported | BatchError],
+    done: queue.Queue[Reported | Exception],
     setups: Sequence[Setup],
 ) -> None:
     while (chunk := todo.get()) is not None:
         keys = [job.key for job in chunk]
         try:
             done.put(list(zip(keys, child.answers(chunk, setups), strict=True)))
-        except BatchError as error:
+        except Exception as error:  # or whoever waits for this chunk waits for ever
             done.put(error)
             return
 

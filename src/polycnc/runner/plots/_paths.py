@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polycnc.runner._operations import Operation
+from polycnc.runner._result import counted
 from polycnc.runner.plots._scene import RAPIDS, Floats, Scene
 from polycnc.runner.plots._styles import END, RAPID, tool_colour, tool_line
 
@@ -69,7 +70,7 @@ def draw_legend(figure: Figure, scene: Scene, operations: Sequence[Operation]) -
         for place, tool in enumerate(scene.tools[:_MOST_TOOLS])
     ]
     if (more := len(scene.tools) - _MOST_TOOLS) > 0:
-        handles.append(Line2D([], [], linestyle="none", label=f"and {more} more tools"))
+        handles.append(Line2D([], [], linestyle="none", label=f"and {counted(more, 'more tool')}"))
     found: dict[str, Any] = {}
     for axes in figure.axes:
         for line in axes.lines:
