@@ -52,6 +52,23 @@ def test_modal_calls_nest_and_g67_cancels_the_last_one() -> None:
     assert values(language, 101, 102) == [2.0, 1.0]  # by the move of O9002, by X2
 
 
+def test_a_skipped_move_calls_nothing_and_one_of_another_level_does() -> None:
+    text = "G66 P9001 A2.5\nG0 X1\n/3 X2\n/2 X3\nX#1 Y4\n/3 X#1 Z5\n/2 Z6\nG67\nM30\n"
+    language = MacroLanguage()
+    run = ProgramRun(
+        Machine(load_machine(None)),
+        ProgramText.from_text(f"{text}O9001\n#101=#101+#1\nM99\n", "macro.tap"),
+        load_dialect("fanuc"),
+        language=language,
+        options=RunOptions(block_delete=frozenset({3})),
+    )
+    run.start()
+    run.advance(100_000)
+    assert run.state is RunState.COMPLETED, run.error
+    assert values(language, 101) == [10.0]  # X1, X3, Y4, Z6
+    assert run.position == {"X": 3.0, "Y": 4.0, "Z": 6.0}
+
+
 def test_five_modal_calls_are_too_many() -> None:
     run, language = made("G66 P9001\n" * 5 + "M30\nO9001\nM99\n")
     run.advance(1000)
