@@ -320,6 +320,7 @@ def test_what_moves_is_told_of_each_axis() -> None:
 def test_what_moves_by_hand_and_what_stops_is_told() -> None:
     control = PowerMate()
     library, handle = at(control)
+    assert [library.cnc_diagnoss(handle, 203, axis, 5)[1].u.cdata for axis in (1, 2, 3)] == [0, 0, 0]
     control.select_mode("JOG")
     control.signals.give(100, 0b010)
     control.signals.give(102, 0b100)
