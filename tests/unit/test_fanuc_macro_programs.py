@@ -137,6 +137,14 @@ def test_an_alarm_of_a_program_has_its_number_and_text() -> None:
         ("#5021=3", 116, "WRITE PROTECTED VARIABLE"),
         ("GOTO77", 128, "ILLEGAL MACRO SEQUENCE NUMBER"),
         ("#2001=1000.", 119, "ILLEGAL ARGUMENT"),
+        ("#1101=2", 119, "ILLEGAL ARGUMENT"),
+        ("#1132=65536", 119, "ILLEGAL ARGUMENT"),
+        ("#1132=-1", 119, "ILLEGAL ARGUMENT"),
+        ("#3002=-0.5", 119, "ILLEGAL ARGUMENT"),
+        ("#3002=1000000", 119, "ILLEGAL ARGUMENT"),
+        ("#3901=2.5", 119, "ILLEGAL ARGUMENT"),
+        ("#3005=256", 119, "ILLEGAL ARGUMENT"),
+        ("#1015=1", 116, "WRITE PROTECTED VARIABLE"),
         ("DO1", 124, "MISSING END STATEMENT"),
         ("DO4", 126, "ILLEGAL LOOP NUMBER"),
         ("M98P1", 77, "SUB PROGRAM NESTING ERROR"),
@@ -195,6 +203,20 @@ def test_system_variables_are_those_of_the_control() -> None:
     assert fwlib.pmc_rdpmcrng(handle, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [2, 2]
     control.power_cycle()
     assert fwlib.pmc_rdpmcrng(handle, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [0, 0]
+
+
+def test_the_hours_of_operation_are_counted_on_from_what_a_program_wrote() -> None:
+    control, _ = attached()
+    registered(
+        control,
+        O1="\n#3002=0.25\n#500=#3002\nG4X3.6\n#501=#3002\n#3901=17\n#3005=2\n#1132=40965\n#1100=0\n#1114=1\nM30\n",
+    )
+    assert until_over(control) is RunState.COMPLETED
+    assert control.macros.get(500) == pytest.approx(0.25, abs=2e-5)
+    assert control.macros.get(501) == pytest.approx(0.251, abs=2e-5)
+    assert (control.parameters.value(6711), control.parameters.value(0)) == (18, 2)  # and this part
+    assert control.custom_macros.user_outputs == 0b1110_0000_0000_0100
+    assert fwlib.pmc_rdpmcrng(1, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [4, 0xE0 - 256]
 
 
 def test_positions_are_read_when_the_blocks_before_have_been_executed() -> None:

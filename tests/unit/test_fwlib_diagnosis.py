@@ -302,3 +302,37 @@ def test_messages_are_refused(kind: int, length: int, options: Any, code: str) -
     control.operator_message(2001, "DOOR")
     library, handle = at(control)
     assert library.cnc_rdopmsg(handle, kind, length)[0] is EW[code]
+
+
+def test_what_moves_is_told_of_each_axis() -> None:
+    control, library, handle = moving("G1 X90. Y-45. F1200\nG4 X3.\nM30")
+
+    def told(number: int, *axes: int) -> list[int]:
+        return [library.cnc_diagnoss(handle, number, axis, 8)[1].u.ldata for axis in axes]
+
+    assert [told(number, 0) for number in (1, 2)] == [[1], [0]]
+    assert told(201, 1, 2, 3) == [1, 1, 0]
+    control.advance(6000)
+    assert [told(number, 0) for number in (1, 2)] == [[0], [1]]
+    assert told(201, 1, 2, 3) == [0, 0, 0]
+
+
+def test_what_moves_by_hand_and_what_stops_is_told() -> None:
+    control = PowerMate()
+    library, handle = at(control)
+    assert [library.cnc_diagnoss(handle, 203, axis, 5)[1].u.cdata for axis in (1, 2, 3)] == [0, 0, 0]
+    control.select_mode("JOG")
+    control.signals.give(100, 0b010)
+    control.signals.give(102, 0b100)
+    control.advance(200)
+    assert [library.cnc_diagnoss(handle, 201, axis, 5)[1].u.cdata for axis in (1, 2, 3)] == [0, 2, 2]
+    control.signals.give(100, 0)
+    control.advance(500)
+    assert [library.cnc_diagnoss(handle, 201, axis, 5)[1].u.cdata for axis in (1, 2, 3)] == [0, 0, 2]
+    for given, shown in ((0x30, 0x00), (0xB0, 0x04), (0x20, 0x08), (0x10, 0x20)):
+        control.signals.give(8, given)
+        assert library.cnc_diagnoss(handle, 20, 0, 5)[1].u.cdata & 0xFF == shown
+    control.signals.give(8, 0x30)
+    control.raise_alarm(411, axis=3)
+    assert [library.cnc_diagnoss(handle, 200, axis, 5)[1].u.cdata for axis in (1, 2, 3)] == [0, 0, 0x08]
+    assert [control.signals.f(address) for address in (94, 120)] == [0b001, 0b111]

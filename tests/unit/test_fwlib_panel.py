@@ -351,3 +351,10 @@ def test_the_panel_outlasts_switching_off(tmp_path: Path) -> None:
     assert library.cnc_rdopnlgnrl(handle, 0xFF)[1].sgnal == 0x20
     assert library.cnc_rdopnlgsname(handle, 2)[1].sgnl2_name == b"LIGHT   "
     again.close()
+
+
+@pytest.mark.parametrize(("mode", "byte"), [(0, 0), (1, 1), (2, 3), (3, 4), (4, 5), (5, 0x15)])
+def test_the_mode_of_the_panel_is_shown_to_the_pmc_by_its_signals(mode: int, byte: int) -> None:
+    """MD1O, MD2O, MD4O are bits 0 to 2 of F73, ZRNO is bit 4: MEM 1, EDIT 3, HND 4, JOG 5, REF 5 with ZRNO."""
+    control, _, _ = written(mode=mode)
+    assert control.signals.f(73) == byte

@@ -178,6 +178,15 @@ def test_arguments_of_the_second_form_repeat_i_j_k_and_the_later_of_two_counts()
     )
     assert made.error is None
     assert [variables.get(n) for n in range(100, 105)] == [3.0, 8.0, None, 7.0, 9.0]
+    words = " ".join(
+        f"{letter}{7 * row + place + 2.5}" for row in range(10) for place, letter in enumerate("IJK")
+    )
+    copies = "".join(f"#{500 + number}=#{number}\n" for number in range(1, 34))
+    _, variables = run(f"G65 P9000 {words} C5.5\nM30\nO9000\n{copies}M99\n")
+    found = [variables.get(500 + number) for number in range(1, 34)]
+    assert found == [None, None, 5.5, *(7 * row + place + 2.5 for row in range(10) for place in range(3))]
+    _, variables = run(f"G65 P9000 I2 K3 J4 J5\nM30\nO9000\n{copies}M99\n")
+    assert [number for number in range(1, 34) if variables.get(500 + number) is not None] == [4, 6, 8, 11]
 
 
 def test_each_call_has_its_own_local_variables_and_a_sub_program_shares_them() -> None:
@@ -264,6 +273,24 @@ def test_codes_call_programs_by_table_and_are_ordinary_inside() -> None:
     assert [variables.get(n) for n in range(100, 104)] == [5.0, 3.5, 7.0, 12.0]
 
 
+def test_words_beside_codes_that_call_are_moved_before_or_handed_over() -> None:
+    calls = MacroCalls(g={81.5: 9010}, m={50: 9020}, m_sub={51: 9001}, t=9000)
+    text = (
+        "G90 G0\nX4 G81.5 Y7.5 Z-2 L3\nM50 A3.5 L2\nM51 Z6 L4\nT12 X9\nM30\n"
+        "O9010\n#100=#100+#25\n#101=#24\n#102=#5001\nM99\nO9020\n#103=#103+#1\nM99\n"
+        "O9001\n#104=#104+#5003\nM99\nO9000\n#105=#149+#5001\nM99\n"
+    )
+    made, variables = run(text, MacroLanguage(calls=calls))
+    assert made.error is None, str(made.error)
+    assert [variables.get(n) for n in range(100, 106)] == [22.5, None, 4.0, 7.0, 24.0, 21.0]
+    assert made.position == {"X": 9.0, "Y": 0.0, "Z": 6.0}
+    for block in ("X1 M50 A2", "G81.5 X2 X3", "G81.5 N3 X2"):
+        made, _ = run(f"#1=2\n{block}\nM30\nO9010\nM99\nO9020\nM99\n", MacroLanguage(calls=calls))
+        assert made.error is not None, block
+        assert made.error.position is not None
+        assert made.error.position.line == 2
+
+
 def test_macros_nest_four_deep() -> None:
     made, variables = run("G65 P9000\nM30\nO9000\n#100=#100+1\nG65 P9000\nM99\n")
     assert variables.get(100) == 4.0
@@ -278,6 +305,156 @@ def test_m99_in_a_main_program_ends_or_repeats_it() -> None:
     repeating = MacroLanguage(main_repeats=True)
     _, variables = run("#100=#100+1\nIF [#100 EQ 4] GOTO 8\nM99\nN8 M30\n", repeating)
     assert variables.get(100) == 4.0
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("TAN[30]", math.tan(math.radians(30.0))), ("TAN[-45]", -1.0), ("COS[780]", 0.5), ("ATAN[2]", 63.4349488229),
+        ("ACOS[1.0000000005]", 0.0), ("ASIN[-1.0000000005]", 270.0), ("ROUND[0]", 0.0), ("ROUND[-0.4]", 0.0),
+        ("FIX[2.9999999999]", 3.0), ("FIX[7.75]", 7.0), ("FUP[3.0000000001]", 3.0), ("FUP[-7.25]", -8.0),
+        ("EXP[0.7]", math.exp(0.7)), ("LN[0.4]", math.log(0.4)), ("BIN[295]", 127.0), ("BCD[99999999]", 0x99999999),
+        ("2147483647 AND 6", 6.0), ("-6 OR 3", -5.0), ("-6 XOR 3", -7.0), ("7.6 MOD 2.5", 2.0), ("POW[2,-3]", 0.125),
+        ("POW[-8,3]", -512.0), ("POW[2,158]*1.5", 1.5 * 2.0**158), ("[[[[[7]]]]]*3", 21.0), ("SQR[2.25]", 1.5),
+    ],
+)  # fmt: skip
+def test_functions_near_their_limits(expression: str, expected: float) -> None:
+    assert value(expression) == pytest.approx(expected, rel=1e-11, abs=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("expression", "code"),
+    [
+        ("TAN[90]", "PS0119"), ("TAN[-270]", "PS0119"), ("ACOS[-1.00001]", "PS0119"), ("ATAN[0]/[0]", "PS0119"),
+        ("LN[-2]", "PS0119"), ("SQRT[-0.25]", "PS0119"), ("POW[-8,0.5]", "PS0119"), ("BIN[-5]", "PS0119"),
+        ("BCD[-1]", "PS0119"), ("BCD[100000000]", "PS0119"), ("2147483648 OR 1", "PS0119"), ("EXP[720]", "PS0111"),
+        ("EXP[400]", "PS0111"), ("POW[10,48]", "PS0111"), ("-[#2*2]", "PS0111"), ("#2+#2", "PS0111"),
+        ("#2*2", "PS0111"), ("ABS[#2*2]", "PS0111"), ("#2-[-#2]", "PS0111"), ("5 MOD 0.3", "PS0112"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_calculated_leaves_the_variable_as_it_was(expression: str, code: str) -> None:
+    for target in ("#100", "#[#3]"):
+        made, variables = run(f"#2=POW[2,158]\n#3=100\n#100=7.5\n{target}={expression}\nM30\n")
+        assert made.error is not None
+        assert made.error.position is not None
+        assert (made.error.code, made.error.position.line, variables.get(100)) == (code, 4, 7.5)
+
+
+def test_angles_may_be_those_of_the_other_half() -> None:
+    language = MacroLanguage(nat=True)
+    _, variables = run("#100=ASIN[-0.5]\n#101=ATAN[-1]/[-1]\n#102=ATAN[-3,4]\nM30\n", language)
+    found = [variables.get(number) for number in (100, 101, 102)]
+    assert found == pytest.approx([-30.0, -135.0, -math.degrees(math.atan(0.75))], abs=1e-9)
+
+
+def test_half_an_increment_is_rounded_away_from_zero_as_its_digits_say() -> None:
+    made, _ = run("#1=1.0005\n#2=-2.0015\nG0 X#1 Y#2 Z-#1\nM30\n")  # in binary both are a little less
+    assert made.position == pytest.approx({"X": 1.001, "Y": -2.002, "Z": -1.001}, abs=1e-9)
+
+
+@pytest.mark.parametrize("fourth", ["20", "#120", "[#120]"])
+def test_jumps_lead_out_of_one_two_and_three_loops(fourth: str) -> None:
+    text = (
+        "#120=20\nN1 #1=#1+1\nDO1\n#2=#2+1\nN20 #110=#110+1\nDO2\n#3=#3+1\nN30 #111=#111+1\nDO3\n#4=#4+1\n"
+        f"IF[#4EQ2]GOTO30\nIF[#4EQ5]GOTO20\nIF[#4EQ7]GOTO1\nIF[#4EQ8]GOTO{fourth}\nIF[#4EQ11]GOTO90\n"
+        "END3\n#112=1\nEND2\n#113=1\nEND1\n#114=1\nN90 M30\n"
+    )
+    made, variables = run(text)
+    assert made.error is None, str(made.error)
+    assert [variables.get(n) for n in (1, 2, 3, 4, 110, 111)] == [2.0, 2.0, 4.0, 11.0, 4.0, 5.0]
+    assert [variables.get(n) for n in (112, 113, 114)] == [None, None, None]
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "rounds"),
+    [
+        ("#2=5\nN5 #100=#100+1\nGOTO#2\n", 3, 21 * 51),
+        ("G0 X2\nN5 #100=#100+1\nGOTO5\n", 3, 21 * 51),
+        ("#1=3\n#100=#100+1\nM99\n", 3, 21 * 51),
+        ("#1=3\nDO2\n#100=#100+1\nEND2\n", 2, 21 * 51 - 1),
+        ("#1=3\nWHILE[#1EQ3]DO2\n#100=#100+1\nEND2\n", 2, 21 * 51 - 1),
+    ],
+)
+def test_a_loop_without_a_block_ends_after_its_pauses(text: str, line: int, rounds: int) -> None:
+    language = MacroLanguage(pause_jumps=50, main_repeats=True)
+    made, variables = run(text, language)
+    assert made.error is not None
+    assert made.error.position is not None
+    assert (made.error.what, made.error.position.line) == ("this loop goes on without end", line)
+    assert variables.get(100) == rounds
+
+
+def test_a_block_in_a_long_loop_lets_it_go_on() -> None:
+    inner = "#2=0\nWHILE[#2LT800]DO2\n#2=#2+1\nEND2\n"
+    made, variables = run(
+        f"WHILE[#1LT4]DO1\n#1=#1+1\n{inner}G0 X#1\nEND1\nM30\n", MacroLanguage(pause_jumps=50)
+    )
+    assert made.error is None, str(made.error)
+    assert (variables.get(1), made.position["X"]) == (4.0, 4.0)
+
+
+@pytest.mark.parametrize(
+    ("text", "place", "code"),
+    [
+        ("GOTO20\nG0 X1\nX2\nN20 X4\nX5\nX6 G999\nM30\n", (6, 4), ""),
+        ("G0 X1\nN10 X2\nX3\nN20 X4\nX5\n#1=1/#0\nGOTO20\n", (6, 1), "PS0112"),
+        ("%\n(HEAD)\nO0001 (MAIN)\nG0 X1\nG65 P2 A3\nM30\nO0002\nX2\n  #1=1/#0\nM99\n%\n", (9, 3), "PS0112"),
+        ("#1=2\r\nG0 X3\r\nY4\r\n#2=1/#0\r\nM30\r\n", (4, 1), "PS0112"),
+        ("G1 Y2 X1,5 Z#1\n", (1, 7), "PS0114"),
+        ("#1=2\nN100000000 #1=1\n", (2, 2), "PS0128"),
+        ("GOTO 1.5\n", (1, 6), "PS0128"),
+        ("#1.5=2\n", (1, 2), "PS0115"),
+        ("#1=ADP[#34]\n", (1, 4), "PS0114"),
+        ("#1=ADP[#0]\n", (1, 4), "PS0114"),
+        ("#1=POW[2]\n", (1, 9), "PS0114"),
+        ("/DO1\nEND1\n", (1, 2), "PS0125"),
+        ("DO1\n/3 END1\n", (2, 4), "PS0125"),
+        ("M98 P9\nM30\nO9\nX1 M99 P5\nN5\n", (4, 1), "PS0125"),
+        ("X1 G65 P9\n", (1, 1), "PS0125"),
+        ("#1=100000000\nG65 P#1\n", (2, 1), "PS0076"),
+        ("#1=10000\nG65 P9 L#1\nM30\nO9\nM99\n", (2, 1), "PS0119"),
+        ("IF #1 EQ 2 GOTO 5\n", (1, 4), "PS0125"),
+        ("WHILE[#1EQ2]\n", (1, 13), "PS0125"),
+        ("#1=PRM[3]\n", (1, 4), "PS0114"),
+        ("#1=100000000\nGOTO#1\n", (2, 1), "PS0128"),
+        ("G65 P9 N3\n", (1, 8), "PS0119"),
+        ("SETVN 499[A,B]\n", (1, 1), "PS0115"),
+        ("SETVN 998[A,B,C]\n", (1, 1), "PS0115"),
+        ("#3000=1000.5(X)\n", (1, 1), "PS0119"),
+    ],
+)
+def test_an_error_is_told_where_it_stands(text: str, place: tuple[int, int], code: str) -> None:
+    made, _ = run(text)
+    assert made.error is not None
+    assert made.error.position is not None
+    at = made.error.position
+    assert (at.line, at.column, made.error.code) == (*place, code), str(made.error)
+
+
+def test_what_is_skipped_is_skipped_before_and_behind_its_block_number() -> None:
+    text = "#1=4.5\n/3 G0 X#1\nN8 /3 #101=2\n/3 N9 #102=3\n/2 Y#1\nN10 /2 #103=5\n/ #104=6\nM30\n"
+    made, variables = run(text, block_delete=frozenset({3}))
+    assert made.position == {"X": 0.0, "Y": 4.5, "Z": 0.0}
+    assert [variables.get(n) for n in (101, 102, 103, 104)] == [None, None, 5.0, 6.0]
+    made, variables = run(text, block_delete=frozenset({1, 2}))
+    assert made.position == {"X": 4.5, "Y": 0.0, "Z": 0.0}
+    assert [variables.get(n) for n in (101, 102, 103, 104)] == [2.0, 3.0, None, None]
+
+
+def test_the_last_block_number_may_stand_long_before() -> None:
+    words = "(A REMARK WITHOUT A NUMBER)\n" * 200
+    _, variables = run(f"N3 G0 X1\nN7 Y2\n{words}#100=#4114\nN8 X2\n#101=#4114\nM30\n")
+    assert (variables.get(100), variables.get(101)) == (7.0, 8.0)
+
+
+def test_a_statement_behind_much_plain_text_is_found() -> None:
+    language = MacroLanguage()
+    run("M30\n", language)
+    filled = "(" + 61 * "A" + ")\n"
+    text = ProgramText.from_text(f"{filled * 16_385}GOTO7\nN7 M30\n")  # the first line behind a piece
+    assert language.source(text, 0, 1, None) is not None
+    text = ProgramText.from_text(f"{filled * 16_385}N7 M30\n")
+    assert language.source(text, 0, 1, None) is None
 
 
 # ------------------------------------------------------------------ system variables
@@ -384,6 +561,22 @@ def test_variables_know_their_ranges() -> None:
     other.set(500, 7.0)
     other.restore(small.permanent())
     assert (other.get(500), other.get(531)) == (None, 2.5)
+
+
+def test_only_variables_of_the_same_size_are_gone_back_to() -> None:
+    variables = MacroVariables("b")
+    for level in range(4):
+        variables.enter({7: level + 2.5})
+    saved = variables.saved(lasting=True)
+    assert variables.fits(saved)
+    assert not variables.fits(saved._replace(levels=(*saved.levels, saved.levels[2])))
+    assert not variables.fits(saved._replace(levels=(saved.levels[3], saved.levels[2][:-1])))
+    assert not variables.fits(saved._replace(common=saved.common[1:]))
+    assert saved.lasting is not None
+    assert not variables.fits(saved._replace(lasting=saved.lasting[1:]))
+    assert variables.fits(saved._replace(lasting=None))
+    assert [variables.locals_of(level)[7] for level in range(5)] == [None, 2.5, 3.5, 4.5, 5.5]
+    assert [variables.level_of(variables.locals_of(level)) for level in (3, 1)] == [3, 1]
 
 
 # ------------------------------------------------------------------ wrong programs

@@ -13,7 +13,8 @@ from support.power_mate import attached, registered, running
 
 def made(text: str, *, sink: bytearray | None = None, bare: bool = False) -> tuple[ProgramRun, MacroLanguage]:
     language = MacroLanguage()
-    language.output.bare = bare
+    if bare:
+        language.output.bare = True
     if sink is not None:
         language.output.sink = sink.extend
     run = ProgramRun(
@@ -49,6 +50,23 @@ def test_modal_calls_nest_and_g67_cancels_the_last_one() -> None:
         "O9001\n#101=#101+1\nM99\nO9002\n#102=#102+1\nG0 Y#102\nM99\n"
     )
     assert values(language, 101, 102) == [2.0, 1.0]  # by the move of O9002, by X2
+
+
+def test_a_skipped_move_calls_nothing_and_one_of_another_level_does() -> None:
+    text = "G66 P9001 A2.5\nG0 X1\n/3 X2\n/2 X3\nX#1 Y4\n/3 X#1 Z5\n/2 Z6\nG67\nM30\n"
+    language = MacroLanguage()
+    run = ProgramRun(
+        Machine(load_machine(None)),
+        ProgramText.from_text(f"{text}O9001\n#101=#101+#1\nM99\n", "macro.tap"),
+        load_dialect("fanuc"),
+        language=language,
+        options=RunOptions(block_delete=frozenset({3})),
+    )
+    run.start()
+    run.advance(100_000)
+    assert run.state is RunState.COMPLETED, run.error
+    assert values(language, 101) == [10.0]  # X1, X3, Y4, Z6
+    assert run.position == {"X": 3.0, "Y": 4.0, "Z": 6.0}
 
 
 def test_five_modal_calls_are_too_many() -> None:
@@ -94,6 +112,20 @@ def test_an_interrupt_calls_its_program_behind_the_block() -> None:
     run.advance(1_000_000)
     assert run.state is RunState.COMPLETED, run.error
     assert values(language, 110, 101, 1) == [1.0, 2.0, None]
+
+
+def test_an_interrupt_program_is_called_by_no_move_and_hears_no_signal() -> None:
+    run, language = made(
+        "#1=9001\nG66 P9002 A2.5\nM96 P#1\nG1 X1 F600\nX2\nG67\nX3\nM97\nM30\n"
+        "O9001\n#101=#101+1\nG1 Y1.5\nY3\n#2=#5042\nM99\nO9002\n#102=#102+#1\nM99\n"
+    )
+    run.advance(1_000_000, until=lambda: run.position["X"] > 0.5)
+    language.interrupt()
+    run.advance(1_000_000, until=lambda: run.position["Y"] > 0.5)
+    language.interrupt()
+    run.advance(1_000_000)
+    assert run.state is RunState.COMPLETED, run.error
+    assert values(language, 101, 102) == [1.0, 5.0]
 
 
 def test_an_interrupt_program_may_return_to_another_block() -> None:
@@ -150,6 +182,26 @@ def test_bare_text_has_no_blanks() -> None:
     assert bytes(out) == b"\x12X128.474Y-91.200\n"
 
 
+def test_digits_that_do_not_fit_are_cut_off_and_nothing_is_negative() -> None:
+    out = bytearray()
+    ended(
+        "#1=12345.678\n#2=-0.004\nPOPEN\nDPRNT[A#1[22]B#2[32]C#2[33]D#1[03]]\nPCLOS\nM30\n",
+        sink=out,
+    )
+    assert bytes(out) == b"\x12A 45.68B   0.00C-  0.004D .678\n\x14"
+
+
+def test_the_first_200_lines_are_told_and_a_device_is_closed_at_the_beginning() -> None:
+    text = "POPEN\nWHILE[#1LT203]DO1\n#1=#1+1\nDPRNT[#1[30]]\nEND1\nM30\n"
+    run, language = made(text)
+    run.advance(1000)
+    found = [each.text for each in run.channel.messages.all() if "DPRNT" in each.text]
+    assert [found[0], found[-1], len(found)] == ["DPRNT:    1", "DPRNT:  200", 200]
+    assert language.output.is_open
+    language.output.attach(run.channel)
+    assert not language.output.is_open
+
+
 def test_bytes_are_put_out() -> None:
     out = bytearray()
     ended("#1=0.40596\n#2=-1638.4\nPOPEN\nBPRNT[C*#1[4]*X#2[3]]\nPCLOS\nM30\n", sink=out)
@@ -178,8 +230,8 @@ def test_wrong_outputs_and_names_are_refused(block: str, code: str) -> None:
 
 
 def test_variables_get_names() -> None:
-    language = ended("SETVN 510[DEPTH, WIDTH]\n#510=3\nM30\n")
-    assert language.variables.names == {510: "DEPTH", 511: "WIDTH"}
+    language = ended("SETVN 510[DEPTH, WIDTH]\n#510=3\nSETVN 517[ANGLE]\nSETVN 511[HEIGHT,TURN]\nM30\n")
+    assert language.variables.names == {510: "DEPTH", 511: "HEIGHT", 512: "TURN", 517: "ANGLE"}
 
 
 def test_a_power_mate_keeps_what_was_put_out() -> None:

@@ -61,7 +61,7 @@ def test_what_can_only_be_read_is_read_and_not_written(plain: SystemVariables, n
     assert before is not None
     with pytest.raises(MacroError) as caught:
         plain.write(number, 7.25)
-    assert caught.value.what == f"#{number} can only be read"
+    assert caught.value.what == str(caught.value) == f"#{number} can only be read"
     assert caught.value.hint
     assert caught.value.code == "PS0116"
     assert plain.read(number) == before

@@ -647,7 +647,7 @@ def check_arguments(arguments: list[Address]) -> None:
 def argument_numbers(arguments: list[Address] | tuple[Address, ...]) -> list[int]:
     """Return the local variable of each argument.
 
-    I, J and K that repeat, or stand out of their order, are the second form; a number given twice counts last.
+    I, J and K of which one repeats are the second form; a number given twice counts last.
 
     Raises:
         Flaw: An address that has no local variable, more repetitions than there are variables.
