@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import pytest
 
@@ -35,7 +36,7 @@ def steps(pc: Pc, an: int, scans: int) -> list[float]:
     for _ in range(scans):
         pc.board.advance(1)
         places.append(pc.rp(an))
-    return [b - a for a, b in zip(places, places[1:], strict=False)]
+    return [b - a for a, b in pairwise(places)]
 
 
 @pytest.mark.covers("apci.mode.direct", "apci.rule.spooler_discard")
@@ -148,7 +149,9 @@ def test_a_snapshot_keeps_what_waits_for_its_turn() -> None:
 @pytest.mark.parametrize(("tu", "per_s"), [(0, 1.0), (1, 60.0)])
 @pytest.mark.parametrize("behind", ["ssf", "spd"])
 @pytest.mark.covers("apci.wrMDVel")
-def test_corners_keep_mdvel_in_its_unit_whatever_comes_behind_them(tu: int, per_s: float, behind: str) -> None:
+def test_corners_keep_mdvel_in_its_unit_whatever_comes_behind_them(
+    tu: int, per_s: float, behind: str
+) -> None:
     pc = Pc(TWO)
     axes = pc.close(0, 1)
     pcap.ctru(pcap.TRU(pu=0, tu=tu))
