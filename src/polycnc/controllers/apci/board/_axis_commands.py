@@ -85,7 +85,9 @@ def ra(board: Board, axes: Sequence[int]) -> None:
         _open(board, i)
         board.outputs = _at_reset(board, int(board.state.plan[i]["PAE"]))
         row["zero"] = board.kernel.servo.actual[i] - row["shift"]
-        row["offset"] = 0.0
+        row["offset"] = row["tp"] = 0.0
+        board.kernel.base[i] = _base_at_actual(board, i)
+        board.kernel.setpoint[i] = board.kernel.servo.actual[i]
         _clear(board, i)
         row["saf"] = 0
 
@@ -154,7 +156,8 @@ def write_dp(board: Board, i: int, position: float) -> None:
     """Write the setpoint, with the loop closed; the axis goes there at once (Manual 002, 4.4.140)."""
     axis = board.axes[i]
     if axis.row["closed"] and axis.row["pe"] and not axis.row["past"] and math.isfinite(position):
-        board.kernel.base[i] = position + axis.origin
+        added = float(board.kernel.ptp.row[ADDED, i]["position"])
+        board.kernel.base[i] = position + axis.origin - added
 
 
 def azo(board: Board, number: int) -> None:
@@ -180,9 +183,8 @@ def szpr(board: Board, i: int, position: float) -> None:
 def utrovr(board: Board, axes: Sequence[int]) -> None:
     """Take over the trajectory override for `axes`, in the same scan (Manual 002, 4.4.132)."""
     copies = not board.modereg & ModeReg.OvrMode
-    at_once = board.trovrst <= board.config.sample_time_s
     for i in axes:
         row = board.state.axis[i]
         row["override_goal"] = board.trovr
-        if at_once and row["tovr"] == board.trovr and copies:
-            row["jovr"] = board.trovr
+        if row["tovr"] == board.trovr and copies:  # nothing settles that would bring it along
+            board.change_jog_override(i, board.trovr)

@@ -1,4 +1,4 @@
-"""Direct commands on their way, as plain data: what a snapshot keeps of the two scans before they take effect."""
+"""Commands on their way, as plain data: what a snapshot keeps of the two scans before they take effect."""
 
 from __future__ import annotations
 
@@ -9,10 +9,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from polycnc.controllers.apci.board._interpolation import Speeds, begin_interpolation
+from polycnc.controllers.apci.board._interpolation import Speeds, begin_interpolation, queue_interpolation
 from polycnc.controllers.apci.board._jog_commands import jog, search_index, search_reference
 from polycnc.controllers.apci.board._path_units import PathUnits
 from polycnc.controllers.apci.board._shapes import Circle, Helix, Line, SpaceCircle
+from polycnc.controllers.apci.board._spool_commands import (
+    add_points,
+    add_special,
+    aim_last_moves,
+    reject_queued,
+    start_spoolers,
+)
 
 if TYPE_CHECKING:
     from polycnc.controllers.apci.board._board import Board
@@ -23,7 +30,14 @@ _BEGINNINGS: Mapping[str, Callable[..., Any]] = {
     "search_index": search_index,
     "search_reference": search_reference,
     "interpolation": begin_interpolation,
+    "queued_interpolation": queue_interpolation,
+    "points": add_points,
+    "special": add_special,
+    "target_velocity": aim_last_moves,
+    "reject": reject_queued,
+    "start": start_spoolers,
 }
+_WITH_SHAPE = (begin_interpolation, queue_interpolation)
 _SHAPES: Mapping[str, Callable[..., Any]] = {
     "line": Line,
     "circle": Circle,
@@ -35,11 +49,13 @@ _SHAPES: Mapping[str, Callable[..., Any]] = {
 def as_data(begin: partial[None]) -> dict[str, Any]:
     """Return how a command begins as plain data."""
     _, *arguments = begin.args  # the board
-    if begin.func is not begin_interpolation:
-        return {"name": _name(_BEGINNINGS, begin.func), "values": arguments, "named": begin.keywords}
+    name = _name(_BEGINNINGS, begin.func)
+    if begin.func not in _WITH_SHAPE:
+        return {"name": name, "values": arguments, "named": begin.keywords}
     units, speeds, shape = arguments
     return {
-        "name": "interpolation",
+        "name": name,
+        "options": begin.keywords,
         "units": [units.velocity_unit, units.acceleration_unit, units.axes, units.weight, units.distance],
         "speeds": [speeds.ac, speeds.vl, speeds.tvl],
         "shape": _name(_SHAPES, type(shape)),
@@ -54,11 +70,11 @@ def from_data(board: Board, data: Mapping[str, Any]) -> partial[None]:
         KeyError: It is none that there is.
     """
     function = _BEGINNINGS[data["name"]]
-    if function is not begin_interpolation:
+    if function not in _WITH_SHAPE:
         return partial(function, board, *data["values"], **data["named"])
     units = PathUnits(*data["units"][:2], *map(np.asarray, data["units"][2:]))
     shape = _SHAPES[data["shape"]](**data["named"])
-    return partial(begin_interpolation, board, units, Speeds(*data["speeds"]), shape)
+    return partial(function, board, units, Speeds(*data["speeds"]), shape, **data["options"])
 
 
 def _name(table: Mapping[str, Callable[..., Any]], function: Callable[..., Any]) -> str:

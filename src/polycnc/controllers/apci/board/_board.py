@@ -7,7 +7,8 @@ Commands are functions of their own that take the board (`_axis_commands`, `_jog
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from bisect import bisect_right
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -208,6 +209,19 @@ class Board:
         orders = tuple(self.orders[i] for i in axes)
         self.pending.append(Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
 
+    def in_turn(self, axes: Sequence[int], carry_out: partial[None]) -> None:
+        """Carry out a command of the spoolers of `axes`, behind the direct commands that they have been given.
+
+        A direct command rejects what is queued when it takes effect; what is queued behind it stays.
+        """
+        on_the_way = [each.due for each in self.pending if not set(axes).isdisjoint(each.axes)]
+        if not on_the_way:
+            carry_out()
+            return
+        due, orders = max(on_the_way), tuple(self.orders[i] for i in axes)
+        at = bisect_right(self.pending, due, key=lambda each: each.due)
+        self.pending.insert(at, Command(due, tuple(axes), orders, carry_out, moves=False))
+
     def cancel_commands(self, i: int) -> None:
         """Make void what was commanded to an axis and has not taken effect."""
         self.orders[i] += 1
@@ -220,7 +234,7 @@ class Board:
             valid = [
                 i for i, order in zip(command.axes, command.orders, strict=True) if order == self.orders[i]
             ]
-            for i in valid:
+            for i in valid if command.moves else ():
                 self.state.axis[i]["commanded"] -= 1
             if len(valid) == len(command.axes):
                 command.begin()

@@ -72,7 +72,9 @@ def _beside(board: Board) -> dict[str, Any]:
             for axis in board.axes
         ],
         "orders": board.orders,
-        "pending": [[each.due, each.axes, each.orders, as_data(each.begin)] for each in board.pending],
+        "pending": [
+            [each.due, each.axes, each.orders, as_data(each.begin), each.moves] for each in board.pending
+        ],
         "tasks": None if board.tasks is None else board.tasks.save(),
     }
 
@@ -87,8 +89,8 @@ def _changes(board: Board, data: Mapping[str, Any]) -> list[Callable[[], None]]:
     axes = [({name: int(each[name]) for name in _AXIS_VALUES}, each["zero_offsets"]) for each in data["axes"]]
     orders = [int(each) for each in data["orders"]]
     pending = [
-        Command(int(due), tuple(on), tuple(given), from_data(board, begin))
-        for due, on, given, begin in data["pending"]
+        Command(int(due), tuple(on), tuple(given), from_data(board, begin), bool(moves))
+        for due, on, given, begin, moves in data["pending"]
     ]
     if len(axes) != len(board.axes) or len(orders) != len(axes) or [len(each) for each in buffers] != sizes:
         raise ValueError("it has other axes or buffers")

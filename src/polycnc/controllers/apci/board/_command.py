@@ -1,4 +1,4 @@
-"""A direct command between being given and taking effect."""
+"""A command between being given and taking effect: a direct one, or one of the spoolers behind it."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from functools import partial
 
 @dataclass(slots=True)
 class Command:
-    """A direct command on its way."""
+    """A command on its way."""
 
     due: int  # clock cycles
     axes: tuple[int, ...]
     orders: tuple[int, ...]  # of these axes, when it was given
     begin: partial[None]
+    moves: bool = True  # False for one that only waits for its turn behind those that move

@@ -47,6 +47,16 @@ def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index
     units = _checked(board, axes, speeds, shape.numbers)
     if units is None:
         return
+    if board.pending:
+        board.in_turn(axes, partial(queue_interpolation, board, units, speeds, shape, index=index))
+    else:
+        queue_interpolation(board, units, speeds, shape, index=index)
+
+
+def queue_interpolation(
+    board: Board, units: PathUnits, speeds: Speeds, shape: Shape, *, index: int = -1
+) -> None:
+    """Put an interpolation behind what the spoolers of its axes hold."""
     ac, vl, tvl = units.acceleration(speeds.ac), units.velocity(speeds.vl), units.velocity(speeds.tvl)
     bases = units.velocity_unit, units.acceleration_unit
     if isinstance(shape, Line):
@@ -54,7 +64,7 @@ def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index
         base = board.kernel.base
         spool_line(state, base, units.axes, units.weight, ends, shape.relative, ac, vl, tvl, *bases, index)
         return
-    start = [queued_position(board.state, board.kernel.base, i) for i in axes]
+    start = [queued_position(board.state, board.kernel.base, i) for i in units.axes]
     e = _path(board, units, shape, start)
     if e >= 0:
         spool_move(board.state, e, units.axes, units.weight, ac, vl, tvl, *bases)

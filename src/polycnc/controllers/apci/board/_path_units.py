@@ -58,6 +58,20 @@ def path_units(board: Board, axes: Sequence[int]) -> PathUnits | None:
     return known[key]
 
 
+def trajectory_units(board: Board) -> tuple[float, float]:
+    """Return path units/s and path units/s2 per unit of velocity and acceleration, whatever the axes."""
+    variables = board.variables
+    if (
+        variables.pu not in PositionUnit.__members__.values()
+        or variables.tu not in TimeUnit.__members__.values()
+    ):
+        return 1.0, 1.0
+    unit = PositionUnit(variables.pu)
+    length = MILLIMETRES.get(unit) or DEGREES.get(unit) or 1.0
+    time_s = seconds(TimeUnit(variables.tu), board.config.sample_time_s)
+    return length / time_s, length / (time_s * time_s)
+
+
 def _units(board: Board, axes: Sequence[int]) -> PathUnits | None:
     variables = board.variables
     if (

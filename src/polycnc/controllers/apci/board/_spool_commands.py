@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from polycnc.controllers.apci.board._path_units import path_units
+from polycnc.controllers.apci.board._path_units import path_units, trajectory_units
 from polycnc.controllers.apci.core._compiled_entries import aim_at_velocity, reject_queue
 from polycnc.controllers.apci.core._registers import ErrorReg
 from polycnc.controllers.apci.core._spool_entries import (
@@ -39,6 +40,11 @@ def ssms(board: Board, axes: Sequence[int]) -> None:
 
     An axis that still carries out the entry at which sstps will halt it goes on behind that entry.
     """
+    board.in_turn(axes, partial(start_spoolers, board, axes))
+
+
+def start_spoolers(board: Board, axes: Sequence[int]) -> None:
+    """Start the spoolers of `axes`, if they are at rest."""
     rows = [board.state.axis[i] for i in axes]
     for row in rows:
         if row["motion"] == WAITING:
@@ -64,6 +70,11 @@ def sstps(board: Board, axes: Sequence[int]) -> None:
 
 def sdels(board: Board, axes: Sequence[int]) -> None:
     """Reject what `axes` have queued behind what they carry out now (Manual 002, 4.4.115)."""
+    board.in_turn(axes, partial(reject_queued, board, axes))
+
+
+def reject_queued(board: Board, axes: Sequence[int]) -> None:
+    """Reject what `axes` have queued."""
     for i in axes:
         reject_queue(board.state, i)
 
@@ -74,14 +85,14 @@ def sstvl(board: Board, axes: Sequence[int], tvl: float) -> None:
     if units is None:
         board.raise_error(ErrorReg.errUnit)
     elif math.isfinite(tvl):
-        _aim(board, axes, units.velocity(tvl))
-        mask = sum(1 << i for i in axes)
-        look_ahead_again(board.state, mask, units.velocity_unit)
+        board.in_turn(axes, partial(aim_last_moves, board, axes, units.velocity(tvl), units.velocity_unit))
 
 
-def _aim(board: Board, axes: Sequence[int], tvl: float) -> None:
+def aim_last_moves(board: Board, axes: Sequence[int], tvl: float, velocity_unit: float) -> None:
+    """Give the last move queued for `axes` another target velocity, path units/s."""
     for e in {_last_move(board, i) for i in axes} - {-1}:
         aim_at_velocity(board.state, e, tvl)
+    look_ahead_again(board.state, sum(1 << i for i in axes), velocity_unit)
 
 
 def _last_move(board: Board, i: int) -> int:
@@ -98,9 +109,13 @@ def ssf(board: Board, i: int, command: int, value: float, *, index: int = -1) ->
     if not _is_command(command) or not math.isfinite(value):
         return
     if command == RESET_TARGET_VELOCITY:
-        _aim(board, (i,), 0.0)
-        look_ahead_again(board.state, 1 << i, 1.0)
-        return
+        board.in_turn((i,), partial(aim_last_moves, board, (i,), 0.0, trajectory_units(board)[0]))
+    else:
+        board.in_turn((i,), partial(add_special, board, i, command, value, index=index))
+
+
+def add_special(board: Board, i: int, command: int, value: float, *, index: int) -> None:
+    """Put a special function behind what the spooler of an axis holds."""
     e = _new(board, i, SPECIAL, index)
     if e < 0:
         return
@@ -136,6 +151,11 @@ def spd(board: Board, i: int, points: Sequence[float], *, relative: bool = False
     """Put setpoints, one a scan, into the spooler of an axis (Manual 002, 4.4.117 to 4.4.119)."""
     if not 1 <= len(points) <= MOST_POINTS or not all(map(math.isfinite, points)):
         return
+    board.in_turn((i,), partial(add_points, board, i, tuple(points), relative=relative, index=index))
+
+
+def add_points(board: Board, i: int, points: Sequence[float], *, relative: bool, index: int) -> None:
+    """Put a table behind what the spooler of an axis holds."""
     state, axis = board.state, board.axes[i]
     end = queued_position(state, board.kernel.base, i) + sum(points) if relative else points[-1] + axis.origin
     e = _new(board, i, TABLE, index) if math.isfinite(end) else -1
@@ -147,7 +167,7 @@ def spd(board: Board, i: int, points: Sequence[float], *, relative: bool = False
     entry["points"] = len(points)
     entry["relative"] = relative
     entry["value"] = end
-    if queue_entry(state, e, 0.0):
+    if queue_entry(state, e, trajectory_units(board)[0]):
         for k, value in enumerate(points):
             state.points[i, (first + k) % POINTS] = value if relative else value + axis.origin
 

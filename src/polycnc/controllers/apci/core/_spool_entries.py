@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 from polycnc.controllers.apci.core._look_ahead import look_ahead
+from polycnc.controllers.apci.core._motion import position_at
 from polycnc.controllers.apci.core._registers import ErrorReg, ModeReg
 from polycnc.controllers.apci.core._spool import bytes_of, free_entry
 from polycnc.controllers.apci.core._state import (
     BY_SYSTEM,
+    JOG,
     MOVE,
     SPECIAL,
     SPOOL_BYTES,
@@ -18,7 +20,7 @@ from polycnc.controllers.apci.core._state import (
     Floats,
     Whole,
 )
-from polycnc.kernel import LINE, compiled, entry, set_line
+from polycnc.kernel import LINE, VELOCITY, compiled, entry, profile_at, set_line
 
 HARDLY_ANY = 1e-9  # path units: a distance or a radius below it is none
 
@@ -62,16 +64,29 @@ def give_back(b: BoardState, e: int) -> None:
 
 
 @compiled
+def rest_position(b: BoardState, base: Floats, i: int) -> float:
+    """Return the machine position at which axis `i` comes to rest; the present one if it does not by itself."""
+    row, phases = b.axis[i], b.phases[i]
+    moves = row["motion"] == JOG or row["motion"] == MOVE
+    if not moves or phases[row["phases"], VELOCITY] != 0.0 or not math.isfinite(row["duration"]):
+        return float(base[i])
+    place, _, _ = profile_at(phases, row["phases"], row["duration"])
+    return position_at(b, i, place)
+
+
+@compiled
 def position_behind_queue(b: BoardState, base: Floats, i: int) -> float:
     """Return the machine position of axis `i` behind everything it has queued."""
     row = b.axis[i]
     for count in range(row["tail"] - 1, row["head"] - 1, -1):
         e = int(b.ring[i, count % SPOOL_ENTRIES])
+        if e == row["entry"] and row["direct"] == 0 and row["stopping"] != 0:
+            break
         if b.entry[e]["kind"] == MOVE:
             return float(b.seg.end[e, i] / b.weight[e, i])
         if b.entry[e]["kind"] == TABLE:
             return float(b.entry[e]["value"])
-    return float(base[i])
+    return rest_position(b, base, i)
 
 
 @entry
@@ -170,8 +185,9 @@ def _keep_axis_limits(
         part = abs(b.seg.end[e, i] - b.seg.start[e, i]) / length
         row = b.axis[i]
         if part > 0.0 and row["MaxVel"] > 0.0:
-            this["vl"] = min(this["vl"], row["MaxVel"] * velocity_unit / part)
-            this["tvl"] = min(this["tvl"], this["vl"])
+            most = row["MaxVel"] * velocity_unit / part
+            this["vl"] = min(this["vl"], most)
+            this["tvl"] = max(min(this["tvl"], most), -most)
         if part > 0.0 and row["MaxAcc"] > 0.0:
             this["ac"] = min(this["ac"], row["MaxAcc"] * acceleration_unit / part)
 

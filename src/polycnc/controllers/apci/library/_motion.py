@@ -10,7 +10,7 @@ from typing import Any, TypeAlias, TypeVar
 
 from polycnc.controllers.apci.board import _jog_commands as jogs
 from polycnc.controllers.apci.board._move_commands import MOVES, Kind, Speeds, go, queue
-from polycnc.controllers.apci.board._path_units import path_units
+from polycnc.controllers.apci.board._path_units import trajectory_units
 from polycnc.controllers.apci.board._records import AS, CMP, HMP, HMP3D, LMP, TSRP
 from polycnc.controllers.apci.library._call import LONG, Records, axes_call
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection
@@ -86,9 +86,8 @@ def ms(asel: Selection) -> None:
 
     With MODEREG bit MS_DECEL the deceleration is TRAC.
     """
-    units = path_units(asel.board, asel.axes)
-    trac = asel.board.variables.trac
-    asel.order(jogs.ms_of_pc, trac if units is None else units.acceleration(trac))
+    _, acceleration_unit = trajectory_units(asel.board)
+    asel.order(jogs.ms_of_pc, asel.board.variables.trac * acceleration_unit)
 
 
 # ---------------------------------------------------------------------- interpolation
