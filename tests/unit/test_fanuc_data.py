@@ -626,3 +626,22 @@ def test_counters_and_timers_are_settings() -> None:
     running(control, 7)
     control.advance(1000)
     assert parameter(handle, 6752) in (12, 13)
+
+
+def test_timers_are_minutes_and_what_is_over_in_milliseconds() -> None:
+    """6751 and 6752 are automatic operation, 6753 and 6754 cutting, 6757 and 6758 the last operation."""
+    control, handle = attached()
+    registered(control, O7="\nG1 X5. F600\nG0 X7.\nG4 X0.7\nM30\n")
+    running(control, 7)
+    control.advance(2000)
+    operated, cut, last = (parameter(handle, number) for number in (6751, 6753, 6757))
+    assert cut == pytest.approx(500, abs=10)
+    assert operated == last > cut + 700
+    assert fwlib.cnc_wrsets(handle, 16, record(6753, 3, 0, 59_900) + record(6754, 3, 0, 7)) == OK
+    assert fwlib.cnc_wrsets(handle, 16, record(6751, 3, 0, 59_300) + record(6752, 3, 0, 12)) == OK
+    running(control, 7)
+    control.advance(2000)  # 2 mm are cut
+    assert [parameter(handle, number) for number in (6752, 6754, 6758)] == [13, 8, 0]
+    assert parameter(handle, 6753) == pytest.approx(100, abs=10)
+    assert parameter(handle, 6757) == pytest.approx(last - 300, abs=15)
+    assert parameter(handle, 6751) == 59_300 + parameter(handle, 6757) - 60_000

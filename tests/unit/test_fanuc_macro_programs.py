@@ -98,6 +98,16 @@ def test_a_reset_clears_what_parameter_6001_says(bits: int, left: tuple[float | 
     assert (control.macros.get(100), control.local_variable(1)) == left
 
 
+def test_switching_off_clears_what_a_reset_may_keep() -> None:
+    control, handle = attached()
+    control.parameters.set(6001, 64 | 128)
+    registered(control, O1="\n#100=5.5\n#1=6.5\n#500=0\nM30\n")
+    assert until_over(control) is RunState.COMPLETED
+    assert (control.macros.get(100), macro(handle, 500)) == (5.5, (0, 0))
+    control.power_cycle()
+    assert (control.macros.get(100), control.local_variable(1), control.macros.get(500)) == (None, None, 0.0)
+
+
 def test_codes_call_programs_by_parameters() -> None:
     control, _ = attached()
     for number, value in ((6053, 81), (6072, 40), (6084, 60)):

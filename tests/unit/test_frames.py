@@ -63,6 +63,7 @@ def run(text: str) -> ProgramRun:
         ("G52 X11 Y22\nG52 X0 Y0\nG0 X1.5 Y2", (1.5, 2, 0)),
         ("G10 L2 P1 X7 Y8 Z0\nG0 X1.5 Y2", (8.5, 10, 0)),
         ("G10 L2 P3 X7 Y8\nG0 X1.5 Y2\nG56 X1.5", (8.5, 2, 0)),
+        ("G10 L2 P6 X7 Y8\nG59 G0 X1.5 Y2", (8.5, 10, 0)),
         ("G10 L20 P13 X7 Y8 Z3\nG54.1 P13 G0 X1.5 Y2 Z1", (8.5, 10, 4)),
         ("G10 L2 P0 X100\nG0 X1.5\nG91 G10 L2 P0 X5\nG90 X1.5", (106.5, 0, 0)),
         ("G20\nG10 L2 P1 X1\nG21\nG0 X2", (27.4, 0, 0)),
@@ -82,7 +83,7 @@ def test_positions(text: str, expected: tuple[float, float, float]) -> None:
     assert list(made.position.values()) == pytest.approx(list(expected), abs=1e-9)
 
 
-ARC = "G1 X20 Y10\nG2 X26 Y16 I6 J0\n"  # from the left of its centre to above it
+ARC = "G1 X20 Y10\nG2 X26 Y16 I6\n"  # from the left of its centre to above it
 
 
 @pytest.mark.parametrize(

@@ -225,6 +225,14 @@ def test_state_of_a_program(element: str, value: int, setup: Callable[[], PowerM
     assert getattr(library.cnc_statinfo(handle)[1], element) == value
 
 
+def test_diagnosis_tells_that_a_function_waits_for_its_answer() -> None:
+    told = []
+    for control in (running("M8", 3), running("M8", 3, script={(Function.M, 8): Answer(after_s=None)})):
+        library, handle = at(control)
+        told.append(library.cnc_diagnoss(handle, 0, 0, 5)[1].u.cdata)
+    assert told == [0, 1]
+
+
 def emergency_of(control: PowerMate) -> int:
     library, handle = at(control)
     return int(library.cnc_statinfo(handle)[1].emergency)

@@ -87,10 +87,6 @@ class SharedMacros:
             )
         self._pairs.update(pairs)
 
-    def clear_volatile(self) -> None:
-        """Make the volatile ones vacant."""
-        self.variables.clear_common()
-
 
 def _pair(text: str) -> tuple[int, int]:
     mantissa, decimals = text.split()
