@@ -158,7 +158,7 @@ class _Statements:
         if level or tokens.token.word != "/":
             return level
         tokens.step()
-        if tokens.token.kind == "number" and tokens.token.text in "123456789":
+        if tokens.token.kind == "number" and tokens.token.text in tuple("123456789"):
             return int(tokens.step().text)
         return 1
 
