@@ -155,6 +155,7 @@ def take_commands(s: CardState, i: int) -> None:
         set_origin_here(s, i)
     if commands >> addr.DO_RUN & 1 and m[i, addr.RUN] == 0:
         halt_axis(s, i)
+    go, target_velocity = get_u16(m, i, addr.GO), get32(m, i, addr.TGVEL)
     if commands >> addr.DO_ENGEAR & 1:
         if m[i, addr.ENGEAR] == 0:
             leave_gear(s, i)
@@ -164,6 +165,10 @@ def take_commands(s: CardState, i: int) -> None:
         _sync(s, i)
     if commands >> addr.DO_GOHOME & 1:
         _home(s, i)
+    if commands >> addr.DO_GO_MCS & 1:  # leaving what moved the axis does not take back what comes with it
+        put16(m, i, addr.GO, go)
+    if commands >> addr.DO_TGVEL_MCS & 1:
+        put32(m, i, addr.TGVEL, target_velocity)
     for layer in range(2):
         velocity = addr.DO_TGVEL_MCS if layer == 0 else addr.DO_TGVEL_PCS
         go = addr.DO_GO_MCS if layer == 0 else addr.DO_GO_PCS

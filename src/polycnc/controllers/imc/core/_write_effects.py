@@ -66,6 +66,27 @@ def show_captures(s: CardState, i: int) -> None:
 
 
 @compiled
+def _couples_at_once(s: CardState, i: int, action: int) -> bool:
+    """Tell whether a word that has been written lets something else move the axis from its next turn on."""
+    m = s.memory
+    if action == addr.DO_ENGEAR:
+        return bool(m[i, addr.ENASYN] == 0)
+    if action == addr.DO_STARTSYN:
+        return bool(m[i, addr.STARTSYN] != 0 and m[i, addr.ENASYN] != 0)
+    return bool(action == addr.DO_GOHOME)
+
+
+@compiled
+def _forget_moves(s: CardState, i: int) -> None:
+    """Forget a move or velocity that was commanded since the last turn of an axis: what comes later counts."""
+    row = s.axis[i]
+    if row["commands"] >> addr.DO_GO_MCS & 1:
+        put16(s.memory, i, addr.GO, 0)
+        put32(s.memory, i, addr.DIST, 0)
+    row["commands"] &= ~(1 << addr.DO_GO_MCS | 1 << addr.DO_TGVEL_MCS)
+
+
+@compiled
 def _command(s: CardState, i: int, action: int, value: int) -> None:
     """Note what an axis has to do in its next turn; what begins a motion shows in the flags at once."""
     row = s.axis[i]
@@ -74,6 +95,8 @@ def _command(s: CardState, i: int, action: int, value: int) -> None:
             row["commands"] &= ~(1 << addr.DO_GO_MCS | 1 << addr.DO_TGVEL_MCS)
         elif action in (addr.DO_GO_PCS, addr.DO_TGVEL_PCS):
             row["commands"] &= ~(1 << addr.DO_GO_PCS | 1 << addr.DO_TGVEL_PCS)
+    if value != 0 and _couples_at_once(s, i, action):
+        _forget_moves(s, i)
     row["commands"] |= 1 << action
     if action in (addr.DO_CLEAR, addr.DO_SETHOME):
         s.card[0]["hold"] = 1
