@@ -398,11 +398,13 @@ def test_a_rounded_chain_is_never_slower_than_exact_stops(settings: PathSettings
 # ------------------------------------------------------------------ down to next to nothing
 
 
-def short_chain(seed: int, tolerance: float, **more: float) -> Chain:
+def short_chain(
+    seed: int, tolerance: float, *, last: float = 0.5, stops: bool = False, **more: float
+) -> Chain:
     """Return a random chain of elements down to 1e-7 mm with corners by share, ready to start."""
     rng = np.random.default_rng(seed)
     path = Chain(
-        machine(rng, PathSettings(tolerance=tolerance, shares=(0.1, 0.5, 0.5), **more)),  # type: ignore[arg-type]
+        machine(rng, PathSettings(tolerance=tolerance, shares=(0.1, 0.5, last), **more)),  # type: ignore[arg-type]
         list(PLANES.values())[seed % 3],
         float(rng.choice((20.0, 60.0, 300.0))),
     )
@@ -420,7 +422,7 @@ def short_chain(seed: int, tolerance: float, **more: float) -> Chain:
         side = float(rng.choice((1.0, -1.0))) if rng.random() < curved else 0.0
         bend = side / (length * 10.0 ** rng.uniform(-0.7, 2.0))
         turn = float(rng.choice(turns)) * (1.0 if one_side else float(rng.choice((-1.0, 1.0))))
-        path.go(turn, bend, length)
+        path.go(turn, bend, length, flags=STOP if stops else 0)
     prepare(path.state)
     start_path(path.state.paths, 0)
     return path
@@ -444,6 +446,16 @@ def test_short_chains_keep_the_limits(tolerance: float, more: dict[str, float]) 
         path = short_chain(seed, tolerance, **more)
         run_recorded(path.state)
         assert max(overload(path.state)) <= 1.0 + 1e-6, f"seed {seed}"
+
+
+def test_what_corners_hold_back_costs_no_more_than_its_root() -> None:
+    """A line from rest to rest with 1 - s of its acceleration takes 1 / sqrt(1 - s) of the time at most."""
+    for seed in [*seeds(0, 20), 169, 1085, 1119]:
+        own, stop = (
+            skip(path.state, 0, int(path.state.paths.row[0]["tail"]))
+            for path in (short_chain(seed, 0.01, last=0.0, stops=stops) for stops in (False, True))
+        )
+        assert own <= stop / math.sqrt(0.9) + 1, f"seed {seed}"
 
 
 def test_there_is_no_room_beside_a_line_of_next_to_no_length() -> None:

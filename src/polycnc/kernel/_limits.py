@@ -308,7 +308,13 @@ def _junction_by_share(
     rests = needed > most and row["flags"] & CORNER_STOP != 0
     curved = step > STEP_OF_ROUNDING and not rests and (is_curved(seg, k) or is_curved(seg, following))
     if curved:
-        largest = min(_largest_beside(seg, k, limits, work), _largest_beside(seg, following, limits, work))
+        # A corner that the path slows down for anyway is passed slower instead of taking more of the ramps.
+        kept = most if needed > most else 1.0 - LEAST_ON_CURVE
+        largest = 1.0
+        if is_curved(seg, k):
+            largest = float(_held(seg, k, limits, work, kept))
+        if is_curved(seg, following):
+            largest = min(largest, float(_held(seg, following, limits, work, kept)))
         if step > largest:
             step = largest
             most = step / part
@@ -400,12 +406,6 @@ def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) 
             used = turning + ramp if row["kind"] == SPLINE else math.sqrt(turning * turning + ramp * ramp)
             held = min(held, 1.0 - used)
     return max(held, 0.0)
-
-
-@compiled
-def _largest_beside(seg: Segments, k: int, limits: AxisLimits, work: Floats) -> float:
-    """Return which step share a corner beside segment `k` may take so that a curve keeps half of its ramps."""
-    return float(_held(seg, k, limits, work, 1.0 - LEAST_ON_CURVE)) if is_curved(seg, k) else 1.0
 
 
 @compiled
