@@ -399,12 +399,19 @@ def test_a_rounded_chain_is_never_slower_than_exact_stops(settings: PathSettings
 
 
 def short_chain(
-    seed: int, tolerance: float, *, last: float = 0.5, stops: bool = False, **more: float
+    seed: int,
+    tolerance: float,
+    *,
+    last: float = 0.5,
+    stops: bool = False,
+    jerk: float = 0.0,
+    depth: int = 0,
 ) -> Chain:
     """Return a random chain of elements down to 1e-7 mm with corners by share, ready to start."""
     rng = np.random.default_rng(seed)
+    settings = PathSettings(tolerance=tolerance, shares=(0.1, 0.5, last), jerk=jerk, depth=depth)
     path = Chain(
-        machine(rng, PathSettings(tolerance=tolerance, shares=(0.1, 0.5, last), **more)),  # type: ignore[arg-type]
+        machine(rng, settings),
         list(PLANES.values())[seed % 3],
         float(rng.choice((20.0, 60.0, 300.0))),
     )
@@ -439,11 +446,11 @@ def test_corners_closer_than_a_cycle_share_it(seed: int, tolerance: float) -> No
     assert max(overload(path.state)) <= 1.0 + 1e-6
 
 
-@pytest.mark.parametrize("more", [{}, {"jerk": 1e5, "depth": 2}], ids=str)
+@pytest.mark.parametrize(("jerk", "depth"), [(0.0, 0), (1e5, 2)])
 @pytest.mark.parametrize("tolerance", [0.0, 0.01, math.inf])
-def test_short_chains_keep_the_limits(tolerance: float, more: dict[str, float]) -> None:
+def test_short_chains_keep_the_limits(tolerance: float, jerk: float, depth: int) -> None:
     for seed in seeds(0, 30):
-        path = short_chain(seed, tolerance, **more)
+        path = short_chain(seed, tolerance, jerk=jerk, depth=depth)
         run_recorded(path.state)
         assert max(overload(path.state)) <= 1.0 + 1e-6, f"seed {seed}"
 
