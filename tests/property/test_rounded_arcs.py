@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 
 import polycnc
 from polycnc.kernel import (
+    BY_SHARE,
     EXACT_PATH,
     RAPID,
     STOP,
@@ -392,3 +393,82 @@ def test_a_rounded_chain_is_never_slower_than_exact_stops(settings: PathSettings
         assert cycles[0] <= cycles[1], f"seed {seed}"
         saved += cycles[1] - cycles[0]
     assert saved > 0
+
+
+# ------------------------------------------------------------------ down to next to nothing
+
+
+def short_chain(
+    seed: int,
+    tolerance: float,
+    *,
+    last: float = 0.5,
+    stops: bool = False,
+    jerk: float = 0.0,
+    depth: int = 0,
+) -> Chain:
+    """Return a random chain of elements down to 1e-7 mm with corners by share, ready to start."""
+    rng = np.random.default_rng(seed)
+    settings = PathSettings(tolerance=tolerance, shares=(0.1, 0.5, last), jerk=jerk, depth=depth)
+    path = Chain(
+        machine(rng, settings),
+        list(PLANES.values())[seed % 3],
+        float(rng.choice((20.0, 60.0, 300.0))),
+    )
+    path.state.paths.row[0]["rounding_gap_s"] = 0.004
+    shortest = rng.uniform(-7.0, 0.0)
+    longest = min(1.0, shortest + float(rng.choice((0.5, 2.0, 9.0))))
+    count = int(rng.choice((2, 4, 10, 40)))
+    turns: tuple[float, ...] = (0.0, 1e-4, 0.003, 0.02, 0.3, 1.0, 2.0, 3.0, math.pi)
+    if seed % 2 == 0:
+        turns = (0.0, 1e-3, 0.01, 0.05, 10.0 ** rng.uniform(-4, 0))
+    one_side = rng.random() < 0.3
+    curved = float(rng.choice((0.0, 0.5, 1.0)))
+    for _ in range(count):
+        length = 10.0 ** rng.uniform(shortest, longest)
+        side = float(rng.choice((1.0, -1.0))) if rng.random() < curved else 0.0
+        bend = side / (length * 10.0 ** rng.uniform(-0.7, 2.0))
+        turn = float(rng.choice(turns)) * (1.0 if one_side else float(rng.choice((-1.0, 1.0))))
+        path.go(turn, bend, length, flags=STOP if stops else 0)
+    prepare(path.state)
+    start_path(path.state.paths, 0)
+    return path
+
+
+# Two corners within a cycle, a corner beside a short element and a smooth joint, and one between arcs.
+@pytest.mark.parametrize(
+    ("seed", "tolerance"),
+    [(437, 0.0), (637, math.inf), (651, 0.01), (1144, math.inf), (1589, 0.01)],
+)
+def test_corners_closer_than_a_cycle_share_it(seed: int, tolerance: float) -> None:
+    path = short_chain(seed, tolerance)
+    run_recorded(path.state)
+    assert max(overload(path.state)) <= 1.0 + 1e-6
+
+
+@pytest.mark.parametrize(("jerk", "depth"), [(0.0, 0), (1e5, 2)])
+@pytest.mark.parametrize("tolerance", [0.0, 0.01, math.inf])
+def test_short_chains_keep_the_limits(tolerance: float, jerk: float, depth: int) -> None:
+    for seed in seeds(0, 30):
+        path = short_chain(seed, tolerance, jerk=jerk, depth=depth)
+        run_recorded(path.state)
+        assert max(overload(path.state)) <= 1.0 + 1e-6, f"seed {seed}"
+
+
+def test_what_corners_hold_back_costs_no_more_than_its_root() -> None:
+    """A line from rest to rest with 1 - s of its acceleration takes 1 / sqrt(1 - s) of the time at most."""
+    for seed in [*seeds(0, 20), 169, 1085, 1119]:
+        own, stop = (
+            skip(path.state, 0, int(path.state.paths.row[0]["tail"]))
+            for path in (short_chain(seed, 0.01, last=0.0, stops=stops) for stops in (False, True))
+        )
+        assert own <= stop / math.sqrt(0.9) + 1, f"seed {seed}"
+
+
+def test_there_is_no_room_beside_a_line_of_next_to_no_length() -> None:
+    path = chain(math.inf)
+    row = path.state.paths.row[0]
+    row["corner_rule"], row["corner_cycle_s"], row["corner_share"] = BY_SHARE, CYCLE_S, 0.1
+    for bend in (0.0, 0.0, 0.5e6, 0.0):
+        path.go(1.0, bend, 5e-7)
+    assert [int(kind) for kind in path.rows()["kind"]] == [LINE, LINE, ARC, LINE]

@@ -44,6 +44,8 @@ def cut_by_share(
     overlap in the corner with half the acceleration. `part_beside` of the acceleration is there for the corner as it
     is, all on lines, less on arcs; where that is passed as fast there is no arc either.
     """
+    if cut_mm <= 0.0:  # there is no room beside a line of next to no length
+        return 0.0, 0.0
     sine = math.sqrt(work[NORMAL] ** 2 + work[NORMAL + 1] ** 2 + work[NORMAL + 2] ** 2)
     speed = feed_along(path, line["feed_mm_s"], speed_mm_s)
     accel, accel_after, busiest = math.inf, math.inf, 0.0

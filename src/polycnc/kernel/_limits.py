@@ -23,6 +23,7 @@ from polycnc.kernel._circle3d import circle3d_tangent_bound
 from polycnc.kernel._corner_rules import AS_AXES_ALLOW, BY_SHARE, corner_speed, step_share, turns
 from polycnc.kernel._geometry import is_curved, segment_tangent
 from polycnc.kernel._jit import compiled
+from polycnc.kernel._path import HELD, RUNNING
 from polycnc.kernel._ramps import MOST_SHARE, beside_corner
 from polycnc.kernel._segments import (
     ARC,
@@ -52,6 +53,9 @@ CORNER_MARGIN = 1.125  # the most that corners closer than a cycle can add up to
 LARGEST_BEND = 0.005  # rad; more is a corner, where an exact path comes to rest
 STRAIGHT = 1e-13  # a smaller change of direction is rounding
 LEAST_PART = 0.249  # of `full_accel` is left whatever the corners and the override turn out to be
+LEAST_ON_CURVE = 0.5  # of its ramps is left to a curve beside a corner with BY_SHARE
+STEP_OF_ROUNDING = 1e-5  # smaller shares of a cycle come from arcs that touch a line by rounding only
+MOST_BETWEEN = 16  # joints that are looked at between two corners with BY_SHARE
 WORTH = 0.5  # of a corner's speed is what the ramp beside it may lose; more and stopping would be as good
 
 
@@ -240,7 +244,7 @@ def limit_junction(
     segment_tangent(seg, following, 0.0, work[1])
     speed = min(row["cap"], after["cap"])
     if path["corner_rule"] == BY_SHARE:
-        row["junction"] = _junction_by_share(row, after, limits, path, work, speed)
+        row["junction"] = _junction_by_share(seg, k, following, limits, path, work, speed)
         return
     if row["flags"] & CORNER_STOP and turns(work, LARGEST_BEND):
         return
@@ -287,23 +291,143 @@ def limit_junction(
 
 @compiled
 def _junction_by_share(
-    row: np.void, after: np.void, limits: AxisLimits, path: np.void, work: Floats, speed: float
+    seg: Segments, k: int, following: int, limits: AxisLimits, path: np.void, work: Floats, speed: float
 ) -> float:
     """Return the speed of a corner that takes a share of the acceleration, and hold that share back beside it.
 
     An exact path that rests in the corner holds it back all the same.
     """
+    row, after = seg.row[k], seg.row[following]
     share = step_share(limits, work, speed, after["full_accel"], path["corner_cycle_s"])
+    part = 1.0
     if (row["kind"] == ARC or after["kind"] == ARC) and path["rounding_share"] > 0.0:
-        share /= path["rounding_share"]  # an arc needs the rest to turn
+        part = path["rounding_share"]  # an arc needs the rest to turn
     most = path["corner_share"]
-    if share > most:
-        speed = 0.0 if row["flags"] & CORNER_STOP else speed * most / share
-    row["kept_out"] = min(share, most)
+    needed = share / part
+    step = part * min(needed, most)
+    rests = needed > most and row["flags"] & CORNER_STOP != 0
+    curved = step > STEP_OF_ROUNDING and not rests and (is_curved(seg, k) or is_curved(seg, following))
+    if curved:
+        # A corner that the path slows down for anyway is passed slower instead of taking more of the ramps.
+        kept = most if needed > most else 1.0 - LEAST_ON_CURVE
+        largest = 1.0
+        if is_curved(seg, k):
+            largest = float(_held(seg, k, limits, work, kept))
+        if is_curved(seg, following):
+            largest = min(largest, float(_held(seg, following, limits, work, kept)))
+        if step > largest:
+            step = largest
+            most = step / part
+    if needed > most:
+        speed = 0.0 if rests else speed * most / needed
+    row["kept_out"] = min(needed, most)
     after["kept_in"] = row["kept_out"]
+    if curved:
+        row["kept_out"] = max(row["kept_out"], _kept_on_curve(seg, k, limits, work, step))
+        after["kept_in"] = max(after["kept_in"], _kept_on_curve(seg, following, limits, work, step))
+    if speed > 0.0:
+        if step > STEP_OF_ROUNDING:
+            speed = float(_apart(seg, k, limits, path, work, speed, step))
+        inherited = float(row["kept_in"])
+        if inherited > STEP_OF_ROUNDING and not _lasts_beside(row, path["corner_cycle_s"], speed):
+            inherited = min(inherited, _held(seg, k, limits, work, inherited))
+            after["kept_in"] = max(after["kept_in"], inherited)
+            if is_curved(seg, following):
+                after["kept_in"] = max(
+                    after["kept_in"], _kept_on_curve(seg, following, limits, work, inherited)
+                )
     if after["flags"] & LAST and path["last_share"] > 0.0:
         speed = min(speed, math.sqrt(path["last_share"] * after["full_accel"] * after["length"]))
     return float(speed)
+
+
+@compiled
+def _lasts_beside(row: np.void, time_s: float, speed: float) -> bool:
+    """Tell whether a segment takes at least `time_s`, its end being passed with `speed`."""
+    return bool(row["length"] >= row["cap"] * time_s or _lasts(row, speed, time_s))
+
+
+@compiled
+def _apart(
+    seg: Segments, k: int, limits: AxisLimits, path: np.void, work: Floats, speed: float, step: float
+) -> float:
+    """Return the speed up to `speed` at the end of segment `k` so late that the corner before is a cycle away.
+
+    Two corners within a cycle would both take their shares of it, and a corner needs its share, `step`, to be held
+    back for a whole cycle before it: what is known of the segments there may be final.
+    """
+    cycle = path["corner_cycle_s"]
+    base, capacity = path["base"], path["capacity"]
+    head = base + path["head"] % capacity
+    way, time, accel, before = 0.0, 0.0, 0.0, math.inf
+    for _ in range(MOST_BETWEEN):
+        row = seg.row[k]
+        way += row["length"]
+        time += row["length"] / row["cap"]
+        accel = max(accel, row["full_accel"])
+        if time >= cycle:
+            return speed
+        if k == head:
+            if path["state"] != RUNNING and path["state"] != HELD:  # it begins at rest
+                return speed
+            break
+        k = base + (k - base - 1 + capacity) % capacity
+        last = seg.row[k]
+        if last["junction"] <= 0.0:
+            return speed
+        kept = max(last["kept_in"], last["kept_out"])
+        if last["kept_out"] > STEP_OF_ROUNDING or _held(seg, k, limits, work, kept) < step * (1.0 - 1e-9):
+            before = float(last["junction"])
+            break
+    gain = accel * cycle
+    slow = max(0.0, way / cycle - 0.5 * gain)  # even if it comes as fast as it can brake
+    if before < math.inf:
+        root = gain * (4.0 * before + 2.0 * gain) - 4.0 * accel * way
+        if root <= 0.0:
+            return speed
+        other = before + gain - math.sqrt(root)
+        if other > slow and before * before <= other * other + 2.0 * accel * way:
+            slow = other
+    return float(min(speed, slow))
+
+
+@compiled
+def _held(seg: Segments, k: int, limits: AxisLimits, work: Floats, kept: float) -> float:
+    """Return which part of every axis' acceleration segment `k` leaves alone when its ramps give up `kept`."""
+    if not is_curved(seg, k):
+        return kept
+    row = seg.row[k]
+    _curve_bounds(seg, k, work[0], work[1])
+    held = 1.0
+    for i in range(work.shape[1]):
+        if work[0, i] > 0.0:
+            turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
+            ramp = (1.0 - kept) * row["full_accel"] * work[0, i] / limits.acceleration[i]
+            used = turning + ramp if row["kind"] == SPLINE else math.sqrt(turning * turning + ramp * ramp)
+            held = min(held, 1.0 - used)
+    return max(held, 0.0)
+
+
+@compiled
+def _kept_on_curve(seg: Segments, k: int, limits: AxisLimits, work: Floats, step: float) -> float:
+    """Return the part of its ramps that a curve gives up so that all it uses leaves a corner the share `step`.
+
+    Turning takes what it takes, so the ramps give up more than the corner needs.
+    """
+    if not is_curved(seg, k):
+        return 0.0
+    row = seg.row[k]
+    _curve_bounds(seg, k, work[0], work[1])
+    kept = 0.0
+    for i in range(work.shape[1]):
+        if work[0, i] > 0.0 and row["full_accel"] > 0.0:
+            turning = row["cap"] * row["cap"] * work[1, i] / limits.acceleration[i]
+            ramp = row["full_accel"] * work[0, i] / limits.acceleration[i]
+            left = max(0.0, 1.0 - step - turning)
+            if row["kind"] != SPLINE:
+                left = math.sqrt(left * (1.0 - step + turning))
+            kept = max(kept, 1.0 - left / ramp)
+    return min(kept, 1.0 - LEAST_ON_CURVE)
 
 
 @compiled
