@@ -28,7 +28,7 @@ def remarked(folder: Path, program: str = HOLES) -> list[tuple[str, str, int, in
 def test_the_motion_of_loops_and_sub_programs_is_remarked(tmp_path: Path) -> None:
     (tmp_path / "DRILL").write_text(DRILL)
     before = {path.name for path in tmp_path.iterdir()} | {"main.npg"}
-    assert remarked(tmp_path) == [("spindle_off", "DRILL", 2, 4), ("no_tool", "DRILL", 2, 4)]
+    assert remarked(tmp_path) == [("spindle_off", "DRILL", 2, 1), ("no_tool", "DRILL", 2, 1)]
     assert {path.name for path in tmp_path.iterdir()} == before  # neither report nor memory nor link table
     turning = HOLES.replace("10 FOR", "N8 T3 M6\nN9 S900 M3\n10 FOR")
     assert remarked(tmp_path, turning) == []

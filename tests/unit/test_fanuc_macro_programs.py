@@ -216,7 +216,7 @@ def test_system_variables_are_those_of_the_control() -> None:
 
 
 def test_the_hours_of_operation_are_counted_on_from_what_a_program_wrote() -> None:
-    control, _ = attached()
+    control, handle = attached()
     registered(
         control,
         O1="\n#3002=0.25\n#500=#3002\nG4X3.6\n#501=#3002\n#3901=17\n#3005=2\n#1132=40965\n#1100=0\n#1114=1\nM30\n",
@@ -226,7 +226,7 @@ def test_the_hours_of_operation_are_counted_on_from_what_a_program_wrote() -> No
     assert control.macros.get(501) == pytest.approx(0.251, abs=2e-5)
     assert (control.parameters.value(6711), control.parameters.value(0)) == (18, 2)  # and this part
     assert control.custom_macros.user_outputs == 0b1110_0000_0000_0100
-    assert fwlib.pmc_rdpmcrng(1, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [4, 0xE0 - 256]
+    assert fwlib.pmc_rdpmcrng(handle, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [4, 0xE0 - 256]
 
 
 def test_positions_are_read_when_the_blocks_before_have_been_executed() -> None:
