@@ -43,6 +43,11 @@ def at_run_time(text: str, host: RecordingHost | None = None) -> ProgramError:
 # Blocks
 
 
+def test_a_number_of_many_digits_is_gone_through_once() -> None:
+    """It is followed by what makes it none: every part of it was tried once, and every part of that."""
+    assert errors(f"10 #A=1\nN20 G1 X{'9' * 20_000}]") == []  # the interpreter refuses it
+
+
 @pytest.mark.covers("cpl.ncblock", "cpl.ex.353", "cpl.program")
 def test_nc_blocks_and_cpl_blocks_mix() -> None:
     ran = Ran("N100 G1 X150 Y100.525\nG1 X150 Y100.525\n10 #A=2.5\nN20 X[#A]\nM30")

@@ -23,6 +23,7 @@ HEAD = "LOADTL/3\nSPINDL/RPM,900,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/11,12,30\n"
         ("CUTCOM/LEFT,1e400\n", "the number 1E400 is beyond all others", 6),
         ("CUTCOM/LEFT,4.5\n", "the number of an offset must be a whole number, not 4.5", 6),
         ("LOADTL/4,ADJUST,2.5\n", "the number of an offset must be a whole number, not 2.5", 6),
+        (f"GOTO/{'9' * 50_000}X,2,3\n", "GOTO", 6),  # looked at digit by digit, once
         ("SPINDL/-800,CLW\n", "a spindle speed of -800", 6),
         ("FEDRAT/1e400,MMPM\n", "the number 1E400 is beyond all others", 6),
         ("UNITS/INCHES\nGOTO/1,2,3\n", "the unit changes behind the first move", 6),
