@@ -45,7 +45,7 @@ def at_run_time(text: str, host: RecordingHost | None = None) -> ProgramError:
 
 def test_a_number_of_many_digits_is_gone_through_once() -> None:
     """It is followed by what makes it none: every part of it was tried once, and every part of that."""
-    assert errors(f"10 #A=1\nN20 G1 X{'9' * 20_000}]") == []  # the interpreter refuses it
+    assert errors(f"10 #A=1\nN20 G1 Y[#A] X{'9' * 20_000}]") == ["2:14 'X' begins no word"]
 
 
 @pytest.mark.covers("cpl.ncblock", "cpl.ex.353", "cpl.program")
