@@ -500,6 +500,19 @@ def test_the_end_of_a_program_stops_the_spindle_after_its_motion(
     assert made.status().spindle.commanded_rpm == 900.0 * direction
 
 
+@pytest.mark.parametrize(("returns", "direction"), [(True, 1), (False, 0)])
+def test_an_end_that_returns_to_its_caller_lets_the_spindle_turn(returns: bool, direction: int) -> None:
+    made = control()
+    calls = made.dialect.sub_program.model_copy(update={"end_returns": returns})
+    made.change_dialect(made.dialect.model_copy(update={"sub_program": calls}))
+    made.programs.create("CALL", "S700 M3\nM98 P12\nG4 P2.5\nM5\nM30\n")
+    made.programs.create("O0012", "G1 X1.5 F900\nM30\n")
+    made.select_program("CALL")
+    made.cycle_start()
+    made.advance(2000)
+    assert made.status().spindle.direction == direction
+
+
 # ---------------------------------------------------------------------- emergency, limits
 
 

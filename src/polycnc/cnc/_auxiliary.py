@@ -9,7 +9,7 @@ from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._plc import Function, PlcModel, functions_of
 from polycnc.cnc._spindle import Spindle
 from polycnc.machine import Clock, TimesConfig
-from polycnc.nc import Dialect, Event, Group, MAction, ModalWords
+from polycnc.nc import BlockRecord, Dialect, Event, Group, MAction
 
 _ACTIONS = {action.title: action for action in MAction}
 _SENSES: dict[MAction | None, int | None] = {
@@ -41,9 +41,7 @@ class AuxiliaryFunctions:
             modal = block.modal
             # Constant surface speed has no speed of its own here: the spindle keeps the last one.
             rpm = None if modal.g.get(Group.SPINDLE_MODE) == _surface_speed(dialect) else modal.speed
-            direction = _direction(event, modal, dialect)
-            if self._end_stops and _ends(event, dialect):
-                direction = 0
+            direction = _direction(event, block, dialect, end_stops=self._end_stops)
             self._spindle.turn(rpm=rpm, direction=direction)
             if direction is None and not self._spindle.is_orienting:
                 self._spindle.orient()
@@ -104,24 +102,21 @@ class AuxiliaryFunctions:
         self._waiting = {path: list(serials) for path, serials in waiting if serials}
 
 
-def _ends(event: Event, dialect: Dialect) -> bool:
-    """Tell whether an event is the end of the program, which stops the spindle (ISO 6983-1, M02 and M30)."""
-    return any(
-        letter == "M" and _ACTIONS.get(dialect.m.get(f"{number}", "")) is MAction.PROGRAM_END
-        for letter, number in functions_of(event.word)
-    )
-
-
-def _direction(event: Event, modal: ModalWords, dialect: Dialect) -> int | None:
+def _direction(event: Event, block: BlockRecord, dialect: Dialect, *, end_stops: bool) -> int | None:
     """Return how the spindle turns from an event on, None if it is oriented.
 
-    Cycles stop it, turn it back and orient it on their way, by events of their own: what the program says stays.
+    Cycles stop it, turn it back and orient it on their way, by events of their own: what the program says stays. With
+    `end_stops` the end of the program stops it (ISO 6983-1, M02 and M30), but not one that returns to a caller.
     """
+    modal = block.modal
+    returns = dialect.sub_program.end_returns and bool(block.stack)
     direction = None if modal.spindle_oriented else modal.spindle_direction
     for letter, number in functions_of(event.word):
         action = _ACTIONS.get(dialect.m.get(f"{number}", "")) if letter == "M" else None
         if action in _SENSES:
             direction = _SENSES[action]
+        elif action is MAction.PROGRAM_END and end_stops and not returns:
+            direction = 0
         elif letter == "M" and number == _ORIENTS and number not in modal.m:
             direction = None
     return direction

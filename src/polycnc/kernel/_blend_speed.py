@@ -77,6 +77,29 @@ def cut_by_share(
 
 
 @compiled
+def _stop_s(way_mm: float, speed_mm_s: float, accel_mm_s2: float) -> float:
+    """Return the time that the last `way_mm` before a rest and what slowing down takes of the way before cost."""
+    return float(way_mm / speed_mm_s + 0.5 * speed_mm_s / accel_mm_s2)
+
+
+@compiled
+def _is_quicker(
+    before: tuple[float, float, float], after: tuple[float, float, float], turning_mm_s: float, arc_mm: float
+) -> bool:
+    """Tell whether an arc of this length and speed is quicker than a rest between what it takes of both its sides.
+
+    They are speed, acceleration and length each.
+    """
+    turning = min(turning_mm_s, before[0], after[0])
+    stopping = _stop_s(before[2], before[0], before[1]) + _stop_s(after[2], after[0], after[1])
+    slower, later = before[0] - turning, after[0] - turning
+    rounding = arc_mm / turning
+    rounding += slower * slower / (2.0 * before[1] * before[0])
+    rounding += later * later / (2.0 * after[1] * after[0])
+    return bool(rounding < stopping)
+
+
+@compiled
 def saves_time(
     line: np.void,
     limits: AxisLimits,
@@ -100,19 +123,9 @@ def saves_time(
             after_mm_s, accel_after = min(after_mm_s, speed / w), min(accel_after, allowed / w)
         if u > 0.0 or w > 0.0:
             accel, turning = min(accel, allowed), min(turning, speed)
-    turning = min(turning, before_mm_s, after_mm_s, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
-    stopping = _stop_s(cut_mm, before_mm_s, accel_before) + _stop_s(cut_mm, after_mm_s, accel_after)
-    rounding = radius_mm * turn_rad / turning
-    slower, later = before_mm_s - turning, after_mm_s - turning
-    rounding += slower * slower / (2.0 * accel_before * before_mm_s)
-    rounding += later * later / (2.0 * accel_after * after_mm_s)
-    return bool(rounding < stopping)
-
-
-@compiled
-def _stop_s(way_mm: float, speed_mm_s: float, accel_mm_s2: float) -> float:
-    """Return the time that the last `way_mm` before a rest and what slowing down takes of the way before cost."""
-    return float(way_mm / speed_mm_s + 0.5 * speed_mm_s / accel_mm_s2)
+    turning = min(turning, math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
+    before, after = (before_mm_s, accel_before, cut_mm), (after_mm_s, accel_after, cut_mm)
+    return _is_quicker(before, after, turning, radius_mm * turn_rad)
 
 
 @compiled
@@ -132,13 +145,8 @@ def saves_time_in_plane(
     after_mm_s, accel_after = _going(limits, p, q, after, feeds[1])
     accel = min(limits.acceleration[p], limits.acceleration[q])
     turning = min(limits.speed[p], limits.speed[q], math.sqrt(CENTRIPETAL_SHARE * accel * radius_mm))
-    turning = min(turning, before_mm_s, after_mm_s)
-    stopping = _stop_s(cuts_mm[0], before_mm_s, accel_before) + _stop_s(cuts_mm[1], after_mm_s, accel_after)
-    rounding = radius_mm * turn_rad / turning
-    slower, later = before_mm_s - turning, after_mm_s - turning
-    rounding += slower * slower / (2.0 * accel_before * before_mm_s)
-    rounding += later * later / (2.0 * accel_after * after_mm_s)
-    return bool(rounding < stopping)
+    first, last = (before_mm_s, accel_before, cuts_mm[0]), (after_mm_s, accel_after, cuts_mm[1])
+    return _is_quicker(first, last, turning, radius_mm * turn_rad)
 
 
 @compiled

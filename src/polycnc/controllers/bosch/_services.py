@@ -74,9 +74,8 @@ class Services:
             raise NcsError(NcsCode.NOTHING_SELECTED)
         if shown.mode not in _PROGRAM_MODES:
             raise NcsError(NcsCode.WRONG_MODE)
-        raise NcsError(
-            NcsCode.OCCUPIED
-        )  # statements before prepared blocks must not be executed a second time
+        # Statements before prepared blocks must not be executed a second time.
+        raise NcsError(NcsCode.OCCUPIED)
 
     def control_reset(self, channel: int, kind: int) -> None:
         _check_kind(kind)

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from polycnc.errors import ProgramError, SourcePosition
 
 _TOKEN = re.compile(r"[^\s,()/]+")
-_NUMBER = re.compile(
-    r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[EeDd][+-]?\d++)?"
-)  # linear: digits are gone through once
+# Digits are gone through once, however many they are.
+_NUMBER = re.compile(r"[+-]?(?:\d++\.?\d*+|\.\d++)(?:[EeDd][+-]?\d++)?")
 
 
 @dataclass(frozen=True, slots=True)
