@@ -17,9 +17,6 @@ from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._modal import (
     AXIS_P,
     AXIS_Q,
-    MOTION_CUBIC,
-    MOTION_NURBS,
-    MOTION_QUADRATIC,
     NO_AXIS,
     PLANE,
     PLANE_XY,
@@ -29,14 +26,6 @@ from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
 from polycnc.nc.blocks._words import Fail, GWord
 from polycnc.nc.text._scan_plain import Word
-
-SPLINES = {
-    Action.CUBIC_SPLINE: MOTION_CUBIC,
-    Action.QUADRATIC_SPLINE: MOTION_QUADRATIC,
-    Action.NURBS: MOTION_NURBS,
-    Action.NURBS_END: MOTION_NURBS,
-}
-"""Motions that count for their own block, or up to the block that ends them; they take axis words."""
 
 XY = tuple[float, float]
 
