@@ -6,9 +6,9 @@ import dataclasses
 import re
 from typing import NamedTuple
 
-from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks import _turning_blocks as turning_blocks
-from polycnc.nc.blocks._actions import Action
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, scan_block
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import MOTION_ARC_CCW, MOTION_ARC_CW, MOTION_LINEAR, MOTION_NONE, MOTION_RAPID
 from polycnc.nc.blocks._splines import SPLINES
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Group
+from polycnc.nc.modal._modal import MOTION_ARC_CCW, MOTION_ARC_CW, MOTION_LINEAR, MOTION_NONE, MOTION_RAPID
 from polycnc.nc.text._scan_plain import Word
 
 MOTIONS = {
