@@ -15,7 +15,7 @@ from polycnc.kernel import PATH_RESTED, advance, give_to_path, prepare_path, sta
 from polycnc.kernel._ramps import LENGTH, SPEED_IN, SPEED_OUT, SPEED_PEAK, TIME_CRUISE, TIME_IN, TIME_OUT
 from polycnc.machine import Machine, load_machine
 from polycnc.nc import Channel, ProgramText, dialect_for
-from polycnc.nc.blocks._modal import ABSOLUTE, FEED, MOTION
+from polycnc.nc.modal._modal import ABSOLUTE, FEED, MOTION
 from polycnc.nc.text._scan import scan, scan_rules, word_columns
 from polycnc.runner import TraceWriter
 

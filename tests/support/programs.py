@@ -11,8 +11,8 @@ from polycnc.kernel import ARC, LINE, RAPID, STOP, WAIT, give_to_path
 from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP_RAD, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
 from polycnc.nc import Channel, Dialect, ProgramText, line_of, load_dialect
-from polycnc.nc._block_records import LINE_MASK
-from polycnc.nc.blocks._modal import ORDINARY
+from polycnc.nc.modal._modal import ORDINARY
+from polycnc.nc.records._block_records import LINE_MASK
 
 AXIS = '[[axis]]\nname = "{name}"\nvmax_mm_s = 500\namax_mm_s2 = 5000\nsoft_limits_mm = [{low}, {high}]\n'
 SPINDLE = "[spindle]\nmax_rpm = 10000\n"

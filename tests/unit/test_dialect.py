@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from polycnc.errors import ConfigurationError, UsageError
-from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
-from polycnc.nc.blocks._actions import Action, Group, MAction
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
     ARC_TOLERANCE,

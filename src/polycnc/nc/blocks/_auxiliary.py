@@ -9,13 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from polycnc.machine import ToolConfig
-from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import INCH
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord, MWord, code_text
+from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.modal._modal import INCH
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH
 

@@ -6,8 +6,8 @@ import dataclasses
 import re
 from typing import NamedTuple
 
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action, Family, of_family
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Family, of_family
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, scan_block
 

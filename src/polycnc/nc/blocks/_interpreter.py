@@ -13,11 +13,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from polycnc.errors import ProgramError
-from polycnc.nc._block_records import AGAIN
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action, Family, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary
-from polycnc.nc.blocks._calls import Place
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._contours import (
@@ -32,16 +28,6 @@ from polycnc.nc.blocks._corner_blocks import NUMBERS, CornerBlocks
 from polycnc.nc.blocks._cycle_blocks import CycleBlocks
 from polycnc.nc.blocks._frames import Frames
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import (
-    FEED_MODE,
-    FEED_PER_MINUTE,
-    MOTION,
-    MOTION_ARC_CW,
-    MOTION_LINEAR,
-    MOTION_NONE,
-    MOTION_NURBS,
-    ORDINARY,
-)
 from polycnc.nc.blocks._modes import Modes
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline, Stop, Wait
@@ -54,7 +40,21 @@ from polycnc.nc.blocks._splines import SplineBlocks
 from polycnc.nc.blocks._turning_blocks import TurningBlocks
 from polycnc.nc.blocks._word_checks import WordChecks
 from polycnc.nc.blocks._words import BlockWords, GWord, sort_words
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Family, Group
+from polycnc.nc.modal._modal import (
+    FEED_MODE,
+    FEED_PER_MINUTE,
+    MOTION,
+    MOTION_ARC_CW,
+    MOTION_LINEAR,
+    MOTION_NONE,
+    MOTION_NURBS,
+    ORDINARY,
+)
+from polycnc.nc.records._block_records import AGAIN
 from polycnc.nc.text._not_words import slip, statements
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
 from polycnc.nc.text._scan_plain import Block, Word

@@ -7,14 +7,18 @@ from dataclasses import dataclass, replace
 
 from polycnc.kernel import EXACT_PATH as EXACT_PATH_TOLERANCE
 from polycnc.machine import LONGEST_BLOCK_S, ToolConfig
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._auxiliary import Auxiliary, whole_number
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._compensation import Side
 from polycnc.nc.blocks._coordinates import MACHINE_ZERO, work_group
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._moves import Wait
+from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, additional_offset
+from polycnc.nc.blocks._tip import TIPS, TipShift
+from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Group
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
     AXIS_P,
@@ -33,10 +37,6 @@ from polycnc.nc.blocks._modal import (
     set_inch,
     set_plane,
 )
-from polycnc.nc.blocks._moves import Wait
-from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, additional_offset
-from polycnc.nc.blocks._tip import TIPS, TipShift
-from polycnc.nc.blocks._words import BlockWords, Fail, code_text, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 

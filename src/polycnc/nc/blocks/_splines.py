@@ -12,9 +12,12 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from polycnc.kernel import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
+from polycnc.nc.blocks._words import Fail, GWord
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import (
     AXIS_P,
     AXIS_Q,
     NO_AXIS,
@@ -22,9 +25,6 @@ from polycnc.nc.blocks._modal import (
     PLANE_XY,
     length_scale,
 )
-from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
-from polycnc.nc.blocks._words import Fail, GWord
 from polycnc.nc.text._scan_plain import Word
 
 XY = tuple[float, float]

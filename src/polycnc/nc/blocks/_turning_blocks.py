@@ -10,11 +10,8 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._modal import FEED, FEED_MODE, FEED_PER_REVOLUTION, INCH, NO_AXIS
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Feed, Line, QueueItem
 from polycnc.nc.blocks._moves import Point as AxisPoint
@@ -37,6 +34,9 @@ from polycnc.nc.blocks._turning import (
 )
 from polycnc.nc.blocks._turning_pockets import rough_pockets
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import FEED, FEED_MODE, FEED_PER_REVOLUTION, INCH, NO_AXIS
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 
 _INCREMENT_MM = 0.001

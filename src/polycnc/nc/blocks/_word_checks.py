@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action, Family, Group
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.text._scan_plain import Word
 
 _CURVED = (Family.SPLINE, Family.CURVE)

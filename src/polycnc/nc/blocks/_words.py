@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from polycnc.errors import ProgramError
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action, Group, MAction
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.text._scan_plain import Block, Word
 
 Fail = Callable[[str, str, Word | None], ProgramError]

@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import NamedTuple, TypeAlias
 
 from polycnc.errors import UsageError
-from polycnc.nc._block_records import Call
-from polycnc.nc._block_source import BlockSource
-from polycnc.nc._dialect import Dialect
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.records._block_records import Call
+from polycnc.nc.sources._block_source import BlockSource
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 from polycnc.units import whole
 
@@ -20,15 +21,6 @@ Library: TypeAlias = Callable[[int], ProgramText | None]
 
 _LABEL = re.compile(rb"(?:\A|(?<=[\r\n]))[ \t]*[Oo:][ \t]*0*([0-9]+)")
 _DIGITS = 4  # how many digits a program number is usually written with
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Say where the reading of a program stands: at the line that begins at byte `offset`."""
-
-    text: ProgramText
-    offset: int = 0
-    line: int = 1
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import Enum, IntEnum, StrEnum
 
-from polycnc.nc.blocks import _modal as modal
+from polycnc.nc.modal import _modal as modal
 
 
 class Group(StrEnum):

@@ -22,10 +22,9 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.nc._dialect import Dialect, DialectTables
-from polycnc.nc.blocks._actions import IN_FORCE, Action, Group
-from polycnc.nc.blocks._channel_state import ModalSnapshot
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.dialect._dialect import Dialect, DialectTables
+from polycnc.nc.modal._actions import IN_FORCE, Action, Group
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
     EXACT_PATH,
@@ -35,7 +34,8 @@ from polycnc.nc.blocks._modal import (
     MOTION,
     PLANE,
 )
-from polycnc.nc.blocks._placement import NO_PLACEMENT, Placement
+from polycnc.nc.modal._modal_snapshot import ModalSnapshot
+from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, scan, word_columns
 

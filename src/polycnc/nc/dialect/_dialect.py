@@ -20,9 +20,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
-from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
-from polycnc.nc.blocks._cycles import CycleSettings, PeckTap
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
+from polycnc.nc.modal._actions import M_ACTIONS, Action, MAction
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
     ARC_TOLERANCE,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from polycnc.nc.blocks._calls import Place
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import COMMENT, LABEL, ScanRules, WordColumns, scan, word_columns
 from polycnc.nc.text._scan_plain import Block, Word, scan_block

@@ -13,9 +13,24 @@ from dataclasses import replace
 from polycnc.errors import ProgramError, UsageError
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine, MachineConfig, SnapshotError
-from polycnc.nc._block_reading import CHUNK_BLOCKS, BlockReading
-from polycnc.nc._block_records import BlockRecords, Call
-from polycnc.nc._block_source import (
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._interpreter import Interpreter
+from polycnc.nc.blocks._messages import Messages
+from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._outcomes import Control, Trouble
+from polycnc.nc.blocks._queue import QueueWriter
+from polycnc.nc.channel._block_reading import CHUNK_BLOCKS, BlockReading
+from polycnc.nc.channel._calls import Back, Calls, Library
+from polycnc.nc.channel._channel_snapshot import ChannelSnapshot
+from polycnc.nc.channel._first_state import first_state
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
+from polycnc.nc.modal._modal import (
+    ORDINARY,
+)
+from polycnc.nc.modal._suppressed import Suppressed
+from polycnc.nc.records._block_records import BlockRecords, Call
+from polycnc.nc.sources._block_source import (
     BoundLanguage,
     CallProgram,
     Drain,
@@ -31,20 +46,7 @@ from polycnc.nc._block_source import (
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel_snapshot import ChannelSnapshot, Suppressed
-from polycnc.nc._dialect import Dialect
-from polycnc.nc._first_state import first_state
-from polycnc.nc.blocks._calls import Back, Calls, Library, Place
-from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._interpreter import Interpreter
-from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import (
-    ORDINARY,
-)
-from polycnc.nc.blocks._moves import Feed, Line
-from polycnc.nc.blocks._outcomes import Control, Trouble
-from polycnc.nc.blocks._queue import QueueWriter
-from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_fast_work, marked, run_plain
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import (
     MESSAGE,
