@@ -1,7 +1,8 @@
-"""Everything that a block may change besides the queue, and going back when a block is refused."""
+"""Everything that a block may change besides the queue."""
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._compensation import RadiusCompensation
-from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
+from polycnc.nc.blocks._coordinates import Coordinates, Floats
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._nurbs_curve import Nurbs
@@ -18,8 +19,9 @@ from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tables import ProgramTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
-from polycnc.nc.modal._frame import Frame
-from polycnc.nc.modal._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.modal._actions import Family
+from polycnc.nc.modal._frame import UNTURNED, Frame
+from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement
 
@@ -63,13 +65,14 @@ class Plain(NamedTuple):
     corner: Corner | None
     spline_way: tuple[float, float] | None
     nurbs: Nurbs | None
+    mode: Family
 
 
 class SavedState(NamedTuple):
-    """Hold a state to go back to."""
+    """Hold a state for a snapshot of its channel."""
 
     modal: tuple[npt.NDArray[Any], ...]
-    coordinates: SavedCoordinates
+    coordinates: Coordinates
     compensation: RadiusCompensation | None
     plain: Plain
 
@@ -92,15 +95,16 @@ class ChannelState:
     `probe` the last probing.
     `spline_way` leads from the end of a cubic spline to its last control point turned about, until anything else moves.
     With `rigid_tap` a tapping cycle turns the spindle itself. `turning` is what turning cycles keep, `tip` where
-    the tip of a turning tool lies.
+    the tip of a turning tool lies. `mode` is the mode of motion in force, which gives the moves of a block.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
         self.machine = machine
         self.modal = modal
         self.tables = ProgramTables(machine)
-        self.coordinates = Coordinates(self.tables, modal)
-        self.frame = Frame()
+        self.coordinates = Coordinates.none(len(modal.position))
+        self._tables_taken = self.tables.revision
+        self.frame = UNTURNED
         self.placement = Placement()
         self.probe: Probe | None = None
         self.skip_position: tuple[float, ...] | None = None
@@ -118,57 +122,69 @@ class ChannelState:
         self.corner: Corner | None = None  # a straight move that waits for the next one
         self.spline_way: tuple[float, float] | None = None
         self.nurbs: Nurbs | None = None  # a curve that is being written
+        self.mode = Family.MOVE
         self.side = 0
         self.compensation_tool: int | None = None
         self.length_tool = 0
         self.m_codes: tuple[int, ...] = ()
         self.axis_names: Sequence[str] = machine.axis_names
 
+    def copy(self) -> ChannelState:
+        """Return a state of its own that is equal; tools and work offsets are the same."""
+        made = copy.copy(self)
+        made.modal = copy_modal(self.modal)
+        made.compensation = self.compensation.copy()
+        return made
+
+    def take(self, other: ChannelState) -> None:
+        """Become equal to another state of the same channel; the columns stay the arrays that others hold.
+
+        The stage of radius compensation is that of `other`: who changes it copies it before.
+        """
+        modal = self.modal
+        self.__dict__.update(other.__dict__)
+        self.modal = modal
+        for column, new in zip(modal[CHANGING], other.modal[CHANGING], strict=True):
+            column[...] = new
+
+    def place_zero(self, coordinates: Coordinates) -> None:
+        """Put program zero where these shifts say."""
+        self.coordinates = coordinates
+        self._tables_taken = self.tables.revision
+        self.modal.offset[:] = coordinates.total(self.tables, self.modal)
+
+    def take_changes(self) -> None:
+        """Take over work offsets that have been changed in the table since."""
+        if self.tables.revision != self._tables_taken:
+            self.place_zero(self.coordinates)
+
+    @property
+    def tool_offset(self) -> Floats:
+        """What tools shift every axis by (mm)."""
+        return self.coordinates.tool_offset(self.tables, self.modal)
+
+    @property
+    def zero_offset(self) -> Floats:
+        """What zero offsets, without those of the program, shift every axis by (mm or degree)."""
+        return self.coordinates.zero_offset(self.tables)
+
     def save(self) -> SavedState:
-        """Return the state to go back to."""
-        return SavedState(
-            save_modal(self.modal),
-            self.coordinates.save(),
-            self.compensation.copy() if self.compensation.active else None,
-            self.plain(),
-        )
+        """Return what a snapshot keeps."""
+        modal = tuple(column.copy() for column in self.modal[CHANGING])
+        stage = self.compensation.copy() if self.compensation.active else None
+        return SavedState(modal, self.coordinates, stage, self.plain())
 
     def restore(self, saved: SavedState) -> None:
-        """Go back to a saved state."""
-        restore_modal(self.modal, saved.modal)
-        self.coordinates.restore(saved.coordinates)
-        if saved.compensation is None:
-            self.compensation.reset()
-        else:
-            self.compensation = saved.compensation.copy()
-        for name, value in zip(Plain._fields, saved.plain, strict=True):
-            setattr(self, name, value)
+        """Go back to a snapshot."""
+        for column, old in zip(self.modal[CHANGING], saved.modal, strict=True):
+            column[...] = old
+        self.coordinates = saved.coordinates
+        self.compensation = RadiusCompensation() if saved.compensation is None else saved.compensation.copy()
+        self.__dict__.update(saved.plain._asdict())
 
     def plain(self) -> Plain:
         """Return the plain values."""
-        return Plain(
-            self.spindle,
-            self.cycle,
-            self.tool,
-            self.selected_tool,
-            self.feed_word,
-            self.path_tolerance_mm,
-            self.merge_mm,
-            self.side,
-            self.compensation_tool,
-            self.length_tool,
-            self.m_codes,
-            self.frame,
-            self.skip_position,
-            self.placement,
-            self.probe,
-            self.rigid_tap,
-            self.turning,
-            self.tip,
-            self.corner,
-            self.spline_way,
-            self.nurbs,
-        )
+        return Plain._make(getattr(self, name) for name in Plain._fields)
 
     def snapshot(self) -> ModalSnapshot:
         """Return what is in force now."""

@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
 from polycnc.errors import ProgramError
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Block, Word
 
 Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
+LARGEST_NUMBER = 99_999_999
+NUMBERS = "NO:"
+"""The letters of block and program numbers."""
 MOST_WORDS = 1000
 """Words of a block: far more than any control reads. A file of one line would take hours otherwise."""
 _OF_MOVES = range(40, 50)  # offsets, behind which axis words are still a move
 _NOT_YET = "What it does would be left out: take it out, or post the program without it."
 _OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
+_REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 
 
@@ -61,14 +67,26 @@ class BlockWords:
     by_letter: dict[str, Word] = field(default_factory=dict)
     increment: float = 0.0
     takes_words: bool = False
-    _used: set[str] = field(default_factory=set)
+    used: set[str] = field(default_factory=lambda: set(NUMBERS))
+
+    def lengths(self, letters: Iterable[str]) -> list[tuple[str, float]]:
+        """Return letter and number of those of `letters` that are there, which are lengths or angles; take them."""
+        found = []
+        for letter in letters:
+            word = self.by_letter.get(letter)
+            if word is not None and letter not in self.used:
+                self.used.add(letter)
+                found.append(
+                    (letter, word.value if word.point or not self.increment else word.value * self.increment)
+                )
+        return found
 
     def take(self, letter: str) -> Word | None:
         """Return the word of `letter`, if there is one that nothing has taken, and take it."""
         word = self.by_letter.get(letter)
-        if word is None or letter in self._used:
+        if word is None or letter in self.used:
             return None
-        self._used.add(letter)
+        self.used.add(letter)
         return word
 
     def value(self, letter: str) -> float | None:
@@ -81,11 +99,11 @@ class BlockWords:
         word = self.take(letter)
         if word is None:
             return None
-        return word.value * self.increment if self.increment and not word.point else word.value
+        return word.value if word.point or not self.increment else word.value * self.increment
 
     def take_all(self) -> None:
         """Take every word that nothing has taken."""
-        self._used.update(self.by_letter)
+        self.used.update(self.by_letter)
 
     def first(self, *letters: str) -> Word | None:
         """Return the word of the first of `letters` that stands in the block, taken or not."""
@@ -102,7 +120,7 @@ class BlockWords:
     def unused(self) -> Iterator[tuple[str, Word]]:
         """Yield address and word of all that nothing has taken."""
         for letter, word in self.by_letter.items():
-            if letter not in self._used:
+            if letter not in self.used:
                 yield letter, word
 
 
@@ -111,8 +129,8 @@ def code_text(value: float) -> str:
     return f"{value:.0f}" if value.is_integer() and abs(value) < 1e16 else f"{value:.10g}"
 
 
-def sort_words(block: Block, dialect: Dialect, fail: Fail, count: Callable[[str], int]) -> BlockWords:
-    """Sort the words of `block`; `count` tells in how many blocks of the program a G code stands.
+def sort_words(block: Block, text: ProgramText, dialect: Dialect, fail: Fail) -> BlockWords:
+    """Sort the words of a block of `text`.
 
     Raises:
         ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
@@ -126,7 +144,7 @@ def sort_words(block: Block, dialect: Dialect, fail: Fail, count: Callable[[str]
         )
     for word in block.words:
         if word.letter == "G" and word.index is None:
-            _add_g(word, words, dialect, fail, count)
+            _add_g(word, words, text, dialect, fail)
         elif word.letter == "M" and word.index is None:
             _add_m(word, words, dialect, fail)
         else:
@@ -134,7 +152,7 @@ def sort_words(block: Block, dialect: Dialect, fail: Fail, count: Callable[[str]
     return words
 
 
-def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: Callable[[str], int]) -> None:
+def _add_g(word: Word, words: BlockWords, text: ProgramText, dialect: Dialect, fail: Fail) -> None:
     action = dialect.g_action(word.value)
     code = code_text(word.value)
     if action is None:
@@ -143,7 +161,7 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: C
     entry = GWord(word, code, action)
     if group is Group.IGNORED:
         if action is Action.UNSUPPORTED:
-            blocks = count(code)
+            blocks = _blocks_with(code, text)
             where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
             raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
         if action is Action.LEFT_OUT:
@@ -155,6 +173,13 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: C
     if group in words.g:
         raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
     words.g[group] = entry
+
+
+def _blocks_with(code: str, text: ProgramText) -> int:
+    """Return in how many blocks of a text a G code stands."""
+    pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
+    content = _REMARKS.sub(lambda found: b" " * len(found[0]), text.content)
+    return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
 
 
 def _add_m(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
@@ -198,3 +223,15 @@ def dwell_seconds(word: Word, unit: str) -> float:
     if unit == "ms" or (unit == "s_or_ms" and not word.point):
         return word.value / 1000.0
     return word.value
+
+
+def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBER) -> int:
+    """Return the number of a word that counts or names something.
+
+    Raises:
+        ProgramError: it is negative, too large or not whole.
+    """
+    if not word.value.is_integer() or not 0 <= word.value <= largest:
+        text = f"{word.letter}{code_text(word.value)}"
+        raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
+    return int(word.value)

@@ -28,6 +28,7 @@ from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL, RESERVE, make_f
 from polycnc.nc.modal._modal import (
     ORDINARY,
 )
+from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import BlockRecords, Call
 from polycnc.nc.sources._block_source import (
@@ -318,7 +319,7 @@ class Channel:
         """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
         modal = self.state.modal
         start = tuple(modal.position.tolist())
-        tag = self._reference(line)
+        tag = self._reference(line, self.state.snapshot())
         self.writer.put(Line(start, position, Feed(), rapid=True, exact_stop=True, line=line, tag=tag))
         modal.position[:] = position
 
@@ -542,9 +543,9 @@ class Channel:
         if self._calls.enter(call.program, call.repeats, back, call.arguments):
             self._begin()
 
-    def _reference(self, line: int) -> int:
-        """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
-        return self.records.reference(self._reading.text, self.stack, self.state.snapshot(), line)
+    def _reference(self, line: int, modal: ModalSnapshot) -> int:
+        """Return the reference of the block on `line` of the present program, which leaves this in force."""
+        return self.records.reference(self._reading.text, self.stack, modal, line)
 
     @property
     def stack(self) -> tuple[Call, ...]:
@@ -558,7 +559,7 @@ class Channel:
         reading = self._reading
         first, words = reading.next, reading.words
         kernel = self.machine.state
-        self.state.coordinates.take_changes()
+        self.state.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
         base = self.records.run_base(reading.text, self.stack, self.state.snapshot(), begin)
         after = words.n_blocks

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -158,18 +158,10 @@ def short_way(wanted_deg: float, position_deg: float) -> float:
     return wanted_deg - TURN_DEG * math.ceil((wanted_deg - position_deg - 0.5 * TURN_DEG) / TURN_DEG)
 
 
-def save_modal(modal: Modal) -> tuple[npt.NDArray[Any], ...]:
-    """Return a copy of what blocks may change, for `restore_modal`."""
-    return (
-        modal.whole.copy(),
-        modal.real.copy(),
-        modal.position.copy(),
-        modal.offset.copy(),
-        modal.scale.copy(),
-    )
+CHANGING = slice(0, 5)
+"""The columns of `Modal` that blocks may change: up to `scale`."""
 
 
-def restore_modal(modal: Modal, saved: tuple[npt.NDArray[Any], ...]) -> None:
-    """Put a saved state back in place."""
-    for column, old in zip(modal[: len(saved)], saved, strict=True):
-        column[...] = old
+def copy_modal(modal: Modal) -> Modal:
+    """Return the same state with columns of its own for what blocks may change."""
+    return Modal(*(column.copy() for column in modal[CHANGING]), *modal[CHANGING.stop :])

@@ -1,0 +1,69 @@
+"""Which function carries a code out, and which mode of motion gives the moves of a block."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from polycnc.nc.blocks import (
+    _contour_cycles,
+    _cycle_blocks,
+    _frames,
+    _motion,
+    _non_modal,
+    _nurbs,
+    _placing,
+    _splines,
+    _turning_blocks,
+    _turning_cycles,
+)
+from polycnc.nc.blocks._block import BlockContext
+from polycnc.nc.blocks._handlers import Handler, handlers
+from polycnc.nc.blocks._moves import QueueItem
+from polycnc.nc.blocks._words import GWord
+from polycnc.nc.modal._actions import Action, Family
+from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR
+
+CODES: Mapping[Action, Handler] = dict(
+    handlers(_contour_cycles, _frames, _non_modal, _placing, _turning_cycles)
+)
+"""What carries out a code that is a function of its block, not a modal word: its row is in `Action`."""
+
+
+class MotionMode(NamedTuple):
+    """A mode of motion: what puts it in force, and what gives the moves of a block."""
+
+    begin: Callable[[BlockContext, GWord], None]
+    moves: Callable[[BlockContext], Sequence[QueueItem]]
+
+
+def _begin_move(block: BlockContext, g: GWord) -> None:
+    if block.after.mode is not Family.MOVE:
+        _cycle_blocks.cancel(block.after)
+        _turning_blocks.cancel(block.after)
+    block.after.modal.whole[MOTION] = g.value
+
+
+def _begin_drilling(block: BlockContext, g: GWord) -> None:
+    _turning_blocks.cancel(block.after)
+    _cycle_blocks.begin(block, g)
+
+
+def _begin_turning(block: BlockContext, g: GWord) -> None:
+    _cycle_blocks.cancel(block.after)
+    _turning_blocks.begin(block, g)
+    block.after.modal.whole[MOTION] = MOTION_LINEAR
+
+
+def _begin_nothing(_: BlockContext, __: GWord) -> None:
+    """Leave the mode in force: a spline counts for its own block, and a curve begins with its moves."""
+
+
+MOTION_MODES: Mapping[Family, MotionMode] = {
+    Family.MOVE: MotionMode(_begin_move, _motion.moves),
+    Family.DRILLING: MotionMode(_begin_drilling, _cycle_blocks.moves),
+    Family.TURNING: MotionMode(_begin_turning, _turning_blocks.moves),
+    Family.SPLINE: MotionMode(_begin_nothing, _splines.moves),
+    Family.CURVE: MotionMode(_begin_nothing, _nurbs.moves),
+}
+"""The modes of motion by the family of their codes; `ChannelState.mode` names the one in force."""
