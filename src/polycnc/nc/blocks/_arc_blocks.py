@@ -98,7 +98,7 @@ def arc(block: BlockContext, end: Point, clockwise: bool) -> Arc | None:
     extra = TWO_PI * (_turns(block) - 1)
     sweep = sweep - extra if clockwise else sweep + extra
     feed = feeds.feed(block, start, end, straight=False)
-    made = Arc(start, end, (center_p, center_q), sweep, (p, q, r), feed, feeds.exact_stop(block), block.line)
+    made = Arc(start, end, (center_p, center_q), sweep, (p, q, r), feed, block.exact_stop, block.line)
     for passed, what in limits.points(made):
         limits.check(block, passed, what)
     return made

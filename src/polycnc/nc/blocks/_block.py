@@ -12,12 +12,12 @@ from dataclasses import dataclass, field
 from polycnc.errors import ProgramError
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._corners import Corner
-from polycnc.nc.blocks._moves import Point, QueueItem, Wait
+from polycnc.nc.blocks._moves import Point, QueueItem
 from polycnc.nc.blocks._outcomes import NEXT, Outcome, Trouble
-from polycnc.nc.blocks._words import NUMBERS, BlockWords
+from polycnc.nc.blocks._words import NUMBERS, BlockWords, WordSorter
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Group
-from polycnc.nc.modal._modal import MODULO_AXIS
+from polycnc.nc.modal._modal import MODULO_AXIS, MOTION_NONE
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word
@@ -34,7 +34,7 @@ class ChannelRules:
     """
 
     __slots__ = (
-        "call_trouble", "dialect", "execute", "high", "increment", "low", "modulo", "text_rules", "ways",
+        "call_trouble", "dialect", "execute", "high", "increment", "low", "modulo", "sorter", "text_rules", "ways",
     )  # fmt: skip
 
     def __init__(
@@ -45,6 +45,7 @@ class ChannelRules:
         execute: Callable[[BlockContext], None],
     ) -> None:
         self.dialect = dialect
+        self.sorter = WordSorter(dialect)
         self.increment = dialect.increment
         self.text_rules: TextRules = dialect.text_rules()
         self.low: list[float] = state.modal.low.tolist()
@@ -68,6 +69,7 @@ class BlockContext:
     `before` is in force until the block is committed, and no step changes it; `after` is a copy, and what the steps
     change. `items` are moves and waits for the queue, `notes` messages, `marks` the references of blocks that give
     the queue nothing. `outcome` says how the program goes on, `goes_on` where, after a contour that has been cut.
+    `exact_stop` tells that it comes to rest at its end, `shows` which motion its record shows.
     `speed` is the S word where it is a spindle speed, `holds` a move that waits for its corner. `change` starts or ends
     radius compensation when all else is right; `compensated` tells that moves went through it. A block of a contour
     that is only `measured` leaves no marks.
@@ -91,6 +93,8 @@ class BlockContext:
     holds: Corner | None = None
     change: Callable[[], None] | None = None
     compensated: bool = False
+    exact_stop: bool = False
+    shows: int = MOTION_NONE
 
     def problem(self, what: str, hint: str, word: Word | None) -> ProgramError:
         """Return an error about this block, at `word` if there is one."""
@@ -109,17 +113,6 @@ class BlockContext:
     def move_word(self) -> Word | None:
         """The word that best shows what the block wants to move."""
         return self.words.g_word(Group.MOTION) or self.words.first(*self.after.axis_names, *"IJKR")
-
-    def note_position(self) -> None:
-        """Remember the programmed position that the items lead to, which is not compensated."""
-        position = self.after.modal.position
-        if self.after.corner is not None:
-            position[:] = self.after.corner.move.end
-            return
-        for item in reversed(self.items):
-            if not isinstance(item, Wait):
-                position[:] = item.end
-                return
 
     def within(self, block: Block, after: ChannelState, *, measured: bool) -> BlockContext:
         """Return a block of a contour that this block executes, on a state; they report together."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy.typing as npt
@@ -21,7 +21,7 @@ from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Frame
-from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, copy_modal
+from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, changing, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement
 
@@ -101,9 +101,10 @@ class ChannelState:
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
         self.machine = machine
         self.modal = modal
+        self._memory = changing(modal)  # of the columns
         self.tables = ProgramTables(machine)
         self.coordinates = Coordinates.none(len(modal.position))
-        self._tables_taken = self.tables.revision
+        self._tables_taken = self._tables_revision()
         self.frame = UNTURNED
         self.placement = Placement()
         self.probe: Probe | None = None
@@ -133,6 +134,7 @@ class ChannelState:
         """Return a state of its own that is equal; tools and work offsets are the same."""
         made = copy.copy(self)
         made.modal = copy_modal(self.modal)
+        made._memory = changing(made.modal)
         made.compensation = self.compensation.copy()
         return made
 
@@ -141,22 +143,28 @@ class ChannelState:
 
         The stage of radius compensation is that of `other`: who changes it copies it before.
         """
-        modal = self.modal
+        modal, memory = self.modal, self._memory
         self.__dict__.update(other.__dict__)
-        self.modal = modal
-        for column, new in zip(modal[CHANGING], other.modal[CHANGING], strict=True):
-            column[...] = new
+        self.modal, self._memory = modal, memory
+        memory[:] = other._memory
 
     def place_zero(self, coordinates: Coordinates) -> None:
         """Put program zero where these shifts say."""
         self.coordinates = coordinates
-        self._tables_taken = self.tables.revision
+        self._tables_taken = self._tables_revision()
         self.modal.offset[:] = coordinates.total(self.tables, self.modal)
 
     def take_changes(self) -> None:
         """Take over work offsets that have been changed in the table since."""
-        if self.tables.revision != self._tables_taken:
+        if self._tables_revision() != self._tables_taken:
             self.place_zero(self.coordinates)
+
+    def _tables_revision(self) -> int:
+        """Return how often the tables of work offsets have been changed: those of the program and of the machine."""
+        machine = self.machine
+        return self.tables.changes + sum(
+            int(getattr(each, "revision", 0)) for each in (machine.offsets, machine.tools)
+        )
 
     @property
     def tool_offset(self) -> Floats:
@@ -167,6 +175,21 @@ class ChannelState:
     def zero_offset(self) -> Floats:
         """What zero offsets, without those of the program, shift every axis by (mm or degree)."""
         return self.coordinates.zero_offset(self.tables)
+
+    def leave_drilling(self) -> None:
+        """Leave a drilling cycle, and forget its words."""
+        if self.cycle.action:
+            self.cycle = Cycle(retract_to_initial=self.cycle.retract_to_initial)
+            self.rigid_tap = False
+        if self.mode is Family.DRILLING:
+            self.mode = Family.MOVE
+
+    def leave_turning(self) -> None:
+        """Leave a turning motion."""
+        if self.turning.motion:
+            self.turning = replace(self.turning, motion="", corner=(None, None), taper=0.0)
+        if self.mode is Family.TURNING:
+            self.mode = Family.MOVE
 
     def save(self) -> SavedState:
         """Return what a snapshot keeps."""

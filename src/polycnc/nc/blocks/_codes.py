@@ -22,7 +22,6 @@ from polycnc.nc.blocks._handlers import Handler, handlers
 from polycnc.nc.blocks._moves import QueueItem
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Family
-from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR
 
 CODES: Mapping[Action, Handler] = dict(
     handlers(_contour_cycles, _frames, _non_modal, _placing, _turning_cycles)
@@ -37,32 +36,14 @@ class MotionMode(NamedTuple):
     moves: Callable[[BlockContext], Sequence[QueueItem]]
 
 
-def _begin_move(block: BlockContext, g: GWord) -> None:
-    if block.after.mode is not Family.MOVE:
-        _cycle_blocks.cancel(block.after)
-        _turning_blocks.cancel(block.after)
-    block.after.modal.whole[MOTION] = g.value
-
-
-def _begin_drilling(block: BlockContext, g: GWord) -> None:
-    _turning_blocks.cancel(block.after)
-    _cycle_blocks.begin(block, g)
-
-
-def _begin_turning(block: BlockContext, g: GWord) -> None:
-    _cycle_blocks.cancel(block.after)
-    _turning_blocks.begin(block, g)
-    block.after.modal.whole[MOTION] = MOTION_LINEAR
-
-
 def _begin_nothing(_: BlockContext, __: GWord) -> None:
     """Leave the mode in force: a spline counts for its own block, and a curve begins with its moves."""
 
 
 MOTION_MODES: Mapping[Family, MotionMode] = {
-    Family.MOVE: MotionMode(_begin_move, _motion.moves),
-    Family.DRILLING: MotionMode(_begin_drilling, _cycle_blocks.moves),
-    Family.TURNING: MotionMode(_begin_turning, _turning_blocks.moves),
+    Family.MOVE: MotionMode(_motion.begin, _motion.moves),
+    Family.DRILLING: MotionMode(_cycle_blocks.begin, _cycle_blocks.moves),
+    Family.TURNING: MotionMode(_turning_blocks.begin, _turning_blocks.moves),
     Family.SPLINE: MotionMode(_begin_nothing, _splines.moves),
     Family.CURVE: MotionMode(_begin_nothing, _nurbs.moves),
 }

@@ -80,7 +80,7 @@ def _executed(
     block.rules.execute(inner)
     if inner.outcome is not NEXT or any(isinstance(item, Spline) for item in inner.items):
         raise inner.problem(*_moves_only(g), None)
-    inner.note_position()
+    motion.note_position(inner)
     return inner.items
 
 

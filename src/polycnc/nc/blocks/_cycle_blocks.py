@@ -12,7 +12,7 @@ from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks._block import BlockContext
-from polycnc.nc.blocks._channel_state import ChannelState, Cycle
+from polycnc.nc.blocks._channel_state import Cycle
 from polycnc.nc.blocks._cycles import (
     SHIFTING,
     TAPPING,
@@ -57,6 +57,7 @@ _TROUBLE_LETTERS = {
 
 def begin(block: BlockContext, g: GWord) -> None:
     """Begin the cycle of a G word; the words of a cycle that was active stay in force."""
+    block.after.leave_turning()
     cycle = block.after.cycle
     initial = cycle.initial
     if not cycle.action:
@@ -64,15 +65,6 @@ def begin(block: BlockContext, g: GWord) -> None:
         initial = float(block.after.modal.position[axis]) if axis != NO_AXIS else 0.0
     block.after.cycle = replace(cycle, action=g.action.title, code=g.word.value, initial=initial)
     block.after.mode = Family.DRILLING
-
-
-def cancel(state: ChannelState) -> None:
-    """Leave the cycle and forget its words."""
-    if state.cycle.action:
-        state.cycle = Cycle(retract_to_initial=state.cycle.retract_to_initial)
-        state.rigid_tap = False
-    if state.mode is Family.DRILLING:
-        state.mode = Family.MOVE
 
 
 def moves(block: BlockContext) -> list[QueueItem]:

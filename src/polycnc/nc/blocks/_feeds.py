@@ -6,16 +6,13 @@ import math
 
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Feed, Point
-from polycnc.nc.modal._actions import Group
 from polycnc.nc.modal._modal import (
-    EXACT_STOP,
     FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
     FEED_NUMBER,
     FEED_PER_REVOLUTION,
     NO_AXIS,
-    STOPS_SUPPRESSED,
 )  # fmt: skip
 from polycnc.units import SECONDS_PER_MINUTE
 
@@ -86,11 +83,3 @@ def clamp_points(block: BlockContext, start: Point, end: Point) -> list[Point]:
         for share in shares
         if 1e-9 < share < 1.0 - 1e-9
     ]
-
-
-def exact_stop(block: BlockContext) -> bool:
-    """Tell whether the block comes to rest at its end."""
-    whole = block.after.modal.whole
-    return not whole[STOPS_SUPPRESSED] and (
-        bool(whole[EXACT_STOP]) or Group.EXACT_STOP_BLOCK in block.words.g
-    )

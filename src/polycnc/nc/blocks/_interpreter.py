@@ -19,9 +19,10 @@ from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._not_blocks import NotBlocks
 from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Trouble
 from polycnc.nc.blocks._queue import QueueWriter
-from polycnc.nc.blocks._steps import shown_motion, take_steps
+from polycnc.nc.blocks._steps import take_steps
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Family
+from polycnc.nc.modal._frame import UNTURNED
 from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, MOTION, ORDINARY
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.records._block_records import AGAIN
@@ -65,7 +66,7 @@ class Interpreter:
             ProgramError: the block cannot be executed; nothing has been changed or queued for it.
         """
         self._text = text
-        self.messages.begin(block.line)
+        self.messages.line = block.line
         self.state.take_changes()
         self._after.take(self.state)
         if self._after.compensation.active:
@@ -168,7 +169,7 @@ class Interpreter:
         if not block.items and not (marks and block.block.words):
             return
         whole = block.after.modal.whole
-        in_force, whole[MOTION] = int(whole[MOTION]), shown_motion(block)
+        in_force, whole[MOTION] = int(whole[MOTION]), block.shows
         tag = self._next_tag(block.line, block.after.snapshot())
         whole[MOTION] = in_force
         if marks:
@@ -201,7 +202,7 @@ class Interpreter:
             or state.spline_way is not None
             or state.placement.once != 0  # the next block takes it back
             or whole[FEED_MODE] != FEED_PER_MINUTE
-            or state.frame.active
+            or (state.frame is not UNTURNED and state.frame.active)
         )
 
     # ------------------------------------------------------------------ what one block leaves for the next

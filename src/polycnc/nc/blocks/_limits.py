@@ -11,7 +11,7 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
 from polycnc.nc.blocks._moves import Arc, Line, Move, Point, QueueItem, Spline, Wait
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, LARGEST, SLOWEST_AXIS
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, LARGEST
 from polycnc.nc.text._scan_plain import Word
 
 LIMIT_ROUNDING = 1e-6
@@ -63,25 +63,15 @@ def check_path(state: ChannelState, item: Move) -> None:
             )
 
 
-def check_times(block: BlockContext) -> None:
+def check_time(block: BlockContext, item: QueueItem) -> None:
     """Refuse a move or a dwell that would take longer than anybody waits (`LONGEST_BLOCK_S`).
 
     Raises:
         ProgramError: says how long, and names what makes it so.
     """
-    modal = block.after.modal
-    slowest = float(modal.real[SLOWEST_AXIS])
-    for item in block.items:
-        if isinstance(item, Line) and item.feed.duration_s == 0.0:
-            speed = slowest if item.rapid else min(slowest, item.feed.speed_mm_s)
-            reach = sum(abs(b - a) for a, b in zip(item.start, item.end, strict=True))
-            if reach <= LONGEST_BLOCK_S * speed:
-                continue
-        time_s = _least_time_s(block.after, item)
-        if not time_s <= LONGEST_BLOCK_S:
-            raise block.problem(
-                _TOO_LONG.format(_duration_text(time_s)), _TOO_LONG_HINT, _slow_word(block, item)
-            )
+    time_s = _least_time_s(block.after, item)
+    if not time_s <= LONGEST_BLOCK_S:
+        raise block.problem(_TOO_LONG.format(_duration_text(time_s)), _TOO_LONG_HINT, _slow_word(block, item))
 
 
 def _least_time_s(state: ChannelState, item: QueueItem) -> float:

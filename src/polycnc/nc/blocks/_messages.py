@@ -18,15 +18,11 @@ class Message:
 
 @dataclass
 class Messages:
-    """Collect messages; a text that comes again is only counted. `latest` is what the program has shown last."""
+    """Collect messages about the present `line`, each text once with a count. `latest` is what was shown last."""
 
     line: int = 0
     latest: str = ""
     _found: dict[str, Message] = field(default_factory=dict)
-
-    def begin(self, line: int) -> None:
-        """Begin a block: messages are about its line."""
-        self.line = line
 
     def add(self, text: str) -> None:
         """Add a message about the present line."""

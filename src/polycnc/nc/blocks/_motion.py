@@ -11,7 +11,9 @@ from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks._arc_blocks import arc
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._corner_blocks import held
-from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem
+from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
+from polycnc.nc.blocks._words import GWord
+from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Polar
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
@@ -27,6 +29,15 @@ from polycnc.nc.modal._modal import (
     length_scale,
     short_way,
 )  # fmt: skip
+
+
+def begin(block: BlockContext, g: GWord) -> None:
+    """Put G0, G1, G2, G3 or no motion in force."""
+    state = block.after
+    if state.mode is not Family.MOVE:
+        state.leave_drilling()
+        state.leave_turning()
+    state.modal.whole[MOTION] = g.value
 
 
 def moves(block: BlockContext) -> list[QueueItem]:
@@ -167,13 +178,25 @@ def line(block: BlockContext, end: Point, rapid: bool) -> Line:
         limits.check(block, end)
     begin = start(block)
     feed = Feed() if rapid else feeds.feed(block, begin, end)
-    stop = feeds.exact_stop(block) or (rapid and bool(whole[RAPID_STOP]))
+    stop = block.exact_stop or (rapid and bool(whole[RAPID_STOP]))
     return Line(begin, end, feed, rapid, stop, block.line)
 
 
 def start(block: BlockContext) -> Point:
     """Return the programmed position, in machine coordinates."""
     return tuple(block.after.modal.position.tolist())
+
+
+def note_position(block: BlockContext) -> None:
+    """Remember the programmed position that the items lead to, which is not compensated."""
+    position, corner = block.after.modal.position, block.after.corner
+    if corner is not None:
+        position[:] = corner.move.end
+        return
+    for item in reversed(block.items):
+        if not isinstance(item, Wait):
+            position[:] = item.end
+            return
 
 
 def cut(block: BlockContext, begin: Point, end: Point) -> Iterator[Line]:
@@ -185,6 +208,4 @@ def cut(block: BlockContext, begin: Point, end: Point) -> Iterator[Line]:
     points = [begin, *feeds.clamp_points(block, begin, end), end]
     last = len(points) - 2
     for number, (a, b) in enumerate(pairwise(points)):
-        yield Line(
-            a, b, feeds.feed(block, a, b), False, feeds.exact_stop(block) and number == last, block.line
-        )
+        yield Line(a, b, feeds.feed(block, a, b), False, block.exact_stop and number == last, block.line)

@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from polycnc.nc.blocks import _cycle_blocks as cycles
 from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _splines as splines
-from polycnc.nc.blocks import _turning_blocks as turning
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Line, Spline
 from polycnc.nc.blocks._nurbs_curve import Nurbs, nurbs_cubics
@@ -139,8 +137,8 @@ def _end(block: BlockContext, g: GWord) -> list[Line | Spline]:
     end[plane[0]], end[plane[1]], _ = curve.points[-1]
     moves = splines.parts(block, tuple(end), plane, nurbs_cubics(curve.points, curve.order))
     state.nurbs = None
-    cycles.cancel(state)
-    turning.cancel(state)
+    state.leave_drilling()
+    state.leave_turning()
     state.mode = Family.MOVE
     whole[MOTION] = MOTION_NONE
     return moves

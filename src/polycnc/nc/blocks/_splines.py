@@ -196,7 +196,7 @@ def _moves(
             place[axis] = block.start[axis] + row[SPAN_END + j]
         to = tuple(place) if left else end
         part = Feed(duration_s=feed.duration_s * length / whole_mm) if feed.duration_s > 0.0 else feed
-        stop = feeds.exact_stop(block) and not left
+        stop = block.exact_stop and not left
         if row[SPAN_CURVED]:
             yield Spline(start, to, plane, tuple(row[:SPAN_END]), length, part, stop, block.line)
         else:

@@ -10,24 +10,25 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks import _auxiliary as auxiliary
 from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks import _modal_words as modal_words
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._codes import CODES, MOTION_MODES
 from polycnc.nc.blocks._corner_blocks import joined, no_straight_move
-from polycnc.nc.blocks._cycle_blocks import cancel as cancel_cycle
 from polycnc.nc.blocks._handlers import refuse_compensation
-from polycnc.nc.blocks._motion import axis_word_left
-from polycnc.nc.blocks._moves import QueueItem
+from polycnc.nc.blocks._motion import axis_word_left, note_position
+from polycnc.nc.blocks._moves import Line, QueueItem
 from polycnc.nc.blocks._nurbs import refuse_others
 from polycnc.nc.blocks._outcomes import JUMPS
 from polycnc.nc.blocks._program_words import outcome
 from polycnc.nc.blocks._tool_words import compensate_length, compensate_radius
 from polycnc.nc.blocks._word_checks import leave_out, refuse_contradictions, refuse_unused, take_parameters
-from polycnc.nc.blocks._words import code_text, sort_words
+from polycnc.nc.blocks._words import code_text
 from polycnc.nc.modal._actions import Family, Group
 from polycnc.nc.modal._modal import (
+    EXACT_STOP,
     FEED,
     FEED_INVERSE_TIME,
     FEED_MODE,
@@ -35,7 +36,9 @@ from polycnc.nc.modal._modal import (
     INCH,
     MOTION,
     MOTION_NURBS,
-)
+    SLOWEST_AXIS,
+    STOPS_SUPPRESSED,
+)  # fmt: skip
 from polycnc.nc.text._scan import MESSAGE
 from polycnc.units import MM_PER_INCH
 
@@ -48,7 +51,8 @@ def words(block: BlockContext) -> None:
     """Sort the words, and refuse those that cannot stand in one block."""
     if block.block.flags & MESSAGE and block.block.message:
         block.note(f"MSG: {block.block.message}")
-    found = block.words = sort_words(block.block, block.text, block.dialect, block.problem)
+    found = block.words
+    block.rules.sorter.sort(found, block.block, block.text, block.problem)
     if len(found.g) > 1:
         refuse_contradictions(block)
     if block.after.nurbs is not None:
@@ -155,9 +159,12 @@ def offset(block: BlockContext) -> None:
 
 
 def stopping(block: BlockContext) -> None:
-    """Carry out whether blocks come to rest."""
-    if g := block.words.g.get(Group.STOPPING):
-        modal_words.set_stopping(block, g)
+    """Carry out whether blocks come to rest, this one too."""
+    g, whole = block.words.g, block.after.modal.whole
+    if stopping_word := g.get(Group.STOPPING):
+        modal_words.set_stopping(block, stopping_word)
+    stops_here = bool(whole[EXACT_STOP]) or Group.EXACT_STOP_BLOCK in g
+    block.exact_stop = stops_here and not whole[STOPS_SUPPRESSED]
 
 
 def distance(block: BlockContext) -> None:
@@ -199,7 +206,7 @@ def motion(block: BlockContext) -> None:
 def _moves(block: BlockContext) -> list[QueueItem]:
     state, g = block.after, block.words.g
     if Group.CYCLE_CANCEL in g:
-        cancel_cycle(state)
+        state.leave_drilling()
     mode = None
     if word := g.get(Group.MOTION):
         assert word.action.family is not None
@@ -245,15 +252,26 @@ def stops(block: BlockContext) -> None:
 
 
 def times(block: BlockContext) -> None:
-    """Refuse what would take longer than anybody waits."""
-    if block.items:
-        limits.check_times(block)
+    """Refuse what would take longer than anybody waits; a straight move seldom needs a closer look."""
+    slowest = float(block.after.modal.real[SLOWEST_AXIS])
+    for item in block.items:
+        if isinstance(item, Line) and not item.feed.duration_s:
+            speed = slowest if item.rapid else min(slowest, item.feed.speed_mm_s)
+            reach = sum(abs(b - a) for a, b in zip(item.start, item.end, strict=True))
+            if reach <= LONGEST_BLOCK_S * speed:
+                continue
+        limits.check_time(block, item)
 
 
 def position(block: BlockContext) -> None:
-    """Remember where the block has led."""
-    if block.items or block.after.corner is not None:
-        block.note_position()
+    """Remember where the block has led, and which motion it shows: a spline is in force for its own block only."""
+    state, word = block.after, block.words.g.get(Group.MOTION)
+    if block.items or state.corner is not None:
+        note_position(block)
+    if word is not None and _is_spline(block):
+        block.shows = word.value
+    else:
+        block.shows = MOTION_NURBS if state.nurbs is not None else int(state.modal.whole[MOTION])
 
 
 def codes(block: BlockContext) -> None:
@@ -288,11 +306,3 @@ def take_steps(block: BlockContext) -> None:
     """
     for step in STEPS:
         step(block)
-
-
-def shown_motion(block: BlockContext) -> int:
-    """Return the motion that the record of the block shows: a spline is in force for its own block only."""
-    word = block.words.g.get(Group.MOTION)
-    if word is not None and word.action.family in _OF_ONE_BLOCK:
-        return word.value
-    return MOTION_NURBS if block.after.nurbs is not None else int(block.after.modal.whole[MOTION])

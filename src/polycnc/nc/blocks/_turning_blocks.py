@@ -10,25 +10,19 @@ from polycnc.nc.blocks import _limits as limits
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
-from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._moves import Line, Point, QueueItem
 from polycnc.nc.blocks._turning import MOST_PASSES, SAME_MM, Step, TurningError, box, exchanged
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Family
+from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR
 
 
 def begin(block: BlockContext, g: GWord) -> None:
     """Put a turning motion in force."""
+    block.after.leave_drilling()
+    block.after.modal.whole[MOTION] = MOTION_LINEAR
     block.after.turning = replace(block.after.turning, motion=g.action.title, corner=(None, None), taper=0.0)
     block.after.mode = Family.TURNING
-
-
-def cancel(state: ChannelState) -> None:
-    """Leave it."""
-    if state.turning.motion:
-        state.turning = replace(state.turning, motion="", corner=(None, None), taper=0.0)
-    if state.mode is Family.TURNING:
-        state.mode = Family.MOVE
 
 
 def moves(block: BlockContext) -> list[QueueItem]:

@@ -105,7 +105,7 @@ def _arc(block: BlockContext, arc: Piece, start: AxisPoint, end: AxisPoint) -> A
     normal = int(block.after.modal.letter_axis[ord("Y") - ord("A")])
     center = arc.center[1], arc.center[0]
     feed = feeds.feed(block, start, end, straight=False)
-    return Arc(start, end, center, arc.sweep_rad, (z, x, normal), feed, feeds.exact_stop(block), block.line)
+    return Arc(start, end, center, arc.sweep_rad, (z, x, normal), feed, block.exact_stop, block.line)
 
 
 def thread_feed(block: BlockContext, start: AxisPoint, end: AxisPoint, own_lead: float | None = None) -> Feed:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 from polycnc.errors import ProgramError
 from polycnc.nc.dialect._dialect import Dialect
@@ -29,17 +30,12 @@ _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 
 @dataclass(frozen=True, slots=True)
 class GWord:
-    """A G word and what it does in this dialect."""
+    """A G word and what it does in this dialect; `value` is that of its group, 0 where no number tells it."""
 
     word: Word
     code: str
     action: Action
-
-    @property
-    def value(self) -> int:
-        """The value of its group in the modal state."""
-        assert self.action.sets is not None
-        return self.action.sets
+    value: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +63,7 @@ class BlockWords:
     by_letter: dict[str, Word] = field(default_factory=dict)
     increment: float = 0.0
     takes_words: bool = False
-    used: set[str] = field(default_factory=lambda: set(NUMBERS))
+    used: set[str] = field(default_factory=partial(set, NUMBERS))
 
     def lengths(self, letters: Iterable[str]) -> list[tuple[str, float]]:
         """Return letter and number of those of `letters` that are there, which are lengths or angles; take them."""
@@ -129,50 +125,75 @@ def code_text(value: float) -> str:
     return f"{value:.0f}" if value.is_integer() and abs(value) < 1e16 else f"{value:.10g}"
 
 
-def sort_words(block: Block, text: ProgramText, dialect: Dialect, fail: Fail) -> BlockWords:
-    """Sort the words of a block of `text`.
+class WordSorter:
+    """Sort the words of blocks by what they ask for in a dialect."""
 
-    Raises:
-        ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
-    """
-    words = BlockWords()
-    if len(block.words) > MOST_WORDS:
-        raise fail(
-            f"a block with {len(block.words)} words",
-            f"No block has more than {MOST_WORDS}: check the line ends.",
-            block.words[MOST_WORDS],
-        )
-    for word in block.words:
-        if word.letter == "G" and word.index is None:
-            _add_g(word, words, text, dialect, fail)
-        elif word.letter == "M" and word.index is None:
-            _add_m(word, words, dialect, fail)
-        else:
-            _add_value(word, words, fail)
-    return words
+    def __init__(self, dialect: Dialect) -> None:
+        self._dialect = dialect
+        self._codes = dialect.g_codes()
 
+    def sort(self, words: BlockWords, block: Block, text: ProgramText, fail: Fail) -> None:
+        """Sort the words of a block of `text` into `words`.
 
-def _add_g(word: Word, words: BlockWords, text: ProgramText, dialect: Dialect, fail: Fail) -> None:
-    action = dialect.g_action(word.value)
-    code = code_text(word.value)
-    if action is None:
-        raise fail(f"G{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
-    group = action.group
-    entry = GWord(word, code, action)
-    if group is Group.IGNORED:
-        if action is Action.UNSUPPORTED:
-            blocks = _blocks_with(code, text)
-            where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
-            raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
-        if action is Action.LEFT_OUT:
-            words.left_out.append(f"G{code}")
-            words.takes_words = words.takes_words or int(word.value) not in _OF_MOVES
+        Raises:
+            ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
+        """
+        if len(block.words) > MOST_WORDS:
+            raise fail(
+                f"a block with {len(block.words)} words",
+                f"No block has more than {MOST_WORDS}: check the line ends.",
+                block.words[MOST_WORDS],
+            )
+        for word in block.words:
+            if word.letter == "G" and word.index is None:
+                self._add_g(word, words, text, fail)
+            elif word.letter == "M" and word.index is None:
+                self._add_m(word, words, fail)
+            else:
+                _add_value(word, words, fail)
+
+    def _add_g(self, word: Word, words: BlockWords, text: ProgramText, fail: Fail) -> None:
+        action = self._codes.get(word.value) or self._dialect.g_action(word.value)
+        code = code_text(word.value)
+        if action is None:
+            raise fail(f"G{code} is not known in dialect '{self._dialect.name}'", _OTHER_DIALECT, word)
+        group = action.group
+        entry = GWord(word, code, action, action.sets or 0)
+        if group is Group.IGNORED:
+            if action is Action.UNSUPPORTED:
+                blocks = _blocks_with(code, text)
+                where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
+                raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
+            if action is Action.LEFT_OUT:
+                words.left_out.append(f"G{code}")
+                words.takes_words = words.takes_words or int(word.value) not in _OF_MOVES
+                return
+            words.ignored.append(entry)
             return
-        words.ignored.append(entry)
-        return
-    if group in words.g:
-        raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
-    words.g[group] = entry
+        if group in words.g:
+            raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
+        words.g[group] = entry
+
+    def _add_m(self, word: Word, words: BlockWords, fail: Fail) -> None:
+        if not word.value.is_integer() or not 0 <= word.value <= LARGEST_M:
+            raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
+        code = int(word.value)
+        action = self._dialect.m_action(code)
+        if action is None:
+            raise fail(f"M{code} is not known in dialect '{self._dialect.name}'", _OTHER_DIALECT, word)
+        if action is MAction.UNSUPPORTED:
+            raise fail(f"M{code} is not supported yet", _NOT_YET, word)
+        if action is MAction.LEFT_OUT:
+            words.left_out.append(f"M{code}")
+            return
+        for other in words.m:
+            if other.code == code or (action.group and other.action.group == action.group):
+                raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)
+            if MAction.COOLANT_OFF in (action, other.action) and (
+                action in _COOLANT_ON or other.action in _COOLANT_ON
+            ):
+                raise _exclude(f"M{other.code}", f"M{code}", "coolant", word, fail)
+        words.m.append(MWord(word, code, action))
 
 
 def _blocks_with(code: str, text: ProgramText) -> int:
@@ -180,28 +201,6 @@ def _blocks_with(code: str, text: ProgramText) -> int:
     pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
     content = _REMARKS.sub(lambda found: b" " * len(found[0]), text.content)
     return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
-
-
-def _add_m(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
-    if not word.value.is_integer() or not 0 <= word.value <= LARGEST_M:
-        raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
-    code = int(word.value)
-    action = dialect.m_action(code)
-    if action is None:
-        raise fail(f"M{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
-    if action is MAction.UNSUPPORTED:
-        raise fail(f"M{code} is not supported yet", _NOT_YET, word)
-    if action is MAction.LEFT_OUT:
-        words.left_out.append(f"M{code}")
-        return
-    for other in words.m:
-        if other.code == code or (action.group and other.action.group == action.group):
-            raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)
-        if MAction.COOLANT_OFF in (action, other.action) and (
-            action in _COOLANT_ON or other.action in _COOLANT_ON
-        ):
-            raise _exclude(f"M{other.code}", f"M{code}", "coolant", word, fail)
-    words.m.append(MWord(word, code, action))
 
 
 def _exclude(first: str, second: str, group: str, word: Word, fail: Fail) -> ProgramError:

@@ -618,7 +618,7 @@ class Channel:
             self._known_errors.add(text)
             self.errors.append(error)
         if len(self.errors) >= _MOST_ERRORS:
-            self.messages.begin(0)
+            self.messages.line = 0
             self.messages.add(f"the program was checked up to its error number {_MOST_ERRORS}")
             self._ended = True
         if not self._collect_errors:
