@@ -64,6 +64,7 @@ def test_a_g_code_is_one_row_and_one_function(tmp_path: Path) -> None:
     )
     assert error == ""
     assert ends == [[3, 4, 5], [3, 4, 17], [23, 14, 17], [23, 14, 2]]
-    assert "1:1" in refused and "G31.7 without a level" in refused
+    assert "1:1" in refused
+    assert "G31.7 without a level" in refused
     assert "Add R." in refused
     assert "'Q' has no meaning in this block" in unused

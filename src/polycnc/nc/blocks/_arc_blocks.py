@@ -22,12 +22,8 @@ from polycnc.nc.modal._modal import (
     ARC_ABSOLUTE,
     ARC_RELATIVE,
     ARC_TOLERANCE,
-    AXIS_P,
-    AXIS_Q,
-    AXIS_R,
     CENTER_LETTERS,
     LARGEST,
-    NO_AXIS,
     PLANE,
     PLANE_LETTERS,
     length_scale,
@@ -60,16 +56,8 @@ def arc(block: BlockContext, end: Point, clockwise: bool) -> Arc | None:
     Raises:
         ProgramError: no centre, a centre word outside the plane, an end point off the circle, a limit.
     """
-    whole = block.after.modal.whole
-    p, q, r = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
-    if NO_AXIS in (p, q):
-        letters = PLANE_LETTERS[int(whole[PLANE])][:2]
-        raise block.problem(
-            f"an arc in the plane {letters}, which this machine does not have",
-            "Select a plane of the machine's axes with G17, G18 or G19.",
-            block.move_word,
-        )
-    center = _center_words(block, int(whole[PLANE]))
+    p, q, r = block.plane("an arc", block.move_word)
+    center = _center_words(block, int(block.after.modal.whole[PLANE]))
     radius = None if "R" in block.after.axis_names else block.words.length("R")
     if not center and radius is None:
         if block.dialect.arcs.no_center == "line":

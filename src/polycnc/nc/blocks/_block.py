@@ -17,7 +17,16 @@ from polycnc.nc.blocks._outcomes import NEXT, Outcome, Trouble
 from polycnc.nc.blocks._words import NUMBERS, BlockWords, WordSorter
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Group
-from polycnc.nc.modal._modal import MODULO_AXIS, MOTION_NONE
+from polycnc.nc.modal._modal import (
+    AXIS_P,
+    AXIS_Q,
+    AXIS_R,
+    MODULO_AXIS,
+    MOTION_NONE,
+    NO_AXIS,
+    PLANE,
+    PLANE_LETTERS,
+)
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word
@@ -113,6 +122,22 @@ class BlockContext:
     def move_word(self) -> Word | None:
         """The word that best shows what the block wants to move."""
         return self.words.g_word(Group.MOTION) or self.words.first(*self.after.axis_names, *"IJKR")
+
+    def plane(self, what: str, word: Word | None) -> tuple[int, int, int]:
+        """Return the axes of the working plane: first, second, and normal or NO_AXIS.
+
+        Raises:
+            ProgramError: the machine lacks one of the first two; `what` needs them.
+        """
+        whole = self.after.modal.whole
+        p, q, r = int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R])
+        if NO_AXIS in (p, q):
+            raise self.problem(
+                f"{what} in the plane {PLANE_LETTERS[int(whole[PLANE])][:2]}, which this machine does not have",
+                "Select a plane of the machine's axes with G17, G18 or G19.",
+                word,
+            )
+        return p, q, r
 
     def within(self, block: Block, after: ChannelState, *, measured: bool) -> BlockContext:
         """Return a block of a contour that this block executes, on a state; they report together."""

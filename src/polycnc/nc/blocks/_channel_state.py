@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
 import numpy.typing as npt
@@ -23,7 +23,7 @@ from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Frame
 from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, changing, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
-from polycnc.nc.modal._placement import Placement
+from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,31 +41,45 @@ class Cycle:
     words: CycleWords = field(default_factory=CycleWords)
 
 
-class Plain(NamedTuple):
-    """Hold the part of the state that is plain values."""
+@dataclass
+class Plain:
+    """Hold the part of the state that is plain values.
 
-    spindle: Spindle
-    cycle: Cycle
-    tool: int
-    selected_tool: int
-    feed_word: float
-    path_tolerance_mm: float
-    merge_mm: float
-    side: int
-    compensation_tool: int | None
-    length_tool: int
-    m_codes: tuple[int, ...]
-    frame: Frame
-    skip_position: tuple[float, ...] | None
-    placement: Placement
-    probe: Probe | None
-    rigid_tap: bool
-    turning: Turning
-    tip: TipShift
-    corner: Corner | None
-    spline_way: tuple[float, float] | None
-    nurbs: Nurbs | None
-    mode: Family
+    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
+    present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
+    0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
+    compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops, `merge_mm` how
+    far points may lie off the line that several are merged into. `m_codes` are those of the last block that had
+    any. `frame` is how programmed positions are turned, scaled and mirrored, `placement` where they lie besides,
+    `skip_position` where the last skip move ended (machine coordinates), `probe` the last probing.
+    `corner` is a straight move that waits for the next one, `nurbs` a curve that is being written, `spline_way` leads
+    from the end of a cubic spline to its last control point turned about, until anything else moves.
+    With `rigid_tap` a tapping cycle turns the spindle itself. `turning` is what turning cycles keep, `tip` where
+    the tip of a turning tool lies. `mode` is the mode of motion in force, which gives the moves of a block.
+    """
+
+    spindle: Spindle = field(default_factory=Spindle)
+    cycle: Cycle = field(default_factory=Cycle)
+    tool: int = 0
+    selected_tool: int = 0
+    feed_word: float = 0.0
+    path_tolerance_mm: float = 0.0
+    merge_mm: float = 0.0
+    side: int = 0
+    compensation_tool: int | None = None
+    length_tool: int = 0
+    m_codes: tuple[int, ...] = ()
+    frame: Frame = UNTURNED
+    skip_position: tuple[float, ...] | None = None
+    placement: Placement = NO_PLACEMENT
+    probe: Probe | None = None
+    rigid_tap: bool = False
+    turning: Turning = field(default_factory=Turning)
+    tip: TipShift = field(default_factory=TipShift)
+    corner: Corner | None = None
+    spline_way: tuple[float, float] | None = None
+    nurbs: Nurbs | None = None
+    mode: Family = Family.MOVE
 
 
 class SavedState(NamedTuple):
@@ -82,52 +96,23 @@ def of_another_channel(axis: str) -> str:
     return f"({axis})"
 
 
-class ChannelState:
+class ChannelState(Plain):
     """Hold everything that a block may change, besides the queue.
 
-    `tool` is in the spindle, `selected_tool` comes with the next tool change. `feed_word` is the F word of the
-    present block as programmed, 0 without one. `side` is 1 for radius compensation left of the path, -1 right,
-    0 off; `compensation_tool` the last D word, None before the first, `length_tool` the tool whose length is
-    compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops, `merge_mm` how
-    far points may lie off the line that several are merged into. `m_codes` are those of the last block that had
-    any. `tables` are the tools and work offsets, `frame` how programmed positions are turned, scaled and mirrored,
-    `placement` where they lie besides, `skip_position` where the last skip move ended (machine coordinates),
-    `probe` the last probing.
-    `spline_way` leads from the end of a cubic spline to its last control point turned about, until anything else moves.
-    With `rigid_tap` a tapping cycle turns the spindle itself. `turning` is what turning cycles keep, `tip` where
-    the tip of a turning tool lies. `mode` is the mode of motion in force, which gives the moves of a block.
+    `tables` are the tools and work offsets, `coordinates` the shifts of program zero, `compensation` the stage of
+    radius compensation, `axis_names` what programs call the axes.
     """
 
     def __init__(self, machine: MachineConfig, modal: Modal) -> None:
+        path = machine.path
+        super().__init__(path_tolerance_mm=path.tolerance_mm, merge_mm=path.merge_mm)
         self.machine = machine
         self.modal = modal
         self._memory = changing(modal)  # of the columns
         self.tables = ProgramTables(machine)
         self.coordinates = Coordinates.none(len(modal.position))
         self._tables_taken = self._tables_revision()
-        self.frame = UNTURNED
-        self.placement = Placement()
-        self.probe: Probe | None = None
-        self.skip_position: tuple[float, ...] | None = None
         self.compensation = RadiusCompensation()
-        self.spindle = Spindle()
-        self.cycle = Cycle()
-        self.tool = 0
-        self.selected_tool = 0
-        self.feed_word = 0.0
-        self.path_tolerance_mm = machine.path.tolerance_mm
-        self.merge_mm = machine.path.merge_mm
-        self.rigid_tap = False
-        self.turning = Turning()
-        self.tip = TipShift()
-        self.corner: Corner | None = None  # a straight move that waits for the next one
-        self.spline_way: tuple[float, float] | None = None
-        self.nurbs: Nurbs | None = None  # a curve that is being written
-        self.mode = Family.MOVE
-        self.side = 0
-        self.compensation_tool: int | None = None
-        self.length_tool = 0
-        self.m_codes: tuple[int, ...] = ()
         self.axis_names: Sequence[str] = machine.axis_names
 
     def copy(self) -> ChannelState:
@@ -203,11 +188,11 @@ class ChannelState:
             column[...] = old
         self.coordinates = saved.coordinates
         self.compensation = RadiusCompensation() if saved.compensation is None else saved.compensation.copy()
-        self.__dict__.update(saved.plain._asdict())
+        self.__dict__.update(vars(saved.plain))
 
     def plain(self) -> Plain:
         """Return the plain values."""
-        return Plain._make(getattr(self, name) for name in Plain._fields)
+        return Plain(*(getattr(self, each.name) for each in fields(Plain)))
 
     def snapshot(self) -> ModalSnapshot:
         """Return what is in force now."""

@@ -9,6 +9,7 @@ from polycnc.nc.blocks import (
     _contour_cycles,
     _cycle_blocks,
     _frames,
+    _modal_words,
     _motion,
     _non_modal,
     _nurbs,
@@ -24,9 +25,9 @@ from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Action, Family
 
 CODES: Mapping[Action, Handler] = dict(
-    handlers(_contour_cycles, _frames, _non_modal, _placing, _turning_cycles)
+    handlers(_contour_cycles, _frames, _modal_words, _non_modal, _placing, _turning_cycles)
 )
-"""What carries out a code that is a function of its block, not a modal word: its row is in `Action`."""
+"""What carries a code out; its row is in `Action`. Motions have modes, tool compensation and IGNORED codes steps."""
 
 
 class MotionMode(NamedTuple):

@@ -29,6 +29,7 @@ from polycnc.nc.blocks._turning_pockets import rough_pockets
 from polycnc.nc.blocks._word_checks import refuse_unused
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import Block
@@ -152,7 +153,9 @@ def contour_cycle(
     turns.refuse_compensation(block)
     turning = block.after.turning
     u, w = turns.length(block, "U") or 0.0, turns.length(block, "W") or 0.0
-    allowance = u * _diameter_share(block), w
+    modal, (x, _) = block.after.modal, turns.axes(block)
+    is_diameter = float(modal.scale[x]) < 0.75 * length_scale(modal)
+    allowance = u * (0.5 if is_diameter else 1.0), w
     pieces = _pieces(block, moves)
     if not pieces:
         raise block.problem(f"G{g.code}: the contour moves nothing", "Check P and Q.", g.word)
@@ -182,11 +185,6 @@ def _pieces(block: BlockContext, moves: Sequence[Line | Arc]) -> list[Piece]:
         elif start != end:
             pieces.append(Piece(start, end))
     return pieces
-
-
-def _diameter_share(block: BlockContext) -> float:
-    """Return what a programmed difference in X is as a radius."""
-    return 0.5 if motion.is_diameter(block, turns.axes(block)[0]) else 1.0
 
 
 def _or(value: float | None, other: float) -> float:

@@ -10,10 +10,11 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
 from polycnc.nc.blocks._turning_data import set_turning_data
+from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, code_text, whole_number
 from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._frame import Polar, Rotation
-from polycnc.nc.modal._modal import ABSOLUTE, AXIS_P, AXIS_Q, NO_AXIS, PLANE, PLANE_LETTERS
+from polycnc.nc.modal._modal import ABSOLUTE, NO_AXIS
 
 LARGEST_FACTOR = 1000.0
 LARGEST_OFFSET_NUMBER = 999
@@ -42,7 +43,7 @@ def scale_off(block: BlockContext, _: GWord) -> None:
 @carries_out(Action.MIRROR)
 def mirror(block: BlockContext, g: GWord) -> None:
     """Mirror axes about positions."""
-    mirrors = {**block.after.frame.mirrors, **_axes(block, g)}
+    mirrors = {**block.after.frame.mirrors, **motion.named_axes(block, g)}
     block.after.frame = replace(block.after.frame, mirrors=mirrors)
 
 
@@ -69,8 +70,11 @@ def rotate_off(block: BlockContext, _: GWord) -> None:
 @carries_out(Action.POLAR)
 def polar(block: BlockContext, g: GWord) -> None:
     """Read the words of the plane as radius and angle."""
-    p, q = _plane(block, g)
-    block.after.frame = replace(block.after.frame, polar=_polar_here(block, p, q))
+    p, q, _ = block.plane(f"G{g.code}", g.word)
+    frame, modal = block.after.frame, block.after.modal
+    here = frame.back((modal.position - modal.offset).tolist())
+    at = Polar((0.0, 0.0), math.hypot(here[p], here[q]), math.degrees(math.atan2(here[q], here[p])))
+    block.after.frame = replace(frame, polar=at)
 
 
 @carries_out(Action.POLAR_OFF)
@@ -79,37 +83,8 @@ def polar_off(block: BlockContext, _: GWord) -> None:
     block.after.frame = replace(block.after.frame, polar=None)
 
 
-def _plane(block: BlockContext, g: GWord) -> tuple[int, int]:
-    whole = block.after.modal.whole
-    p, q = int(whole[AXIS_P]), int(whole[AXIS_Q])
-    if NO_AXIS in (p, q):
-        letters = PLANE_LETTERS[int(whole[PLANE])][:2]
-        raise block.problem(
-            f"G{g.code} in the plane {letters}, which this machine does not have",
-            "Select a plane of the machine's axes with G17, G18 or G19.",
-            g.word,
-        )
-    return p, q
-
-
-def _here(block: BlockContext) -> list[float]:
-    """Return the programmed position (mm or degree)."""
-    modal = block.after.modal
-    return block.after.frame.back((modal.position - modal.offset).tolist())
-
-
-def _axes(block: BlockContext, g: GWord) -> dict[int, float]:
-    values = motion.axis_words(block)
-    if not values:
-        raise block.problem(f"G{g.code} without an axis", "Name the axes.", g.word)
-    return values
-
-
-# ------------------------------------------------------------------ rotation, polar coordinates
-
-
 def _rotation(block: BlockContext, g: GWord) -> Rotation:
-    p, q = _plane(block, g)
+    p, q, _ = block.plane(f"G{g.code}", g.word)
     angle = block.words.length("R")
     if angle is None:
         raise block.problem(f"G{g.code} without an angle", "Add R and the angle in degrees.", g.word)
@@ -130,14 +105,6 @@ def _rotation(block: BlockContext, g: GWord) -> Rotation:
     if not modal.whole[ABSOLUTE]:
         values = {}  # the centre is where the tool stands
     return Rotation(p, q, values.get(p, center[p]), values.get(q, center[q]), angle)
-
-
-def _polar_here(block: BlockContext, p: int, q: int) -> Polar:
-    here = _here(block)
-    return Polar((0.0, 0.0), math.hypot(here[p], here[q]), math.degrees(math.atan2(here[q], here[p])))
-
-
-# ------------------------------------------------------------------ scaling
 
 
 def _scales(block: BlockContext, g: GWord) -> dict[int, tuple[float, float]]:
@@ -185,7 +152,7 @@ def _factor(block: BlockContext, letter: str) -> float:
 
 @carries_out(Action.LOCAL_COORDINATES)
 def set_local(block: BlockContext, g: GWord) -> None:
-    values = _axes(block, g)
+    values = motion.named_axes(block, g)
     incremental = not block.after.modal.whole[ABSOLUTE]
     block.after.place_zero(block.after.coordinates.with_local(values, add=incremental))
 
@@ -234,13 +201,13 @@ def set_work_zero(block: BlockContext, g: GWord) -> None:
     number = whole_number(number_word, "a work offset", block.problem, 6)
     active = block.after.coordinates.work[0]
     name = f"G{53 + number}" if number else active
-    values = _axes(block, g)
+    values = motion.named_axes(block, g)
     if table == 20:
         modal, tables = block.after.modal, block.after.tables
         here = (modal.position - modal.offset).tolist()
         old = tables.work_offset(active) if active else (0.0,) * len(here)
         values = {axis: old[axis] + here[axis] - value for axis, value in values.items()}
-    _refuse_rest(block)
+    refuse_rest(block, g)
     block.after.tables.set_offset(name, values)
     block.after.take_changes()
 
@@ -252,12 +219,12 @@ def _set_work_offset(block: BlockContext, g: GWord, table: int, number: int) -> 
         name = COMMON_OFFSET if number == 0 else f"G{53 + number}"
     else:
         name = additional_offset(number)
-    values = _axes(block, g)
+    values = motion.named_axes(block, g)
     tables = block.after.tables
     if not block.after.modal.whole[ABSOLUTE]:
         old = tables.work_offset(name)
         values = {axis: old[axis] + value for axis, value in values.items()}
-    _refuse_rest(block)
+    refuse_rest(block, g)
     tables.set_offset(name, values)
     block.after.take_changes()
 
@@ -274,12 +241,5 @@ def _set_tool(block: BlockContext, g: GWord, field: str, number: int) -> None:
         value += getattr(block.after.tables.tool(number), field)
     if field == "radius_mm" and value < 0.0:
         raise block.problem("the radius is negative", "Write R from 0 up.", block.words.first("R"))
-    _refuse_rest(block)
+    refuse_rest(block, g)
     block.after.tables.set_tool(number, **{field: value})
-
-
-def _refuse_rest(block: BlockContext) -> None:
-    """Refuse what is left in the block before anything is written that cannot be taken back."""
-    for name, word in block.words.unused():
-        if name not in block.dialect.ignored_addresses:
-            raise block.problem(f"'{name}' cannot stand beside G10", "Take it out.", word)

@@ -9,7 +9,7 @@ from typing import TypeAlias
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import QueueItem
 from polycnc.nc.blocks._words import GWord
-from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._actions import Action, Group
 
 Handler: TypeAlias = Callable[[BlockContext, GWord], Iterable[QueueItem] | None]
 """Changes the state after the block, and returns what goes into the queue."""
@@ -17,11 +17,11 @@ Handler: TypeAlias = Callable[[BlockContext, GWord], Iterable[QueueItem] | None]
 _MARK = "carries_out"
 
 
-def carries_out(*actions: Action) -> Callable[[Handler], Handler]:
-    """Mark a function as the one that carries these actions out."""
+def carries_out(*kinds: Action | Group) -> Callable[[Handler], Handler]:
+    """Mark a function as the one that carries these actions out, or all of these groups."""
 
     def marked(handler: Handler) -> Handler:
-        setattr(handler, _MARK, actions)
+        setattr(handler, _MARK, [each for each in Action if each in kinds or each.group in kinds])
         return handler
 
     return marked

@@ -8,6 +8,7 @@ from polycnc.kernel import EXACT_PATH as EXACT_PATH_TOLERANCE
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._coordinates import MACHINE_ZERO, work_group
+from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._moves import Wait
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, additional_offset
 from polycnc.nc.blocks._words import GWord, code_text, dwell_seconds, whole_number
@@ -32,6 +33,7 @@ _DEFAULT_WORK_OFFSET = "G54"
 _TIME_LETTERS_WITH_INCREMENTS = "XU"
 
 
+@carries_out(Group.UNITS)
 def set_units(block: BlockContext, g: GWord) -> None:
     """Carry out inch or metric words."""
     set_inch(block.after.modal, bool(g.value))
@@ -53,6 +55,7 @@ def count_increments(block: BlockContext) -> None:
         )
 
 
+@carries_out(Group.PLANE)
 def select_plane(block: BlockContext, g: GWord) -> None:
     """Select the working plane.
 
@@ -73,6 +76,7 @@ def select_plane(block: BlockContext, g: GWord) -> None:
     set_plane(modal, g.value)
 
 
+@carries_out(Group.FEED_MODE)
 def set_feed_mode(block: BlockContext, g: GWord) -> None:
     """Carry out what F means; a number that meant something else is none."""
     modal = block.after.modal
@@ -81,7 +85,8 @@ def set_feed_mode(block: BlockContext, g: GWord) -> None:
     modal.whole[FEED_MODE] = g.value
 
 
-def dwell(block: BlockContext, g: GWord) -> Wait:
+@carries_out(Group.DWELL)
+def dwell(block: BlockContext, g: GWord) -> list[Wait]:
     """Return the wait of a dwell.
 
     Raises:
@@ -98,7 +103,7 @@ def dwell(block: BlockContext, g: GWord) -> Wait:
         raise block.problem(
             f"the dwell {word.letter}{code_text(word.value)} is {what}", "Write a time from 0 up.", word
         )
-    return Wait(seconds, block.line)
+    return [Wait(seconds, block.line)]
 
 
 def dwell_letter(block: BlockContext) -> str:
@@ -118,6 +123,7 @@ def _dwell_s(block: BlockContext, word: Word, unit: str) -> float:
     return dwell_seconds(word, unit)
 
 
+@carries_out(Group.WORK_OFFSET)
 def set_work_offset(block: BlockContext, g: GWord) -> None:
     """Carry out a work offset, or leaving one."""
     state = block.after
@@ -148,6 +154,7 @@ def _additional_number(block: BlockContext) -> int:
     return number
 
 
+@carries_out(Group.STOPPING)
 def set_stopping(block: BlockContext, g: GWord) -> None:
     """Carry out whether blocks come to rest, and how far corners may be rounded."""
     state, whole = block.after, block.after.modal.whole
@@ -159,16 +166,19 @@ def set_stopping(block: BlockContext, g: GWord) -> None:
     whole[EXACT_PATH] = g.action is Action.EXACT_PATH
 
 
+@carries_out(Group.DISTANCE)
 def set_distance(block: BlockContext, g: GWord) -> None:
     """Carry out whether axis words are positions or ways."""
     block.after.modal.whole[ABSOLUTE] = g.value
 
 
+@carries_out(Group.ARC_DISTANCE)
 def set_arc_distance(block: BlockContext, g: GWord) -> None:
     """Carry out whether centre words are positions or ways."""
     block.after.modal.whole[ARC_ABSOLUTE] = g.value
 
 
+@carries_out(Group.RETRACT)
 def set_retract(block: BlockContext, g: GWord) -> None:
     """Carry out how far drilling cycles retract."""
     block.after.cycle = replace(block.after.cycle, retract_to_initial=bool(g.value))

@@ -26,7 +26,6 @@ from polycnc.nc.modal._modal import (
     MOTION_RAPID,
     NO_AXIS,
     RAPID_STOP,
-    length_scale,
     short_way,
 )  # fmt: skip
 
@@ -91,6 +90,18 @@ def axis_words(block: BlockContext) -> dict[int, float]:
             here = float(modal.position[index] - modal.offset[index])
             found[index] = here + value * float(modal.scale[index])
     return found
+
+
+def named_axes(block: BlockContext, g: GWord) -> dict[int, float]:
+    """Take the axis words of a code that needs one.
+
+    Raises:
+        ProgramError: there is none.
+    """
+    values = axis_words(block)
+    if not values:
+        raise block.problem(f"G{g.code} without an axis", "Name the axes.", g.word)
+    return values
 
 
 def axis_word_left(block: BlockContext) -> bool:
@@ -164,11 +175,6 @@ def turned(block: BlockContext, axis: int, wanted: float, position: float) -> fl
     if block.rules.modulo[axis] and abs(wanted) <= LARGEST:
         return short_way(wanted, position)
     return wanted
-
-
-def is_diameter(block: BlockContext, axis: int) -> bool:
-    """Tell whether words of a linear axis are diameters."""
-    return float(block.after.modal.scale[axis]) < 0.75 * length_scale(block.after.modal)
 
 
 def line(block: BlockContext, end: Point, rapid: bool) -> Line:

@@ -71,7 +71,7 @@ def place_workpiece(block: BlockContext, g: GWord) -> None:
 def set_pole(block: BlockContext, g: GWord) -> None:
     """Set the pole of scaling and rotation."""
     placement = block.after.placement
-    _put(block, replace(placement, poles={**placement.poles, **_axes(block, g)}))
+    _put(block, replace(placement, poles={**placement.poles, **motion.named_axes(block, g)}))
 
 
 @carries_out(Action.EXTERNAL_OFFSET)
@@ -159,17 +159,10 @@ def _angle(block: BlockContext) -> float | None:
     return angle
 
 
-def _axes(block: BlockContext, g: GWord) -> dict[int, float]:
-    values = motion.axis_words(block)
-    if not values:
-        raise block.problem(f"G{g.code} without an axis", "Name the axes.", g.word)
-    return values
-
-
 def _vector(block: BlockContext, g: GWord, old: Vector, values: dict[int, float] | None = None) -> Vector:
     """Return a vector with the axes that the block names changed."""
     found = total(len(block.after.axis_names), old)
-    for axis, value in (values or _axes(block, g)).items():
+    for axis, value in (values or motion.named_axes(block, g)).items():
         found[axis] = value
     return tuple(found)
 
@@ -180,7 +173,7 @@ def select_plane(block: BlockContext, g: GWord) -> None:
     names = block.after.axis_names
     place = {word.place: name for name, word in block.words.unused() if name in names}
     order = [names.index(place[at]) for at in sorted(place)]
-    values = _axes(block, g)
+    values = motion.named_axes(block, g)
     letters = "".join(names[axis] for axis in order)
     plane = next((n for n, each in enumerate(PLANE_LETTERS) if set(each[:2]) == set(letters)), None)
     if len(order) != 2 or plane is None:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from typing import TypeAlias
 
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks import _auxiliary as auxiliary
@@ -42,6 +43,8 @@ from polycnc.nc.modal._modal import (
 from polycnc.nc.text._scan import MESSAGE
 from polycnc.units import MM_PER_INCH
 
+Step: TypeAlias = Callable[[BlockContext], None]
+
 _OF_ONE_BLOCK = (Family.SPLINE, Family.CURVE)
 _UNCOMPENSATED = (Family.FRAME, Family.PLACING)
 _STATED = (Group.MOTION, Group.DISTANCE)
@@ -67,24 +70,21 @@ def ends(block: BlockContext) -> None:
         block.outcome = outcome(block)
 
 
-def units(block: BlockContext) -> None:
-    """Carry out inch and metric, and how much a number without a decimal point is."""
-    if g := block.words.g.get(Group.UNITS):
-        modal_words.set_units(block, g)
+def code(*groups: Group) -> Step:
+    """Return the step that carries out the words of modal groups."""
+
+    def step(block: BlockContext) -> None:
+        for group in groups:
+            if g := block.words.g.get(group):
+                block.items += CODES[g.action](block, g) or ()
+
+    return step
+
+
+def increments(block: BlockContext) -> None:
+    """Let numbers without a decimal point be increments."""
     if block.rules.increment:
         modal_words.count_increments(block)
-
-
-def plane(block: BlockContext) -> None:
-    """Select the working plane."""
-    if g := block.words.g.get(Group.PLANE):
-        modal_words.select_plane(block, g)
-
-
-def feed_mode(block: BlockContext) -> None:
-    """Carry out what F means."""
-    if g := block.words.g.get(Group.FEED_MODE):
-        modal_words.set_feed_mode(block, g)
 
 
 def feed(block: BlockContext) -> None:
@@ -134,12 +134,6 @@ def functions(block: BlockContext) -> None:
         auxiliary.functions(block)
 
 
-def dwell(block: BlockContext) -> None:
-    """Wait."""
-    if g := block.words.g.get(Group.DWELL):
-        block.items.append(modal_words.dwell(block, g))
-
-
 def length(block: BlockContext) -> None:
     """Carry out tool length compensation."""
     if "H" in block.words.by_letter or Group.LENGTH_COMPENSATION in block.words.g:
@@ -152,42 +146,13 @@ def radius(block: BlockContext) -> None:
         compensate_radius(block)
 
 
-def offset(block: BlockContext) -> None:
-    """Select a work offset."""
-    if g := block.words.g.get(Group.WORK_OFFSET):
-        modal_words.set_work_offset(block, g)
-
-
-def stopping(block: BlockContext) -> None:
-    """Carry out whether blocks come to rest, this one too."""
-    g, whole = block.words.g, block.after.modal.whole
-    if stopping_word := g.get(Group.STOPPING):
-        modal_words.set_stopping(block, stopping_word)
-    stops_here = bool(whole[EXACT_STOP]) or Group.EXACT_STOP_BLOCK in g
+def rest(block: BlockContext) -> None:
+    """Say whether this block comes to rest at its end, and report what has no effect."""
+    whole = block.after.modal.whole
+    stops_here = bool(whole[EXACT_STOP]) or Group.EXACT_STOP_BLOCK in block.words.g
     block.exact_stop = stops_here and not whole[STOPS_SUPPRESSED]
-
-
-def distance(block: BlockContext) -> None:
-    """Carry out absolute and incremental, of positions and of centres."""
-    if g := block.words.g.get(Group.DISTANCE):
-        modal_words.set_distance(block, g)
-    if g := block.words.g.get(Group.ARC_DISTANCE):
-        modal_words.set_arc_distance(block, g)
-
-
-def retract(block: BlockContext) -> None:
-    """Carry out how far cycles retract, and report what has no effect."""
-    if g := block.words.g.get(Group.RETRACT):
-        modal_words.set_retract(block, g)
     if block.words.ignored:
         modal_words.report_ignored(block)
-
-
-def frames(block: BlockContext) -> None:
-    """Carry out rotation and polar coordinates, which go with other functions in a block."""
-    for group in (Group.ROTATION, Group.POLAR):
-        if g := block.words.g.get(group):
-            CODES[g.action](block, g)
 
 
 def motion(block: BlockContext) -> None:
@@ -291,9 +256,11 @@ def codes(block: BlockContext) -> None:
         block.after.placement = replace(placement, codes=(*kept, *sorted(said)), once=once, plane=named)
 
 
-STEPS: tuple[Callable[[BlockContext], None], ...] = (
-    words, ends, units, plane, feed_mode, feed, spindle, tool, functions, dwell, length, radius, offset, stopping,
-    distance, retract, frames, motion, unused, stops, times, position, codes,
+STEPS: tuple[Step, ...] = (
+    words, ends, code(Group.UNITS), increments, code(Group.PLANE, Group.FEED_MODE), feed, spindle, tool, functions,
+    code(Group.DWELL), length, radius,
+    code(Group.WORK_OFFSET, Group.STOPPING, Group.DISTANCE, Group.ARC_DISTANCE, Group.RETRACT), rest,
+    code(Group.ROTATION, Group.POLAR), motion, unused, stops, times, position, codes,
 )  # fmt: skip
 """What a block goes through, in this order."""
 

@@ -9,7 +9,7 @@ from polycnc.nc.blocks._compensation import Side
 from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._words import whole_number
 from polycnc.nc.modal._actions import Group
-from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, PLANE, PLANE_LETTERS
+from polycnc.nc.modal._modal import NO_AXIS
 
 
 def tool_data(block: BlockContext, tool: int) -> ToolConfig:
@@ -84,15 +84,7 @@ def compensate_radius(block: BlockContext) -> None:
             return
     elif state.side == 0 or d_word is None:
         return
-    whole = state.modal.whole
-    plane = (int(whole[AXIS_P]), int(whole[AXIS_Q]), int(whole[AXIS_R]))
-    if NO_AXIS in plane[:2]:
-        letters = PLANE_LETTERS[int(whole[PLANE])][:2]
-        raise block.problem(
-            f"radius compensation in the plane {letters}, which this machine does not have",
-            "Select a plane of the machine's axes with G17, G18 or G19.",
-            None if g is None else g.word,
-        )
+    plane = block.plane("radius compensation", None if g is None else g.word)
     tool = state.tool if state.compensation_tool is None else state.compensation_tool
     data = tool_data(block, tool)
     radius = data.radius_mm + data.wear_radius_mm

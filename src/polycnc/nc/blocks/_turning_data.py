@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
+from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._modal import length_scale
 
@@ -66,7 +67,7 @@ def _set_offset(block: BlockContext, g: GWord, name: str) -> None:
     }
     if not values:
         raise block.problem(f"G{g.code} without an axis", "Name the axes.", g.word)
-    _refuse_rest(block)
+    refuse_rest(block, g)
     block.after.tables.set_offset(name, values)
     block.after.take_changes()
 
@@ -85,7 +86,7 @@ def _set_tool(block: BlockContext, g: GWord, number: int, fields: tuple[str, str
         changes["tip"] = whole_number(tip, "the place of a tip", block.problem, _LAST_TIP)
     if not changes:
         raise block.problem(f"G{g.code} P{number} without a value", "Add X or U, Z or W, R, or Q.", g.word)
-    _refuse_rest(block)
+    refuse_rest(block, g)
     block.after.tables.set_tool(number, **changes)
 
 
@@ -115,10 +116,3 @@ def _radius(block: BlockContext, old: float) -> float | None:
     if more is not None:
         return old + more * scale
     return None if value is None else value * scale
-
-
-def _refuse_rest(block: BlockContext) -> None:
-    """Refuse what is left in the block before anything is written that cannot be taken back."""
-    for name, word in block.words.unused():
-        if name not in block.dialect.ignored_addresses:
-            raise block.problem(f"'{name}' cannot stand beside G10", "Take it out.", word)

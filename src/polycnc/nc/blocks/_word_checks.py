@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
-from polycnc.nc.blocks._words import code_text
+from polycnc.nc.blocks._words import GWord, code_text
 from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.text._scan_plain import Word
 
@@ -106,3 +106,10 @@ def refuse_unused(block: BlockContext) -> None:
                 "dialect's ignored_addresses.",
                 word,
             )
+
+
+def refuse_rest(block: BlockContext, g: GWord) -> None:
+    """Refuse what is left in the block before anything is written that cannot be taken back."""
+    for name, word in block.words.unused():
+        if name not in block.dialect.ignored_addresses:
+            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Take it out.", word)
