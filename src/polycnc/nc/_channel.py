@@ -34,6 +34,7 @@ from polycnc.nc._block_source import (
 from polycnc.nc._channel_snapshot import ChannelSnapshot, Suppressed
 from polycnc.nc._dialect import Dialect
 from polycnc.nc._first_state import first_state
+from polycnc.nc._turns import BARREN_TURNS, PLAIN_PER_TURN, Turns
 from polycnc.nc.blocks._calls import Back, Calls, Library, Place
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._interpreter import Interpreter
@@ -56,7 +57,6 @@ from polycnc.nc.text._scan_plain import Block
 
 ORDINARY_BLOCKS = 2000
 _MOST_ERRORS = 1000
-_MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
 _MOST_IDLE_TURNS = 100  # of a calculated search without a block: nothing ends its wait or loop
 
 
@@ -151,7 +151,7 @@ class Channel:
         if attaches and isinstance(language, BoundLanguage):
             language.attach(self)
         self._begun = False
-        self._turns = 0  # of a language, since it gave a block
+        self._turns = Turns(machine.clock)
         self._sought: Place | None = None
         self._held: SourceItem | None = (
             None  # what the source of the main program has given of the block sought
@@ -198,6 +198,15 @@ class Channel:
         """Whether preparation waits until the path has come to a stop, and `go_on`."""
         return self.writer.stops > 0
 
+    @property
+    def paused(self) -> bool:
+        """Whether preparation has done what it may in one control cycle, and goes on in the next."""
+        return self._turns.paused and not self._ended
+
+    @property
+    def _tail(self) -> int:
+        return int(self.writer.paths.row[self.path]["tail"])
+
     def go_on(self) -> None:
         """Go on behind the first stop that preparation waits for; it has been executed."""
         self.writer.stops -= 1
@@ -212,6 +221,9 @@ class Channel:
             self.on_filled()
 
     def _fill(self, blocks: int | None, *, compiled: bool) -> None:
+        if self._turns.used_up:
+            return
+        self._turns.begin()
         if not self._begun:
             self._begun = True
             self._begin()
@@ -221,7 +233,7 @@ class Channel:
         whole = self.state.modal.whole
         writer = self.writer
         while not self._ended and not writer.stops and free_slots(writer.paths, self.path) > RESERVE:
-            if writer.backlog:
+            if writer.backlog or self._turns.paused:
                 return
             if most is not None and self.blocks >= most:
                 return
@@ -295,6 +307,7 @@ class Channel:
             self._reading.end = place.offset
         idle, before = 0, (-1, -1)
         while not self._ended and not self._is_at(place):
+            self._turns.forget()  # no time passes here
             self.fill()
             drop()
             self.writer.clear()
@@ -352,7 +365,7 @@ class Channel:
             tuple(self.errors),
             self.messages.snapshot(),
             (self._ended, self._begun),
-            self._turns,
+            self._turns.snapshot(),
             self.suppressed,
             self.writer.snapshot(),
             self.records.snapshot(),
@@ -404,7 +417,8 @@ class Channel:
         self._known_errors = {str(error) for error in saved.errors}
         self.messages.restore(saved.messages)
         self._ended, self._begun = saved.flags
-        self._turns, self.suppressed = saved.turns, saved.suppressed
+        self._turns.restore(saved.turns)
+        self.suppressed = saved.suppressed
         self.writer.restore(saved.writer)
         self.records.restore(saved.records)
         self.interpreter.restore(saved.interpreter)
@@ -464,12 +478,13 @@ class Channel:
             if self._sought is not None and self._calls.depth == 0:
                 item = self._before_sought(item, self._sought)
             if item is Pause.PAUSE:
+                self._turns.pause()
                 return False
+            before = self._tail
             self._source_item(item)
-            self._turns = 0 if isinstance(item, WordsBlock | TextSpan | Drain) else self._turns + 1
-            if self._turns >= _MOST_TURNS:
-                self._turns = 0
-                return False
+            self._turns.take(1 if isinstance(item, TextSpan) or self._tail != before else BARREN_TURNS)
+            if isinstance(item, Drain) and self._sought is None:
+                self._turns.look(self._reading.text.name, item.line)
         except ProgramError as error:
             self._note(error)
         return True
@@ -559,7 +574,7 @@ class Channel:
         self.state.coordinates.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
         base = self.records.run_base(reading.text, self.stack, self.state.snapshot(), begin)
-        after = words.n_blocks
+        after, before = words.n_blocks, self._tail
         if most is not None:
             after = min(after, first + most - self.blocks)
         reading.next, reason = run_plain(
@@ -579,6 +594,8 @@ class Channel:
             self.writer.marks.extend(marked(self._fast_work))
         if reading.next > first:
             self.blocks += reading.next - first
+            least = 1 if self._tail != before else BARREN_TURNS
+            self._turns.take(max(least, (reading.next - first) // PLAIN_PER_TURN))
             if words.first_word[reading.next] > words.first_word[first]:
                 self._calls.running.begun = True
         return reason
@@ -587,6 +604,14 @@ class Channel:
         reading = self._reading
         index, words = reading.next, reading.words
         reading.next += 1
+        before = self._tail
+        try:
+            self._carry_out_block(index)
+        finally:
+            self._turns.take(1 if self._tail != before else BARREN_TURNS)
+
+    def _carry_out_block(self, index: int) -> None:
+        reading, words = self._reading, self._reading.words
         running = self._calls.running
         if words.flags[index] & PERCENT:
             if running.begun:  # the % behind a program ends it, the one before it does not matter

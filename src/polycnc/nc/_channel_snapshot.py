@@ -8,6 +8,7 @@ from typing import NamedTuple
 from polycnc.errors import ProgramError, SourcePosition
 from polycnc.machine import Form
 from polycnc.nc._block_records import Call, SavedRecords
+from polycnc.nc._turns import SavedTurns
 from polycnc.nc.blocks._calls import Back, Place, SavedCall
 from polycnc.nc.blocks._channel_state import Cycle, ModalSnapshot, Plain, SavedState, Spindle
 from polycnc.nc.blocks._compensation import RadiusCompensation, SavedCompensation
@@ -49,7 +50,7 @@ class ChannelSnapshot(NamedTuple):
     errors: tuple[ProgramError, ...]
     messages: tuple[dict[str, Message], str]
     flags: tuple[bool, bool]
-    turns: int
+    turns: SavedTurns
     suppressed: Suppressed
     writer: WriterSnapshot
     records: SavedRecords
@@ -60,7 +61,7 @@ class ChannelSnapshot(NamedTuple):
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Corner, Cycle, CycleWords, Event, Feed, Frame, Leg, Line, Message, ModalSnapshot,
     Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation, SavedRecords, SavedState,
-    SavedTables, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
+    SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
 
