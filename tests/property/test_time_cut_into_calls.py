@@ -23,7 +23,9 @@ def _seen(device: Any) -> object:
     return device.status(), times, tools
 
 
-@pytest.mark.parametrize("seeds", [ALWAYS, pytest.param(LONG, marks=[pytest.mark.long, pytest.mark.timeout(0)])])
+@pytest.mark.parametrize(
+    "seeds", [ALWAYS, pytest.param(LONG, marks=[pytest.mark.long, pytest.mark.timeout(0)])]
+)
 @pytest.mark.parametrize("kind", DEVICES)
 def test_any_cut_of_the_same_cycles_gives_the_same_bits(kind: str, seeds: range, tmp_path: Path) -> None:
     for seed in seeds:

@@ -15,7 +15,6 @@ from polycnc.controllers.apci.sap import compile_program
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.controllers.imc import Card, CardConfig
-from polycnc.machine import load_machine
 from polycnc.nc.macro import MacroLanguage
 from support.cnc_machine import cnc_machine
 
@@ -32,20 +31,23 @@ def macro_program(rng: random.Random) -> str:
         n = next(number)
         lines += rng.choice(
             [
-                lambda: [f"G1 X{rng.uniform(-9, 40):.3f} Y{rng.uniform(-9, 20):.3f} F{rng.randint(400, 9000)}"],
-                lambda: [f"G0 X[#3+{rng.uniform(1, 9):.3f}]", "#3=#3+0.75"],
-                lambda: ["#1=0", f"WHILE[#1LT{rng.randint(2, 4000)}]DO1", "#1=#1+1", "END1"],
-                lambda: ["#3001=0", f"WHILE[#3001LT{rng.randint(3, 90)}]DO1", "#4=#4+1", "END1"],
-                lambda: ["#3001=0", f"N{n} #5=#5+1", f"IF[#3001LT{rng.randint(3, 70)}]GOTO{n}"],
-                lambda: ["#101=#5041", f"G91 G1 X[#101*0.125+{rng.uniform(0.1, 2):.3f}] F2500", "G90"],
-                lambda: [f"G4 X{rng.uniform(0.004, 0.09):.3f}"],
-                lambda: ["M8"],
-                lambda: [f"G65 P7 A{rng.randint(1, 40)} B{rng.uniform(0.5, 3):.2f}"],
-                lambda: [f"G1 X{rng.uniform(1, 30):.2f} F5000", "G91"]
-                + ["X0.25 Y-0.125"] * rng.randint(2, 30)
-                + ["G90"],
+                [f"G1 X{rng.uniform(-9, 40):.3f} Y{rng.uniform(-9, 20):.3f} F{rng.randint(400, 9000)}"],
+                [f"G0 X[#3+{rng.uniform(1, 9):.3f}]", "#3=#3+0.75"],
+                ["#1=0", f"WHILE[#1LT{rng.randint(2, 4000)}]DO1", "#1=#1+1", "END1"],
+                ["#3001=0", f"WHILE[#3001LT{rng.randint(3, 90)}]DO1", "#4=#4+1", "END1"],
+                ["#3001=0", f"N{n} #5=#5+1", f"IF[#3001LT{rng.randint(3, 70)}]GOTO{n}"],
+                ["#101=#5041", f"G91 G1 X[#101*0.125+{rng.uniform(0.1, 2):.3f}] F2500", "G90"],
+                [f"G4 X{rng.uniform(0.004, 0.09):.3f}"],
+                ["M8"],
+                [f"G65 P7 A{rng.randint(1, 40)} B{rng.uniform(0.5, 3):.2f}"],
+                [
+                    f"G1 X{rng.uniform(1, 30):.2f} F5000",
+                    "G91",
+                    *["X0.25 Y-0.125"] * rng.randint(2, 30),
+                    "G90",
+                ],
             ]
-        )()
+        )
     return "\n".join(lines) + "\nM30\n"
 
 
@@ -59,16 +61,16 @@ def _cpl_program(rng: random.Random, x: str, y: str) -> str:
         a, b, c = next(number), next(number), next(number)
         lines += rng.choice(
             [
-                lambda: [f"N{a} G1 {rng.choice((x, y))}{rng.uniform(-9, 40):.3f} F{rng.randint(400, 9000)}"],
-                lambda: [f"N{a} G0 {x}[I%+{rng.uniform(1, 9):.3f}]", f"{b} I%=I%+1"],
-                lambda: [f"{a} FOR J%=1 TO {rng.randint(2, 3000)}", f"{b} I%=I%+1", f"{c} NEXT J%"],
-                lambda: [f"{a} WAIT(,{rng.randint(3, 90)})"],
-                lambda: [f"{a} WAIT", f"{b} P!=MPOS(1)", f"N{c} {x}[P!+1]"],
-                lambda: [f"{a} T!=CLOCK", f"{b} IF CLOCK-T!<{rng.randint(3, 40)} THEN GOTO {b} ENDIF"],
-                lambda: [f"{a} @A%=@A%+1", f"{b} IF @A%<{rng.randint(1, 4)} THEN GOTO {a} ENDIF"],
-                lambda: [f"N{a} M8"],
+                [f"N{a} G1 {rng.choice((x, y))}{rng.uniform(-9, 40):.3f} F{rng.randint(400, 9000)}"],
+                [f"N{a} G0 {x}[I%+{rng.uniform(1, 9):.3f}]", f"{b} I%=I%+1"],
+                [f"{a} FOR J%=1 TO {rng.randint(2, 3000)}", f"{b} I%=I%+1", f"{c} NEXT J%"],
+                [f"{a} WAIT(,{rng.randint(3, 90)})"],
+                [f"{a} WAIT", f"{b} P!=MPOS(1)", f"N{c} {x}[P!+1]"],
+                [f"{a} T!=CLOCK", f"{b} IF CLOCK-T!<{rng.randint(3, 40)} THEN GOTO {b} ENDIF"],
+                [f"{a} @A%=@A%+1", f"{b} IF @A%<{rng.randint(1, 4)} THEN GOTO {a} ENDIF"],
+                [f"N{a} M8"],
             ]
-        )()
+        )
     return "\n".join(lines) + "\nM30\n"
 
 
@@ -100,7 +102,9 @@ def _pnc(rng: random.Random, folder: Path) -> Pnc:
     config.write_text(AXES)
     made = Pnc(folder, config, channels=[("X", "Y"), ("X2", "Y2")])
     for channel in (1, 2):
-        (folder / f"p{channel}.npg").write_text(_cpl_program(rng, *("X", "Y") if channel == 1 else ("X2=", "Y2=")))
+        (folder / f"p{channel}.npg").write_text(
+            _cpl_program(rng, *("X", "Y") if channel == 1 else ("X2=", "Y2="))
+        )
         made.select_program(f"p{channel}.npg", channel=channel)
         made.cycle_start(channel=channel)
     return made
@@ -118,7 +122,8 @@ def _board(rng: random.Random, _folder: Path) -> Board:
     tasks.load(
         compile_program(
             f"program one; var n: longint; begin n := 0; jr (A2 := {rng.uniform(1, 2):.2f}); {waits}"
-            f"while n < {rng.randint(10, 90_000)} do begin n := n + 1; CI8 := n end; ja (A1 := {rng.uniform(1, 2):.2f}) end.",
+            f"while n < {rng.randint(10, 90_000)} do begin n := n + 1; CI8 := n end; "
+            f"ja (A1 := {rng.uniform(1, 2):.2f}) end.",
             task=2,
         )
     )

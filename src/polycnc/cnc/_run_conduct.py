@@ -173,7 +173,7 @@ class Conduct:
     def before_cycles(self, cycles: int, *, asleep: bool = False) -> int:
         """Make ready for up to `cycles` cycles; return how many may pass before `after_cycles`, 0 for any number.
 
-        What must end `machine.advance` early is put into the clock's mask, beside what is there. `asleep`: as `advance`.
+        What must end `machine.advance` early is put into the clock's mask, beside what is there; `asleep` as `advance`.
         """
         if self.moment.dropping or (self.moment.state is RunState.HOLD and self.at_rest):
             return 0 if self.at_rest else cycles

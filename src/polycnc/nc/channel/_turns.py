@@ -64,7 +64,7 @@ class Turns:
         self.paused = True
 
     def look(self, program: str, line: int) -> None:
-        """Count a block that reads what only the cycles change; where it has done so in this one, preparation pauses."""
+        """Count a block that reads what only cycles change; where it has done so in this one, preparation pauses."""
         place = program, line
         if place in self._looks:
             self.pause()
