@@ -10,8 +10,8 @@ import numpy.typing as npt
 from polycnc.controllers.apci.board._axis_commands import cl
 from polycnc.controllers.apci.board._board import LATENCY_SCANS, Board
 from polycnc.controllers.apci.board._system_file import parse_system_file
-from polycnc.controllers.apci.core._registers import Axst
 from polycnc.kernel import LEADING
+from support.apci_bits import Axst
 
 SCAN_S = 0.00128
 LATENCY = LATENCY_SCANS

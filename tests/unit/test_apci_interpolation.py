@@ -22,7 +22,7 @@ from polycnc.controllers.apci.board._move_commands import (
 )
 from polycnc.controllers.apci.board._spool_commands import ssms
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
+from support.apci_bits import Axst, ErrorReg, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Floats, Rig, scans_for
 
 FAST = Speeds(500.0, 40.0)

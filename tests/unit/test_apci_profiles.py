@@ -11,7 +11,7 @@ from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, utrovr
 from polycnc.controllers.apci.board._jog_commands import ja, jr, js
 from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
 from polycnc.controllers.apci.board._spool_commands import ssms
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
+from support.apci_bits import Axst, ErrorReg, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig, integrated, scans_for
 
 A = 100.0
