@@ -10,9 +10,9 @@ import numpy as np
 from polycnc.kernel import ARC, LINE, RAPID, STOP, WAIT, give_to_path
 from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP_RAD, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
-from polycnc.nc import Channel, Dialect, ProgramText, line_of, load_dialect
-from polycnc.nc._block_records import LINE_MASK
-from polycnc.nc.blocks._modal import ORDINARY
+from polycnc.nc import Channel, ChannelOptions, Dialect, ProgramText, line_of, load_dialect
+from polycnc.nc.modal._modal import ORDINARY
+from polycnc.nc.records._block_records import LINE_MASK
 
 AXIS = '[[axis]]\nname = "{name}"\nvmax_mm_s = 500\namax_mm_s2 = 5000\nsoft_limits_mm = [{low}, {high}]\n'
 SPINDLE = "[spindle]\nmax_rpm = 10000\n"
@@ -52,12 +52,14 @@ def prepare(
     dialect: str | Dialect = "din",
     segments: int = 4096,
     ordinary_blocks: float = 0,
-    **options: Any,
+    collect_errors: bool = False,
+    **arguments: Any,
 ) -> Channel:
     """Prepare a program completely, without running it; the compiled kernel takes what it can."""
     text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
     machine = Machine(config, segments=segments)
-    channel = Channel(text, load_dialect(dialect), machine, ordinary_blocks=ordinary_blocks, **options)
+    options = ChannelOptions(ordinary_blocks=ordinary_blocks, collect_errors=collect_errors)
+    channel = Channel(text, load_dialect(dialect), machine, options=options, **arguments)
     give_to_path(machine.state, channel.path)
     channel.fill()
     assert channel.done, "the program does not fit into the queue"

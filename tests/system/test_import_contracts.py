@@ -37,7 +37,12 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
             "from polycnc.kernel._path import slot",
             "no private module of another package",
         ),
-        ("machine/_io.py", "import polycnc.nc", "imports go only downwards"),
+        ("machine/_io.py", "import polycnc.conformance", "imports go only downwards"),
+        (
+            "nc/dialect/_cycle_settings.py",
+            "from polycnc.nc.blocks._probe import Probe",
+            "part programs: each part stands on those below it",
+        ),
     ],
 )
 def test_forbidden_imports_are_refused(copy: Path, module: str, line: str, contract: str) -> None:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import pytest
 
 from polycnc.nc import LINE_MASK, Action, BlockRecords, ProgramText
-from polycnc.nc._block_records import CONTEXT_SHIFT
+from polycnc.nc.records._block_records import CONTEXT_SHIFT
 from polycnc.runner._blocks import ExecutionCollector
 
 PROGRAMS = (ProgramText.from_text("main", "main.nc"), ProgramText.from_text("sub", "sub.nc"), None)

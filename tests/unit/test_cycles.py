@@ -15,12 +15,12 @@ from polycnc.nc.blocks._cycles import (
     CYCLES,
     CycleError,
     CyclePlace,
-    CycleSettings,
     CycleStep,
     CycleWords,
     StepKind,
     expand_cycle,
 )
+from polycnc.nc.dialect._cycle_settings import CycleSettings
 
 PLACE = CyclePlace(hole_mm=(5.0, 7.0), initial_mm=10.0, level_mm=10.0)
 R_PLACE = CyclePlace(hole_mm=(5.0, 7.0), initial_mm=10.0, level_mm=10.0, retract="r")

@@ -7,7 +7,7 @@ import pytest
 import polycnc
 from polycnc.errors import ConfigurationError, UsageError
 from polycnc.nc import load_dialect
-from polycnc.nc._dialect import Dialect, Numbers
+from polycnc.nc.dialect._dialect import Dialect, Numbers
 from support.programs import (
     AXIS,
     FIVE,

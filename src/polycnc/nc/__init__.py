@@ -1,6 +1,20 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
-from polycnc.nc._block_records import (
+from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
+from polycnc.nc.blocks._messages import Message
+from polycnc.nc.blocks._moves import Stop
+from polycnc.nc.blocks._probe import Probe
+from polycnc.nc.blocks._queue import Event
+from polycnc.nc.channel._channel import Channel
+from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
+from polycnc.nc.channel._options import ChannelOptions
+from polycnc.nc.channel._sub_programs import Library
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.modal._modal_snapshot import Spindle
+from polycnc.nc.modal._placement import Placement
+from polycnc.nc.modal._suppressed import Suppressed
+from polycnc.nc.records._block_records import (
     CONTEXT_SHIFT,
     LINE_MASK,
     BlockRecord,
@@ -9,7 +23,7 @@ from polycnc.nc._block_records import (
     ModalWords,
     line_of,
 )
-from polycnc.nc._block_source import (
+from polycnc.nc.sources._block_source import (
     BlockSource,
     BoundLanguage,
     CallProgram,
@@ -24,17 +38,6 @@ from polycnc.nc._block_source import (
     TextSpan,
     WordsBlock,
 )
-from polycnc.nc._channel import Channel
-from polycnc.nc._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Suppressed, Texts
-from polycnc.nc._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
-from polycnc.nc.blocks._actions import Action, Group, MAction
-from polycnc.nc.blocks._calls import Library
-from polycnc.nc.blocks._channel_state import ChannelState, Spindle, of_another_channel
-from polycnc.nc.blocks._messages import Message
-from polycnc.nc.blocks._moves import Stop
-from polycnc.nc.blocks._placement import Placement
-from polycnc.nc.blocks._probe import Probe
-from polycnc.nc.blocks._queue import Event
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
@@ -53,6 +56,7 @@ __all__ = [
     "Call",
     "CallProgram",
     "Channel",
+    "ChannelOptions",
     "ChannelSnapshot",
     "ChannelState",
     "Dialect",

@@ -18,7 +18,7 @@ from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, r
 from polycnc.controllers.bosch.system import Category
 from polycnc.errors import ProgramError
 from polycnc.machine import MachineConfig
-from polycnc.nc import BlockSource, Channel, ProgramText, Returning, load_dialect
+from polycnc.nc import BlockSource, ProgramText, Returning, load_dialect
 from polycnc.nc.cpl import (
     OMITTED,
     CodeCalls,
@@ -314,7 +314,7 @@ class _Language(CplLanguage):
         self.used = self.used or source is not None
         return source
 
-    def way_back(self, channel: Channel, saved: object) -> Returning:
+    def way_back(self, channel: object, saved: object) -> Returning:
         """Return what goes back to a state, with the variables of its programs."""
         back = super().way_back(channel, saved)
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from polycnc.machine import ToolConfig
-from polycnc.nc.blocks._actions import Action, Group, MAction
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import INCH
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord, MWord, code_text
+from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.modal._modal import INCH
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH
 
@@ -149,7 +149,7 @@ class Auxiliary:
 
     def _set_mode(self, g: GWord, speed: Word | None) -> None:
         spindle = self.state.spindle
-        surface_speed = g.action is Action.CONSTANT_SURFACE_SPEED
+        surface_speed = bool(g.value)
         if surface_speed == spindle.surface_speed:
             return
         if surface_speed and speed is None:

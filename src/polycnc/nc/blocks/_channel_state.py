@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -14,29 +13,15 @@ from polycnc.nc.blocks._compensation import RadiusCompensation
 from polycnc.nc.blocks._coordinates import Coordinates, SavedCoordinates
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
-from polycnc.nc.blocks._frame import Frame
-from polycnc.nc.blocks._modal import FEED_NUMBER, Modal, restore_modal, save_modal
 from polycnc.nc.blocks._nurbs_curve import Nurbs
-from polycnc.nc.blocks._placement import Placement
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._tables import ProgramTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
-
-
-@dataclass(frozen=True, slots=True)
-class Spindle:
-    """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped or `oriented`.
-
-    `speed` is in revolutions per minute, or in m/min with constant surface speed; then the spindle turns with `clamp`
-    revolutions per minute at the most.
-    """
-
-    speed: float = 0.0
-    direction: int = 0
-    surface_speed: bool = False
-    clamp: float = math.inf
-    oriented: bool = False
+from polycnc.nc.modal._frame import Frame
+from polycnc.nc.modal._modal import FEED_NUMBER, Modal, restore_modal, save_modal
+from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
+from polycnc.nc.modal._placement import Placement
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,26 +63,6 @@ class Plain(NamedTuple):
     corner: Corner | None
     spline_way: tuple[float, float] | None
     nurbs: Nurbs | None
-
-
-class ModalSnapshot(NamedTuple):
-    """Hold what was in force with one block, to be shown while it is executed; see `ChannelState`."""
-
-    whole: bytes  # `Modal.whole`
-    feed: float  # as programmed
-    offset: bytes  # `Modal.offset`
-    work: tuple[str, ...]
-    spindle: Spindle
-    cycle: str
-    retract_to_initial: bool
-    tool: int
-    selected_tool: int
-    side: int
-    compensation_tool: int | None
-    length_sign: int
-    length_tool: int
-    m_codes: tuple[int, ...]
-    placement: Placement
 
 
 class SavedState(NamedTuple):

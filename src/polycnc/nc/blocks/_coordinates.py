@@ -7,9 +7,9 @@ from typing import TypeAlias
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.nc.blocks._frame import Rotation
-from polycnc.nc.blocks._modal import Modal
 from polycnc.nc.blocks._tables import COMMON_OFFSET, ProgramTables
+from polycnc.nc.modal._frame import Rotation
+from polycnc.nc.modal._modal import Modal
 
 Floats: TypeAlias = npt.NDArray[np.float64]
 SavedCoordinates: TypeAlias = tuple[

@@ -8,10 +8,10 @@ from polycnc.errors import ProgramError
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._corners import Corner, CornerError
 from polycnc.nc.blocks._corners import joined as corner_moves
-from polycnc.nc.blocks._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, length_scale
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Arc, Line, Move, QueueItem
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord, code_text
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, length_scale
 
 NUMBERS = "NO:"
 """The letters of block and program numbers."""

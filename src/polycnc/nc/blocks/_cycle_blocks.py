@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState, Cycle
 from polycnc.nc.blocks._cycles import (
@@ -22,7 +21,11 @@ from polycnc.nc.blocks._cycles import (
     StepKind,
     expand_cycle,
 )
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
+from polycnc.nc.blocks._words import BlockWords, Fail, GWord, dwell_seconds
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     AXIS_P,
     AXIS_Q,
@@ -35,9 +38,6 @@ from polycnc.nc.blocks._modal import (
     PLANE,
     PLANE_LETTERS,
 )
-from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
-from polycnc.nc.blocks._words import BlockWords, Fail, GWord, dwell_seconds
 from polycnc.nc.text._scan_plain import Word
 
 _SPINDLES: dict[int, Spindle] = {1: "forward", -1: "reverse", 0: "stopped"}

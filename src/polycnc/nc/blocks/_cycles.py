@@ -17,6 +17,7 @@ from enum import Enum, auto
 from typing import Literal, TypeAlias
 
 from polycnc.errors import ProgramError
+from polycnc.nc.dialect._cycle_settings import CycleSettings
 
 # More pecks in one hole than this are a mistyped Q, not a hole.
 MOST_PECKS = 100_000
@@ -24,7 +25,6 @@ MOST_PECKS = 100_000
 _SAME_LEVEL_MM = 1e-9
 
 Spindle: TypeAlias = Literal["forward", "reverse", "stopped"]
-PeckTap: TypeAlias = Literal["none", "chip_break", "retract"]
 
 
 class StepKind(Enum):
@@ -109,21 +109,6 @@ class CyclePlace:
     spindle: Spindle = "forward"
     spindle_rpm: float = 0.0
     rigid: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class CycleSettings:
-    """What a control's parameters say about its cycles.
-
-    `chip_break_mm` is how far G73 backs up, `reentry_mm` how far above the last cut G83 changes from rapid to
-    feed. `shift_direction` is where Q shifts the tool when a block gives no I and J. `peck_tap` is what Q does in a
-    tapping cycle: nothing, back by `chip_break_mm`, or back to R.
-    """
-
-    chip_break_mm: float = 1.0
-    reentry_mm: float = 1.0
-    shift_direction: tuple[float, float] = (1.0, 0.0)
-    peck_tap: PeckTap = "none"
 
 
 class CycleError(ProgramError):

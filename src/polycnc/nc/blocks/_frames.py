@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._frame import Frame, Polar, Rotation
-from polycnc.nc.blocks._modal import ABSOLUTE, AXIS_P, AXIS_Q, NO_AXIS, PLANE, PLANE_LETTERS
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
 from polycnc.nc.blocks._turning_data import TurningData
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord, code_text
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._frame import Frame, Polar, Rotation
+from polycnc.nc.modal._modal import ABSOLUTE, AXIS_P, AXIS_Q, NO_AXIS, PLANE, PLANE_LETTERS
 
 LARGEST_FACTOR = 1000.0
 LARGEST_OFFSET_NUMBER = 999

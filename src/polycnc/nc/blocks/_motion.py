@@ -8,8 +8,6 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 from polycnc.machine import LONGEST_BLOCK_S
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import Group
 from polycnc.nc.blocks._arcs import (
     ARC_NO_RADIUS,
     ARC_OFF_CIRCLE,
@@ -24,9 +22,13 @@ from polycnc.nc.blocks._arcs import (
 )
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
-from polycnc.nc.blocks._frame import Polar
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
+from polycnc.nc.blocks._words import BlockWords, Fail, code_text
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import Group
+from polycnc.nc.modal._frame import Polar
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
     ARC_RELATIVE,
@@ -53,8 +55,6 @@ from polycnc.nc.blocks._modal import (
     length_scale,
     short_way,
 )
-from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
-from polycnc.nc.blocks._words import BlockWords, Fail, code_text
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import SECONDS_PER_MINUTE
 

@@ -6,15 +6,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from polycnc.machine import first_contact
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._modal import MOTION_LINEAR, MOTION_RAPID
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Feed, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._words import Fail, GWord
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import MOTION_LINEAR, MOTION_RAPID
 
 REFERENCE_POSITIONS = 4
 _CANCEL_FIRST = "Cancel it with G40 first."

@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from polycnc.nc.blocks._actions import Action, Group
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._modal import AXIS_P, AXIS_Q, MOTION, MOTION_NONE
 from polycnc.nc.blocks._motion import MotionBuilder
 from polycnc.nc.blocks._moves import Line, Spline
 from polycnc.nc.blocks._nurbs_curve import Nurbs, nurbs_cubics
 from polycnc.nc.blocks._splines import SplineBlocks
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord
+from polycnc.nc.modal._actions import Action, Group
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, MOTION, MOTION_NONE
 
 LEAST_ORDER, GREATEST_ORDER = 3, 16
 _BESIDE = (Group.MOTION, Group.DWELL)

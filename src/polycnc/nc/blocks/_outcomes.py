@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 
-from polycnc.nc._dialect import Dialect
-from polycnc.nc.blocks._actions import MAction
 from polycnc.nc.blocks._auxiliary import whole_number
-from polycnc.nc.blocks._calls import Place
 from polycnc.nc.blocks._words import BlockWords, Fail
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._actions import MAction
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._scan_plain import Word
 
 Trouble = tuple[str, str, str]

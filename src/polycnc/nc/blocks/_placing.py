@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass, replace
 from typing import Any
 
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._frame import Rotation
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._words import BlockWords, Fail, GWord, code_text
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._frame import Rotation
+from polycnc.nc.modal._modal import (
     AXIS_P,
     AXIS_Q,
     AXIS_R,
@@ -20,9 +22,7 @@ from polycnc.nc.blocks._modal import (
     PLANE_XY,
     set_plane,
 )
-from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._placement import Placement, Vector, total
-from polycnc.nc.blocks._words import BlockWords, Fail, GWord, code_text
+from polycnc.nc.modal._placement import Placement, Vector, total
 
 LARGEST_FACTOR = 1000.0
 _SHIFTS = {
@@ -39,14 +39,6 @@ _OFF: dict[Action, dict[str, Any]] = {
     Action.EXTERNAL_OFFSET_OFF: {"offsets": ()},
 }
 _TABLES = "KV"
-PLACING = frozenset(
-    {
-        *_SHIFTS, *_OFF, Action.WORKPIECE_POSITION, Action.POLE, Action.POLE_SCALING, Action.EXTERNAL_OFFSET,
-        Action.EXTERNAL_TOOL, Action.EXTERNAL_TOOL_OFF, Action.GENERAL_TOOL, Action.GENERAL_TOOL_OFF,
-        Action.SELECT_TABLES, Action.PLANE_BY_AXES,
-    }
-)  # fmt: skip
-"""The actions that `Placing` carries out."""
 
 
 @dataclass

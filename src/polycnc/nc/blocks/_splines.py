@@ -12,31 +12,20 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from polycnc.kernel import MOST_SPANS, SPAN_CURVED, SPAN_END, SPAN_LENGTH, SPAN_SIZE, cut_bezier
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._motion import MotionBuilder
+from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
+from polycnc.nc.blocks._words import Fail, GWord
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import (
     AXIS_P,
     AXIS_Q,
-    MOTION_CUBIC,
-    MOTION_NURBS,
-    MOTION_QUADRATIC,
     NO_AXIS,
     PLANE,
     PLANE_XY,
     length_scale,
 )
-from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._moves import Feed, Line, Point, Spline
-from polycnc.nc.blocks._words import Fail, GWord
 from polycnc.nc.text._scan_plain import Word
-
-SPLINES = {
-    Action.CUBIC_SPLINE: MOTION_CUBIC,
-    Action.QUADRATIC_SPLINE: MOTION_QUADRATIC,
-    Action.NURBS: MOTION_NURBS,
-    Action.NURBS_END: MOTION_NURBS,
-}
-"""Motions that count for their own block, or up to the block that ends them; they take axis words."""
 
 XY = tuple[float, float]
 

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 from polycnc.machine import MachineConfig, ToolConfig
-from polycnc.nc.blocks._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, Modal
+from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, Modal
 
 COMMON_OFFSET = "EXT"
 """The work offset that counts with every other one."""

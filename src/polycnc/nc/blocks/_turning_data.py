@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._auxiliary import whole_number
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._modal import length_scale
 from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
 from polycnc.nc.blocks._words import BlockWords, Fail, GWord
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._modal import length_scale
 
 GEOMETRY = 10_000
 """What P counts from where geometry offsets are set, not wear."""

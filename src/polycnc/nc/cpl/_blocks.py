@@ -4,22 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from polycnc.errors import ProgramError
 from polycnc.language import Traced, resumed
 from polycnc.machine import SnapshotError
-from polycnc.nc._block_source import (
-    BlockSource,
-    CallProgram,
-    Drain,
-    Pause,
-    Returning,
-    SourceItem,
-    Statement,
-    TextSpan,
-    WordsBlock,
-)
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, CodeWord
 from polycnc.nc.cpl._cpl_state import (
     CPL_CLASSES,
@@ -37,11 +26,19 @@ from polycnc.nc.cpl._link_table import LinkTables
 from polycnc.nc.cpl._loops import LoopWatch, WatchedHost
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
 from polycnc.nc.cpl._run import Arguments, Execution, undeclared
+from polycnc.nc.sources._block_source import (
+    BlockSource,
+    CallProgram,
+    Drain,
+    Pause,
+    Returning,
+    SourceItem,
+    Statement,
+    TextSpan,
+    WordsBlock,
+)
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word, scan_block
-
-if TYPE_CHECKING:
-    from polycnc.nc._channel import Channel
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
 _STATEMENT = re.compile(r"[ \t]*[0-9.@#](?![0-9]*[ \t]*WAIT)")
@@ -158,7 +155,7 @@ class CplLanguage:
         )
         return SavedCpl(objects.all(), shared, kept, self.modal, programs)
 
-    def way_back(self, channel: Channel, saved: object) -> Returning:
+    def way_back(self, channel: object, saved: object) -> Returning:
         """Return what goes back to a state; nothing changes yet.
 
         Raises:

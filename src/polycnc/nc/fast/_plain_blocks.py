@@ -31,10 +31,10 @@ from polycnc.kernel import (
     merge_line,
 )
 from polycnc.machine import LONGEST_BLOCK_S
-from polycnc.nc._dialect import DialectTables
-from polycnc.nc.blocks._actions import Action
 from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.dialect._dialect import DialectTables
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
     ARC_RELATIVE,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polycnc.nc import Dialect
+from polycnc.nc.dialect._dialect import Dialect
 from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:

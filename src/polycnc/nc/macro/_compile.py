@@ -11,7 +11,6 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 from polycnc.language import Chain, Emitter, Flaw, Python, Traced, Unary, infix, prefix
-from polycnc.nc._block_source import Drain, TextSpan
 from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS, power
 from polycnc.nc.macro._reader import COMPARISONS, argument_numbers
 from polycnc.nc.macro._shape import Label, Region, Shape, last_label
@@ -40,6 +39,7 @@ from polycnc.nc.macro._syntax import (
     Words,
 )
 from polycnc.nc.macro._variables import LARGEST
+from polycnc.nc.sources._block_source import Drain, TextSpan
 
 ALARM, MESSAGE_STOP = 3000, 3006
 _ANGLES_AND_LENGTHS = "ABCIJKQRUVWXYZ"

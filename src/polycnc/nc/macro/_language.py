@@ -7,12 +7,10 @@ from collections.abc import Sequence
 from polycnc.errors import ProgramError
 from polycnc.language import Traced
 from polycnc.machine import SnapshotError
-from polycnc.nc._block_records import Call
-from polycnc.nc._block_source import BlockSource, Returning
-from polycnc.nc._channel import Channel
 from polycnc.nc.macro._calls import Arguments, MacroCalls
 from polycnc.nc.macro._compile import compile_program, names
 from polycnc.nc.macro._functions import asin, atan2
+from polycnc.nc.macro._host import Host
 from polycnc.nc.macro._macro_source import Compiled, MacroSource, error_at, standing
 from polycnc.nc.macro._macro_state import MACRO_CLASSES, ModalCall, SavedLanguage, SavedSource
 from polycnc.nc.macro._output import OutputDevice
@@ -28,6 +26,8 @@ from polycnc.nc.macro._shape import (
 )
 from polycnc.nc.macro._system import SystemVariables
 from polycnc.nc.macro._variables import MacroVariables, Value
+from polycnc.nc.records._block_records import Call
+from polycnc.nc.sources._block_source import BlockSource, Returning
 from polycnc.nc.text._program import ProgramText
 
 PAUSE_JUMPS = 20_000
@@ -73,7 +73,7 @@ class MacroLanguage:
         self.pending: int | None = None
         self._interrupt = False
         self.codes_off = 0
-        self._channel: Channel | None = None
+        self._channel: Host | None = None
         self._compiled: dict[tuple[int, int, bool], Compiled | None] = {}
         self._returns: dict[int, tuple[ProgramText, bool]] = {}
         self._latin: dict[int, tuple[ProgramText, str, bytes]] = {}
@@ -82,7 +82,7 @@ class MacroLanguage:
         self._levels: dict[tuple[Call, ...], list[Value]] = {}
         self._pause_jumps = pause_jumps
 
-    def attach(self, channel: Channel) -> None:
+    def attach(self, channel: Host) -> None:
         """Work for a channel: its positions, modal state and tables are what system variables read."""
         self._channel = channel
         self._levels.clear()
@@ -107,7 +107,7 @@ class MacroLanguage:
         return taken
 
     @property
-    def channel(self) -> Channel:
+    def channel(self) -> Host:
         """The channel that the language works for."""
         assert self._channel is not None
         return self._channel
@@ -258,7 +258,7 @@ class MacroLanguage:
             ),
         )
 
-    def way_back(self, channel: Channel, saved: object) -> Returning:
+    def way_back(self, channel: Host, saved: object) -> Returning:
         """Return what goes back to a state, for a channel that it is attached to by then; nothing changes yet.
 
         Raises:

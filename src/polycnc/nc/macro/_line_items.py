@@ -5,17 +5,13 @@ Both iterators can tell where they stand between two items, and be made to stand
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
-from polycnc.nc._block_source import CallProgram, Drain, SourceItem, TextSpan
 from polycnc.nc.macro._calls import ARGUMENTS_EACH, Arguments
 from polycnc.nc.macro._macro_state import ModalCall, SavedItems
+from polycnc.nc.macro._run_state import RunState
 from polycnc.nc.macro._variables import LEVELS, MacroError, MacroVariables, Value
+from polycnc.nc.sources._block_source import CallProgram, Drain, SourceItem, TextSpan
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import scan_block
-
-if TYPE_CHECKING:
-    from polycnc.nc.macro._language import MacroLanguage
 
 _NOT_A_MOVE = (4.0, 10.0, 28.0, 29.0, 30.0, 52.0, 65.0, 66.0, 67.0, 68.0, 50.0, 51.0, 92.0, 50.1, 51.1)
 _BLOCK, _MOVE, _WAIT, _INTERRUPT, _END = "block", "move", "wait", "interrupt", "end"
@@ -33,7 +29,7 @@ class LineItems:
 
     def __init__(
         self,
-        language: MacroLanguage,
+        language: RunState,
         block: SourceItem | None,
         letters: Letters,
         line: int,
@@ -124,7 +120,7 @@ class LineItems:
 class SpanItems:
     """The items of plain text line by line, with the call behind every move; `number` is the span's in its program."""
 
-    def __init__(self, language: MacroLanguage, text: ProgramText, whole: TextSpan, number: int) -> None:
+    def __init__(self, language: RunState, text: ProgramText, whole: TextSpan, number: int) -> None:
         self._language = language
         self._text = text
         self._end = whole.end
@@ -174,7 +170,7 @@ class SpanItems:
         self._items = items_of(self._language, saved)
 
 
-def items_of(language: MacroLanguage, saved: SavedItems) -> LineItems:
+def items_of(language: RunState, saved: SavedItems) -> LineItems:
     """Return the items of a block from where they stood."""
     return LineItems(language, None, saved.letters, saved.line, saved.offset, stage=saved.stage)
 

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import Any, NoReturn
 
 from polycnc.errors import ProgramError
 from polycnc.language import INNER, Flaw, Frame, Traced, frame_of, inner_of, line_of, names_of, resumed
 from polycnc.machine import SnapshotError
-from polycnc.nc._block_source import CallProgram, EndSource, Pause, SourceItem, TextSpan, WordsBlock
-from polycnc.nc.blocks._modal import INCH
 from polycnc.nc.macro._calls import Arguments
 from polycnc.nc.macro._compile import Code
 from polycnc.nc.macro._line_items import LineItems, SpanItems, check_level, is_stage, items_of
 from polycnc.nc.macro._macro_state import ModalCall, SavedItems, SavedSource
+from polycnc.nc.macro._run_state import RunState
 from polycnc.nc.macro._statement_values import (
     alarm,
     into_loop,
@@ -27,11 +26,10 @@ from polycnc.nc.macro._statement_values import (
     stop,
 )
 from polycnc.nc.macro._variables import LEVELS, LOCALS, MacroError, Value, checked
+from polycnc.nc.modal._modal import INCH
+from polycnc.nc.sources._block_source import CallProgram, EndSource, Pause, SourceItem, TextSpan, WordsBlock
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
-
-if TYPE_CHECKING:
-    from polycnc.nc.macro._language import MacroLanguage
 
 _COMMON_LAST = 999
 _WHOLE = frozenset("DHLMNOPST")
@@ -59,7 +57,7 @@ class Compiled:
 class MacroSource:
     """One execution of one program."""
 
-    def __init__(self, language: MacroLanguage, compiled: Compiled, arguments: Arguments | None) -> None:
+    def __init__(self, language: RunState, compiled: Compiled, arguments: Arguments | None) -> None:
         self._language = language
         self._compiled = compiled
         self._arguments = arguments or _NO_ARGUMENTS

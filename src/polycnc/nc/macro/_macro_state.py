@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from polycnc.nc._block_records import Call
 from polycnc.nc.macro._calls import Arguments
 from polycnc.nc.macro._variables import SavedVariables, Value
+from polycnc.nc.records._block_records import Call
 from polycnc.nc.text._program import ProgramText
 
 

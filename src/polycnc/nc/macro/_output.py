@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
 from polycnc.nc.macro._functions import rounded
+from polycnc.nc.macro._host import Host
 from polycnc.nc.macro._syntax import Output, Printed
 from polycnc.nc.macro._variables import MacroError
-
-if TYPE_CHECKING:
-    from polycnc.nc._channel import Channel
 
 _BEGIN, _END = b"\x12", b"\x14"  # the device is switched on and off by these (DC2, DC4)
 _LARGEST = 2**31 - 1
@@ -28,9 +25,9 @@ class OutputDevice:
         self.bare = False
         self.is_open = False
         self._told = 0
-        self._channel: Channel | None = None
+        self._channel: Host | None = None
 
-    def attach(self, channel: Channel) -> None:
+    def attach(self, channel: Host) -> None:
         """Work for a channel; the device is closed."""
         self._channel = channel
         self.is_open = False

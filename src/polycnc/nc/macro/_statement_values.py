@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-from polycnc.nc._block_source import WordsBlock
 from polycnc.nc.macro._functions import rounded
 from polycnc.nc.macro._reader import LARGEST_LABEL
 from polycnc.nc.macro._variables import MacroError, Value
+from polycnc.nc.sources._block_source import WordsBlock
 from polycnc.nc.text._scan_plain import Word
 
 _ALARM_BASE = 3000

@@ -7,8 +7,11 @@ from contextlib import contextmanager
 from datetime import datetime
 
 from polycnc.machine import Clock
-from polycnc.nc._channel import Channel
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
+from polycnc.nc.macro._host import Host
+from polycnc.nc.macro._macro_state import SavedSystem
+from polycnc.nc.macro._variables import MacroError, Value, no_variable
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     EXACT_STOP,
     FEED_MODE,
@@ -18,9 +21,6 @@ from polycnc.nc.blocks._modal import (
     PLANE,
     STOPS_SUPPRESSED,
 )
-from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
-from polycnc.nc.macro._macro_state import SavedSystem
-from polycnc.nc.macro._variables import MacroError, Value, no_variable
 
 _AXES = 8
 _SINGLE_BLOCK, _FEED_CONTROL, _SETTINGS, _MIRRORS = 3003, 3004, 3005, 3007
@@ -50,14 +50,14 @@ class SystemVariables:
 
     def __init__(self, clock: Callable[[], datetime] | None = None) -> None:
         self._clock = clock
-        self._channel: Channel | None = None
+        self._channel: Host | None = None
         self._stored: dict[int, Value] = {}
         self._timers: dict[int, tuple[float, float]] = {}
         self.modal_call = False
         self.program_number = 0
         self.sequence_number = 0
 
-    def attach(self, channel: Channel) -> None:
+    def attach(self, channel: Host) -> None:
         """Work for a channel; nothing is suppressed."""
         self._channel = channel
         for number in _SUPPRESSING:
@@ -65,7 +65,7 @@ class SystemVariables:
         self.program_number = self.sequence_number = 0
 
     @contextmanager
-    def seen_from(self, channel: Channel) -> Iterator[None]:
+    def seen_from(self, channel: Host) -> Iterator[None]:
         """Tell meanwhile which variables there are for programs of another channel."""
         before, self._channel = self._channel, channel
         try:
@@ -90,7 +90,7 @@ class SystemVariables:
         self.program_number, self.sequence_number = saved.program_number, saved.sequence_number
 
     @property
-    def channel(self) -> Channel:
+    def channel(self) -> Host:
         """The channel."""
         assert self._channel is not None
         return self._channel

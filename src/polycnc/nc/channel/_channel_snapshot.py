@@ -7,33 +7,27 @@ from typing import NamedTuple
 
 from polycnc.errors import ProgramError, SourcePosition
 from polycnc.machine import Form
-from polycnc.nc._block_records import Call, SavedRecords
-from polycnc.nc.blocks._calls import Back, Place, SavedCall
-from polycnc.nc.blocks._channel_state import Cycle, ModalSnapshot, Plain, SavedState, Spindle
+from polycnc.nc.blocks._channel_state import Cycle, Plain, SavedState
 from polycnc.nc.blocks._compensation import RadiusCompensation, SavedCompensation
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
-from polycnc.nc.blocks._frame import Frame, Polar, Rotation
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Spline, Stop, Wait
 from polycnc.nc.blocks._nurbs_curve import Nurbs
 from polycnc.nc.blocks._offset_geometry import Leg
-from polycnc.nc.blocks._placement import Placement
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._queue import Event, WriterSnapshot
 from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
+from polycnc.nc.channel._running import Back, SavedCall
+from polycnc.nc.modal._frame import Frame, Polar, Rotation
+from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
+from polycnc.nc.modal._placement import Placement
+from polycnc.nc.modal._suppressed import Suppressed
+from polycnc.nc.records._block_records import Call, SavedRecords
+from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
-
-
-class Suppressed(NamedTuple):
-    """What a program keeps from acting (#3003, #3004): single block, waits for functions, feed hold, feed override."""
-
-    single_block: bool = False
-    answers: bool = False
-    hold: bool = False
-    override: bool = False
 
 
 class ChannelSnapshot(NamedTuple):

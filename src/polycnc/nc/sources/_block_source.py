@@ -35,14 +35,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import TYPE_CHECKING, Protocol, TypeAlias, runtime_checkable
+from typing import Protocol, TypeAlias, TypeVar, runtime_checkable
 
-from polycnc.nc._block_records import Call
+from polycnc.nc.records._block_records import Call
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
 
-if TYPE_CHECKING:
-    from polycnc.nc._channel import Channel
+HostT = TypeVar("HostT", contravariant=True)
+"""What a language asks of the channel that it works for, as a protocol of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,7 +193,7 @@ Returning: TypeAlias = Callable[[], Sequence[tuple[object, BlockSource | None]]]
 
 
 @runtime_checkable
-class LastingLanguage(Language, Protocol):
+class LastingLanguage(Language, Protocol[HostT]):
     """A language that can tell where its programs stand, and go on from there.
 
     What it tells is a value of `classes` and of plain ones.
@@ -212,7 +212,7 @@ class LastingLanguage(Language, Protocol):
         """
         ...
 
-    def way_back(self, channel: Channel, saved: object) -> Returning:
+    def way_back(self, channel: HostT, saved: object) -> Returning:
         """Return what goes back to a state, for a channel that it is attached to by then; nothing changes yet.
 
         Raises:
@@ -222,9 +222,9 @@ class LastingLanguage(Language, Protocol):
 
 
 @runtime_checkable
-class BoundLanguage(Language, Protocol):
+class BoundLanguage(Language, Protocol[HostT]):
     """A language that reads the state of the channel it works for."""
 
-    def attach(self, channel: Channel) -> None:
+    def attach(self, channel: HostT) -> None:
         """Take the channel, before it begins."""
         ...

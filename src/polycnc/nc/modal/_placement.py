@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from polycnc.nc.blocks._frame import Rotation
+from polycnc.nc.modal._frame import Rotation
 
 Vector = tuple[float, ...]
 

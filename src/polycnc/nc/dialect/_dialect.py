@@ -20,9 +20,9 @@ from pydantic import AfterValidator, Field, model_validator
 
 from polycnc.errors import UsageError
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
-from polycnc.nc.blocks._actions import M_ACTIONS, Action, MAction
-from polycnc.nc.blocks._cycles import CycleSettings, PeckTap
-from polycnc.nc.blocks._modal import (
+from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
+from polycnc.nc.modal._actions import M_ACTIONS, Action, MAction
+from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
     ARC_TOLERANCE,
@@ -51,7 +51,7 @@ G_CODES = 10000  # G0 to G999.9
 _CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
 _MOTIONS = {"none": MOTION_NONE, "rapid": MOTION_RAPID, "linear": MOTION_LINEAR}
-_ACTIONS = {action.name.lower(): action for action in Action}
+_ACTIONS = {action.title: action for action in Action}
 
 
 def _known_actions(table: dict[str, str]) -> dict[str, str]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from polycnc.machine import MachineConfig
-from polycnc.nc._dialect import Dialect
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._modal import LINEAR_AXIS, MODULO_AXIS, ROTARY_AXIS, make_modal, set_diameters
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._modal import LINEAR_AXIS, MODULO_AXIS, ROTARY_AXIS, make_modal, set_diameters
 
 _START_OFFSET = "G54"
 

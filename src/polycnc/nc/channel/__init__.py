@@ -1,0 +1,1 @@
+"""A channel: reading, calls and preparation of one program for one path."""

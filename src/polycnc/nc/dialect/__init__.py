@@ -1,0 +1,1 @@
+"""Dialects: which code does what on a control."""

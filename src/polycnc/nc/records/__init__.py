@@ -1,0 +1,1 @@
+"""Block records: what is known of a block while it is executed."""

@@ -1,0 +1,1 @@
+"""Block sources: the seam for languages inside part programs."""
