@@ -5,10 +5,8 @@ Tests read registers with these and not with the code's own, so that they notice
 
 from __future__ import annotations
 
-from enum import IntFlag
 
-
-class Axst(IntFlag):
+class Axst:
     """Status word of an axis."""
 
     eo = 1 << 1
@@ -30,7 +28,7 @@ class Axst(IntFlag):
     saf = 1 << 19
 
 
-class ErrorReg(IntFlag):
+class ErrorReg:
     """Errors of the board."""
 
     errAxDef = 0x00000001
@@ -55,7 +53,7 @@ class ErrorReg(IntFlag):
     JSatSAFdone = 0x00080000
 
 
-class ModeReg(IntFlag):
+class ModeReg:
     """Modes of the board; the last five are named without a number, and have the ruled ones."""
 
     lookahead = 1 << 0

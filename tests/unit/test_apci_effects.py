@@ -28,8 +28,8 @@ def jog(pc: Pc, *axes: int, by: float) -> None:
     pc.board.advance(LATENCY)
 
 
-def bit(an: int, flag: Axst) -> bool:
-    return pcap.rdaxstb(an, int(flag).bit_length()) == 1
+def bit(an: int, flag: int) -> bool:
+    return pcap.rdaxstb(an, flag.bit_length()) == 1
 
 
 # ------------------------------------------------------------------ monitors

@@ -511,7 +511,7 @@ def test_numbers_that_are_none_change_nothing(pc: Pc, value: float) -> None:
     pcap.ja(pcap.AS.of(0), pc.tsrp)
     assert pc.scans_until_rest() == scans(2.5)
     assert at(pc) == (100.0, 0.0, 0.0, 0.0)
-    assert pcap.rdaxstb(0, int(Axst.cl).bit_length()) == 1
+    assert pcap.rdaxstb(0, Axst.cl.bit_length()) == 1
 
 
 def test_a_selection_with_an_unknown_axis_is_ignored_as_a_whole() -> None:

@@ -328,7 +328,7 @@ def test_move_with_impossible_speeds_is_discarded(speeds: Speeds, spool: bool) -
 @pytest.mark.parametrize(
     ("speeds", "error"), [(Speeds(A, 0.0), ErrorReg.VelocityZero), (Speeds(0.0, TOP), ErrorReg.AccelZero)]
 )
-def test_move_without_velocity_or_acceleration(speeds: Speeds, error: ErrorReg) -> None:
+def test_move_without_velocity_or_acceleration(speeds: Speeds, error: int) -> None:
     rig = Rig()
     mlr(rig.board, (0,), (10.0,), speeds)
     rig.board.advance(LATENCY + 1)

@@ -190,7 +190,8 @@ def test_a_gear_that_waits_outlives_every_motion_of_its_slave(owner: int, comman
     assert (card.read("curvel", SLAVE), flags(card) >= WAITING) == (0, True)
     write(card, startsyn=FLAG)
     card.advance(45)
-    assert (card.read("curvel", SLAVE), flags(card)) == (pytest.approx(7, abs=1e-4), {"engear"})
+    assert card.read("curvel", SLAVE) == pytest.approx(7, abs=1e-4)
+    assert flags(card) == {"engear"}
 
 
 @pytest.mark.parametrize("owner", [own.ON_PATH, own.ON_CONTOUR])
@@ -216,7 +217,8 @@ def test_a_gear_that_waits_starts_when_startsyn_is_set_again_while_another_coupl
     arm(card)
     write(card, startsyn=FLAG)
     card.advance(45)
-    assert (card.read("curvel", SLAVE), flags(card)) == (pytest.approx(7, abs=1e-4), {"engear"})
+    assert card.read("curvel", SLAVE) == pytest.approx(7, abs=1e-4)
+    assert flags(card) == {"engear"}
 
 
 def test_a_gear_that_waits_is_kept_when_the_coupling_before_it_is_complete() -> None:
