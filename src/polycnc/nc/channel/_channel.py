@@ -23,6 +23,7 @@ from polycnc.nc.channel._prepared import Prepared
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._search import Search
 from polycnc.nc.channel._sub_programs import Library, SubPrograms
+from polycnc.nc.channel._turns import Turns
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import Call
@@ -31,8 +32,6 @@ from polycnc.nc.sources._block_source import (
 )
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import scan_rules
-
-_MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
 
 
 class Channel:
@@ -99,6 +98,7 @@ class Channel:
             search,
             self.interpreter,
             errors,
+            Turns(machine.clock),
             ordinary_blocks=options.ordinary_blocks,
             end_returns=dialect.sub_program.end_returns,
         )
@@ -125,7 +125,7 @@ class Channel:
     @property
     def seeking(self) -> bool:
         """Whether a block is sought by carrying out what stands before it."""
-        return self._search.place is not None
+        return self._search.active
 
     @property
     def holds_searched(self) -> bool:
@@ -163,6 +163,11 @@ class Channel:
     def waits(self) -> bool:
         """Whether preparation waits until the path has come to a stop, and `go_on`."""
         return self.writer.stops > 0
+
+    @property
+    def paused(self) -> bool:
+        """Whether preparation has done what it may in one control cycle, and goes on in the next."""
+        return self._preparation.turns.paused and not self._preparation.over
 
     def sub_program(self, number: int) -> ProgramText | None:
         """Return the text that a sub-program stands in, None if there is none."""
@@ -221,6 +226,7 @@ class Channel:
             self._calls.begin()
             search.begin()
             while not self._preparation.over and not search.found:
+                self._preparation.turns.forget()  # no time passes here
                 self.fill()
                 drop()
                 self.writer.clear()
@@ -262,7 +268,7 @@ class Channel:
             tuple(self.errors),
             self.messages.snapshot(),
             (self._preparation.over, self._preparation.begun),
-            self._preparation.turns,
+            self._preparation.turns.snapshot(),
             self.suppressed,
             self.writer.snapshot(),
             self.records.snapshot(),
@@ -291,7 +297,8 @@ class Channel:
         self.messages.restore(saved.messages)
         preparation = self._preparation
         preparation.ended, preparation.begun = saved.flags
-        preparation.turns, self.suppressed = saved.turns, saved.suppressed
+        preparation.turns.restore(saved.turns)
+        self.suppressed = saved.suppressed
         self.writer.restore(saved.writer)
         self.records.restore(saved.records)
         self.interpreter.restore(saved.interpreter)
