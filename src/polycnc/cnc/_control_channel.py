@@ -78,8 +78,6 @@ class ControlChannel:
         self.config = self._own(config)
         self.names: Sequence[str] | None = None
         """Names of the machine's axes for programs, see `of_another_channel`; None: as the machine has them."""
-        self.asks_often = False
-        """Whether a language that waits is asked in every cycle."""
         self._library = library
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
@@ -245,7 +243,7 @@ class ControlChannel:
             text,
             self._dialect,
             path=self.path,
-            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s, asks_often=self.asks_often),
+            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
             config=self.config,
             library=self._library,
             language=self.language,
