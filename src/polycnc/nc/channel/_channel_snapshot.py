@@ -22,6 +22,7 @@ from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.channel._running import Back, SavedCall
+from polycnc.nc.channel._turns import SavedTurns
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
@@ -45,7 +46,7 @@ class ChannelSnapshot(NamedTuple):
     errors: tuple[ProgramError, ...]
     messages: tuple[dict[str, Message], str]
     flags: tuple[bool, bool]
-    turns: int
+    turns: SavedTurns
     suppressed: Suppressed
     writer: WriterSnapshot
     records: SavedRecords
@@ -56,8 +57,8 @@ class ChannelSnapshot(NamedTuple):
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Coordinates, Corner, Cycle, CycleWords, Event, Family, Feed, Frame, Leg, Line,
     Message, ModalSnapshot, Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation,
-    SavedRecords, SavedState, SavedTables, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait,
-    WriterSnapshot,
+    SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift,
+    Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
 
