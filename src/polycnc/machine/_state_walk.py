@@ -17,6 +17,7 @@ import numpy as np
 from pydantic import BaseModel
 
 T = TypeVar("T")
+_BARE: Any = object.__repr__
 
 
 def _is_record(value: object) -> bool:
@@ -132,7 +133,7 @@ def _described(value: Any) -> Iterator[str]:
         yield repr(value.item())
     elif callable(value):
         yield f"{value.__module__}.{value.__qualname__}"
-    elif type(value).__repr__ is object.__repr__:
+    elif type(value).__repr__ is _BARE:
         raise TypeError(f"a {type(value).__name__} has no text of its own")
     else:
         yield repr(value)
