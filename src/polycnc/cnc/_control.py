@@ -284,7 +284,7 @@ class Control:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
+            ControlError: A skip mark that is not from 1 to 9, a dry run without a feed, or the machine lock while a program is executed or
                 interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
@@ -297,6 +297,10 @@ class Control:
         if block_delete is not None and not block_delete <= frozenset(range(1, 10)):
             raise ControlError(
                 Refusal.DATA, f"{sorted(block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
+            )
+        if dry_run and not self.data.dry_run_mm_min > 0.0:
+            raise ControlError(
+                Refusal.DATA, "there is no feed for a dry run", hint="Set one (dry_run_mm_min)."
             )
         chosen = self._chosen(channel)
         changes = {name: each for name, each in given.items() if each is not None}
@@ -396,10 +400,8 @@ class Control:
                 )
             search = Search(line) if line > 1 else None if is_mdi else chosen.search
             chosen.begin(text, mdi=is_mdi, step=step, search=search)
-            self._time.note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
-        self._time.note_running()
-        self._time.raised |= ControlEvent.RUN_STATE
+        self._time.note_start(chosen)
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.
@@ -649,7 +651,7 @@ class Control:
         self._relative_zero = list(moment.relative_zero)
         self._time.raised = ControlEvent(moment.raised)
         put_back(self._parts, moment, tuple(each() for each in back))
-        self._time.note_running()
+        self._time.forget()
 
     @property
     def _made_from(self) -> str:
