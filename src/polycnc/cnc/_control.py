@@ -59,6 +59,7 @@ from polycnc.machine import (
     load_machine,
 )
 from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
+from polycnc.nc.macro import language_for
 
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MDI_NAME = "MDI"
@@ -74,7 +75,7 @@ class Control:
     them where they set or stop something, if it is not given.
     `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
-    `languages` are those of the channels' programs, one for each channel.
+    `languages` are those of the channels' programs, one for each channel; without any, the language of the dialect.
     """
 
     def __init__(
@@ -127,7 +128,7 @@ class Control:
                 library=self._sub_program,
                 dry_run_mm_min=data.dry_run_mm_min,
                 on_event=self._meet,
-                language=languages[path] if path < len(languages) else None,
+                language=languages[path] if path < len(languages) else language_for(self.dialect),
             )
             for path, share in enumerate(shares)
         )
@@ -188,9 +189,12 @@ class Control:
         """
         for channel in self.channels:
             check_over(channel)
+        other = dialect.language != self.dialect.language
         self.dialect = dialect
         for channel in self.channels:
             channel.change_config(self._live, dialect)
+            if other:
+                channel.language = language_for(dialect)
 
     @property
     def mode(self) -> Mode:
@@ -284,8 +288,8 @@ class Control:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9, a dry run without a feed, or the machine lock while a program is executed or
-                interrupted, or axes still brake.
+            ControlError: A skip mark that is not from 1 to 9, a dry run without a feed, or the machine lock while a
+                program is executed or interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
