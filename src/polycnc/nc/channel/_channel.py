@@ -63,9 +63,7 @@ class Channel:
         attaches: bool = True,
     ) -> None:
         options = options or ChannelOptions()
-        self.dialect = dialect
-        self.machine = machine
-        self.path = path
+        self.dialect, self.machine, self.path = dialect, machine, path
         self.on_filled: Callable[[], None] | None = None  # looks at the queue before it is executed
         self.messages = Messages()
         self.suppressed = Suppressed()
@@ -84,35 +82,29 @@ class Channel:
         )
         self._prepared: Prepared = prepared
         self.writer, self.records, self.state = prepared.writer, prepared.records, prepared.state
-        self._errors = Errors(self.messages, collects=options.collect_errors)
-        self.errors = self._errors.all
-        self._reader = Reader(program, text_rules, rules, skip_levels)
-        self._calls = Calls(
-            program,
-            dialect,
-            SubPrograms(program, dialect, library),
-            language,
-            self._reader,
-            self._errors,
-        )
-        self._search = Search(self._calls, self._reader, language)
+        self._errors = errors = Errors(self.messages, collects=options.collect_errors)
+        self.errors = errors.all
+        self._reader = reader = Reader(program, text_rules, rules, skip_levels)
+        sub_programs = SubPrograms(program, dialect, library)
+        self._calls = calls = Calls(program, dialect, sub_programs, language, reader, errors)
+        self._search = search = Search(calls, reader, language)
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
+            dialect, self.state, self.messages, self.writer, calls.trouble, self._reference
         )
         self._preparation = Preparation(
-            self._reader,
-            self._calls,
-            self._prepared,
-            self._search,
+            reader,
+            calls,
+            prepared,
+            search,
             self.interpreter,
-            self._errors,
+            errors,
             Turns(machine.clock),
             ordinary_blocks=options.ordinary_blocks,
             end_returns=dialect.sub_program.end_returns,
         )
         if attaches:
-            self._prepared.take_tolerance()
-            self._calls.attach(self)
+            prepared.take_tolerance()
+            calls.attach(self)
 
     # ------------------------------------------------------------------ how far it is
 
