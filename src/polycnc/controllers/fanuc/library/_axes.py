@@ -9,7 +9,7 @@ from polycnc.controllers.fanuc.device._positions import AxisPositions
 from polycnc.controllers.fanuc.library._call import call, check_axis, check_length
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_a import IDBWRR, ODBACT, ODBAXIS, ODBDY, ODBDY_D
+from polycnc.controllers.fanuc.library._structs import IDBWRR, ODBACT, ODBAXIS, ODBDY, ODBDY_D
 from polycnc.controllers.library import IN, SHORT, LengthOf, Out, Refused
 
 MOST_POSITION = 99_999_999
@@ -121,9 +121,8 @@ def cnc_rddynamic(
     data.alarm = int(device.alarm_bits)
     data.prgnum, data.prgmnum = device.execution.numbers
     data.seqnum = device.execution.sequence
-    figures = device.control.figures()
-    data.actf = device.positions.feed(figures)
-    places = device.positions.read(figures)
+    data.actf = device.positions.feed()
+    places = device.positions.read()
     if axis == ALL_AXES:
         every, count = data.pos.faxis, len(places)
         every.absolute[:count] = [each.absolute for each in places]
