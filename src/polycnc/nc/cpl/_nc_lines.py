@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from operator import attrgetter
 
 from polycnc.errors import ProgramError
 from polycnc.language import Flaw
@@ -19,10 +20,9 @@ _CALL_NAME = re.compile(r"[Pp][ \t]*([A-Za-z_][^\s\[\](),:;]*)[ \t]*")
 _CALL_NUMBER = re.compile(r"([GgMm])[ \t]*([0-9]+)(?=\[)|([Pp])[ \t]*([0-9]+)[ \t]*(?=\[)")
 _CALL_ALONE = re.compile(r"([GgMmPp])[ \t]*([0-9]+)[ \t]*(?:\([^)\n]*\)[ \t]*)*\r?\Z")
 _BRACKET = re.compile(r'\[(?:[^\]"]|"[^"]*")*\]?')
-_OUTSIDE = re.compile(rf"{_REMARK.pattern}|{_BRACKET.pattern}")
-_WITH_SEMICOLONS = re.compile(rf"{_OUTSIDE.pattern}|;.*", re.DOTALL)
-_ADDRESS = re.compile(r"(?<![A-Za-z])([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*\Z")
-_SIGN = re.compile(r"[+-][ \t]*\Z")
+_ADDRESS = r"(?<![A-Za-z])([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*"
+_HOLES = re.compile(rf"{_REMARK.pattern}|(?:{_ADDRESS}|([+-])[ \t]*)?({_BRACKET.pattern})")
+_HOLES_WITH_SEMICOLONS = re.compile(rf";.*|{_HOLES.pattern}", re.DOTALL)
 _AFTER = re.compile(r"[ \t]*[0-9.]")
 _CALLING = frozenset("GMP")
 PLAIN_RULES = TextRules()
@@ -135,46 +135,51 @@ def _read_words(text: str, begin: int, end: int, line: int, rules: TextRules) ->
     So words, remarks, messages and marks are those of blocks without brackets.
     """
     holes: dict[int, NcWord] = {}  # by the place of the letter, for AXP() and texts that of the bracket
-    shown = text[begin:end]
-    for found in (_WITH_SEMICOLONS if rules.semicolon_comments else _OUTSIDE).finditer(text, begin, end):
-        if found[0][0] != "[":
+    pieces: list[str] = []
+    after = begin
+    for found in (_HOLES_WITH_SEMICOLONS if rules.semicolon_comments else _HOLES).finditer(text, begin, end):
+        if found[4] is None:
             continue
-        word = _hole(text, begin, found.start(), end)
-        filling = " " if word.address == "" else "0"
-        first, last = found.start() - begin, found.end() - begin
-        shown = shown[:first] + filling * (last - first) + shown[last:]
+        word = _hole(text, end, found)
         holes[word.at] = word
+        opening = found.start(4)
+        pieces += text[after:opening], ("0" if word.address else " ") * (found.end() - opening)
+        after = found.end()
+    shown = "".join((*pieces, text[after:end]))
     content = shown.encode("utf-8")
     try:
         block = scan_words(ProgramText("", content), 0, 1, rules)
     except ProgramError as error:
         column = error.position.column if error.position is not None else 1
         raise Flaw(begin + column - 1, error.what, error.hint) from None
-    words = [holes.pop(at) for at in [*holes] if holes[at].address == ""]
+    words = [hole for hole in holes.values() if not hole.address]
+    number = None
     for each in block.words:
-        at = begin + len(content[: each.place].decode("utf-8"))
-        words.append(holes.get(at) or NcWord(at, each.letter, each.value, each.index))
-    words.sort(key=lambda each: each.at)
+        if each.letter == "N" and each is block.words[0]:
+            number = int(each.value)
+            continue
+        at = each.place if shown.isascii() else len(content[: each.place].decode("utf-8"))
+        words.append(holes.get(begin + at) or NcWord(begin + at, each.letter, each.value, each.index))
+    words.sort(key=_place)
     head = _HEAD.match(text, begin, end)
     first = head.end() if head else begin
-    number = int(block.words[0].value) if block.words and block.words[0].letter == "N" else None
-    if number is not None:
-        del words[next(place for place, each in enumerate(words) if each.address == "N")]
     return NcBlock(first, line, number, block.skip_level, tuple(words), block.message)
 
 
-def _hole(text: str, begin: int, opening: int, end: int) -> NcWord:
-    """Return the word whose value stands in the brackets that open at a place."""
-    before = text[begin:opening]
-    if sign := _SIGN.search(before):
-        raise Flaw(begin + sign.start(), "a sign stands inside of the brackets", "write X[-A], not X-[A]")
-    address = _ADDRESS.search(before)
-    at = opening if address is None else begin + address.start()
-    letter = "" if address is None else address[1].upper()
+_place = attrgetter("at")
+
+
+def _hole(text: str, end: int, found: re.Match[str]) -> NcWord:
+    """Return the word whose value stands in brackets."""
+    at = found.start()
+    if found[3]:
+        raise Flaw(at, "a sign stands inside of the brackets", "write X[-A], not X-[A]")
+    letter = (found[1] or "").upper()
     if letter and letter in "NP":
         hint = "block numbers and sub-programs are checked before the program starts"
         raise Flaw(at, f"the address {letter} takes no expression", hint)
-    reader = _inside(text, opening, end)
+    opening = found.start(4)
+    reader = Reader(text, opening + 1, found.end() if found[4].endswith("]") else end)
     tree = reader.expression()
     reader.tokens.expect("]", "close the bracket")
     if after := _AFTER.match(text, reader.tokens.behind, end):
@@ -183,4 +188,4 @@ def _hole(text: str, begin: int, opening: int, end: int) -> NcWord:
             f"'{after[0][-1]}' begins no word",
             "a word is a letter with a number or [expression]",
         )
-    return NcWord(at, letter, tree, whole(address[2]) if address and address[2] else None)
+    return NcWord(at, letter, tree, whole(found[2]) if found[2] else None)
