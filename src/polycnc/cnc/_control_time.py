@@ -91,6 +91,7 @@ class ControlTime:
             tool=self._tool(),
         )
         self._look(passed, states)
+        self._of.clock.changes += 1  # where no cycle has passed as well
         if watch is not None and watch.is_awake:
             watch.look()
         if [channel.run_state for channel in self._of.channels] != states:

@@ -59,6 +59,7 @@ class Timers:
         self, cycles: int, *, operating: bool = False, cut_s: float | None = None, tool: int = 0
     ) -> None:
         """Let cycles pass, by whose end paths have cut for `cut_s` in all, with a tool (0 none)."""
+        self._clock.changes += 1
         self._cycles[Timer.POWER_ON] += cycles
         if operating:
             self._cycles[Timer.OPERATING] += cycles
@@ -88,6 +89,10 @@ class Timers:
         counted_s = self._base_s[timer] + self._cycles[timer] * self._clock.cycle_s
         return counted_s + self._newly_cut_s if timer is Timer.CUTTING else counted_s
 
+    def shown_s(self) -> dict[Timer, float]:
+        """Return what all timers show (s)."""
+        return {timer: self.seconds(timer) for timer in Timer}
+
     def tool_seconds(self, tool: int) -> float:
         """Return how long a tool has cut (s)."""
         return self._tool_s.get(tool, 0.0) + (self._newly_cut_s if tool == self._tool else 0.0)
@@ -108,6 +113,7 @@ class Timers:
         self._fold()
         self._base_s[timer] = checked_s
         self._cycles[timer] = 0
+        self._clock.changes += 1
         self.save()
 
     def set_tool_seconds(self, tool: int, time_s: float) -> None:
@@ -127,6 +133,7 @@ class Timers:
         """Begin to count the cycle time anew."""
         self._base_s[Timer.CYCLE] = 0.0
         self._cycles[Timer.CYCLE] = 0
+        self._clock.changes += 1
 
     def save(self) -> None:
         """Make everything counted durable."""
@@ -147,6 +154,7 @@ class Timers:
 
     def restore(self, state: TimersState) -> None:
         """Go back to a snapshot."""
+        self._clock.changes += 1
         self._base_s = dict(state.base_s)
         self._cycles = dict(state.cycles)
         self._tool_s = dict(state.tool_s)
@@ -174,17 +182,13 @@ class PartCounter:
     def __init__(self, store: Store) -> None:
         self._area = store.area(_PARTS, int)
         kept = self._area.load()
-        self._parts = Parts(*(kept.get(name, 0) for name in ("made", "required", "total")))
-
-    @property
-    def parts(self) -> Parts:
+        self.parts = Parts(*(kept.get(name, 0) for name in ("made", "required", "total")))
         """The counts."""
-        return self._parts
 
     def count(self) -> None:
         """Count one part; at the largest number it stays there."""
-        made, total = min(self._parts.made + 1, MOST_PARTS), min(self._parts.total + 1, MOST_PARTS)
-        self._keep(Parts(made, self._parts.required, total))
+        made, total = min(self.parts.made + 1, MOST_PARTS), min(self.parts.total + 1, MOST_PARTS)
+        self._keep(Parts(made, self.parts.required, total))
 
     def set(self, *, made: int | None = None, required: int | None = None, total: int | None = None) -> None:
         """Set counts; what is None stays.
@@ -192,7 +196,7 @@ class PartCounter:
         Raises:
             ControlError: A count below 0 or above 999 999 999.
         """
-        now = self._parts
+        now = self.parts
         wanted = Parts(
             now.made if made is None else made,
             now.required if required is None else required,
@@ -211,7 +215,7 @@ class PartCounter:
 
     def _keep(self, parts: Parts) -> None:
         self._area.save({"made": parts.made, "required": parts.required, "total": parts.total})
-        self._parts = parts
+        self.parts = parts
 
 
 def _checked_s(time_s: float) -> float:

@@ -170,7 +170,7 @@ def positions(view: View, request: Request) -> Content:
 
 def feed(view: View, request: Request) -> Content:
     """Return the actual feed: mm/min, with inch input 0.01 inch/min."""
-    return {"feed": Value8(view.control.positions.feed(view.status), 2 if view.control.inch_input else 0)}
+    return {"feed": Value8(view.control.positions.feed(), 2 if view.control.inch_input else 0)}
 
 
 def spindle_speed(view: View, request: Request) -> Content:
