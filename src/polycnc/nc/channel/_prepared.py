@@ -26,7 +26,7 @@ class Prepared:
     """Keep the queue, the records and the modal state of a path, as far as preparation has come.
 
     `before` is what has been prepared for the path until now: queue and records go on, and with `keeps_modal` the modal
-    state. `axes` are the names of the machine's axes in programs.
+    state. `row` is the path in the kernel. `axes` are the names of the machine's axes in programs.
     """
 
     def __init__(
@@ -44,6 +44,7 @@ class Prepared:
     ) -> None:
         kernel = machine.state
         self._kernel = kernel
+        self.row = kernel.paths.row[path]
         self._path = path
         self._tables = dialect.tables()
         if before is None:
@@ -70,11 +71,6 @@ class Prepared:
         """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
         writer = self.writer
         return not writer.backlog and not writer.stops and free_slots(writer.paths, self._path) > RESERVE
-
-    @property
-    def tail(self) -> int:
-        """How many segments have been put into the queue so far."""
-        return int(self._kernel.paths.row[self._path]["tail"])
 
     @property
     def is_plain(self) -> bool:
