@@ -90,7 +90,7 @@ class Prepared:
         calls: tuple[Call, ...],
     ) -> tuple[int, int]:
         """Let the compiled kernel prepare blocks `first` up to `after`; return the next one, and why it stopped."""
-        self.state.coordinates.take_changes()
+        self.state.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel
