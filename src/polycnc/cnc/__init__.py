@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     )
     from polycnc.cnc._control_snapshot import ControlSnapshot
     from polycnc.cnc._control_time import ControlEvent
+    from polycnc.cnc._inventory import AxisLimits, Identity, Inventory, PastMessage, SetBreakpoint
     from polycnc.cnc._manual import AxisMotion, Handwheel, ManualData, ManualKind, ManualMotion, ManualState
     from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
     from polycnc.cnc._program_edit import ProgramEdit
@@ -85,6 +86,7 @@ _LATER = {
         "Switches",
     ),
     "_control_snapshot": ("ControlSnapshot",),
+    "_inventory": ("AxisLimits", "Identity", "Inventory", "PastMessage", "SetBreakpoint"),
     "_manual": ("AxisMotion", "Handwheel", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
     "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
     "_program_edit": ("ProgramEdit",),
@@ -115,6 +117,7 @@ __all__ = [
     "AlarmRow",
     "AlarmTable",
     "Answer",
+    "AxisLimits",
     "AxisMotion",
     "AxisStatus",
     "Breakpoint",
@@ -132,6 +135,8 @@ __all__ = [
     "Found",
     "Function",
     "Handwheel",
+    "Identity",
+    "Inventory",
     "ManualData",
     "ManualKind",
     "ManualMotion",
@@ -147,6 +152,7 @@ __all__ = [
     "PartCounter",
     "Parts",
     "PastAlarm",
+    "PastMessage",
     "PlcModel",
     "PlcState",
     "ProgramEdit",
@@ -161,6 +167,7 @@ __all__ = [
     "RunState",
     "Script",
     "Search",
+    "SetBreakpoint",
     "Spindle",
     "SpindleMotion",
     "SpindleState",

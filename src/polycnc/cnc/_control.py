@@ -37,6 +37,7 @@ from polycnc.cnc._control_moment import moment_of, put_back
 from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._control_snapshot import ControlMoment, ControlSnapshot
 from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime, CycleWatch
+from polycnc.cnc._inventory import Inventory, InventoryReader
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import PlcModel, Script
 from polycnc.cnc._program_edit import ProgramEdit, ProgramEdits
@@ -139,6 +140,7 @@ class Control:
         )  # fmt: skip
         self._time = ControlTime(self._parts, self._fail)
         self._reader = StatusReader(self._parts)
+        self._inventory = InventoryReader(self._parts)
         self._edits = ProgramEdits(self.programs)
         self.manual.check_limit_switches()
 
@@ -320,9 +322,7 @@ class Control:
         chosen = self._channel(channel)
         check_over(chosen)
         text = self.programs.text(program) if isinstance(program, str) else program
-        chosen.program = text
-        chosen.search = None
-        self.clock.changes += 1
+        chosen.select(text)
 
     def set_mdi(self, text: str, *, channel: int = 0) -> None:
         """Put in the text that a start in MDI executes.
@@ -619,6 +619,10 @@ class Control:
             ControlError: There is no such channel.
         """
         return self._reader.channel(self._channel(channel).path)
+
+    def inventory(self) -> Inventory:
+        """Return what changes seldom: programs, tools, offsets, limits, histories; the same object until it does."""
+        return self._inventory.read()
 
     def snapshot(self) -> ControlSnapshot:
         """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.

@@ -13,7 +13,7 @@ from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_snapshot import FindText
-from polycnc.cnc._run_state import RunOptions, RunState
+from polycnc.cnc._run_state import INTERRUPTED, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
 from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
@@ -27,11 +27,6 @@ from polycnc.nc import (
     ProgramText,
     of_another_channel,
 )
-
-INTERRUPTED = frozenset(
-    {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
-)
-"""States in which a program stands and can go on."""
 
 
 class ControlChannel:
@@ -152,7 +147,23 @@ class ControlChannel:
             names |= {block.program, *(call.program for call in block.stack)}
         return frozenset(names)
 
+    @property
+    def prepared(self) -> BlockRecord | None:
+        """The block that was prepared last of those whose motion is queued; the executed one where none is."""
+        run = self.run
+        row = self._machine.state.paths.row[self.path]
+        if run is None or row["tail"] <= row["head"]:
+            return self.executed
+        last = int(row["base"]) + (int(row["tail"]) - 1) % int(row["capacity"])
+        return run.channel.records.block(int(self._machine.state.seg.row[last]["tag"])) or self.executed
+
     # ------------------------------------------------------------------ commands
+
+    def select(self, text: ProgramText | None) -> None:
+        """Take a text as the program of the next start in automatic, from its beginning; None: none."""
+        self.program = text
+        self.search = None
+        self._clock.changes += 1
 
     def seek(self, text: ProgramText, search: Search) -> int:
         """Make the selected program ready to begin at a block; return its line.
