@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         OperatorMessages,
         PastAlarm,
     )
-    from polycnc.cnc._control import PROGRAM_MESSAGE, Control
+    from polycnc.cnc._control import Control
     from polycnc.cnc._control_channel import ControlChannel
     from polycnc.cnc._control_data import (
         AfterManual,
@@ -56,6 +56,7 @@ if TYPE_CHECKING:
         ToolInUse,
         WorkOffset,
     )
+    from polycnc.cnc._stopping import PROGRAM_MESSAGE
     from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
     from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
@@ -72,7 +73,7 @@ _LATER = {
         "OperatorMessages",
         "PastAlarm",
     ),
-    "_control": ("PROGRAM_MESSAGE", "Control"),
+    "_control": ("Control",),
     "_control_time": ("ControlEvent",),
     "_control_channel": ("ControlChannel",),
     "_control_data": (
@@ -103,6 +104,7 @@ _LATER = {
         "ToolInUse",
         "WorkOffset",
     ),
+    "_stopping": ("PROGRAM_MESSAGE",),
     "_tables": ("OffsetTable", "Tool", "ToolTable"),
     "_timers": ("PartCounter", "Parts", "Timer", "Timers", "TimersState"),
 }

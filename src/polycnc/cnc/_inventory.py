@@ -111,8 +111,9 @@ class InventoryReader:
 
 def _axes(config: MachineConfig) -> tuple[AxisLimits, ...]:
     return tuple(
-        AxisLimits(axis.name, axis.unit, *map(_finite, axis.soft_limits), axis.home, axis.vmax, axis.amax)
+        AxisLimits(axis.name, axis.unit, _finite(low), _finite(high), axis.home, axis.vmax, axis.amax)
         for axis in config.axes
+        for low, high in (axis.soft_limits,)
     )
 
 
