@@ -12,10 +12,9 @@ from polycnc.nc import Dialect, Event, Language, Library, ProgramText, of_anothe
 
 
 class RunMaker:
-    """Make runs on a path of a machine; `language`, `names` and `asks_often` hold for runs that are made from now on.
+    """Make runs on a path of a machine; `language` and `names` hold for runs that are made from now on.
 
-    `names` are the machine's axes for programs, see `of_another_channel`; None: as the machine has them. With
-    `asks_often` a language that waits is asked in every cycle.
+    `names` are the machine's axes for programs, see `of_another_channel`; None: as the machine has them.
     """
 
     def __init__(
@@ -38,7 +37,6 @@ class RunMaker:
         self._on_event = on_event
         self.language = language
         self.names: Sequence[str] | None = None
-        self.asks_often = False
         self.change(config, dialect, axes)
 
     def change(self, config: MachineConfig, dialect: Dialect, axes: Sequence[str]) -> None:
@@ -63,7 +61,7 @@ class RunMaker:
             text,
             self._dialect,
             path=self._path,
-            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s, asks_often=self.asks_often),
+            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
             config=self._config,
             library=self._library,
             language=self.language,
