@@ -77,7 +77,7 @@ def _comes_back(
 @compiled
 def _fits(t: Turns, here: int, depth: int, floor: int) -> bool:
     """Tell whether an instruction is one for the scan, and the stack has the cells that it takes and makes."""
-    return t.code[here, 0] != ts.REFUSED and floor + t.code[here, 1] <= depth < ts.STACK_CELLS
+    return bool(t.code[here, 0] != ts.REFUSED and floor + t.code[here, 1] <= depth < ts.STACK_CELLS)
 
 
 @compiled
