@@ -15,7 +15,7 @@ _GROUPS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "Find, open, close": (_device, ()),
     "Parameters, bits, waits": (_memory, ()),
     "Paths, contours, events, captures": (_path, ()),
-    "Motion": (_motion, tuple(row[0] for row in ROWS)),
+    "Motion": (_motion, tuple(ROWS)),
 }
 
 _HEAD = "# {title}\n\n<!-- Written by scripts/reference. -->\n\n{text}\n"

@@ -32,49 +32,40 @@ TYPES: dict[str, Any] = {
 """What an argument of this name is, in all functions of motion."""
 
 # fmt: off
-ROWS = (
-    ("IMC_MoveAbsolute", "Pos", "4.1.1",
-     "Move to a position of the main system"),
-    ("IMC_MoveRelative", "dist", "4.1.2",
-     "Move by a distance from where the axis is when the instruction is carried out"),
-    ("IMC_MoveSuperimposed", "dist", "4.1.3",
-     "Move by a distance on top of whatever the axis does"),
-    ("IMC_Phasing", "dist", "4.1.4",
-     "Shift a master, `axis`, against slaves that follow its mcsvel"),
-    ("IMC_MoveVelocity", "vel", "4.2.1",
-     "Go to a velocity (S16.16, pulses per ms) and keep it; 0 stops"),
-    ("IMC_HomeSwitch1", "direction RiseEdge stop", "4.3.1",
-     "Search the origin switch in one pass"),
-    ("IMC_HomeSwitch2", "direction RiseEdge stop", "4.3.1",
-     "Search the origin switch and come back to it slowly"),
-    ("IMC_HomeSwitch3", "direction RiseEdge stop", "4.3.1",
-     "Search the origin switch, come back over it, and reach it slowly once more"),
-    ("IMC_HomeSwitchIndex1", "direction RiseEdge stop", "4.3.2",
-     "Search the origin switch, then count index pulses"),
-    ("IMC_HomeSwitchIndex2", "direction RiseEdge stop", "4.3.2",
-     "Search the origin switch, come back slowly, and count index pulses from it"),
-    ("IMC_HomeSwitchIndex3", "direction RiseEdge stop", "4.3.2",
-     "Search the origin switch, come back, turn again, and count index pulses from it"),
-    ("IMC_HomeIndex", "direction stop", "4.3.3",
-     "Count index pulses from the start"),
-    ("IMC_GearFree", "ratio master sourcetype", "4.4.1",
-     "Follow a master at a ratio from now on, with a ramp of the slave's own"),
-    ("IMC_GearInDist", "ratio master sourcetype synaxis synsourcetype syndist", "4.4.2",
-     "Follow a master from startsyn on, fully when the sync source has gone `syndist`"),
-    ("IMC_GearInTime", "ratio master sourcetype syntime", "4.4.3",
-     "Follow a master from startsyn on, fully after `syntime` control cycles"),
-    ("IMC_HandWheel", "ratio encsaxis", "4.5.1",
-     "Follow a wheel at the auxiliary encoder of `encsaxis`; 0 in engear ends it"),
-    ("IMC_MoveInTime", "time movedist", "4.6.1",
-     "Move by a distance in `time` control cycles from startsyn on"),
-    ("IMC_MoveInDist", "refdist refaxis movedist", "4.6.2",
-     "Move by a distance while `refaxis` goes `refdist`, from enasyn and startsyn on"),
-    ("IMC_TgvelInTime", "time tgvel", "4.6.3",
-     "Reach a velocity in `time` control cycles from startsyn on, and keep it"),
-    ("IMC_TgvelInDist", "refdist refaxis tgvel", "4.6.4",
-     "Reach a velocity while `refaxis` goes `refdist`, from enasyn and startsyn on"),
-)
-"""Name, arguments before `axis` and `fifoSel`, section of manual 004, and what it does."""
+ROWS = {
+    "IMC_MoveAbsolute": ("Pos", "4.1.1", "Move to a position of the main system"),
+    "IMC_MoveRelative": ("dist", "4.1.2",
+        "Move by a distance from where the axis is when the instruction is carried out"),
+    "IMC_MoveSuperimposed": ("dist", "4.1.3", "Move by a distance on top of whatever the axis does"),
+    "IMC_Phasing": ("dist", "4.1.4", "Shift a master, `axis`, against slaves that follow its mcsvel"),
+    "IMC_MoveVelocity": ("vel", "4.2.1", "Go to a velocity (S16.16, pulses per ms) and keep it; 0 stops"),
+    "IMC_HomeSwitch1": ("direction RiseEdge stop", "4.3.1", "Search the origin switch in one pass"),
+    "IMC_HomeSwitch2": ("direction RiseEdge stop", "4.3.1", "Search the origin switch and come back to it slowly"),
+    "IMC_HomeSwitch3": ("direction RiseEdge stop", "4.3.1",
+        "Search the origin switch, come back over it, and reach it slowly once more"),
+    "IMC_HomeSwitchIndex1": ("direction RiseEdge stop", "4.3.2", "Search the origin switch, then count index pulses"),
+    "IMC_HomeSwitchIndex2": ("direction RiseEdge stop", "4.3.2",
+        "Search the origin switch, come back slowly, and count index pulses from it"),
+    "IMC_HomeSwitchIndex3": ("direction RiseEdge stop", "4.3.2",
+        "Search the origin switch, come back, turn again, and count index pulses from it"),
+    "IMC_HomeIndex": ("direction stop", "4.3.3", "Count index pulses from the start"),
+    "IMC_GearFree": ("ratio master sourcetype", "4.4.1",
+        "Follow a master at a ratio from now on, with a ramp of the slave's own"),
+    "IMC_GearInDist": ("ratio master sourcetype synaxis synsourcetype syndist", "4.4.2",
+        "Follow a master from startsyn on, fully when the sync source has gone `syndist`"),
+    "IMC_GearInTime": ("ratio master sourcetype syntime", "4.4.3",
+        "Follow a master from startsyn on, fully after `syntime` control cycles"),
+    "IMC_HandWheel": ("ratio encsaxis", "4.5.1",
+        "Follow a wheel at the auxiliary encoder of `encsaxis`; 0 in engear ends it"),
+    "IMC_MoveInTime": ("time movedist", "4.6.1", "Move by a distance in `time` control cycles from startsyn on"),
+    "IMC_MoveInDist": ("refdist refaxis movedist", "4.6.2",
+        "Move by a distance while `refaxis` goes `refdist`, from enasyn and startsyn on"),
+    "IMC_TgvelInTime": ("time tgvel", "4.6.3",
+        "Reach a velocity in `time` control cycles from startsyn on, and keep it"),
+    "IMC_TgvelInDist": ("refdist refaxis tgvel", "4.6.4",
+        "Reach a velocity while `refaxis` goes `refdist`, from enasyn and startsyn on"),
+}
+"""By name: arguments before `axis` and `fifoSel`, section of manual 004, and what the function does."""
 
 ALIASES = {
     "IMC_MoveTP": "IMC_MoveInTime", "IMC_MovePP": "IMC_MoveInDist", "IMC_MoveTV": "IMC_TgvelInTime",
@@ -95,6 +86,6 @@ def _made(name: str, before: str, section: str, sentence: str) -> Callable[..., 
     return card_call(named(call, name, f"{sentence} (Manual 004, {section}).", types, IMC_STATUS))
 
 
-FUNCTIONS = {row[0]: _made(*row) for row in ROWS}
+FUNCTIONS = {name: _made(name, *row) for name, row in ROWS.items()}
 FUNCTIONS.update({other: LIBRARY.alias(other, FUNCTIONS[name]) for other, name in ALIASES.items()})
 """The functions that programs call, by all their names."""
