@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import stat
+from contextlib import suppress
 from pathlib import Path
 
 from polycnc.nc.cpl import Fault
@@ -63,7 +64,8 @@ class Directory:
         Raises:
             Fault: The name leads out of the root.
         """
-        try:
+        state: tuple[int, ...] = ()
+        with suppress(OSError, ValueError):
             found = os.stat(f"{self.root}/{name}")
             state = (
                 found.st_dev,
@@ -73,10 +75,8 @@ class Directory:
                 found.st_ctime_ns,
                 self.writes,
             )
-        except (OSError, ValueError):
-            state = ()
         known = self._texts.get(name)
-        if known is not None and known[0] == state != ():
+        if known is not None and state and known[0] == state:
             return known[1]
         path = self.path(name)
         if not is_file(path):
