@@ -35,7 +35,8 @@ def _distance2(place: Floats, begin: Floats, end: Floats) -> float:
 @compiled
 def _fits(places: Floats, begin: int, end: int, tolerance2: float) -> bool:
     for at in range(begin + 1, end):
-        if _distance2(places[at], places[begin], places[end]) > tolerance2:
+        missed2 = _distance2(places[at], places[begin], places[end])
+        if missed2 > tolerance2:
             return False
     return True
 

@@ -1,8 +1,8 @@
 """Sweep a rotating body along chords over a height field: cut what is in its way, or measure how deep it would be in.
 
-All lengths are mm. A field is a grid of heights [rows along y, columns along x] at the middle of its cells. Over
-one cell the lowest point of the body is the least of `slope * s + h(distance)` along the chord, which each piece of the
-outline has in closed form; only a rounded corner on a slope is found by halving.
+All lengths are mm. A field is a grid of heights [rows along y, columns along x] at the middle of its cells.
+Over one cell the lowest point of the body is the least of `slope * s + h(distance)` along the chord, which each piece
+of the outline has in closed form; only a rounded corner on a slope is found by halving.
 """
 
 from __future__ import annotations

@@ -31,8 +31,8 @@ class Tool:
 
     `corner_mm` is the radius at the end of a bull-nosed tool, `angle_deg` the included angle of a point (drills,
     chamfering tools) or the angle of a flank to the axis (tapers), `tip_mm` the flat diameter at the end of a
-    chamfering or tapered tool. `flute_mm` is how far up it cuts, infinite where that is not known. `holder` are cylinders
-    above: height above the tip and radius, from below.
+    chamfering or tapered tool. `flute_mm` is how far up it cuts, infinite where that is not known. `holder` are
+    cylinders above: height above the tip and radius, from below.
 
     Raises:
         UsageError: a size that no tool has, or sizes that do not fit together.
