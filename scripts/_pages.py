@@ -64,12 +64,19 @@ def bosch_ncs_page() -> str:
     return page()
 
 
+def dialects_page() -> str:
+    """Return the page of the dialects, its tables written anew."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_dialect_page.py"))["page"]
+    return page()
+
+
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
     "docs/reference/apci-functions.md": apci_functions_page,
     "docs/reference/apci-system-file.md": apci_system_file_page,
     "docs/reference/bosch-ncs.md": bosch_ncs_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/dialects.md": dialects_page,
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),
     "docs/reference/focas-protocol.md": focas_page,

@@ -1,18 +1,15 @@
-"""Dialects: their files, the meaning of codes, the dialect of a program, the page of all keys."""
+"""Dialects: their files, the meaning of codes, the dialect of a program."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import numpy as np
 import pytest
-from pydantic import BaseModel
-from pydantic.fields import FieldInfo
 
 from polycnc.errors import ConfigurationError, UsageError
 from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
-from polycnc.nc.modal._actions import GROUP_OF, Action, Group, MAction
+from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -31,8 +28,6 @@ from polycnc.nc.modal._modal import (
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import scan_blocks
-
-PAGE = Path(__file__).resolve().parents[2] / "docs" / "reference" / "dialects.md"
 
 SHORT = 'name = "own"\n[g]\n0 = "rapid"\n"5.1" = "ignored"\n[m]\n30 = "program_end"\n'
 
@@ -182,8 +177,7 @@ def test_compiled_tables_say_the_same(name: str) -> None:
 
 
 def test_every_action_has_a_group_and_its_number_is_not_zero() -> None:
-    assert set(GROUP_OF) == set(Action)
-    assert set(GROUP_OF.values()) == set(Group)
+    assert {action.group for action in Action} == set(Group)
     assert min(Action) > 0
 
 
@@ -284,65 +278,3 @@ def test_the_dialect_of_a_program() -> None:
 def test_no_extension_means_two_dialects() -> None:
     extensions = [extension for name in DIALECTS for extension in load_dialect(name).extensions]
     assert len(extensions) == len(set(extensions))
-
-
-# --- the page
-
-
-def _default(field: FieldInfo) -> str:
-    value = field.default
-    if field.is_required():
-        return "required"
-    if isinstance(value, BaseModel):
-        return "defaults"
-    if isinstance(value, float):
-        return f"{value:g}"
-    if isinstance(value, dict):
-        return "{ " + ", ".join(f"{key} = {json.dumps(each)}" for key, each in value.items()) + " }"
-    return json.dumps(value, ensure_ascii=False)
-
-
-def _key_rows(model: type[BaseModel]) -> list[str]:
-    return [
-        f"| `{key}` | {_default(field)} | {field.description} |" for key, field in model.model_fields.items()
-    ]
-
-
-def _codes(table: dict[str, str], letter: str, action: str) -> str:
-    codes = sorted(float(code) for code, name in table.items() if name == action)
-    return " ".join(f"{letter}{code:g}" for code in codes) or "-"
-
-
-def _sections() -> dict[str, list[str]]:
-    """Return the rows of the page that begin with a code, by the heading above them."""
-    sections: dict[str, list[str]] = {}
-    heading = ""
-    for line in PAGE.read_text(encoding="utf-8").splitlines():
-        if line.startswith("## "):
-            heading = line.removeprefix("## ")
-        elif line.startswith("| `"):
-            sections.setdefault(heading, []).append(line)
-    return sections
-
-
-def test_the_page_has_every_key_with_its_default_and_meaning() -> None:
-    sections = _sections()
-    assert sections["The file"] == _key_rows(Dialect)
-    for key, field in Dialect.model_fields.items():
-        if isinstance(field.default, BaseModel):
-            assert sections[f"`[{key}]`"] == _key_rows(type(field.default))
-
-
-def test_the_page_has_every_action_with_its_codes() -> None:
-    dialects = [load_dialect(name) for name in DIALECTS]
-    sections = _sections()
-    assert sections["Actions of G codes"] == [
-        f"| `{name}` | {GROUP_OF[action]} | {' | '.join(_codes(each.g, 'G', name) for each in dialects)} |"
-        for action in Action
-        for name in [action.name.lower()]
-    ]
-    assert sections["Actions of M codes"] == [
-        f"| `{name}` | {action.group or '-'} | {' | '.join(_codes(each.m, 'M', name) for each in dialects)} |"
-        for action in MAction
-        for name in [action.title]
-    ]

@@ -149,7 +149,7 @@ class Auxiliary:
 
     def _set_mode(self, g: GWord, speed: Word | None) -> None:
         spindle = self.state.spindle
-        surface_speed = g.action is Action.CONSTANT_SURFACE_SPEED
+        surface_speed = bool(g.value)
         if surface_speed == spindle.surface_speed:
             return
         if surface_speed and speed is None:

@@ -6,13 +6,13 @@ import dataclasses
 import re
 from typing import NamedTuple
 
-from polycnc.nc.blocks import _turning_blocks as turning_blocks
 from polycnc.nc.dialect._dialect import Dialect
-from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._actions import Action, Family, of_family
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, scan_block
 
 MOST_CONTOUR_BLOCKS = 10_000
+_CYCLES = of_family(Family.TURNING_CYCLE, Family.CONTOUR_CYCLE)
 _COMPENSATION = (Action.COMP_LEFT, Action.COMP_RIGHT, Action.COMP_OFF)
 
 
@@ -58,7 +58,7 @@ def _is_numbered(block: Block, number: int) -> bool:
 def holds_cycle(block: Block, dialect: Dialect) -> bool:
     """Tell whether a block of a contour holds a cycle itself."""
     actions = {dialect.g_action(word.value) for word in block.words if word.letter == "G"}
-    return not actions.isdisjoint(turning_blocks.CONTOUR | turning_blocks.CYCLES)
+    return not actions.isdisjoint(_CYCLES)
 
 
 def without_compensation(block: Block, dialect: Dialect) -> Block:

@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from polycnc.errors import ProgramError
-from polycnc.nc.blocks import _turning_blocks as turning_blocks
 from polycnc.nc.blocks._auxiliary import Auxiliary
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._compensation import CompensationError
@@ -35,14 +34,14 @@ from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline, Stop, Wait
 from polycnc.nc.blocks._non_modal import NonModal
 from polycnc.nc.blocks._nurbs import NurbsBlocks
 from polycnc.nc.blocks._outcomes import JUMPS, NEXT, Control, Outcome, Outcomes, Trouble
-from polycnc.nc.blocks._placing import PLACING, Placing
+from polycnc.nc.blocks._placing import Placing
 from polycnc.nc.blocks._queue import QueueWriter
-from polycnc.nc.blocks._splines import SPLINES, SplineBlocks
+from polycnc.nc.blocks._splines import SplineBlocks
 from polycnc.nc.blocks._turning_blocks import TurningBlocks
-from polycnc.nc.blocks._word_checks import MOTIONS, WordChecks
+from polycnc.nc.blocks._word_checks import WordChecks
 from polycnc.nc.blocks._words import BlockWords, GWord, sort_words
 from polycnc.nc.dialect._dialect import Dialect
-from polycnc.nc.modal._actions import Action, Group
+from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.modal._modal import (
     FEED_MODE,
     FEED_PER_MINUTE,
@@ -60,15 +59,7 @@ from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, STATEMENT
 from polycnc.nc.text._scan_plain import Block, Word
 
-_FRAME_ACTIONS = {
-    Action.SET_DATA,
-    Action.SET_WORK_ZERO,
-    Action.LOCAL_COORDINATES,
-    Action.SCALING,
-    Action.SCALING_OFF,
-    Action.MIRROR,
-    Action.MIRROR_OFF,
-}
+_CURVED = (Family.SPLINE, Family.CURVE)
 _STATED = (Group.MOTION, Group.DISTANCE)
 _LANGUAGES = (
     "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
@@ -294,7 +285,7 @@ class Interpreter:
         in_force = whole[MOTION]
         if self._is_spline(words) or self.state.nurbs is not None:  # for the record of this block
             g = words.g.get(Group.MOTION)
-            whole[MOTION] = SPLINES[g.action] if g is not None else MOTION_NURBS
+            whole[MOTION] = g.value if g is not None else MOTION_NURBS
         tagged = self._tagged(items, line, words_stand=bool(block.words))
         whole[MOTION] = in_force
         return outcome, self._compensated(tagged, change_compensation)
@@ -398,15 +389,18 @@ class Interpreter:
         if Group.CYCLE_CANCEL in words.g:
             self._cycles.cancel()
         g = words.g.get(Group.MOTION)
-        if g is not None and g.action not in SPLINES:
-            if g.action in MOTIONS:
+        match g.action.family if g else None:
+            case Family.MOVE:
+                assert g is not None
                 self._leave_cycles()
-                whole[MOTION] = MOTIONS[g.action]
-            elif g.action in turning_blocks.MODAL:
+                whole[MOTION] = g.value
+            case Family.TURNING:
+                assert g is not None
                 self._cycles.cancel()
                 self._turning.begin(g)
                 whole[MOTION] = MOTION_LINEAR
-            else:
+            case Family.DRILLING:
+                assert g is not None
                 self._turning.cancel()
                 self._cycles.begin(g)
         return int(whole[MOTION])
@@ -414,11 +408,11 @@ class Interpreter:
     @staticmethod
     def _is_spline(words: BlockWords) -> bool:
         g = words.g.get(Group.MOTION)
-        return g is not None and g.action in SPLINES
+        return g is not None and g.action.family in _CURVED
 
     def _is_nurbs(self, words: BlockWords) -> bool:
         g = words.g.get(Group.MOTION)
-        return self.state.nurbs is not None or (g is not None and SPLINES.get(g.action) == MOTION_NURBS)
+        return self.state.nurbs is not None or (g is not None and g.action.family is Family.CURVE)
 
     def _move(self, words: BlockWords, line: int) -> list[QueueItem]:
         motion = self._motion_in_force(words)
@@ -432,16 +426,17 @@ class Interpreter:
                 )
             return []
         if g := words.g.get(Group.NON_MODAL):
-            if g.action in _FRAME_ACTIONS:
-                self._frames.carry_out(g, words)
-                return []
-            if g.action in turning_blocks.CYCLES:
-                return self._turning.cycle(g, words, line)
-            if g.action in turning_blocks.CONTOUR:
-                return self._contour_cycle(g, words, line)
-            if g.action in PLACING:
-                self._placing.carry_out(g, words)
-                return []
+            match g.action.family:
+                case Family.FRAME:
+                    self._frames.carry_out(g, words)
+                    return []
+                case Family.PLACING:
+                    self._placing.carry_out(g, words)
+                    return []
+                case Family.TURNING_CYCLE:
+                    return self._turning.cycle(g, words, line)
+                case Family.CONTOUR_CYCLE:
+                    return self._contour_cycle(g, words, line)
             return list(self._non_modal.carry_out(g, motion, line))
         if self._is_nurbs(words):
             return list(self._nurbs.block(words, line))

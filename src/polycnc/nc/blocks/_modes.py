@@ -30,15 +30,10 @@ from polycnc.nc.modal._modal import (
     FEED_INVERSE_TIME,
     FEED_MODE,
     FEED_NUMBER,
-    FEED_PER_MINUTE,
-    FEED_PER_REVOLUTION,
     INCH,
     NO_AXIS,
     PLANE,
     PLANE_LETTERS,
-    PLANE_XY,
-    PLANE_YZ,
-    PLANE_ZX,
     set_inch,
     set_plane,
 )
@@ -48,14 +43,6 @@ from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 _INCREMENTS_PER_INCH_STEP = 0.1  # an increment in inch is a tenth of the number that it is in mm
 _DEFAULT_WORK_OFFSET = "G54"
 _TIME_LETTERS_WITH_INCREMENTS = "XU"
-_PLANES = {Action.PLANE_XY: PLANE_XY, Action.PLANE_ZX: PLANE_ZX, Action.PLANE_YZ: PLANE_YZ}
-_FEED_MODES = {
-    Action.FEED_PER_MINUTE: FEED_PER_MINUTE,
-    Action.FEED_PER_REVOLUTION: FEED_PER_REVOLUTION,
-    Action.FEED_INVERSE_TIME: FEED_INVERSE_TIME,
-}
-_SIDES = {Action.COMP_OFF: 0, Action.COMP_LEFT: 1, Action.COMP_RIGHT: -1}
-_LENGTH_SIGNS = {Action.LENGTH_OFF: 0, Action.LENGTH_PLUS: 1, Action.LENGTH_MINUS: -1}
 
 
 @dataclass
@@ -76,14 +63,14 @@ class Modes:
         """
         modal = self.state.modal
         if g := words.g.get(Group.UNITS):
-            set_inch(modal, g.action is Action.INCH)
+            set_inch(modal, bool(g.value))
         if self.dialect.increment:
             words.increment = self.dialect.increment * (
                 _INCREMENTS_PER_INCH_STEP if modal.whole[INCH] else 1.0
             )
             self._tell_of_increments(words)
         g = words.g.get(Group.PLANE)
-        if g is None or _PLANES[g.action] == modal.whole[PLANE]:
+        if g is None or g.value == modal.whole[PLANE]:
             return
         if self.state.side:
             raise self.fail(
@@ -93,7 +80,7 @@ class Modes:
             raise self.fail(
                 "the plane changes while a drilling cycle is active", "Cancel it with G80 first.", g.word
             )
-        set_plane(modal, _PLANES[g.action])
+        set_plane(modal, g.value)
 
     def _tell_of_increments(self, words: BlockWords) -> None:
         """Say once that positions without a decimal point are small: who forgets the point loses the part."""
@@ -111,7 +98,7 @@ class Modes:
         """
         state, modal = self.state, self.state.modal
         if g := words.g.get(Group.FEED_MODE):
-            mode = _FEED_MODES[g.action]
+            mode = g.value
             if mode != modal.whole[FEED_MODE]:
                 modal.real[FEED] = 0.0  # a number in another unit
             modal.whole[FEED_MODE] = mode
@@ -182,7 +169,7 @@ class Modes:
         """
         g = words.g.get(Group.LENGTH_COMPENSATION)
         coordinates = self.state.coordinates
-        sign = coordinates.length_sign if g is None else _LENGTH_SIGNS[g.action]
+        sign = coordinates.length_sign if g is None else g.value
         if g is None and "H" not in words.by_letter:
             return
         if g is None and sign == 0:
@@ -256,11 +243,11 @@ class Modes:
                 state.path_tolerance_mm = EXACT_PATH_TOLERANCE
             whole[EXACT_PATH] = stopping.action is Action.EXACT_PATH
         if distance := g.get(Group.DISTANCE):
-            whole[ABSOLUTE] = distance.action is Action.ABSOLUTE
+            whole[ABSOLUTE] = distance.value
         if distance := g.get(Group.ARC_DISTANCE):
-            whole[ARC_ABSOLUTE] = distance.action is Action.ARC_CENTER_ABSOLUTE
+            whole[ARC_ABSOLUTE] = distance.value
         if retract := g.get(Group.RETRACT):
-            state.cycle = replace(state.cycle, retract_to_initial=retract.action is Action.RETRACT_INITIAL)
+            state.cycle = replace(state.cycle, retract_to_initial=bool(retract.value))
         for ignored in words.ignored:
             if ignored.action is Action.NOTHING:
                 words.take("P")
@@ -301,7 +288,7 @@ class Modes:
         if d_word is not None:
             state.compensation_tool = whole_number(d_word, "a tool offset number", self.fail)
         if g is not None:
-            state.side = _SIDES[g.action]
+            state.side = g.value
             if state.side == 0:
                 return state.compensation.cancel
         elif state.side == 0 or d_word is None:

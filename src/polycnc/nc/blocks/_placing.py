@@ -39,14 +39,6 @@ _OFF: dict[Action, dict[str, Any]] = {
     Action.EXTERNAL_OFFSET_OFF: {"offsets": ()},
 }
 _TABLES = "KV"
-PLACING = frozenset(
-    {
-        *_SHIFTS, *_OFF, Action.WORKPIECE_POSITION, Action.POLE, Action.POLE_SCALING, Action.EXTERNAL_OFFSET,
-        Action.EXTERNAL_TOOL, Action.EXTERNAL_TOOL_OFF, Action.GENERAL_TOOL, Action.GENERAL_TOOL_OFF,
-        Action.SELECT_TABLES, Action.PLANE_BY_AXES,
-    }
-)  # fmt: skip
-"""The actions that `Placing` carries out."""
 
 
 @dataclass

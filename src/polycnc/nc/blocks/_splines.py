@@ -20,23 +20,12 @@ from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._modal import (
     AXIS_P,
     AXIS_Q,
-    MOTION_CUBIC,
-    MOTION_NURBS,
-    MOTION_QUADRATIC,
     NO_AXIS,
     PLANE,
     PLANE_XY,
     length_scale,
 )
 from polycnc.nc.text._scan_plain import Word
-
-SPLINES = {
-    Action.CUBIC_SPLINE: MOTION_CUBIC,
-    Action.QUADRATIC_SPLINE: MOTION_QUADRATIC,
-    Action.NURBS: MOTION_NURBS,
-    Action.NURBS_END: MOTION_NURBS,
-}
-"""Motions that count for their own block, or up to the block that ends them; they take axis words."""
 
 XY = tuple[float, float]
 

@@ -39,17 +39,6 @@ from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._modal import FEED, FEED_MODE, FEED_PER_REVOLUTION, INCH, NO_AXIS
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 
-MODAL = {
-    Action.THREAD: "thread",
-    Action.THREAD_CHANGING: "thread_changing",
-    Action.TURN_CYCLE: "turn",
-    Action.THREAD_CYCLE: "thread_cycle",
-    Action.FACE_CYCLE: "face",
-}
-"""Turning functions that stay in force as motions do."""
-CONTOUR = {Action.TURN_FINISH, Action.TURN_ROUGH, Action.FACE_ROUGH, Action.TURN_REPEAT}
-"""Cycles whose contour stands in other blocks of the program."""
-CYCLES = {Action.FACE_PECK, Action.TURN_PECK, Action.THREAD_PASSES}
 _INCREMENT_MM = 0.001
 _INCREMENT_INCH = 0.0001
 
@@ -71,7 +60,7 @@ class TurningBlocks:
     def begin(self, g: GWord) -> None:
         """Put a turning motion in force."""
         self.state.turning = replace(
-            self.state.turning, motion=MODAL[g.action], corner=(None, None), taper=0.0
+            self.state.turning, motion=g.action.title, corner=(None, None), taper=0.0
         )
 
     def cancel(self) -> None:
@@ -117,7 +106,7 @@ class TurningBlocks:
         start = self._here()
         to = corner[0], corner[1]
         try:
-            if turning.motion == "face":
+            if turning.motion == "face_cycle":
                 steps = exchanged(box(start[::-1], to[::-1], turning.taper))
             else:
                 chamfer = turning.chamfer * self._lead() if turning.motion == "thread_cycle" else 0.0

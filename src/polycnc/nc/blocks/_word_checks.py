@@ -4,21 +4,12 @@ from __future__ import annotations
 
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
 from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._splines import SPLINES
 from polycnc.nc.blocks._words import BlockWords, Fail, code_text
 from polycnc.nc.dialect._dialect import Dialect
-from polycnc.nc.modal._actions import Action, Group
-from polycnc.nc.modal._modal import MOTION_ARC_CCW, MOTION_ARC_CW, MOTION_LINEAR, MOTION_NONE, MOTION_RAPID
+from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.text._scan_plain import Word
 
-MOTIONS = {
-    Action.RAPID: MOTION_RAPID,
-    Action.LINEAR: MOTION_LINEAR,
-    Action.ARC_CW: MOTION_ARC_CW,
-    Action.ARC_CCW: MOTION_ARC_CCW,
-    Action.MOTION_OFF: MOTION_NONE,
-}
-"""The motion that a motion word leaves in force."""
+_CURVED = (Family.SPLINE, Family.CURVE)
 _AXIS_LETTERS = "XYZABCUVW"
 # What the words belong to that need a function beside them.
 _BELONGS_TO = {
@@ -68,12 +59,12 @@ class WordChecks:
         is_straight = motion.action in (Action.RAPID, Action.LINEAR)
         if non_modal and (
             non_modal.action is Action.SET_POSITION
-            or motion.action in SPLINES
+            or motion.action.family in _CURVED
             or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
         ):
             self._exclude(f"G{non_modal.code}", f"G{motion.code}", "both use the axis words", motion.word)
         cancel = g.get(Group.CYCLE_CANCEL)
-        if cancel and motion.action not in MOTIONS.keys() | SPLINES.keys():
+        if cancel and motion.action.sets is None:
             self._exclude(f"G{cancel.code}", f"G{motion.code}", "one ends what the other begins", motion.word)
 
     def _exclude(self, first: str, second: str, why: str, word: Word) -> None:

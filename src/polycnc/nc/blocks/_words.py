@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from polycnc.errors import ProgramError
 from polycnc.nc.dialect._dialect import Dialect
-from polycnc.nc.modal._actions import GROUP_OF, Action, Group, MAction
+from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.text._scan_plain import Block, Word
 
 Fail = Callable[[str, str, Word | None], ProgramError]
@@ -28,6 +28,12 @@ class GWord:
     word: Word
     code: str
     action: Action
+
+    @property
+    def value(self) -> int:
+        """The value of its group in the modal state."""
+        assert self.action.sets is not None
+        return self.action.sets
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,7 +139,7 @@ def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: C
     code = code_text(word.value)
     if action is None:
         raise fail(f"G{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
-    group = GROUP_OF[action]
+    group = action.group
     entry = GWord(word, code, action)
     if group is Group.IGNORED:
         if action is Action.UNSUPPORTED:

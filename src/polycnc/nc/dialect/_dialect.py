@@ -51,7 +51,7 @@ G_CODES = 10000  # G0 to G999.9
 _CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
 _MOTIONS = {"none": MOTION_NONE, "rapid": MOTION_RAPID, "linear": MOTION_LINEAR}
-_ACTIONS = {action.name.lower(): action for action in Action}
+_ACTIONS = {action.title: action for action in Action}
 
 
 def _known_actions(table: dict[str, str]) -> dict[str, str]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from enum import Enum, IntEnum, StrEnum, auto
+from enum import Enum, IntEnum, StrEnum
+
+from polycnc.nc.modal import _modal as modal
 
 
 class Group(StrEnum):
@@ -32,220 +34,173 @@ class Group(StrEnum):
     IGNORED = "ignored"
 
 
+class Family(Enum):
+    """Codes of one group that are carried out in one way: the modes of motion, and functions of their own block."""
+
+    MOVE = ("move", Group.MOTION)
+    SPLINE = ("spline", Group.MOTION)
+    CURVE = ("curve", Group.MOTION)
+    DRILLING = ("drilling", Group.MOTION)
+    TURNING = ("turning", Group.MOTION)
+    TURNING_CYCLE = ("turning cycle", Group.NON_MODAL)
+    CONTOUR_CYCLE = ("contour cycle", Group.NON_MODAL)
+    FRAME = ("frame", Group.NON_MODAL)
+    PLACING = ("placing", Group.NON_MODAL)
+    PATH = ("path", Group.NON_MODAL)
+
+    @property
+    def group(self) -> Group:
+        """The modal group of its codes."""
+        return self.value[1]
+
+
 class Action(IntEnum):
-    """What a G code does. Numbers are private to this process; names stand in dialect files."""
+    """What a G code does: one row for each, and its only one.
 
-    RAPID = auto()
-    LINEAR = auto()
-    ARC_CW = auto()
-    ARC_CCW = auto()
-    CUBIC_SPLINE = auto()
-    QUADRATIC_SPLINE = auto()
-    NURBS = auto()
-    NURBS_END = auto()
-    MOTION_OFF = auto()
-    THREAD = auto()
-    THREAD_CHANGING = auto()
-    TURN_CYCLE = auto()
-    THREAD_CYCLE = auto()
-    FACE_CYCLE = auto()
-    DWELL = auto()
-    EXACT_STOP_BLOCK = auto()
-    PLANE_XY = auto()
-    PLANE_ZX = auto()
-    PLANE_YZ = auto()
-    INCH = auto()
-    METRIC = auto()
-    REFERENCE_RETURN = auto()
-    REFERENCE_POINT = auto()
-    COMP_OFF = auto()
-    COMP_LEFT = auto()
-    COMP_RIGHT = auto()
-    LENGTH_PLUS = auto()
-    LENGTH_MINUS = auto()
-    LENGTH_OFF = auto()
-    MACHINE_COORDINATES = auto()
-    WORK_OFFSET = auto()
-    WORK_OFFSET_OFF = auto()
-    EXACT_STOP = auto()
-    EXACT_PATH = auto()
-    CONTINUOUS = auto()
-    ABSOLUTE = auto()
-    INCREMENTAL = auto()
-    ARC_CENTER_ABSOLUTE = auto()
-    ARC_CENTER_INCREMENTAL = auto()
-    SET_POSITION = auto()
-    CLEAR_SET_POSITION = auto()
-    FEED_INVERSE_TIME = auto()
-    FEED_PER_MINUTE = auto()
-    FEED_PER_REVOLUTION = auto()
-    CONSTANT_SURFACE_SPEED = auto()
-    SPINDLE_RPM = auto()
-    CYCLE_CANCEL = auto()
-    CYCLE_CHIP_BREAK = auto()
-    CYCLE_FINE_BORE = auto()
-    CYCLE_DRILL = auto()
-    CYCLE_DWELL = auto()
-    CYCLE_DEEP = auto()
-    CYCLE_TAP = auto()
-    CYCLE_TAP_LEFT = auto()
-    CYCLE_BORE = auto()
-    CYCLE_BORE_STOP = auto()
-    CYCLE_BACK_BORE = auto()
-    CYCLE_BACK_BORE_UP = auto()
-    CYCLE_BORE_MANUAL = auto()
-    CYCLE_BORE_DWELL = auto()
-    RETRACT_INITIAL = auto()
-    RETRACT_R = auto()
-    SET_DATA = auto()
-    SET_WORK_ZERO = auto()
-    LOCAL_COORDINATES = auto()
-    SCALING = auto()
-    SCALING_OFF = auto()
-    MIRROR = auto()
-    MIRROR_OFF = auto()
-    ROTATION = auto()
-    ROTATION_OFF = auto()
-    POLAR = auto()
-    POLAR_OFF = auto()
-    ADDITIONAL_OFFSET = auto()
-    ADDITIONAL_OFFSET_110 = auto()
-    SKIP_MOVE = auto()
-    TURN_FINISH = auto()
-    TURN_ROUGH = auto()
-    FACE_ROUGH = auto()
-    TURN_REPEAT = auto()
-    FACE_PECK = auto()
-    TURN_PECK = auto()
-    THREAD_PASSES = auto()
-    UNSUPPORTED = auto()
-    NOTHING = auto()
-    IGNORED = auto()
-    CONTOUR_SHIFT = auto()
-    CONTOUR_SHIFT_OFF = auto()
-    PROGRAM_SHIFT = auto()
-    PROGRAM_SHIFT_ADD = auto()
-    PROGRAM_SHIFT_OFF = auto()
-    PROGRAM_SHIFT_ADD_OFF = auto()
-    WORKPIECE_POSITION = auto()
-    WORKPIECE_POSITION_OFF = auto()
-    POLE = auto()
-    POLE_SCALING = auto()
-    POLE_SCALING_OFF = auto()
-    EXTERNAL_OFFSET = auto()
-    EXTERNAL_OFFSET_OFF = auto()
-    EXTERNAL_TOOL = auto()
-    EXTERNAL_TOOL_OFF = auto()
-    GENERAL_TOOL = auto()
-    GENERAL_TOOL_OFF = auto()
-    SELECT_TABLES = auto()
-    PLANE_BY_AXES = auto()
-    PROBE_MOVE = auto()
-    PROBE_IN_PASSING = auto()
-    PROBE_FIXED_STOP = auto()
-    LEFT_OUT = auto()
+    A row is the modal group or the family, the words that the code takes ("axes" are the channel's axis words, "time"
+    the addresses of a dwell), a sentence, and the value of its group in the modal state where one number tells it.
+    Numbers are private to this process; names stand in dialect files.
+    """
+
+    group: Group
+    family: Family | None
+    takes: tuple[str, ...]
+    sentence: str
+    sets: int | None
+
+    def __new__(cls, kind: Group | Family, takes: str, sentence: str, sets: int | None = None) -> Action:
+        """Make the member of a row; members are numbered from 1."""
+        member = int.__new__(cls, len(cls.__members__) + 1)
+        member._value_ = int(member)
+        member.group, member.family = (kind.group, kind) if isinstance(kind, Family) else (kind, None)
+        member.takes, member.sentence, member.sets = tuple(takes.split()), sentence, sets
+        return member
+
+    # fmt: off
+    RAPID = Family.MOVE, "axes", "Straight to a point as fast as the axes can", modal.MOTION_RAPID
+    LINEAR = Family.MOVE, "axes R C", "Straight at feed; R or C rounds or chamfers the corner", modal.MOTION_LINEAR
+    ARC_CW = Family.MOVE, "axes I J K R P", "Clockwise arc or helix by centre or radius", modal.MOTION_ARC_CW
+    ARC_CCW = Family.MOVE, "axes I J K R P", "The same counter-clockwise", modal.MOTION_ARC_CCW
+    CUBIC_SPLINE = Family.SPLINE, "axes I J P Q", "Cubic spline by its two inner control points", modal.MOTION_CUBIC
+    QUADRATIC_SPLINE = Family.SPLINE, "axes I J", "Quadratic spline by its inner control point", modal.MOTION_QUADRATIC
+    NURBS = Family.CURVE, "axes P L", "Begin a curve by weighted control points, or add one", modal.MOTION_NURBS
+    NURBS_END = Family.CURVE, "", "End the curve and follow it", modal.MOTION_NURBS
+    MOTION_OFF = Family.MOVE, "", "No motion in force: axis words alone are an error", modal.MOTION_NONE
+    THREAD = Family.TURNING, "axes", "Thread with the lead F"
+    THREAD_CHANGING = Family.TURNING, "axes K", "Thread whose lead changes by K with each turn"
+    TURN_CYCLE = Family.TURNING, "axes R", "Turning in one cut and back; R is the taper"
+    THREAD_CYCLE = Family.TURNING, "axes R", "Threading in one cut and back"
+    FACE_CYCLE = Family.TURNING, "axes R", "Facing in one cut and back"
+    DWELL = Group.DWELL, "time", "Wait"
+    EXACT_STOP_BLOCK = Group.EXACT_STOP_BLOCK, "", "Come to rest at the end of this block"
+    PLANE_XY = Group.PLANE, "", "Working plane X Y", modal.PLANE_XY
+    PLANE_ZX = Group.PLANE, "", "Working plane Z X", modal.PLANE_ZX
+    PLANE_YZ = Group.PLANE, "", "Working plane Y Z", modal.PLANE_YZ
+    INCH = Group.UNITS, "", "Lengths and feeds are inches", 1
+    METRIC = Group.UNITS, "", "Lengths and feeds are millimetres", 0
+    REFERENCE_RETURN = Family.PATH, "axes", "Go to the reference position through a point"
+    REFERENCE_POINT = Family.PATH, "axes P", "The same to reference position P, 2 without it"
+    COMP_OFF = Group.RADIUS_COMPENSATION, "D", "Radius compensation off", 0
+    COMP_LEFT = Group.RADIUS_COMPENSATION, "D", "Tool left of the path by its radius", 1
+    COMP_RIGHT = Group.RADIUS_COMPENSATION, "D", "Tool right of the path by its radius", -1
+    LENGTH_PLUS = Group.LENGTH_COMPENSATION, "H", "Add the length of tool H", 1
+    LENGTH_MINUS = Group.LENGTH_COMPENSATION, "H", "Subtract the length of tool H", -1
+    LENGTH_OFF = Group.LENGTH_COMPENSATION, "H", "Length compensation off", 0
+    MACHINE_COORDINATES = Family.PATH, "axes", "A straight move of this block is in machine coordinates"
+    WORK_OFFSET = Group.WORK_OFFSET, "", "Select the work offset of this code"
+    WORK_OFFSET_OFF = Group.WORK_OFFSET, "", "Leave the work offset of this group"
+    EXACT_STOP = Group.STOPPING, "", "Come to rest at the end of every block"
+    EXACT_PATH = Group.STOPPING, "", "Follow the path exactly; rest only in corners"
+    CONTINUOUS = Group.STOPPING, "P Q", "Go through corners: rounded by up to P, lines merged within Q"
+    ABSOLUTE = Group.DISTANCE, "", "Axis words are positions", 1
+    INCREMENTAL = Group.DISTANCE, "", "Axis words are ways", 0
+    ARC_CENTER_ABSOLUTE = Group.ARC_DISTANCE, "", "I J K are the position of an arc's centre", 1
+    ARC_CENTER_INCREMENTAL = Group.ARC_DISTANCE, "", "I J K are ways from an arc's start to its centre", 0
+    SET_POSITION = Family.PATH, "axes S", "Make the present position read these values; S clamps the spindle"
+    CLEAR_SET_POSITION = Family.PATH, "", "Cancel that shift"
+    FEED_INVERSE_TIME = Group.FEED_MODE, "", "1/F minutes for each block", modal.FEED_INVERSE_TIME
+    FEED_PER_MINUTE = Group.FEED_MODE, "", "F is a way per minute", modal.FEED_PER_MINUTE
+    FEED_PER_REVOLUTION = Group.FEED_MODE, "", "F is a way per revolution of the spindle", modal.FEED_PER_REVOLUTION
+    CONSTANT_SURFACE_SPEED = Group.SPINDLE_MODE, "S", "S is a cutting speed", 1
+    SPINDLE_RPM = Group.SPINDLE_MODE, "S", "S is a number of revolutions per minute", 0
+    CYCLE_CANCEL = Group.CYCLE_CANCEL, "", "Drilling cycle off"
+    CYCLE_CHIP_BREAK = Family.DRILLING, "axes R P Q L K", "Drill, breaking the chip every Q"
+    CYCLE_FINE_BORE = Family.DRILLING, "axes R P Q I J L K", "Bore, orient, shift and retract"
+    CYCLE_DRILL = Family.DRILLING, "axes R P Q L K", "Drill"
+    CYCLE_DWELL = Family.DRILLING, "axes R P Q L K", "Drill with a dwell P at the bottom"
+    CYCLE_DEEP = Family.DRILLING, "axes R P Q L K", "Drill, retracting every Q"
+    CYCLE_TAP = Family.DRILLING, "axes R P Q L K", "Tap a right-hand thread"
+    CYCLE_TAP_LEFT = Family.DRILLING, "axes R P Q L K", "Tap a left-hand thread"
+    CYCLE_BORE = Family.DRILLING, "axes R P Q L K", "Bore, retract at feed"
+    CYCLE_BORE_STOP = Family.DRILLING, "axes R P Q L K", "Bore, stop the spindle, retract at rapid"
+    CYCLE_BACK_BORE = Family.DRILLING, "axes R P Q I J L K", "Bore from below, up to level K"
+    CYCLE_BACK_BORE_UP = Family.DRILLING, "axes R P Q I J L K", "Bore from R up to Z"
+    CYCLE_BORE_MANUAL = Family.DRILLING, "axes R P Q L K", "Bore, stop, retract by hand"
+    CYCLE_BORE_DWELL = Family.DRILLING, "axes R P Q L K", "Bore with a dwell, retract at feed"
+    RETRACT_INITIAL = Group.RETRACT, "", "Cycles retract to where the first one began", 1
+    RETRACT_R = Group.RETRACT, "", "Cycles retract to level R", 0
+    SET_DATA = Family.FRAME, "axes L P Q R C", "Set work offsets (L2, L20) and tool offsets (L10 to L13)"
+    SET_WORK_ZERO = Family.FRAME, "axes L P", "Set G54 to G59 by value (L2) or by position (L20)"
+    LOCAL_COORDINATES = Family.FRAME, "axes", "Shift every work coordinate system"
+    SCALING = Family.FRAME, "axes P I J K", "Scale about a point, by P or by I J K"
+    SCALING_OFF = Family.FRAME, "", "Scaling off"
+    MIRROR = Family.FRAME, "axes", "Mirror these axes about these positions"
+    MIRROR_OFF = Family.FRAME, "axes", "Mirroring of these axes off, of all without any"
+    ROTATION = Group.ROTATION, "axes R", "Turn the plane about a point by the angle R"
+    ROTATION_OFF = Group.ROTATION, "", "Rotation off"
+    POLAR = Group.POLAR, "", "The words of the plane are radius and angle"
+    POLAR_OFF = Group.POLAR, "", "Polar coordinates off"
+    ADDITIONAL_OFFSET = Group.WORK_OFFSET, "P", "Select additional work offset P"
+    ADDITIONAL_OFFSET_110 = Group.WORK_OFFSET, "", "Select additional work offset 1 with G110, 2 with G111 ..."
+    SKIP_MOVE = Family.PATH, "axes", "Straight at feed until the skip signal comes"
+    TURN_FINISH = Family.CONTOUR_CYCLE, "P Q", "Finish the contour of blocks P to Q"
+    TURN_ROUGH = Family.CONTOUR_CYCLE, "P Q U W R", "Rough the contour along Z"
+    FACE_ROUGH = Family.CONTOUR_CYCLE, "P Q U W R", "Rough the contour along X"
+    TURN_REPEAT = Family.CONTOUR_CYCLE, "P Q U W R", "Repeat the contour, closer each time"
+    FACE_PECK = Family.TURNING_CYCLE, "axes P Q R", "Peck along Z, also grooves on a face"
+    TURN_PECK = Family.TURNING_CYCLE, "axes P Q R", "Peck along X: grooves, parting off"
+    THREAD_PASSES = Family.TURNING_CYCLE, "axes P Q R", "Cut a thread in several passes"
+    UNSUPPORTED = Group.IGNORED, "", "Refused: not supported yet"
+    NOTHING = Group.IGNORED, "P Q", "A cancel that has nothing to cancel"
+    IGNORED = Group.IGNORED, "", "Reported once, changes nothing"
+    CONTOUR_SHIFT = Family.PLACING, "axes", "Shift of the contour"
+    CONTOUR_SHIFT_OFF = Family.PLACING, "", "That shift off"
+    PROGRAM_SHIFT = Family.PLACING, "axes", "Shift of program zero"
+    PROGRAM_SHIFT_ADD = Family.PLACING, "axes", "Further shift of program zero"
+    PROGRAM_SHIFT_OFF = Family.PLACING, "", "Both shifts of program zero off"
+    PROGRAM_SHIFT_ADD_OFF = Family.PLACING, "", "The further shift off"
+    WORKPIECE_POSITION = Family.PLACING, "axes R", "Where the workpiece lies, and how it is turned"
+    WORKPIECE_POSITION_OFF = Family.PLACING, "", "The workpiece lies at zero"
+    POLE = Family.PLACING, "axes", "The pole that scaling and rotation are about"
+    POLE_SCALING = Family.PLACING, "axes R", "Scale axes about the pole, turn the plane by R"
+    POLE_SCALING_OFF = Family.PLACING, "", "Pole, scaling and rotation off"
+    EXTERNAL_OFFSET = Family.PLACING, "", "Add the external work offset of this code"
+    EXTERNAL_OFFSET_OFF = Family.PLACING, "", "External work offsets off"
+    EXTERNAL_TOOL = Family.PLACING, "", "Add the external tool data of this code"
+    EXTERNAL_TOOL_OFF = Family.PLACING, "", "External tool data off"
+    GENERAL_TOOL = Family.PLACING, "", "Add the general tool data of this code"
+    GENERAL_TOOL_OFF = Family.PLACING, "", "General tool data off"
+    SELECT_TABLES = Family.PLACING, "K V", "Select tables of tools (K) and work offsets (V)"
+    PLANE_BY_AXES = Family.PLACING, "axes", "Working plane by two axes, main axis first"
+    PROBE_MOVE = Family.PATH, "axes", "Straight at feed until the probe switches"
+    PROBE_IN_PASSING = Family.PATH, "axes", "Measure one axis in passing"
+    PROBE_FIXED_STOP = Family.PATH, "axes", "Straight at feed up to a fixed stop"
+    LEFT_OUT = Group.IGNORED, "", "As if it were not there"
+    # fmt: on
+
+    @property
+    def title(self) -> str:
+        """The name in dialect files."""
+        return self.name.lower()
 
 
-_BY_GROUP: dict[Group, tuple[Action, ...]] = {
-    Group.MOTION: (
-        Action.RAPID,
-        Action.LINEAR,
-        Action.ARC_CW,
-        Action.ARC_CCW,
-        Action.CUBIC_SPLINE,
-        Action.QUADRATIC_SPLINE,
-        Action.NURBS,
-        Action.NURBS_END,
-        Action.MOTION_OFF,
-        Action.THREAD,
-        Action.THREAD_CHANGING,
-        Action.TURN_CYCLE,
-        Action.THREAD_CYCLE,
-        Action.FACE_CYCLE,
-        Action.CYCLE_CHIP_BREAK,
-        Action.CYCLE_FINE_BORE,
-        Action.CYCLE_DRILL,
-        Action.CYCLE_DWELL,
-        Action.CYCLE_DEEP,
-        Action.CYCLE_TAP,
-        Action.CYCLE_TAP_LEFT,
-        Action.CYCLE_BORE,
-        Action.CYCLE_BORE_STOP,
-        Action.CYCLE_BACK_BORE,
-        Action.CYCLE_BACK_BORE_UP,
-        Action.CYCLE_BORE_MANUAL,
-        Action.CYCLE_BORE_DWELL,
-    ),
-    Group.CYCLE_CANCEL: (Action.CYCLE_CANCEL,),
-    Group.NON_MODAL: (
-        Action.REFERENCE_RETURN,
-        Action.REFERENCE_POINT,
-        Action.MACHINE_COORDINATES,
-        Action.SET_POSITION,
-        Action.CLEAR_SET_POSITION,
-        Action.SET_DATA,
-        Action.SET_WORK_ZERO,
-        Action.LOCAL_COORDINATES,
-        Action.SCALING,
-        Action.SCALING_OFF,
-        Action.MIRROR,
-        Action.MIRROR_OFF,
-        Action.SKIP_MOVE,
-        Action.TURN_FINISH,
-        Action.TURN_ROUGH,
-        Action.FACE_ROUGH,
-        Action.TURN_REPEAT,
-        Action.FACE_PECK,
-        Action.TURN_PECK,
-        Action.THREAD_PASSES,
-        Action.CONTOUR_SHIFT,
-        Action.CONTOUR_SHIFT_OFF,
-        Action.PROGRAM_SHIFT,
-        Action.PROGRAM_SHIFT_ADD,
-        Action.PROGRAM_SHIFT_OFF,
-        Action.PROGRAM_SHIFT_ADD_OFF,
-        Action.WORKPIECE_POSITION,
-        Action.WORKPIECE_POSITION_OFF,
-        Action.POLE,
-        Action.POLE_SCALING,
-        Action.POLE_SCALING_OFF,
-        Action.EXTERNAL_OFFSET,
-        Action.EXTERNAL_OFFSET_OFF,
-        Action.EXTERNAL_TOOL,
-        Action.EXTERNAL_TOOL_OFF,
-        Action.GENERAL_TOOL,
-        Action.GENERAL_TOOL_OFF,
-        Action.SELECT_TABLES,
-        Action.PLANE_BY_AXES,
-        Action.PROBE_MOVE,
-        Action.PROBE_IN_PASSING,
-        Action.PROBE_FIXED_STOP,
-    ),
-    Group.ROTATION: (Action.ROTATION, Action.ROTATION_OFF),
-    Group.POLAR: (Action.POLAR, Action.POLAR_OFF),
-    Group.DWELL: (Action.DWELL,),
-    Group.PLANE: (Action.PLANE_XY, Action.PLANE_ZX, Action.PLANE_YZ),
-    Group.UNITS: (Action.INCH, Action.METRIC),
-    Group.DISTANCE: (Action.ABSOLUTE, Action.INCREMENTAL),
-    Group.ARC_DISTANCE: (Action.ARC_CENTER_ABSOLUTE, Action.ARC_CENTER_INCREMENTAL),
-    Group.FEED_MODE: (Action.FEED_INVERSE_TIME, Action.FEED_PER_MINUTE, Action.FEED_PER_REVOLUTION),
-    Group.SPINDLE_MODE: (Action.CONSTANT_SURFACE_SPEED, Action.SPINDLE_RPM),
-    Group.RADIUS_COMPENSATION: (Action.COMP_OFF, Action.COMP_LEFT, Action.COMP_RIGHT),
-    Group.LENGTH_COMPENSATION: (Action.LENGTH_PLUS, Action.LENGTH_MINUS, Action.LENGTH_OFF),
-    Group.WORK_OFFSET: (
-        Action.WORK_OFFSET,
-        Action.WORK_OFFSET_OFF,
-        Action.ADDITIONAL_OFFSET,
-        Action.ADDITIONAL_OFFSET_110,
-    ),
-    Group.STOPPING: (Action.EXACT_STOP, Action.EXACT_PATH, Action.CONTINUOUS),
-    Group.EXACT_STOP_BLOCK: (Action.EXACT_STOP_BLOCK,),
-    Group.RETRACT: (Action.RETRACT_INITIAL, Action.RETRACT_R),
-    Group.IGNORED: (Action.IGNORED, Action.NOTHING, Action.UNSUPPORTED, Action.LEFT_OUT),
-}
+IN_FORCE = {(action.group, action.sets): action for action in reversed(Action) if action.sets is not None}
+"""The action that tells a value of its group in the modal state."""
 
-GROUP_OF: dict[Action, Group] = {action: group for group, actions in _BY_GROUP.items() for action in actions}
-"""The modal group of every action."""
+
+def of_family(*families: Family) -> frozenset[Action]:
+    """Return the actions of these families."""
+    return frozenset(action for action in Action if action.family in families)
 
 
 class MAction(Enum):

@@ -23,29 +23,16 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.nc.dialect._dialect import Dialect, DialectTables
-from polycnc.nc.modal._actions import GROUP_OF, Action, Group
+from polycnc.nc.modal._actions import IN_FORCE, Action, Group
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_ABSOLUTE,
     EXACT_PATH,
     EXACT_STOP,
-    FEED_INVERSE_TIME,
     FEED_MODE,
-    FEED_PER_MINUTE,
-    FEED_PER_REVOLUTION,
     INCH,
     MOTION,
-    MOTION_ARC_CCW,
-    MOTION_ARC_CW,
-    MOTION_CUBIC,
-    MOTION_LINEAR,
-    MOTION_NURBS,
-    MOTION_QUADRATIC,
-    MOTION_RAPID,
     PLANE,
-    PLANE_XY,
-    PLANE_YZ,
-    PLANE_ZX,
 )
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
@@ -61,25 +48,9 @@ _FEW = 4096  # so many contexts are kept without asking who needs them
 
 _SEQUENCE = re.compile(r"\s*(?:/[1-9]?)?\s*[Nn]\s*([0-9]+)")
 _F, _G = ord("F"), ord("G")
-_MOTIONS = {
-    Action.RAPID: MOTION_RAPID,
-    Action.LINEAR: MOTION_LINEAR,
-    Action.ARC_CW: MOTION_ARC_CW,
-    Action.ARC_CCW: MOTION_ARC_CCW,
-}
-_MOTION_ACTIONS = {motion: action for action, motion in _MOTIONS.items()} | {
-    MOTION_CUBIC: Action.CUBIC_SPLINE,
-    MOTION_QUADRATIC: Action.QUADRATIC_SPLINE,
-    MOTION_NURBS: Action.NURBS,
-}
-_PLANES = {PLANE_XY: Action.PLANE_XY, PLANE_ZX: Action.PLANE_ZX, PLANE_YZ: Action.PLANE_YZ}
-_FEED_MODES = {
-    FEED_PER_MINUTE: Action.FEED_PER_MINUTE,
-    FEED_PER_REVOLUTION: Action.FEED_PER_REVOLUTION,
-    FEED_INVERSE_TIME: Action.FEED_INVERSE_TIME,
-}
-_SIDES = {0: Action.COMP_OFF, 1: Action.COMP_LEFT, -1: Action.COMP_RIGHT}
-_LENGTHS = {0: Action.LENGTH_OFF, 1: Action.LENGTH_PLUS, -1: Action.LENGTH_MINUS}
+_PLAIN_MOTIONS = (Action.RAPID, Action.LINEAR, Action.ARC_CW, Action.ARC_CCW)
+_MOTIONS = {a.sets: a for a in (*_PLAIN_MOTIONS, Action.CUBIC_SPLINE, Action.QUADRATIC_SPLINE, Action.NURBS)}
+_DISTANCES = (Action.ABSOLUTE, Action.INCREMENTAL)
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,7 +224,7 @@ class BlockRecords:
         if context.begin is not None:
             replay = self._replay(context, context.begin)
             motion = _latest(replay.motion, bisect_right(replay.lines, tag & LINE_MASK) - 1, motion)
-        return _MOTION_ACTIONS.get(int(motion))
+        return _MOTIONS.get(int(motion))
 
     def motions(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
         """Return what `motion` says of each of some tags, which have one context; 0 for nothing."""
@@ -266,7 +237,7 @@ class BlockRecords:
         block = np.searchsorted(np.array(replay.lines, np.int64), tags & LINE_MASK, side="right") - 1
         said = np.searchsorted(np.array(blocks, np.int64), block, side="right")
         found = [float(context.modal.whole[MOTION]), *motions]
-        actions = np.array([_MOTION_ACTIONS.get(int(motion), 0) for motion in found], np.int64)
+        actions = np.array([_MOTIONS.get(int(motion), 0) for motion in found], np.int64)
         return actions[said]
 
     def source(self, tag: int) -> ProgramText | None:
@@ -334,7 +305,7 @@ class BlockRecords:
             whole[MOTION] = int(_latest(replay.motion, block, whole[MOTION]))
             whole[ABSOLUTE] = int(_latest(replay.absolute, block, whole[ABSOLUTE]))
             feed = _latest(replay.feed, block, feed)
-        g = {GROUP_OF[action]: code for action in _actions(modal, whole) if (code := self._codes.get(action))}
+        g = {action.group: code for action in _actions(modal, whole) if (code := self._codes.get(action))}
         if name := next((name for name in modal.work if name), ""):
             g[Group.WORK_OFFSET] = name
         spindle = modal.spindle
@@ -375,15 +346,16 @@ class BlockRecords:
         is_f = letter == _F
         return _Replay(
             lines=columns.line[:blocks].tolist(),
-            motion=_said(g_block, actions, {int(a): float(m) for a, m in _MOTIONS.items()}),
-            absolute=_said(g_block, actions, {int(Action.ABSOLUTE): 1.0, int(Action.INCREMENTAL): 0.0}),
+            motion=_said(g_block, actions, _PLAIN_MOTIONS),
+            absolute=_said(g_block, actions, _DISTANCES),
             feed=(block[is_f].tolist(), value[is_f].tolist()),
         )
 
 
 def _said(
-    blocks: npt.NDArray[np.int64], actions: npt.NDArray[np.signedinteger[Any]], values: dict[int, float]
+    blocks: npt.NDArray[np.int64], actions: npt.NDArray[np.signedinteger[Any]], words: tuple[Action, ...]
 ) -> tuple[list[int], list[float]]:
+    values = {int(word): float(word.sets or 0) for word in words}
     found = np.isin(actions, list(values))
     return blocks[found].tolist(), [values[action] for action in actions[found].tolist()]
 
@@ -409,22 +381,22 @@ def _stopping(whole: list[int]) -> Action:
 
 def _actions(modal: ModalSnapshot, whole: list[int]) -> list[Action]:
     """Return what is in force, one action of every modal group."""
-    found = [
-        _PLANES[whole[PLANE]],
-        Action.INCH if whole[INCH] else Action.METRIC,
-        Action.ABSOLUTE if whole[ABSOLUTE] else Action.INCREMENTAL,
-        Action.ARC_CENTER_ABSOLUTE if whole[ARC_ABSOLUTE] else Action.ARC_CENTER_INCREMENTAL,
-        _FEED_MODES[whole[FEED_MODE]],
-        Action.CONSTANT_SURFACE_SPEED if modal.spindle.surface_speed else Action.SPINDLE_RPM,
-        _SIDES[modal.side],
-        _LENGTHS[modal.length_sign],
-        _stopping(whole),
-        Action.RETRACT_INITIAL if modal.retract_to_initial else Action.RETRACT_R,
-    ]
+    values = {
+        Group.PLANE: whole[PLANE],
+        Group.UNITS: whole[INCH],
+        Group.DISTANCE: whole[ABSOLUTE],
+        Group.ARC_DISTANCE: whole[ARC_ABSOLUTE],
+        Group.FEED_MODE: whole[FEED_MODE],
+        Group.SPINDLE_MODE: int(modal.spindle.surface_speed),
+        Group.RADIUS_COMPENSATION: modal.side,
+        Group.LENGTH_COMPENSATION: modal.length_sign,
+        Group.RETRACT: int(modal.retract_to_initial),
+    }
+    found = [*(IN_FORCE[each] for each in values.items()), _stopping(whole)]
     if modal.cycle:
         found.append(Action[modal.cycle.upper()])
     else:
         found.append(Action.CYCLE_CANCEL)
-        if whole[MOTION] in _MOTION_ACTIONS:
-            found.append(_MOTION_ACTIONS[whole[MOTION]])
+        if whole[MOTION] in _MOTIONS:
+            found.append(_MOTIONS[whole[MOTION]])
     return found
