@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -46,7 +47,7 @@ class Collision:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Hold a piece of a record, one row a control cycle: time, tip of the tool (mm), block, tool, rapid, spindle turns."""
+    """Hold a piece of a record, one row a cycle; `tip` is the end of the tool (mm), `turns` whether the spindle does."""
 
     t_s: Floats
     tip: Floats  # [rows, 3]
@@ -54,6 +55,14 @@ class Rows:
     tool: Integers
     rapid: npt.NDArray[np.bool_]
     turns: npt.NDArray[np.bool_]
+
+    def columns(self) -> tuple[npt.NDArray[Any], ...]:
+        """Return the columns in their order."""
+        return self.t_s, self.tip, self.block, self.tool, self.rapid, self.turns
+
+    def at(self, places: Integers) -> Rows:
+        """Return the rows at these places."""
+        return Rows(*(column[places] for column in self.columns()))
 
     def keys(self) -> Integers:
         """Return a number for each row that changes where one chord must not go on."""
