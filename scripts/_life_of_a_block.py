@@ -14,7 +14,7 @@ import numpy as np
 from polycnc.kernel import PATH_RESTED, advance, give_to_path, prepare_path, start_path
 from polycnc.kernel._ramps import LENGTH, SPEED_IN, SPEED_OUT, SPEED_PEAK, TIME_CRUISE, TIME_IN, TIME_OUT
 from polycnc.machine import Machine, load_machine
-from polycnc.nc import Channel, ProgramText, dialect_for
+from polycnc.nc import Channel, ChannelOptions, ProgramText, dialect_for
 from polycnc.nc.modal._modal import ABSOLUTE, FEED, MOTION
 from polycnc.nc.text._scan import scan, scan_rules, word_columns
 from polycnc.runner import TraceWriter
@@ -43,7 +43,7 @@ def stations() -> dict[str, str]:
     text = _program()
     config = load_machine("mill3")
     machine = Machine(config, record_cycles=_KEPT_CYCLES)
-    channel = Channel(text, dialect_for(text.name, None), machine, ordinary_blocks=0)
+    channel = Channel(text, dialect_for(text.name, None), machine, options=ChannelOptions(ordinary_blocks=0))
     found = {"word columns": _words(channel)}
     before = _modal(channel)
     channel.fill()

@@ -8,7 +8,9 @@ import hypothesis.strategies as st
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 
-from polycnc.nc import DIALECTS, Channel, Dialect, load_dialect
+from polycnc.nc import DIALECTS, Block, Channel, Dialect, EndSource, load_dialect
+from polycnc.nc.channel._reader import Reader
+from polycnc.nc.channel._running import Running
 from support.block_strategies import programs
 from support.programs import FIVE, channel_state, prepare, queue_bytes
 
@@ -63,13 +65,14 @@ def test_both_stop_at_the_same_error(program: str) -> None:
 def test_the_fast_path_takes_plain_blocks_and_only_those(monkeypatch: pytest.MonkeyPatch) -> None:
     """The comparison is worth something only if both ways are gone."""
     taken: list[int] = []
-    ordinary_block = Channel._ordinary_block
+    take = Reader.take
 
-    def noting(self: Channel) -> None:
-        taken.append(self._reading.next)
-        ordinary_block(self)
+    def noting(self: Reader, running: Running) -> Block | EndSource | None:
+        block = take(self, running)
+        taken.append(self.line)
+        return block
 
-    monkeypatch.setattr(Channel, "_ordinary_block", noting)
+    monkeypatch.setattr(Reader, "take", noting)
     plain = "".join(f"N{n} G1 X{n % 50} Y.{n} F1000\n" for n in range(500))
     prepare("G21 G90\n" + plain + "M8\nG2 X9 I-20.05 J.001\n")
-    assert taken == [0, 501, 502]
+    assert taken == [1, 502, 503]

@@ -10,7 +10,7 @@ import numpy as np
 from polycnc.kernel import ARC, LINE, RAPID, STOP, WAIT, give_to_path
 from polycnc.kernel._segments import CENTER_P, CENTER_Q, SWEEP_RAD, WAIT_EVENT, WAIT_S
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
-from polycnc.nc import Channel, Dialect, ProgramText, line_of, load_dialect
+from polycnc.nc import Channel, ChannelOptions, Dialect, ProgramText, line_of, load_dialect
 from polycnc.nc.modal._modal import ORDINARY
 from polycnc.nc.records._block_records import LINE_MASK
 
@@ -52,12 +52,14 @@ def prepare(
     dialect: str | Dialect = "din",
     segments: int = 4096,
     ordinary_blocks: float = 0,
-    **options: Any,
+    collect_errors: bool = False,
+    **arguments: Any,
 ) -> Channel:
     """Prepare a program completely, without running it; the compiled kernel takes what it can."""
     text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
     machine = Machine(config, segments=segments)
-    channel = Channel(text, load_dialect(dialect), machine, ordinary_blocks=ordinary_blocks, **options)
+    options = ChannelOptions(ordinary_blocks=ordinary_blocks, collect_errors=collect_errors)
+    channel = Channel(text, load_dialect(dialect), machine, options=options, **arguments)
     give_to_path(machine.state, channel.path)
     channel.fill()
     assert channel.done, "the program does not fit into the queue"

@@ -8,7 +8,7 @@ import pytest
 
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.machine import Machine, load_machine
-from polycnc.nc import Channel, ProgramText, load_dialect
+from polycnc.nc import Channel, ChannelOptions, ProgramText, load_dialect
 from polycnc.nc.macro import language_for
 from support.programs import moves
 
@@ -135,7 +135,8 @@ def test_what_cannot_be_done_is_said(text: str, what: str) -> None:
 def test_a_refused_block_leaves_the_frame_as_it_was() -> None:
     dialect = load_dialect("fanuc")
     text = "F500\nG68 X0 Y0 R90\nG68 X0 Y0 R45 E5\nG10 L2 P1 X9 E5\nG1 X10 Y0\n"
-    channel = Channel(ProgramText.from_text(text), dialect, Machine(load_machine(None)), collect_errors=True)
+    options = ChannelOptions(collect_errors=True)
+    channel = Channel(ProgramText.from_text(text), dialect, Machine(load_machine(None)), options=options)
     channel.fill()
     assert len(channel.errors) == 2
     assert channel.state.modal.position.tolist() == pytest.approx([0.0, 10.0, 0.0], abs=1e-12)

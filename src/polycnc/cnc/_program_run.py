@@ -24,6 +24,7 @@ from polycnc.nc import (
     BlockRecord,
     Call,
     Channel,
+    ChannelOptions,
     Dialect,
     Language,
     Library,
@@ -115,12 +116,14 @@ class ProgramRun:
             language=self._language,
             axes=self._axes,
             skip_levels=skip_levels,
-            stands_at_stops=self._options.stands_at_stops,
-            answers=self._options.answers,
-            marks=self._options.stands_at_stops,
+            options=ChannelOptions(
+                stands_at_stops=self._options.stands_at_stops,
+                answers=self._options.answers,
+                marks=self._options.stands_at_stops,
+                collect_errors=self._options.collect_errors,
+            ),
             before=before,
             keeps_modal=keeps_modal,
-            collect_errors=self._options.collect_errors,
             attaches=attaches,
         )
 

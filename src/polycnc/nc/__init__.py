@@ -5,9 +5,10 @@ from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._queue import Event
-from polycnc.nc.channel._calls import Library
 from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
+from polycnc.nc.channel._options import ChannelOptions
+from polycnc.nc.channel._sub_programs import Library
 from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
@@ -55,6 +56,7 @@ __all__ = [
     "Call",
     "CallProgram",
     "Channel",
+    "ChannelOptions",
     "ChannelSnapshot",
     "ChannelState",
     "Dialect",

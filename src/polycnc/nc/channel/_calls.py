@@ -1,105 +1,203 @@
-"""Sub-programs: where they are found, and where the reading goes on after them."""
+"""The programs under way: calls of sub-programs, returns from them, and the languages that execute them."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from pathlib import Path
-from typing import NamedTuple, TypeAlias
 
-from polycnc.errors import UsageError
+from polycnc.errors import ProgramError, UsageError
+from polycnc.machine import SnapshotError
+from polycnc.nc.blocks._outcomes import Trouble
+from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._reader import Reader
+from polycnc.nc.channel._running import Back, Running, SavedCall
+from polycnc.nc.channel._sub_programs import SubPrograms
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.records._block_records import Call
-from polycnc.nc.sources._block_source import BlockSource
+from polycnc.nc.sources._block_source import (
+    BoundLanguage,
+    CallProgram,
+    Language,
+    LastingLanguage,
+    Returning,
+    SearchingLanguage,
+)
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
-from polycnc.units import whole
-
-Library: TypeAlias = Callable[[int], ProgramText | None]
-"""Where sub-programs come from that are in no file beside the main program: a program by its number, or None."""
-
-_LABEL = re.compile(rb"(?:\A|(?<=[\r\n]))[ \t]*[Oo:][ \t]*0*([0-9]+)")
-_DIGITS = 4  # how many digits a program number is usually written with
-
-
-@dataclass(frozen=True, slots=True)
-class Back:
-    """Say where the reading goes on after a sub-program: `end` is where that text ends; and which line called.
-
-    `within` are calls that the source of the calling program had made by itself.
-    """
-
-    place: Place
-    end: int
-    line: int
-    within: tuple[Call, ...] = ()
-
-
-@dataclass
-class Running:
-    """Hold a program that is being executed, and where to go back to.
-
-    `begun` is set with its first word: from there on, % or another program number ends it. `repeats` are still to
-    come, `round` is the present one. `source` gives its blocks where a language executes it.
-    """
-
-    begin: Place
-    repeats: int = 0
-    back: Back | None = None
-    begun: bool = False
-    round: int = 1
-    arguments: object = None
-    source: BlockSource | None = None
-
-
-class SavedCall(NamedTuple):
-    """Hold a program under way, to go back to, without what its language knows of it."""
-
-    begin: Place
-    repeats: int
-    back: Back | None
-    begun: bool
-    round: int
 
 
 class Calls:
-    """Keep the stack of running programs, the main program at the bottom."""
+    """Keep the stack of running programs, the main program at the bottom, and let `reader` read the present one.
 
-    def __init__(self, main: ProgramText, dialect: Dialect, library: Library | None = None) -> None:
+    `running` is the program that is being executed. `stack` are the calls that led to what is prepared now, the
+    outermost first; `within` are those among them that the source of the present program has made by itself.
+    """
+
+    def __init__(
+        self,
+        main: ProgramText,
+        dialect: Dialect,
+        programs: SubPrograms,
+        language: Language | None,
+        reader: Reader,
+        errors: Errors,
+    ) -> None:
         self._dialect = dialect
-        self._library = library
-        self._main = main
-        self._stack = [Running(Place(main))]
-        self._calls: tuple[Call, ...] = ()
-        self._labels: dict[str, dict[int, Place]] = {}
-        self._files: dict[tuple[Path, int], Place | None] = {}
-        self._texts: dict[str, ProgramText] = {}
-
-    @property
-    def running(self) -> Running:
-        """The program that is being executed."""
-        return self._stack[-1]
+        self._programs = programs
+        self._language = language
+        self._reader = reader
+        self._errors = errors
+        self._refused: dict[tuple[str, int], Trouble] = {}
+        self._all = [Running(Place(main))]
+        self._entered: tuple[Call, ...] = ()
+        self.running = self._all[0]
+        self.within: tuple[Call, ...] = ()
+        self.stack: tuple[Call, ...] = ()
 
     @property
     def depth(self) -> int:
         """How deep the present program is nested; 0 is the main program."""
-        return len(self._stack) - 1
+        return len(self._all) - 1
 
-    @property
-    def stack(self) -> tuple[Call, ...]:
-        """The calls under way, the outermost first."""
-        return self._calls
+    def text_of(self, program: int) -> ProgramText | None:
+        """Return the text that a sub-program stands in, None if there is none."""
+        try:
+            place = self._find(program)
+        except UsageError:
+            return None
+        return None if place is None else place.text
 
-    def trouble(self, program: int | ProgramText) -> tuple[str, str, str] | None:
-        """Return what is against calling a sub-program, what to do about it and its code; None if nothing is.
+    # ------------------------------------------------------------------ beginning and ending
+
+    def begin(self) -> None:
+        """Begin the present program, or its next round."""
+        self.go_within(())
+        running, language = self.running, self._language
+        begin = running.begin
+        if language is not None:
+            try:
+                running.source = language.source(begin.text, begin.offset, begin.line, running.arguments)
+            except ProgramError as error:
+                self._errors.note(error)
+        if running.source is not None:
+            self._reader.jump(begin, begin.offset)  # no text for now
+        elif self.depth or language is not None:
+            self._reader.jump(begin, len(begin.text))
+
+    def target(self, line: int) -> Place:
+        """Return the place of a line of the main program, to begin there.
 
         Raises:
-            UsageError: its file cannot be read.
+            UsageError: a language is executing the program.
         """
+        if self.running.source is not None:
+            raise UsageError("a block of a program with statements cannot be searched", hint="Start it anew.")
+        text = self.running.begin.text
+        return Place(text, text.line_start(line), line)
+
+    def begin_at(self, place: Place) -> None:
+        """Begin the main program at a line instead of its first.
+
+        Raises:
+            UsageError: a language executes the program, and cannot begin there.
+        """
+        running = self.running
+        running.begun = True
+        if isinstance(self._language, SearchingLanguage):
+            begin = running.begin
+            try:
+                running.source = self._language.source_at(begin.text, begin.offset, begin.line, place.offset)
+            except ProgramError as error:
+                raise UsageError(error.what, hint=error.hint) from error
+            if running.source is not None:
+                self._reader.jump(begin, begin.offset)  # no text for now
+                return
+        self._reader.jump(place, len(place.text))
+
+    def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
+        """Begin a sub-program that `trouble` had nothing against, called on `line`; nothing for no repeats."""
+        begin = self._find(program)
+        assert begin is not None
+        if repeats < 1:
+            return
+        back = Back(self._reader.here, self._reader.end, line, self.within)
+        self._all.append(Running(begin, repeats - 1, back, arguments=arguments))
+        self._note_calls()
+        self.begin()
+
+    def call(self, text: ProgramText, call: CallProgram) -> None:
+        """Begin the sub-program that the source of the present program calls.
+
+        Raises:
+            ProgramError: it cannot be called.
+        """
+        trouble = self.trouble(call.program, text, call.offset)
+        if trouble is not None:
+            what, hint, code = trouble
+            raise ProgramError(what, position=text.position(call.offset), hint=hint, code=code)
+        self.enter(call.program, call.repeats, call.line, call.arguments)
+
+    def leave(self) -> bool:
+        """End the present round of a sub-program and go on after it; False in the main program."""
+        running = self.running
+        if running.back is None:
+            return False
+        _close(running)
+        running.begun = False
+        if running.repeats > 0:
+            running.repeats -= 1
+            running.round += 1
+            self._note_calls()
+            self.begin()
+            return True
+        self._all.pop()
+        self._note_calls()
+        self.go_within(running.back.within)
+        self._reader.jump(running.back.place, running.back.end)
+        return True
+
+    def go_within(self, calls: tuple[Call, ...]) -> None:
+        """Take note of the calls that the source of the present program has made by itself."""
+        self.within = calls
+        self.stack = self._entered + calls
+
+    def failed(self) -> None:
+        """Let the source of the present program take note of an error."""
+        if self.running.source is not None:
+            self.running.source.failed()
+
+    def close(self) -> None:
+        """End all programs."""
+        for running in reversed(self._all):
+            _close(running)
+
+    def _note_calls(self) -> None:
+        self.running = self._all[-1]
+        calls: list[Call] = []
+        for running in self._all[1:]:
+            back = running.back
+            assert back is not None
+            calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
+        self._entered = tuple(calls)
+        self.stack = self._entered + self.within
+
+    # ------------------------------------------------------------------ what is against a call
+
+    def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Trouble | None:
+        """Return what is against a call that stands at byte `offset` of `text`, None if nothing is.
+
+        Where errors are collected, a call that has been refused once is so ever after: a program that calls itself k
+        times would else be gone through k to the power of the depth times.
+        """
+        site = (text.name, offset)
+        trouble = self._refused.get(site) or self._trouble(program)
+        if trouble is not None and self._errors.collects:
+            self._refused[site] = trouble
+        return trouble
+
+    def _trouble(self, program: int | ProgramText) -> Trouble | None:
         deepest = self._dialect.sub_program.depth
         # Calls with arguments have their own limit, which the language watches.
-        if sum(running.arguments is None for running in self._stack) > deepest:
+        if sum(running.arguments is None for running in self._all) > deepest:
             return (
                 f"sub-programs are nested more than {deepest} deep",
                 f"Dialect '{self._dialect.name}' allows {deepest} levels: does a sub-program call itself?",
@@ -121,128 +219,69 @@ class Calls:
         """Return the number that controls with custom macros give an error; others have none here."""
         return code if self._dialect.language == "macro" else ""
 
-    def enter(self, program: int | ProgramText, repeats: int, back: Back, arguments: object = None) -> bool:
-        """Begin a sub-program that `trouble` had nothing against; False for no repeats."""
-        begin = self._find(program)
-        assert begin is not None
-        if repeats < 1:
-            return False
-        self._stack.append(Running(begin, repeats - 1, back, arguments=arguments))
-        self._note_calls()
-        return True
+    def _find(self, program: int | ProgramText) -> Place | None:
+        return self._programs.find(program, self.running.begin.text)
 
-    def leave(self) -> Back | None:
-        """End the present round of the present program.
-
-        Return where the reading goes on, None where the program begins anew (`running.begun` is False then).
-        """
-        running = self.running
-        if running.source is not None:
-            running.source.close()
-            running.source = None
-        running.begun = False
-        if running.repeats > 0:
-            running.repeats -= 1
-            running.round += 1
-            self._note_calls()
-            return None
-        self._stack.pop()
-        self._note_calls()
-        return running.back
-
-    @property
-    def under_way(self) -> tuple[Running, ...]:
-        """The programs under way, the main program first."""
-        return tuple(self._stack)
+    # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> tuple[SavedCall, ...]:
         """Return the programs under way, to go back to."""
         return tuple(
-            SavedCall(each.begin, each.repeats, each.back, each.begun, each.round) for each in self._stack
+            SavedCall(each.begin, each.repeats, each.back, each.begun, each.round) for each in self._all
         )
 
-    def restore(self, stack: tuple[SavedCall, ...], texts: Iterable[ProgramText]) -> None:
-        """Go back to a snapshot; `texts` are those that were read until then.
+    def language_state(self) -> object:
+        """Return what the language says of itself and of the programs under way.
 
-        What a language knows of the programs is put into `under_way` by who knows it.
+        Raises:
+            SnapshotError: it cannot tell where they stand.
         """
-        self._stack = [Running(each.begin, each.repeats, each.back, each.begun, each.round) for each in stack]
-        self._main = stack[0].begin.text
-        self._labels.clear()
-        self._files.clear()
-        self._texts = {text.name: text for text in texts} | {
-            each.begin.text.name: each.begin.text for each in stack
-        }
-        self._note_calls()
-
-    def close(self) -> None:
-        """End all programs."""
-        for running in reversed(self._stack):
-            if running.source is not None:
-                running.source.close()
-                running.source = None
-
-    def _note_calls(self) -> None:
-        calls: list[Call] = []
-        for running in self._stack[1:]:
-            back = running.back
-            assert back is not None
-            calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
-        self._calls = tuple(calls)
-
-    def text_of(self, program: int) -> ProgramText | None:
-        """Return the text that a sub-program stands in, None if there is none."""
-        try:
-            place = self._find(program)
-        except UsageError:
-            return None
-        return None if place is None else place.text
-
-    def _find(self, program: int | ProgramText) -> Place | None:
-        """Return where a sub-program begins: in the present file, the main file, the library or a file of its own."""
-        if isinstance(program, ProgramText):
-            return Place(self._known(program))
-        for text in (self.running.begin.text, self._main):
-            if text.name not in self._labels:
-                self._labels[text.name] = _labels(text)
-            if program in self._labels[text.name]:
-                return self._labels[text.name][program]
-        if self._library is not None:
-            found = self._library(program)
-            if found is not None:
-                return Place(self._known(found))
-        main = Path(self._main.name)
-        if not main.is_file():
-            return None  # a text from elsewhere has no folder
-        key = (main.parent, program)
-        if key not in self._files:
-            self._files[key] = self._own_file(main, program)
-        return self._files[key]
-
-    def _own_file(self, main: Path, program: int) -> Place | None:
-        digits = f"{program:0{_DIGITS}d}"
-        for name in (f"O{digits}", f"O{program}", f"o{digits}", f"o{program}", digits, f"{program}"):
-            for extension in dict.fromkeys((main.suffix, "", *self._dialect.extensions)):
-                path = main.parent / f"{name}{extension}"
-                if path.is_file():
-                    return Place(self._known(ProgramText.from_path(path)))
+        under_way = [(each.arguments, each.source) for each in self._all]
+        if isinstance(self._language, LastingLanguage):
+            return self._language.save(under_way)
+        if any(source is not None for _, source in under_way):
+            raise SnapshotError(
+                "a program with statements is under way, whose language cannot tell where it stands",
+                hint="Take the snapshot before or after it.",
+            )
         return None
 
-    def _known(self, text: ProgramText) -> ProgramText:
-        """Return a text as one object: the one that is known already where it says the same."""
-        known = self._texts.get(text.name)
-        if known is not None and (known is text or known.content == text.content):
-            return known
-        self._texts[text.name] = text
-        return text
+    def attach(self, host: object) -> None:
+        """Let the language work for a channel."""
+        if isinstance(self._language, BoundLanguage):
+            self._language.attach(host)
+
+    def way_back(self, host: object, saved: object) -> Callable[[], None]:
+        """Return what the language does last when its programs go back to a state; nothing changes yet.
+
+        Raises:
+            SnapshotError: a program of it cannot go on from there.
+        """
+        returning: Returning | None = None
+        if isinstance(self._language, LastingLanguage):
+            returning = self._language.way_back(host, saved)
+        elif saved is not None:
+            raise SnapshotError(
+                "the program under way needs its language", hint="Restore it where it was taken."
+            )
+        return lambda: self._take_up(returning)
+
+    def _take_up(self, returning: Returning | None) -> None:
+        if returning is not None:
+            for running, (arguments, source) in zip(self._all, returning(), strict=True):
+                running.arguments, running.source = arguments, source
+
+    def restore(
+        self, saved: tuple[SavedCall, ...], within: tuple[Call, ...], texts: Iterable[ProgramText]
+    ) -> None:
+        """Go back to a snapshot; `texts` are those that were read until then."""
+        self._all = [Running(each.begin, each.repeats, each.back, each.begun, each.round) for each in saved]
+        self._programs.restore(saved[0].begin.text, (*texts, *(each.begin.text for each in saved)))
+        self.within = within
+        self._note_calls()
 
 
-def _labels(text: ProgramText) -> dict[int, Place]:
-    """Return where the programs of a file begin, by number; the first of a number counts."""
-    found: dict[int, Place] = {}
-    for match in _LABEL.finditer(text.content):
-        number = whole(match[1])
-        if number not in found:
-            position = text.position(match.start())
-            found[number] = Place(text, match.start(), position.line)
-    return found
+def _close(running: Running) -> None:
+    if running.source is not None:
+        running.source.close()
+        running.source = None

@@ -20,7 +20,7 @@ from polycnc.nc.blocks._queue import Event, WriterSnapshot
 from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
-from polycnc.nc.channel._calls import Back, SavedCall
+from polycnc.nc.channel._running import Back, SavedCall
 from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement

@@ -1,0 +1,224 @@
+"""The preparation of a program: one block after the other, from its text or its language, until there is no room."""
+
+from __future__ import annotations
+
+from polycnc.errors import ProgramError
+from polycnc.nc.blocks._interpreter import Interpreter
+from polycnc.nc.blocks._outcomes import Control
+from polycnc.nc.channel._calls import Calls
+from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._prepared import Prepared
+from polycnc.nc.channel._reader import Reader
+from polycnc.nc.channel._search import Search
+from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL
+from polycnc.nc.sources._block_source import (
+    CallProgram,
+    Drain,
+    EndSource,
+    Pause,
+    SourceItem,
+    Statement,
+    TextSpan,
+    WordsBlock,
+)
+from polycnc.nc.text._place import Place
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import MESSAGE, PLAIN
+from polycnc.nc.text._scan_plain import Block
+
+_MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
+
+
+class Preparation:
+    """Execute the blocks that `reader` and the languages of `calls` give, and go on where they say.
+
+    `begun` and `ended` tell how far the program is. The compiled kernel takes over after the first `ordinary_blocks`.
+    With `end_returns` the end of a program returns from a sub-program.
+    """
+
+    def __init__(
+        self,
+        reader: Reader,
+        calls: Calls,
+        prepared: Prepared,
+        search: Search,
+        interpreter: Interpreter,
+        errors: Errors,
+        *,
+        ordinary_blocks: float,
+        end_returns: bool,
+    ) -> None:
+        self._reader = reader
+        self._calls = calls
+        self._prepared = prepared
+        self._search = search
+        self._interpreter = interpreter
+        self._errors = errors
+        self._ordinary_blocks = ordinary_blocks
+        self._end_returns = end_returns
+        self.begun = False
+        self.ended = False
+        self.turns = 0  # of a language, since it gave a block
+
+    def fill(self, blocks: int | None, *, compiled: bool) -> None:
+        """Prepare blocks until there is no room, the program has ended or waits; `blocks` more at the most."""
+        reader, prepared = self._reader, self._prepared
+        if not self.begun:
+            self.begun = True
+            self._calls.begin()
+        if not prepared.catch_up():
+            return
+        most = None if blocks is None else reader.blocks + blocks
+        while not self.over and (most is None or reader.blocks < most) and prepared.has_room():
+            if reader.at_end:
+                if not self._next_piece():
+                    return
+                continue
+            reason = NOT_PLAIN
+            if compiled and reader.blocks >= self._ordinary_blocks and prepared.is_plain:
+                reason = reader.take_plain(self._calls.running, self._calls.stack, most, prepared)
+            if reason == QUEUE_FULL:
+                return
+            if reason == NOT_PLAIN:
+                self._ordinary_block()
+
+    def _next_piece(self) -> bool:
+        """Get more blocks, where the text ends from the language; False if there are none for now."""
+        if self._reader.more():
+            return True
+        if self._calls.running.source is not None:
+            return self._from_source()
+        if self._search.in_main_program:
+            return False
+        self._leave()
+        return True
+
+    def _ordinary_block(self) -> None:
+        reader = self._reader
+        try:
+            block = reader.take(self._calls.running)
+            if block is EndSource.RETURN:
+                self._leave()
+            elif isinstance(block, Block):
+                self._execute(reader.text, block)
+        except ProgramError as error:
+            self._note(error)
+            if error.position is not None and error.position.line != reader.line:
+                self._interpreter.leave_compensation()  # the move before is wrong: not every one after it
+
+    def _from_source(self) -> bool:
+        """Do what the source of the present program gives; False if that is nothing for now."""
+        try:
+            item = self._search.next_item()
+            if item is Pause.PAUSE:
+                return False
+            self._source_item(item)
+            self.turns = 0 if isinstance(item, WordsBlock | TextSpan | Drain) else self.turns + 1
+            if self.turns >= _MOST_TURNS:
+                self.turns = 0
+                return False
+        except ProgramError as error:
+            self._note(error)
+        return True
+
+    def _source_item(self, item: SourceItem | None) -> None:
+        text = self._calls.running.begin.text
+        if isinstance(item, WordsBlock | TextSpan | Drain | Statement):
+            text = item.text or text
+            self._calls.go_within(item.calls)
+            self._reader.stand_at(text, item.line)
+        match item:
+            case WordsBlock():
+                self._words_block(text, item)
+            case TextSpan():
+                self._reader.jump(Place(text, item.offset, item.line), item.end)
+            case Drain():
+                self._interpreter.drain(text, item.line)
+            case Statement():
+                self._interpreter.mark(item.line)
+            case CallProgram():
+                self._calls.call(text, item)
+            case EndSource.END:
+                self._end()
+            case _:
+                self._leave()
+
+    def _words_block(self, text: ProgramText, item: WordsBlock) -> None:
+        self._reader.blocks += 1
+        if item.skip_level in self._reader.skip_levels:
+            return
+        flags = MESSAGE if item.message else PLAIN
+        end = text.next_line(item.offset)
+        block = Block(item.words, flags, item.skip_level, item.offset, end, item.line, message=item.message)
+        self._execute(text, block)
+
+    # ------------------------------------------------------------------ where it goes on
+
+    def _execute(self, text: ProgramText, block: Block) -> None:
+        """Execute a block and go on where it says."""
+        outcome = self._interpreter.execute(text, block)
+        match outcome.control:
+            case Control.END:
+                if not self._end_returns or not self._calls.leave():
+                    self._end()
+            case Control.CALL:
+                self._calls.enter(outcome.program, outcome.repeats, block.line)
+            case Control.GO_ON:
+                self._go_behind(outcome.place, block)
+            case Control.RETURN:
+                self._return()
+            case _:
+                pass
+
+    def _go_behind(self, place: Place | None, block: Block) -> None:
+        """Go on behind the contour that a cycle has cut.
+
+        Raises:
+            ProgramError: statements stand before that place.
+        """
+        assert place is not None
+        if place.offset > self._reader.end:
+            raise ProgramError(
+                "a contour that is cut apart by statements is not supported yet",
+                position=place.text.position(block.offset),
+                hint="Write the contour in plain words.",
+            )
+        self._reader.jump(place, self._reader.end)
+
+    def _return(self) -> None:
+        """Return to the block behind the call."""
+        source = self._calls.running.source
+        if source is not None and source.leave():
+            self._reader.stop()
+            return
+        if self._calls.depth == 0:
+            self._interpreter.messages.add("a return from the main program ends it")
+        self._leave()
+
+    def _leave(self) -> None:
+        """End the present program: go back to the one that called it, or end everything."""
+        if not self._calls.leave():
+            self._end()
+
+    def _end(self) -> None:
+        self.close()
+        try:
+            self._interpreter.finish()
+        except ProgramError as error:
+            self._note(error)
+
+    @property
+    def over(self) -> bool:
+        """Whether nothing more is to be prepared."""
+        return self.ended or self._errors.over
+
+    def close(self) -> None:
+        """Give up the program: what a language holds for it ends."""
+        self.ended = True
+        self._search.held = None
+        self._calls.close()
+
+    def _note(self, error: ProgramError) -> None:
+        self._errors.note(error)
+        if not self._errors.collects:
+            self._calls.failed()

@@ -1,0 +1,122 @@
+"""What has been prepared: the queue of one path, the records of its blocks, and what preparation waits for."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+
+from polycnc.kernel import free_slots
+from polycnc.machine import Machine, MachineConfig
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._moves import Feed, Line
+from polycnc.nc.blocks._queue import QueueWriter
+from polycnc.nc.channel._first_state import first_state
+from polycnc.nc.channel._options import ChannelOptions
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.fast._plain_blocks import RESERVE, make_fast_work, marked, run_plain
+from polycnc.nc.modal._modal import ORDINARY
+from polycnc.nc.records._block_records import BlockRecords, Call
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import ScanRules, WordColumns
+
+CHUNK_BLOCKS = 1 << 14  # blocks of a text that are scanned, and prepared by the compiled kernel, together
+
+
+class Prepared:
+    """Keep the queue, the records and the modal state of a path, as far as preparation has come.
+
+    `before` is what has been prepared for the path until now: queue and records go on, and with `keeps_modal` the modal
+    state. `axes` are the names of the machine's axes in programs.
+    """
+
+    def __init__(
+        self,
+        dialect: Dialect,
+        rules: ScanRules,
+        machine: Machine,
+        path: int,
+        *,
+        config: MachineConfig,
+        axes: Sequence[str] | None,
+        options: ChannelOptions,
+        before: Prepared | None,
+        keeps_modal: bool,
+    ) -> None:
+        kernel = machine.state
+        self._kernel = kernel
+        self._path = path
+        self._tables = dialect.tables()
+        if before is None:
+            self.writer = QueueWriter(kernel.seg, kernel.paths, kernel.limits, path)
+            self.records = BlockRecords(dialect, rules, self._tables, CHUNK_BLOCKS)
+        else:
+            self.writer, self.records = before.writer, before.records
+        if before is not None and keeps_modal:
+            self.state: ChannelState = before.state
+        else:
+            self.state = first_state(config, dialect, tuple(axes or config.axis_names))
+        if before is not None:
+            self.state.tool = before.state.tool
+        self._fast_work = make_fast_work(
+            self.state.modal,
+            CHUNK_BLOCKS if options.marks else 0,
+            feed_needs_point=dialect.numbers.feed_least_input > 0.0,
+        )
+        self.writer.stands_at_stops = options.stands_at_stops
+        self.writer.answers = options.answers
+        self.writer.marks = deque() if options.marks else None
+
+    def catch_up(self) -> bool:
+        """Put what waits for room into the queue; return whether nothing waits any more."""
+        return not self.writer.backlog or self.writer.catch_up()
+
+    def has_room(self) -> bool:
+        """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
+        writer = self.writer
+        return not writer.backlog and not writer.stops and free_slots(writer.paths, self._path) > RESERVE
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the modal state is one that the compiled kernel knows."""
+        return not self.state.modal.whole[ORDINARY]
+
+    def take_tolerance(self) -> None:
+        """Let the path have the tolerances that are in force."""
+        self.writer.set_tolerance(self.state.path_tolerance_mm, self.state.merge_mm)
+
+    def plain_blocks(
+        self,
+        words: WordColumns,
+        first: int,
+        after: int,
+        text: ProgramText,
+        calls: tuple[Call, ...],
+    ) -> tuple[int, int]:
+        """Let the compiled kernel prepare blocks `first` up to `after`; return the next one, and why it stopped."""
+        self.state.coordinates.take_changes()
+        begin = int(words.offset[first]), int(words.line[first])
+        base = self.records.run_base(text, calls, self.state.snapshot(), begin)
+        kernel = self._kernel
+        stopped: tuple[int, int] = run_plain(
+            words,
+            first,
+            after,
+            base,
+            self._tables,
+            self.state.modal,
+            kernel.seg,
+            kernel.paths,
+            self._path,
+            kernel.limits,
+            self._fast_work,
+        )
+        if self.writer.marks is not None:
+            self.writer.marks.extend(marked(self._fast_work))
+        return stopped
+
+    def go_straight(self, position: tuple[float, ...], line: int, tag: int) -> None:
+        """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
+        modal = self.state.modal
+        start = tuple(modal.position.tolist())
+        self.writer.put(Line(start, position, Feed(), rapid=True, exact_stop=True, line=line, tag=tag))
+        modal.position[:] = position

@@ -1,0 +1,139 @@
+"""The reading of program texts: blocks of words scanned in pieces, and the one that comes next."""
+
+from __future__ import annotations
+
+from polycnc.nc.channel._prepared import CHUNK_BLOCKS, Prepared
+from polycnc.nc.channel._running import Running
+from polycnc.nc.records._block_records import Call
+from polycnc.nc.sources._block_source import EndSource
+from polycnc.nc.text._place import Place
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import COMMENT, LABEL, PERCENT, ScanRules, WordColumns, scan, word_columns
+from polycnc.nc.text._scan_plain import Block, Word, scan_block
+
+_JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are short, and jumps many
+_WORDS_ONLY = COMMENT | LABEL
+
+
+class Reader:
+    """Read the blocks of a text up to byte `end`, a piece at a time; `place` is behind the piece.
+
+    `at_end` tells whether all blocks of the piece have been taken, `line` is that of the last one. `blocks` counts
+    those that have been taken, whoever gives them; those whose skip mark is in `skip_levels` are left out.
+    """
+
+    def __init__(
+        self, text: ProgramText, text_rules: TextRules, rules: ScanRules, skip_levels: frozenset[int]
+    ) -> None:
+        self.place = Place(text)
+        self.end = len(text)  # what is beyond is not read
+        self.at_end = True
+        self.line = 0
+        self.blocks = 0
+        self.skip_levels = skip_levels
+        self._chunk = word_columns(CHUNK_BLOCKS)
+        self._jump_chunk = word_columns(_JUMP_BLOCKS)
+        self._words = self._chunk
+        self._next = 0
+        self._after = 0  # the last block of the piece
+        self._text_rules = text_rules
+        self._rules = rules
+
+    @property
+    def text(self) -> ProgramText:
+        """The text that is read."""
+        return self.place.text
+
+    @property
+    def here(self) -> Place:
+        """The place of the next block."""
+        if self.at_end:
+            return self.place
+        return Place(self.text, int(self._words.offset[self._next]), int(self._words.line[self._next]))
+
+    def more(self) -> bool:
+        """Scan the next piece; False at the end."""
+        if self.place.offset >= self.end:
+            return False
+        self._scan(self._chunk)
+        return True
+
+    def jump(self, place: Place, end: int) -> None:
+        """Go on at another place, up to byte `end` of its text."""
+        self.place = place
+        self.end = end
+        self._scan(self._jump_chunk)
+
+    def stand_at(self, text: ProgramText, line: int) -> None:
+        """Take note of the line that something else than reading gives blocks from."""
+        self.place = Place(text, self.end, line)
+
+    def stop(self) -> None:
+        """Read no more of the present text."""
+        self.jump(Place(self.text, self.end, self.place.line), self.end)
+
+    def take(self, running: Running) -> Block | EndSource | None:
+        """Take the next block of the piece: None if it is left out, a return where the program that runs ends.
+
+        Raises:
+            ProgramError: it is no block.
+        """
+        words, index = self._words, self._next
+        self._next = index + 1
+        self.at_end = self._next >= self._after
+        self.line = int(words.line[index])
+        if words.flags[index] & PERCENT:
+            # The % behind a program ends it, the one before it does not matter.
+            return EndSource.RETURN if running.begun else None
+        if int(words.skip_level[index]) in self.skip_levels:
+            self.blocks += 1
+            return None
+        block = self._block(index)
+        if block.words:
+            if running.begun and block.words[0].letter == "O":
+                return EndSource.RETURN  # another program begins here
+            running.begun = True
+        self.blocks += 1
+        return block
+
+    def take_plain(
+        self, running: Running, calls: tuple[Call, ...], most: int | None, prepared: Prepared
+    ) -> int:
+        """Let the compiled kernel prepare what it can, up to block number `most`; return why it stopped."""
+        words, first = self._words, self._next
+        after = self._after if most is None else min(self._after, first + most - self.blocks)
+        self._next, reason = prepared.plain_blocks(words, first, after, self.text, calls)
+        self.at_end = self._next >= self._after
+        self.blocks += self._next - first
+        if words.first_word[self._next] > words.first_word[first]:
+            running.begun = True
+        return reason
+
+    def _block(self, index: int) -> Block:
+        """Return a block of the piece; one that is more than words is read again."""
+        columns, text = self._words, self.text
+        offset, line = int(columns.offset[index]), int(columns.line[index])
+        flags = int(columns.flags[index])
+        if flags & ~_WORDS_ONLY:
+            return scan_block(text, offset, line, self._text_rules)
+        span = slice(columns.first_word[index], columns.first_word[index + 1])
+        words = tuple(
+            map(
+                Word,
+                columns.letter[span].tobytes().decode("ascii"),
+                columns.value[span].tolist(),
+                columns.place[span].tolist(),
+                columns.point[span].astype(bool).tolist(),
+            )
+        )
+        return Block(words, flags, int(columns.skip_level[index]), offset, text.next_line(offset), line)
+
+    def _scan(self, columns: WordColumns) -> None:
+        """Scan the blocks that follow the present place; the place moves behind them."""
+        place = self.place
+        self._words = columns
+        data = place.text.data[: self.end]
+        offset = scan(data, place.offset, place.line, self._rules, columns)
+        self.place = Place(place.text, offset, columns.next_line)
+        self._next, self._after = 0, columns.n_blocks
+        self.at_end = self._after == 0
