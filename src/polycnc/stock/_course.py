@@ -49,9 +49,7 @@ class Course:
 
 def joined(pieces: list[Rows]) -> Rows:
     """Return pieces of a record as one."""
-    none = np.zeros(0)
-    empty = Rows(
-        none, none.reshape(0, 3), *(none.astype(each) for each in (np.int64, np.int64, np.bool_, np.bool_))
-    )
+    whole, flags = np.zeros(0, np.int64), np.zeros(0, np.bool_)
+    empty = Rows(np.zeros(0), np.zeros((0, 3)), whole, whole, flags, flags)
     columns: Any = zip(*(each.columns() for each in [empty, *pieces]), strict=True)
     return Rows(*(np.concatenate(column) for column in columns))

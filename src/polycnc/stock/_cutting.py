@@ -47,7 +47,7 @@ class Collision:
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """Hold a piece of a record, one row a cycle; `tip` is the end of the tool (mm), `turns` whether the spindle does."""
+    """Hold a piece of a record, one row a cycle: `tip` is the end of the tool (mm), `turns` that the spindle does."""
 
     t_s: Floats
     tip: Floats  # [rows, 3]

@@ -18,7 +18,7 @@ from polycnc.stock._tool import Tool
 
 MARGIN_MM = 1.0
 """Of an `auto` body around what is cut."""
-CELLS_ACROSS = 600
+CELLS_ACROSS = 1000
 """How many cells there are along the longer side where no resolution is given."""
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 

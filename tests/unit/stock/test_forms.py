@@ -29,7 +29,7 @@ TOOLS = {3: Tool(ToolKind.FLAT, 8.0)}
 
 
 def circle(rows: int = 700, level: float = -2.5) -> Rows:
-    angle = np.linspace(0.0, 5.0, rows)
+    angle = np.linspace(-1.5, 5.0, rows)
     tip = np.column_stack((31.0 + 11.0 * np.cos(angle), 17.0 + 11.0 * np.sin(angle), np.full(rows, level)))
     tip[:40, 2] = np.linspace(6.0, level, 40)
     tip[:40, :2] = tip[40, :2]
@@ -62,14 +62,14 @@ def test_a_course_cuts_what_its_record_cuts() -> None:
         cutting = Cutting(Stock(Box((0.0, 0.0, -10.0), (60.0, 40.0, 0.0)), 0.2), TOOLS)
         cutting.add(rows)
         volumes.append(cutting.removed_mm3)
-    assert volumes[1] == pytest.approx(volumes[0], rel=1e-4)
+    assert volumes[1] == pytest.approx(volumes[0], rel=1e-3)
 
 
 def test_an_auto_body_holds_what_is_cut() -> None:
     stock = Form("auto").body(circle(), TOOLS)
     assert stock.box.low == pytest.approx((31.0 - 11.0 - 5.0, 1.0, -3.5), abs=0.01)
     assert stock.box.high == pytest.approx((31.0 + 11.0 + 5.0, 33.0, 0.0), abs=0.01)
-    assert stock.cell_mm == 0.1
+    assert stock.cell_mm == 0.05
     above = Form("auto", 0.5).body(circle(level=4.0), TOOLS)
     assert above.box.high[2] == 4.0 + 1.0 or above.box.high[2] == 5.0
     assert above.cell_mm == 0.5
