@@ -1,4 +1,4 @@
-"""Write the documentation pages that are generated; run by scripts/reference, compared by a test."""
+"""Write the documentation pages and type stubs that are generated; run by scripts/reference, compared by a test."""
 
 import runpy
 from collections.abc import Callable
@@ -70,6 +70,22 @@ def dialects_page() -> str:
     return page()
 
 
+def stub(module: str) -> str:
+    """Return the type stub of a module that reads structures from a header."""
+    made: Callable[[str], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_stubs.py"))["stub"]
+    return made(module)
+
+
+STUBS = {
+    f"src/{module.replace('.', '/')}.pyi": partial(stub, module)
+    for module in (
+        "polycnc.controllers.apci.board._declared",
+        "polycnc.controllers.fanuc.library._structs",
+        "polycnc.controllers.imc.library._declared",
+    )
+}
+
+
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
     "docs/reference/apci-functions.md": apci_functions_page,
@@ -84,8 +100,9 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),
     "docs/reference/machine-file.md": machine_file_reference,
     "docs/reference/post-events.md": post_events_page,
+    **STUBS,
 }
-"""Every generated page: its path in the repository, and what returns its text."""
+"""Every generated file: its path in the repository, and what returns its text."""
 
 if __name__ == "__main__":
     for path, text in PAGES.items():

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from polycnc.controllers.apci.board._codes import BootCode, InitCode, Status, TransferCode, status_text
+from polycnc.controllers.apci.board._declared import ROSI, TSRP, CppString
 from polycnc.controllers.apci.board._environment import (
     LED_PLACES,
     EnvironmentStrings,
@@ -15,7 +16,7 @@ from polycnc.controllers.apci.board._environment import (
     Leds,
     Messages,
 )
-from polycnc.controllers.apci.board._records import ROSI, TSRP, CppString, tsrp_array
+from polycnc.controllers.apci.board._records import tsrp_array
 from polycnc.controllers.apci.board._system_file import SystemFile, parse_system_file
 from polycnc.controllers.apci.core._registers import Ifs, assigned_inputs, board_name
 from polycnc.controllers.apci.pc._boot import Application

@@ -464,12 +464,12 @@ def test_rdap_reads_all_of_the_record_that_the_table_lists(pc: Pc) -> None:
 @pytest.mark.covers("apci.scp")
 def test_scp_sends_a_field_of_15_by_15(pc: Pc) -> None:
     parameters = pcap.CTRLPARAMS()
-    parameters.parameters[2][14] = 0.5  # type: ignore[index]  # a field of fields
+    parameters.parameters[2][14] = 0.5
     pcap.scp(1, parameters)
     assert pc.board.axes[1].ctrlparams[2, 14] == 0.5
     assert pc.board.axes[1].ctrlparams.sum() == 0.5
     assert pc.board.axes[0].ctrlparams.sum() == 0.0
-    parameters.parameters[0][0] = math.nan  # type: ignore[index]
+    parameters.parameters[0][0] = math.nan
     pcap.scp(0, parameters)
     assert pc.board.axes[0].ctrlparams.sum() == 0.0
 

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from polycnc.controllers.apci.board import _records as records
+from polycnc.controllers.apci.board._declared import HEADER
 from polycnc.controllers.apci.board._records import (
     AS,
     CDBUF,
@@ -74,7 +75,8 @@ def c_struct(name: str) -> type[ctypes.Structure]:
 )
 def test_a_record_has_the_elements_and_the_memory_of_its_table(name: str) -> None:
     size, table = TABLES[name]
-    record, compiled = getattr(records, name), c_struct(name)
+    record: Any = vars(records).get(name, HEADER.classes[name])
+    compiled = c_struct(name)
     stated = layout(record)
     assert records.STRUCTURES[name] == stated
     assert stated.size == size == ctypes.sizeof(compiled) == ctypes.sizeof(record)

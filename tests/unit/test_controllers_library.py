@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import inspect
 import threading
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import pytest
 
@@ -18,31 +18,23 @@ from polycnc.controllers.library import (
     SHORT,
     USHORT,
     Bytes,
-    Chars,
     Code,
     Coded,
     Facade,
     Handles,
+    Header,
     Layout,
     LengthOf,
-    Longs,
     Number,
     Out,
     Pointer,
     Real,
     Refused,
     Session,
-    Shorts,
-    Structure,
     Text,
-    Texts,
-    Times,
-    UChars,
-    Union,
     Whole,
     layout,
     layouts,
-    structure,
     variant,
 )
 from polycnc.errors import UsageError
@@ -55,28 +47,28 @@ class Tape(Code):
     HANDLE = -8, "this is no handle"
 
 
-@structure()
-class Value(Union):
-    byte: Annotated[int, Number("char", ctypes.c_int8)]
-    word: SHORT
-    many: Annotated[Longs, Times(3)]
-
-
-@structure(pack=2)
-class Entry(Structure):
-    place: SHORT
-    value: Value
-    name: Annotated[Chars, Times(5)]
-    note: int
-
-
-@structure(pack=2)
-class Reel(Structure):
-    number: USHORT
-    entry: Annotated[ctypes.Array[Entry], Times(2)]
-    titles: Annotated[Texts, Times(3, 4)]
-    flags: Annotated[UChars, Times(2, 3)]
-    tail: Annotated[Shorts, Times(1)]
+HEADER = Header(
+    """
+    typedef union { char byte; short word; long many[3]; } Value;
+    #pragma pack(2)
+    typedef struct { short place; Value value; text name[5]; } Entry;
+    typedef struct { long note; } Entry_beside;
+    typedef struct {
+        unsigned short number;
+        Entry entry[2];
+        text titles[3][4];
+        unsigned char flags[2][3];
+        short tail[1];
+    } Reel;
+    """,
+    __name__,
+)
+if TYPE_CHECKING:
+    Value: TypeAlias = Any
+    Entry: TypeAlias = Any
+    Reel: TypeAlias = Any
+else:
+    Value, Entry, Reel = (HEADER.classes[name] for name in ("Value", "Entry", "Reel"))
 
 
 class Machine:
@@ -415,7 +407,7 @@ def test_a_variant_has_other_lengths_or_packing_and_the_same_elements() -> None:
     made.tail[5] = -9
     assert made.pack()[-2:] == b"\xf7\xff"
     assert layout(longer).fields[-1].counts == (6,)
-    loose = variant(Entry, pack=4)
+    loose = HEADER.make("Entry", pack=4)
     assert (loose.value.offset, ctypes.sizeof(loose)) == (4, 24)
     assert (Entry.value.offset, loose.__name__, ctypes.sizeof(variant(Entry))) == (2, "Entry", 20)
 

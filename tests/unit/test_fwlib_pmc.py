@@ -11,7 +11,7 @@ from polycnc.cnc import Answer, Function, RunState
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.fwlib import EW
-from polycnc.controllers.fanuc.library._structs_b import iodbpmc
+from polycnc.controllers.fanuc.library._structs import HEADER
 
 LETTERS = dict(enumerate("GFYXARTKCD"))
 G, F, Y, X, A, R, T, K, C, D = range(10)
@@ -25,7 +25,9 @@ def at(control: PowerMate) -> tuple[Any, int]:
 
 
 def write(library: Any, handle: int, kind: int, first: int, *data: int) -> EW:
-    block = iodbpmc(len(data))(type_a=kind, type_d=0, datano_s=first, datano_e=first + len(data) - 1)
+    block = HEADER.make("IODBPMC", PMC_ITEMS=len(data))(
+        type_a=kind, type_d=0, datano_s=first, datano_e=first + len(data) - 1
+    )
     block.u.cdata = [each - 256 if each > 127 else each for each in data]
     return EW(library.pmc_wrpmcrng(handle, 8 + len(data), bytes(block)[: 8 + len(data)]))
 

@@ -8,7 +8,7 @@ import struct
 import pytest
 
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc.library._structs import Operand2
+from polycnc.controllers.imc.library._declared import Operand2
 from polycnc.controllers.library import Structure
 from polycnc.errors import UsageError
 

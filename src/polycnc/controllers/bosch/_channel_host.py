@@ -145,7 +145,16 @@ class ChannelHost:
         return self.dialog.surface
 
     def attach(self, run: ProgramRun) -> None:
-        """Take the run whose channel this control is."""
+        """Take the run whose channel this control is, and what the root keeps.
+
+        Raises:
+            UsageError: Another control runs in the root.
+        """
+        permanence = self.system.permanence
+        if self.has_statements(run.program):
+            permanence.own()
+        else:
+            permanence.look()
         self.system.runs[self.number] = run
         self.system.machine = run.machine
         self.system.links.start_up()
@@ -216,7 +225,10 @@ class ChannelHost:
         self.dialog.finish()
         self.coupling.release()
         self.system.note_errors()
-        self.system.keep()
+        try:
+            self.system.permanence.keep()
+        finally:
+            self.system.permanence.release()
 
     def end_program(self) -> None:
         """Do the same in a device, where a program has ended by itself, by an error or a reset."""
@@ -311,7 +323,9 @@ class _Language(CplLanguage):
         finally:
             for remark in self._host_of.system.links.take_remarks():
                 self._host_of.note(remark)
-        self.used = self.used or source is not None
+        if source is not None and not self.used:
+            self._host_of.system.permanence.own()
+            self.used = True
         return source
 
     def way_back(self, channel: object, saved: object) -> Returning:

@@ -35,6 +35,8 @@ class KeptTables:
         for name, row in store.area(_AREA, dict).items():
             kind, _, table = str(name).partition(":")
             self._put(kind, table, row["value"])
+        self._shifts.revision += 1
+        self._tools.revision += 1
         self._before = self._plain()
 
     def changed(self) -> Plain:

@@ -9,7 +9,6 @@ from polycnc.errors import ProgramError
 from polycnc.machine import Store
 from polycnc.nc.cpl import CharacterField, Field, PermanentMemory
 
-STORE = "cpl.store"
 DECLARATIONS = ("wmhperm.dat", "anwperm.dat")
 FEPROMS = ("usrfep", "fep")
 """Where the control looks for its own files behind its root: the folders of the user FEPROM and of the FEPROM."""
@@ -22,12 +21,18 @@ class KeptVariables:
     `memory` is what programs see, `errors` what is wrong with the declarations.
     """
 
-    def __init__(self, directory: Directory, store: Store | None = None) -> None:
-        self._path = directory.root / STORE
+    def __init__(self, directory: Directory) -> None:
         self.memory = PermanentMemory()
         found = (first_of(directory, name) for name in DECLARATIONS)
         self.errors: list[ProgramError] = self.memory.declare([each for each in found if each is not None])
-        self._kept = self._read(store)
+        self._kept = self.values()
+
+    def take(self, store: Store) -> None:
+        """Take over what a store holds."""
+        for name, kept in store.area(_AREA, dict).items():
+            if name in self.memory:
+                self.memory[str(name)] = _filled(self.memory[str(name)], kept["value"])
+        self._kept = self.values()
 
     def changed(self) -> dict[str, object]:
         """Return what has changed since it was read or kept, as plain values."""
@@ -46,22 +51,6 @@ class KeptVariables:
     def values(self) -> dict[str, object]:
         """Return all variables as plain values: fields as lists, NUL as None."""
         return {name: _plain(value) for name, value in self.memory.items()}
-
-    def _read(self, store: Store | None) -> dict[str, object]:
-        if store is not None:
-            self._take(store)
-        elif self._path.exists():
-            opened = Store(self._path)
-            try:
-                self._take(opened)
-            finally:
-                opened.close()
-        return self.values()
-
-    def _take(self, store: Store) -> None:
-        for name, kept in store.area(_AREA, dict).items():
-            if name in self.memory:
-                self.memory[str(name)] = _filled(self.memory[str(name)], kept["value"])
 
 
 def first_of(directory: Directory, name: str) -> tuple[str, str] | None:

@@ -23,11 +23,11 @@ from polycnc.cnc import (
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_host import ChannelHost
 from polycnc.controllers.bosch._dialogs import AREAS, dialog_for
-from polycnc.controllers.bosch._memory import STORE, first_of
+from polycnc.controllers.bosch._memory import first_of
 from polycnc.controllers.bosch._parameters import DIALOG_CALLS, DIALOG_CHANNEL, DIALOG_PROGRAMS
 from polycnc.controllers.bosch._services import Services
 from polycnc.controllers.bosch._system import BoschSystem
-from polycnc.controllers.bosch.files import SelectedBlock
+from polycnc.controllers.bosch.files import STORE, RootOwner, SelectedBlock
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.controllers.bosch.ncs import NcsServer, find_block
 from polycnc.controllers.bosch.system import Tab
@@ -59,6 +59,9 @@ class Pnc:
     of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
     the control that programs ask by MCODS and MCOPS, like the `ncs` of another one; this one if None. `script` says how
     the PLC answers functions. With `stepping` programs are linked so that a debugger can stop at each of their lines.
+
+    Raises:
+        UsageError: Another control runs in the root.
     """
 
     def __init__(
@@ -75,6 +78,8 @@ class Pnc:
         stepping: bool = False,
     ) -> None:
         machine = load_machine(config)
+        self._owner = RootOwner(Path(root).resolve())
+        self._owner.take()
         shares = [tuple(each) for each in channels] or [machine.axis_names]
         axes = SystemAxes(machine.axis_names, numbers)
         axes.set_channels(shares)
@@ -160,9 +165,12 @@ class Pnc:
 
     def close(self) -> None:
         """Keep what is permanent, and close the memory."""
-        for host in self.hosts:
-            host.finish()
-        self._control.machine.memory.close()
+        try:
+            for host in self.hosts:
+                host.finish()
+        finally:
+            self._control.machine.memory.close()
+            self._owner.release()
 
     # ------------------------------------------------------------------ the operator
 

@@ -15,7 +15,7 @@ from polycnc.controllers.bosch._channel_data import ChannelData
 from polycnc.controllers.bosch._kept_tables import KeptTables
 from polycnc.controllers.bosch._link_files import LinkFiles
 from polycnc.controllers.bosch._live_tables import LiveOffsets, LiveTools, fill_from_machine
-from polycnc.controllers.bosch._memory import STORE, KeptVariables
+from polycnc.controllers.bosch._memory import KeptVariables
 from polycnc.controllers.bosch._parameters import (
     BASIC_SETTING,
     FILE,
@@ -27,6 +27,7 @@ from polycnc.controllers.bosch._parameters import (
     TABLE_UNIT,
     macoda,
 )
+from polycnc.controllers.bosch._permanence import Permanence
 from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch._shown import Shown
 from polycnc.controllers.bosch._table_files import TableFiles
@@ -69,7 +70,7 @@ _DRIVE_LISTS = (17, 187)
 class BoschSystem:
     """The part of a control that is there once, with `axes` of a machine; permanent things lie under `root`.
 
-    `store` is the durable memory if it is open already, else it is opened to read and to write only.
+    `store` is the durable memory of a device; without one, programs own the root one after the other (`permanence`).
     """
 
     def __init__(
@@ -98,8 +99,7 @@ class BoschSystem:
         self.running_files: list[Callable[[], set[Path]]] = []
         """What tells the files of the programs that run, of each channel."""
         self._noted: dict[int, tuple[Channel, int]] = {}
-        self._store = store
-        self.kept = KeptVariables(self.directory, store)
+        self.kept = KeptVariables(self.directory)
         text = self.directory.text(FILE)
         self._macoda = {number: macoda(config, self.axes, number, text) for number in self.axes.channels}
         errors = [*self.kept.errors, *next(iter(self._macoda.values()))[1]]
@@ -119,8 +119,8 @@ class BoschSystem:
         self.shifts = ZeroShifts(1, columns, self._channel_names(), files=files, new_inch=inch)
         self.tools = ToolCompensations(read_file=files.read_tools, write_file=files.write_tools)
         fill_from_machine(self.shifts, self.tools, config)
-        self._tables = KeptTables(self.shifts, self.tools, self.tool_data)
-        self._take_tables()
+        tables = KeptTables(self.shifts, self.tools, self.tool_data)
+        self.permanence = Permanence(self.directory.root, self.kept, tables, store)
         self.offsets = LiveOffsets(self.shifts, at_start="G54" in config.offsets)
         self.live_tools = LiveTools(self.tools)
         self.drives = Drives(self.axes.physical, self._drive, self._write_lines)
@@ -248,37 +248,6 @@ class BoschSystem:
     def _get_errors(self, *arguments: object) -> int:
         self.note_errors()
         return self.errors.read(*arguments)
-
-    def keep(self) -> None:
-        """Write what is permanent and has changed, all of it or nothing.
-
-        Raises:
-            UsageError: The disk refuses it, or another run has it open.
-        """
-        variables, tables = self.kept.changed(), self._tables.changed()
-        if not variables and not tables:
-            return
-        store = self._store or Store(self.directory.root / STORE)
-        try:
-            with store.transaction():
-                self.kept.keep(store, variables)
-                self._tables.keep(store, tables)
-        finally:
-            if self._store is None:
-                store.close()
-        self.kept.kept()
-        self._tables.kept()
-
-    def _take_tables(self) -> None:
-        path = self.directory.root / STORE
-        if self._store is not None:
-            self._tables.take(self._store)
-        elif path.exists():
-            store = Store(path)
-            try:
-                self._tables.take(store)
-            finally:
-                store.close()
 
     # ------------------------------------------------------------------ within
 

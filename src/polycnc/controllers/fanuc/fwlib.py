@@ -33,8 +33,7 @@ from polycnc.controllers.fanuc.library import (
     _parameters,
     _pmc,
     _programs,
-    _structs_a,
-    _structs_b,
+    _structs,
 )
 from polycnc.controllers.fanuc.library._axes import *  # noqa: F403
 from polycnc.controllers.fanuc.library._call import LIBRARY
@@ -52,16 +51,14 @@ from polycnc.controllers.fanuc.library._panel import *  # noqa: F403
 from polycnc.controllers.fanuc.library._parameters import *  # noqa: F403
 from polycnc.controllers.fanuc.library._pmc import *  # noqa: F403
 from polycnc.controllers.fanuc.library._programs import *  # noqa: F403
-from polycnc.controllers.fanuc.library._structs_a import *  # noqa: F403
-from polycnc.controllers.fanuc.library._structs_b import *  # noqa: F403
-from polycnc.controllers.library import layouts
+from polycnc.controllers.fanuc.library._structs import *  # noqa: F403
 
 attach = LIBRARY.default.attach
 detach = LIBRARY.default.detach
 FUNCTIONS = LIBRARY.functions
 """The table of all functions, with the C types and directions of their arguments."""
 
-STRUCTURES = layouts(*_structs_a.STRUCTURES_A, *_structs_b.STRUCTURES_B)
+STRUCTURES = _structs.HEADER.layouts
 """The tables of all structures: `size`, and `fields` with name, type, offset and size."""
 
 __all__ = [
@@ -79,8 +76,7 @@ __all__ = [
     *_parameters.__all__,
     *_pmc.__all__,
     *_programs.__all__,
-    *_structs_a.__all__,
-    *_structs_b.__all__,
+    *_structs.__all__,
     "FUNCTIONS",
     "STRUCTURES",
     "Node",

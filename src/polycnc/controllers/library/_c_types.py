@@ -181,20 +181,17 @@ def whole(value: Any) -> int:
     return value.__index__()  # type: ignore[no-any-return]
 
 
-CHAR: TypeAlias = Annotated[int, Number("char", ctypes.c_int8)]
-UCHAR: TypeAlias = Annotated[int, Number("unsigned char", ctypes.c_uint8)]
 SHORT: TypeAlias = Annotated[int, Number("short", ctypes.c_int16)]
 USHORT: TypeAlias = Annotated[int, Number("unsigned short", ctypes.c_uint16)]
 INT: TypeAlias = Annotated[int, Number("int", ctypes.c_int32)]
 LONG: TypeAlias = Annotated[int, Number("long", ctypes.c_int32)]
-ULONG: TypeAlias = Annotated[int, Number("unsigned long", ctypes.c_uint32)]
 DOUBLE: TypeAlias = Annotated[float, Real()]
 TEXT: TypeAlias = Annotated[str, Text()]
 """`long` has 32 bits."""
 
 # fmt: off
 __all__ = [
-    "CHAR", "DOUBLE", "INT", "LONG", "SHORT", "TEXT", "UCHAR", "ULONG", "USHORT", "Bytes", "CType",
+    "DOUBLE", "INT", "LONG", "SHORT", "TEXT", "USHORT", "Bytes", "CType",
     "Elements", "Number", "Pointer", "Real", "Text", "Whole", "whole",
 ]
 # fmt: on

@@ -1,30 +1,22 @@
-"""Structures of C as annotated classes, the table of what lies where, and views of memory in place.
+"""Structures of C in memory, made by a `Header` from C text: what lies where, and views of memory in place.
 
 A structure is a class of `ctypes`: an instance is its memory, so sizes, gaps, unions, and what becomes of a number
-that is too large are as in C, and what C code fills in place is filled in place. The annotations are the table::
+that is too large are as in C, and what C code fills in place is filled in place.
 
-    @structure(pack=2)
-    class ODBAXIS(Structure):
-        dummy: SHORT
-        type: SHORT
-        data: Annotated[Longs, Times(6)]
-
-An array takes any sequence that is not longer, and is zero behind it, as in C. A text of type `str` is one in Python
-too, in Latin-1. What has no place in the memory (a plain annotation, what a pointer points to) is held beside it and
-begins as its type's zero.
+An array takes any sequence that is not longer, and is zero after it, as in C. A text of type `str` is one in Python
+too, in Latin-1. What has no place in the memory (what a pointer points to, what stands in `NAME_beside`) is held beside
+it and begins as its type's zero.
 """
 
 from __future__ import annotations
 
 import ctypes
-import inspect
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from operator import index
-from typing import Annotated, Any, Self, TypeAlias, TypeVar, get_args, get_origin, get_type_hints
+from typing import Any, ClassVar, Self, TypeVar
 
-from polycnc.controllers.library._c_types import Number, Real
 from polycnc.errors import UsageError
 
 
@@ -32,6 +24,7 @@ class _Memory:
     """What structures and unions have in common."""
 
     __slots__ = ()
+    _table_: ClassVar[Table]
 
     def pack(self) -> bytes:
         """Return the memory."""
@@ -57,7 +50,7 @@ class _Memory:
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
             return NotImplemented
-        beside = _tables[type(self)].held
+        beside = type(self)._table_.held
         return bytes(self) == bytes(other) and all(  # type: ignore[call-overload]
             getattr(self, name) == getattr(other, name) for name in beside
         )
@@ -78,33 +71,16 @@ class Union(_Memory, ctypes.LittleEndianUnion):
     __slots__ = ()
 
 
-class Times:
-    """How often an element is repeated, by dimension: `Times(16, 5)` is `[16][5]`."""
-
-    def __init__(self, *counts: int) -> None:
-        self.counts = counts
-
-
-Shorts: TypeAlias = Annotated[ctypes.Array[ctypes.c_int16], Number("short", ctypes.c_int16)]
-UShorts: TypeAlias = Annotated[ctypes.Array[ctypes.c_uint16], Number("unsigned short", ctypes.c_uint16)]
-Longs: TypeAlias = Annotated[ctypes.Array[ctypes.c_int32], Number("long", ctypes.c_int32)]
-Doubles: TypeAlias = Annotated[ctypes.Array[ctypes.c_double], Real()]
-UChars: TypeAlias = Annotated[ctypes.Array[ctypes.c_uint8], Number("unsigned char", ctypes.c_uint8)]
-Chars: TypeAlias = Annotated[bytes, Number("char", ctypes.c_char)]
-"""A text: bytes up to its first zero; `Latin` is one of characters, `Texts` are arrays of texts."""
-Latin: TypeAlias = Annotated[str, Number("char", ctypes.c_char)]
-Texts: TypeAlias = Annotated[Any, Number("char", ctypes.c_char)]
-
-
 @dataclass(frozen=True, slots=True)
 class Field:
-    """An element of a structure and where it lies; `counts` are its dimensions."""
+    """An element of a structure and where it lies; `counts` are its dimensions, `counted_by` as in `Element`."""
 
     name: str
     c: str
     offset: int
     size: int
     counts: tuple[int, ...] = ()
+    counted_by: str = ""
 
     @property
     def declaration(self) -> str:
@@ -120,14 +96,6 @@ class Layout:
     size: int
     fields: tuple[Field, ...]
     union: bool = False
-
-
-@dataclass(frozen=True, slots=True)
-class Address:
-    """Marks a pointer of 32 bits: what it points to is held in Python, and no address is in the memory."""
-
-    c: str = "void *"
-    ctype: Any = ctypes.c_uint32
 
 
 class _Listed:
@@ -151,12 +119,18 @@ def _array(ctype: Any, count: int) -> Any:
 
 
 @dataclass(frozen=True, slots=True)
-class _Element:
+class Element:
+    """An element of a structure as C declares it; `held` ones are pointers, and what they point to is in Python.
+
+    `counted_by` says in terms of other elements how many of an array count, or how much a pointer points to.
+    """
+
     c: str
     ctype: Any
     python: Any
     counts: tuple[int, ...] = ()
     held: bool = False
+    counted_by: str = ""
 
     @property
     def whole(self) -> Any:
@@ -168,92 +142,56 @@ class _Element:
 
     @property
     def declared(self) -> str:
+        """Return type and dimensions as C has them."""
         return self.c + "".join(f"[{count}]" for count in self.counts)
 
 
 @dataclass(frozen=True, slots=True)
-class _Table:
-    """A structure as its annotations say it; `beside` is what is no part of the memory."""
+class Table:
+    """The elements of a structure by name; `beside` is what is no part of the memory."""
 
-    elements: dict[str, _Element]
-    beside: dict[str, Any]
-    pack: int | None
-    checked: bool
+    elements: Mapping[str, Element]
+    beside: Mapping[str, Any] = field(default_factory=dict)
+    pack: int = 0
+    checked: bool = False
 
     @property
     def held(self) -> dict[str, Any]:
         """Return what is held in Python, with its type."""
-        return self.beside | {name: each.python for name, each in self.elements.items() if each.held}
+        return {**self.beside, **{name: each.python for name, each in self.elements.items() if each.held}}
 
 
 K = TypeVar("K", bound=type)
-_tables: dict[type, _Table] = {}
 
 
-def structure(*, pack: int | None = None, checked: bool = False) -> Callable[[K], K]:
-    """Lay the elements of a class out in memory, as C does, or at most `pack` bytes aligned.
+def lay_out(name: str, union: bool, table: Table, **more: Any) -> Any:
+    """Return the class of a structure or union, its elements laid out as C does, at most `table.pack` bytes aligned.
 
-    A number that is too large is cut as in C; with `checked` it is a UsageError.
+    A number that is too large is cut as in C; in a checked one it is a UsageError. There is no room for attributes that
+    are no elements.
     """
-
-    def lay_out(cls: K) -> K:
-        elements: dict[str, _Element] = {}
-        beside: dict[str, Any] = {}
-        hints = get_type_hints(cls, include_extras=True)
-        for name in inspect.get_annotations(cls):
-            element = _element(hints[name])
-            if element is None:
-                beside[name] = hints[name]
-            else:
-                elements[name] = element
-        return _laid_out(cls, cls.__bases__, _Table(elements, beside, pack, checked))
-
-    return lay_out
-
-
-def _laid_out(cls: K, bases: tuple[type, ...], table: _Table, **more: Any) -> K:
-    """Make the class anew, as dataclasses do, so that there is no room for attributes that are no elements."""
-    slots = tuple(f"_{name}" for name in table.held)
-    left = _NOT_COPIED.union(table.elements, table.beside, slots)
-    own = {name: each for name, each in vars(cls).items() if name not in left}
-    made: Any = type(cls.__name__, bases, {**own, "__slots__": slots, **more})
-    if table.pack is not None:
-        made._pack_, made._layout_ = table.pack, "ms"
-    made._fields_ = [(name, each.whole) for name, each in table.elements.items()]
-    for name, each in table.elements.items():
-        if each.counts:
-            field = vars(made)[
-                name
+    fields = [(each, element.whole) for each, element in table.elements.items()]
+    packed = {"_pack_": table.pack, "_layout_": "ms"} if table.pack else {}
+    slots = tuple(f"_{each}" for each in table.held)
+    space = {"__slots__": slots, **packed, "_fields_": fields, "_table_": table, **more}
+    made: Any = type(name, (Union if union else Structure,), space)
+    for each, element in table.elements.items():
+        if element.counts:
+            place = vars(made)[
+                each
             ]  # getattr would keep it in a cache, from which unions do not take it away
-            setattr(made, name, _Array(field, cls.__name__, name, each, table.checked))
-    for name, python in table.held.items():
-        setattr(made, name, _Held(getattr(made, name, None), f"_{name}", python))
+            setattr(made, each, _Array(place, name, each, element, table.checked))
+    for each, python in table.held.items():
+        setattr(made, each, _Held(vars(made).get(each), f"_{each}", python))
     if table.checked:
         made.__setattr__ = _checked
-    _tables[made] = table
-    return made  # type: ignore[no-any-return]
-
-
-_NOT_COPIED = {"__dict__", "__weakref__", "_fields_", "_pack_", "_layout_", "__setattr__"}
-
-
-def _element(hint: Any) -> _Element | None:
-    told = getattr(hint, "__metadata__", ())
-    python = get_args(hint)[0] if told else hint
-    inner = get_args(python)[0] if get_origin(python) is ctypes.Array else python
-    counts = next((each.counts for each in told if isinstance(each, Times)), ())
-    for each in told:
-        if getattr(each, "ctype", None) is not None:
-            return _Element(each.c, each.ctype, python, counts, isinstance(each, Address))
-    if isinstance(inner, type) and issubclass(inner, (ctypes.Structure, ctypes.Union)):
-        return _Element(inner.__name__, inner, python, counts)
-    return None
+    return made
 
 
 class _Array:
     """An array or text in a structure; the descriptor of ctypes does the work."""
 
-    def __init__(self, field: Any, owner: str, name: str, element: _Element, checked: bool) -> None:
+    def __init__(self, field: Any, owner: str, name: str, element: Element, checked: bool) -> None:
         self._field, self._place = field, f"{owner}.{name}"
         self._element, self._checked = element, checked
 
@@ -314,7 +252,7 @@ class _Held:
 
 
 def _checked(memory: Any, name: str, value: Any) -> None:
-    element = _tables[type(memory)].elements.get(name)
+    element = type(memory)._table_.elements.get(name)
     if element is not None and not element.counts and not element.held:
         try:
             value = index(value) if element.python is int else float(value)
@@ -325,19 +263,22 @@ def _checked(memory: Any, name: str, value: Any) -> None:
     object.__setattr__(memory, name, value)
 
 
-def _unfit(place: str, value: Any, error: Exception, element: _Element) -> UsageError:
+def _unfit(place: str, value: Any, error: Exception, element: Element) -> UsageError:
     return UsageError(f"{place} does not hold {str(value)[:60]!r}: {error}", hint=f"it is {element.declared}")
 
 
 def _shown(memory: Any) -> Iterator[str]:
-    return (f"{name}={getattr(memory, name)!r}" for name in _tables[type(memory)].elements)
+    return (f"{name}={getattr(memory, name)!r}" for name in type(memory)._table_.elements)
 
 
 def layout(cls: type) -> Layout:
     """Return the table of a structure."""
+    table: Table = cls._table_  # type: ignore[attr-defined]
     fields = tuple(
-        Field(name, each.c, getattr(cls, name).offset, ctypes.sizeof(each.whole), each.counts)
-        for name, each in _tables[cls].elements.items()
+        Field(
+            name, each.c, getattr(cls, name).offset, ctypes.sizeof(each.whole), each.counts, each.counted_by
+        )
+        for name, each in table.elements.items()
     )
     return Layout(cls.__name__, ctypes.sizeof(cls), fields, issubclass(cls, ctypes.Union))
 
@@ -348,24 +289,22 @@ def layouts(*classes: type) -> dict[str, Layout]:
 
 
 @lru_cache
-def variant(cls: K, *, pack: int | None = None, **counts: int) -> K:
-    """Return a structure with the same elements, packed otherwise, or with another number in arrays.
+def variant(cls: K, **counts: int) -> K:
+    """Return a structure with the same elements and another number in arrays.
 
     `variant(ODBAXIS, data=2)` has two elements in `data`, for what has no fixed length; it is a kind of `cls`, but a
-    memory of its own. Structures inside stay as they are.
+    memory of its own. What lies inside structures inside, and packing, is varied by `Header.make`.
     """
-    table = _tables[cls]
+    table: Table = cls._table_  # type: ignore[attr-defined]
     elements = dict(table.elements)
     for name, count in counts.items():
         elements[name] = replace(elements[name], counts=(count, *elements[name].counts[1:]))
-    base = Union if issubclass(cls, ctypes.Union) else Structure
-    packed = replace(table, elements=elements, pack=table.pack if pack is None else pack)
-    return _laid_out(cls, (base,), packed, variant_of=cls)
+    varied = replace(table, elements=elements)
+    return lay_out(cls.__name__, issubclass(cls, ctypes.Union), varied, variant_of=cls)  # type: ignore[no-any-return]
 
 
 # fmt: off
 __all__ = [
-    "Address", "Chars", "Doubles", "Field", "Latin", "Layout", "Longs", "Shorts", "Structure", "Texts",
-    "Times", "UChars", "UShorts", "Union", "layout", "layouts", "structure", "variant",
+    "Element", "Field", "Layout", "Structure", "Table", "Union", "lay_out", "layout", "layouts", "variant",
 ]
 # fmt: on

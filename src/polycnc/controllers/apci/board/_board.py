@@ -16,8 +16,9 @@ import numpy as np
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import reset_system
 from polycnc.controllers.apci.board._board_snapshot import put_back, take_snapshot
-from polycnc.controllers.apci.board._board_variables import COMMON_VARIABLES, Tasks, Variables
+from polycnc.controllers.apci.board._board_variables import Tasks, Variables
 from polycnc.controllers.apci.board._command import Command
+from polycnc.controllers.apci.board._declared import COMMON_VARIABLES
 from polycnc.controllers.apci.board._path_units import PathUnits
 from polycnc.controllers.apci.board._setup import load_parameters, set_up_plant
 from polycnc.controllers.apci.board._status import BoardStatus, board_status

@@ -9,7 +9,6 @@ from typing import Any, Protocol
 from polycnc.controllers.apci.board._environment import InterfaceStatus
 from polycnc.controllers.apci.core._state import Whole
 
-COMMON_VARIABLES = 1000
 COMMON_BUFFER_BYTES = 1000
 CNC_TASKS = 4
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from polycnc.controllers.apci.board._codes import boot_text, init_text, transfer_text
-from polycnc.controllers.apci.board._records import ENVIRONMENT_STRING_BYTES
+from polycnc.controllers.apci.board._declared import ENVIRONMENT_STRING_BYTES
 from polycnc.controllers.apci.core._registers import BoardType, Ifs
 from polycnc.errors import UsageError
 

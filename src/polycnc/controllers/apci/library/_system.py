@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from polycnc.controllers.apci.board._records import CppString
+from polycnc.controllers.apci.board._declared import CppString
 from polycnc.controllers.apci.library._call import (
     CODE,
     INT,

@@ -14,17 +14,11 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._board_variables import CNC_TASKS, COMMON_BUFFER_BYTES
 from polycnc.controllers.apci.board._codes import BufferError
+from polycnc.controllers.apci.board._declared import CBCNCT, CDBUF, CIBUF, COMMON_VARIABLES
 from polycnc.controllers.apci.board._numbers import is_number
-from polycnc.controllers.apci.board._records import (
-    CBCNCT,
-    CDBUF,
-    CIBUF,
-    CNC_TASKS,
-    COMMON_BUFFER_BYTES,
-    COMMON_VARIABLES,
-    TASK_STRING_BYTES,
-)
+from polycnc.controllers.apci.board._records import TASK_STRING_BYTES
 from polycnc.controllers.apci.library._call import (
     CODE,
     INT,

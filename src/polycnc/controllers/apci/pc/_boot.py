@@ -17,7 +17,7 @@ from polycnc.controllers.apci.board._codes import (
     Status,
     TransferCode,
 )
-from polycnc.controllers.apci.board._records import MAXAXIS, ROSI, TSRP, CppString
+from polycnc.controllers.apci.board._declared import MAXAXIS, ROSI, TSRP, CppString
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.core._registers import BoardType
 from polycnc.controllers.apci.pc._slots import (

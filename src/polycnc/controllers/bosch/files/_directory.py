@@ -11,8 +11,9 @@ from polycnc.nc.cpl import Fault
 
 LONGEST_NAME = 30
 _NAME = re.compile(r"[A-Za-z0-9_.$ -]+")
-RESERVED = "cpl.store"
-"""The file in which permanent variables are kept; programs do not see it."""
+STORE = "cpl.store"
+"""The file in which a control keeps what is permanent. No program gets at it, nor at what stands beside it while it is
+open, in this root or in one that lies within it."""
 
 
 class Directory:
@@ -41,12 +42,16 @@ class Directory:
                 )
         if len(parts[-1]) > LONGEST_NAME:
             raise Fault("INVALID FILE NAME", f"a name has at most {LONGEST_NAME} characters")
-        path = self.root.joinpath(*parts)
-        if parts == [RESERVED]:
-            raise Fault("INVALID FILE NAME", f"{RESERVED} is the control's own file")
-        resolved = path.resolve()
+        try:
+            resolved = self.root.joinpath(*parts).resolve()
+            own = self._is_own(resolved)
+        except (OSError, RuntimeError) as error:  # RuntimeError: a link to itself
+            why = error.strerror if isinstance(error, OSError) else "it is a link to itself"
+            raise Fault("INVALID FILE NAME", f"there cannot be a file '{name}': {why}") from None
         if not resolved.is_relative_to(self.root):
             raise Fault("INVALID FILE NAME", f"'{name}' is a link that leads out of the control's directory")
+        if own:
+            raise Fault("INVALID FILE NAME", f"'{name}' is a file of the control's own memory")
         return resolved
 
     def text(self, name: str) -> str | None:
@@ -77,6 +82,23 @@ class Directory:
         allowed = path.stat().st_mode
         bits = sum(bit for right, bit in rights if os.access(path, right) and allowed & right * 0o111)
         return bits + (8 if path.is_dir() else 0)
+
+    def _is_own(self, path: Path) -> bool:
+        """Tell whether a path is the store, or what SQLite or an owner has beside it; case and links do not matter."""
+        if is_own_name(path.name):
+            return True
+        found = path.stat() if path.exists() else None
+        if found is None or found.st_nlink < 2 or not stat.S_ISREG(found.st_mode):
+            return False
+        return any(
+            os.path.samestat(found, own.stat()) for own in self.root.iterdir() if is_own_name(own.name)
+        )
+
+
+def is_own_name(name: str) -> bool:
+    """Tell whether a file of this name belongs to a store on some system: not all mind case, or a point at the end."""
+    name = name.rstrip(". ").casefold()
+    return name == STORE or name.startswith(f"{STORE}-")
 
 
 def is_file(path: Path) -> bool:

@@ -9,7 +9,7 @@ from polycnc.controllers.fanuc.device._positions import AxisPositions
 from polycnc.controllers.fanuc.library._call import call, check_axis, check_length
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_a import IDBWRR, ODBACT, ODBAXIS, ODBDY, ODBDY_D
+from polycnc.controllers.fanuc.library._structs import IDBWRR, ODBACT, ODBAXIS, ODBDY, ODBDY_D
 from polycnc.controllers.library import IN, SHORT, LengthOf, Out, Refused
 
 MOST_POSITION = 99_999_999

@@ -87,12 +87,6 @@ EW_DTSRVR = EW.EW_DTSRVR
 ALL_AXES = -1
 """All axes, where an axis number is asked for."""
 
-MAX_AXIS = 6
-"""Axes that structures have room for: those of a Power Mate-H; a Power Mate-D has 2."""
-
-MAX_RBUF = 256
-MAX_PBUF = 256
-
 __all__ = [
     "ALL_AXES",
     "EW",
@@ -131,7 +125,4 @@ __all__ = [
     "EW_TYPE",
     "EW_UNEXP",
     "EW_VERSION",
-    "MAX_AXIS",
-    "MAX_PBUF",
-    "MAX_RBUF",
 ]

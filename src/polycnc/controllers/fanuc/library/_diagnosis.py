@@ -9,7 +9,7 @@ from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.library._call import call, check_length
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_b import ODBDGN
+from polycnc.controllers.fanuc.library._structs import ODBDGN
 from polycnc.controllers.library import INOUT, SHORT, Bytes, LengthOf, Out, Refused
 
 _HEADER = 4

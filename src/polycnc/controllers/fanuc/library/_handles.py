@@ -7,7 +7,7 @@ from typing import Annotated
 from polycnc.controllers.fanuc.library._call import session_call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import NODES, Session
-from polycnc.controllers.fanuc.library._structs_a import ODBNODE
+from polycnc.controllers.fanuc.library._structs import ODBNODE
 from polycnc.controllers.library import LONG, TEXT, USHORT, Out, Refused
 
 

@@ -15,7 +15,7 @@ from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.library._call import call, check_length
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_a import IODBMR, ODBM, ODBMVINF
+from polycnc.controllers.fanuc.library._structs import IODBMR, ODBM, ODBMVINF
 from polycnc.controllers.library import IN, LONG, SHORT, LengthOf, Out, Refused, variant
 from polycnc.nc.macro import LOCALS
 

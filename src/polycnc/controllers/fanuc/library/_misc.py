@@ -22,15 +22,15 @@ from polycnc.controllers.fanuc.device._state import read_state
 from polycnc.controllers.fanuc.library._call import call, check_length
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_b import (
+from polycnc.controllers.fanuc.library._structs import (
     ALMINFO,
+    HEADER,
     MSG_SIZE,
     ODBALM,
     ODBST,
     ODBSYS,
     ODBSYSC,
     OPMSG,
-    alminfo,
 )
 from polycnc.controllers.library import INOUT, LONG, SHORT, LengthOf, Out, Refused
 
@@ -132,7 +132,7 @@ def cnc_rdalminfo(
         raise Refused(EW.EW_ATTRIB)
     device = link.read("cnc_rdalminfo", type, alm_type)
     room = (length - 2) // size
-    made = alminfo(room, ALMINFO)()
+    made = HEADER.make("ALMINFO", ALARMS=room)()
     part = made.u.alm2 if type else made.u.alm1
     part.data_end = _END
     wanted = [each for each in shown(device.control.alarms.active) if int(bit_of(each.number)) & alm_type]

@@ -9,7 +9,7 @@ from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_b import MODAL_AUX, ODBMDL
+from polycnc.controllers.fanuc.library._structs import MODAL_AUX, ODBMDL
 from polycnc.controllers.library import SHORT, Out, Refused
 
 _ALL_AXES, _ALL_ADDRESSES, _ALL_GROUPS = -3, -2, -1

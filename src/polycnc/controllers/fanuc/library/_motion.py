@@ -13,7 +13,7 @@ from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_b import ODBEXEC, ODBFIN, ODBOPDI, ODBPOS
+from polycnc.controllers.fanuc.library._structs import ODBEXEC, ODBFIN, ODBOPDI, ODBPOS
 from polycnc.controllers.library import IN, LONG, SHORT, Bytes, Out, Refused
 
 _POSITION = 6

@@ -8,7 +8,7 @@ from polycnc.controllers.fanuc.data._tool_offsets import MEMORY_TYPE
 from polycnc.controllers.fanuc.library._call import call, check_length
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_a import IODBTO, ODBTLINF, ODBTOFS
+from polycnc.controllers.fanuc.library._structs import IODBTO, ODBTLINF, ODBTOFS
 from polycnc.controllers.library import IN, LONG, SHORT, LengthOf, Out, Refused
 
 ALL_TYPES = ALL_AXES

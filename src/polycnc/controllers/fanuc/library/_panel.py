@@ -8,7 +8,7 @@ from polycnc.controllers.fanuc.device._panel import GENERAL, MEMBERS, NAME_LENGT
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_b import IODBGNRL, IODBRDNA, IODBSGNL
+from polycnc.controllers.fanuc.library._structs import IODBGNRL, IODBRDNA, IODBSGNL
 from polycnc.controllers.library import IN, SHORT, Out, Refused
 
 _SELECTION = sum(1 << bit for bit in MEMBERS)

@@ -12,7 +12,7 @@ from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.library._call import call, check_length
 from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_a import IODBPSD, ODBPARAIF
+from polycnc.controllers.fanuc.library._structs import IODBPSD, ODBPARAIF
 from polycnc.controllers.library import (
     IN,
     INOUT,

@@ -8,7 +8,7 @@ from polycnc.controllers.fanuc.device._pmc_memory import LETTERS, PARTS, exists,
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_b import IODBPMC, ODBPMCINF, iodbpmc
+from polycnc.controllers.fanuc.library._structs import HEADER, IODBPMC, ODBPMCINF
 from polycnc.controllers.library import SHORT, Bytes, LengthOf, Out, Refused
 
 _HEADER = 8
@@ -45,7 +45,7 @@ def pmc_rdpmcrng(
     """Read PMC addresses, in bytes, as bytes, words or longs (Manual 000, pmc_rdpmcrng)."""
     letter = _letter(link, adr_type, data_type, s_number, e_number, length)
     data = link.read("pmc_rdpmcrng", letter, s_number, e_number).pmc.read(letter, s_number, e_number)
-    made = iodbpmc(len(data) // _SIZES[data_type], IODBPMC)(
+    made = HEADER.make("IODBPMC", PMC_ITEMS=len(data) // _SIZES[data_type])(
         type_a=adr_type, type_d=data_type, datano_s=s_number, datano_e=e_number
     )
     part = (made.u.cdata, made.u.idata, made.u.ldata)[data_type]

@@ -12,7 +12,7 @@ from polycnc.controllers.fanuc.device._transfer import Fault, Transfer, Transfer
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
-from polycnc.controllers.fanuc.library._structs_a import ODBMDIP, ODBNC, ODBPRO, ODBSEQ, ODBUP, PRGDIR
+from polycnc.controllers.fanuc.library._structs import ODBMDIP, ODBNC, ODBPRO, ODBSEQ, ODBUP, PRGDIR
 from polycnc.controllers.library import (
     INOUT,
     LONG,

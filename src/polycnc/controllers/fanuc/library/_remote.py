@@ -18,19 +18,24 @@ from polycnc.controllers.fanuc.data._macro_variables import (
     from_binary,
     from_decimal,
 )
-from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW, MAX_AXIS
-from polycnc.controllers.fanuc.library._structs_a import (
+from polycnc.controllers.fanuc.library._codes import ALL_AXES, EW
+from polycnc.controllers.fanuc.library._structs import (
+    HEADER,
     IODBMR,
+    IODBPMC,
     IODBPSD,
+    MAX_AXIS,
     ODBACT,
+    ODBALM,
     ODBAXIS,
     ODBDY,
     ODBM,
     ODBPRO,
     ODBSEQ,
+    ODBST,
+    ODBSYS,
     ODBUP,
 )
-from polycnc.controllers.fanuc.library._structs_b import IODBPMC, ODBALM, ODBST, ODBSYS, iodbpmc
 from polycnc.controllers.fanuc.wire import (
     PMC,
     VALUE8_SIZE,
@@ -331,7 +336,7 @@ def pmc_rdpmcrng(
     _check(count % size == 0 and length == _PMC_HEADER + count, EW.EW_LENGTH)
     (data,) = link.ask(Request(0x8001, (s_number, e_number, adr_type, data_type), target=PMC))
     _check(len(data) == count, EW.EW_PROTOCOL)
-    made = iodbpmc(count // size, IODBPMC)(
+    made = HEADER.make("IODBPMC", PMC_ITEMS=count // size)(
         type_a=adr_type, type_d=data_type, datano_s=s_number, datano_e=e_number
     )
     part = (made.u.cdata, made.u.idata, made.u.ldata)[data_type]

@@ -22,7 +22,7 @@ from polycnc.controllers.imc.library._codes import (
     IMC_TIME_OUT,
     IMC_VERSION_ERROR,
 )
-from polycnc.controllers.imc.library._structs import ADAPTERS_MOST, DESCRIPTION_SIZE
+from polycnc.controllers.imc.library._declared import ADAPTERS_MOST, DESCRIPTION_SIZE
 from polycnc.controllers.library import Refused
 from polycnc.controllers.library import Session as AnySession
 from polycnc.errors import UsageError

@@ -19,9 +19,10 @@ from polycnc.controllers.imc.library._codes import (
     SEL_PFIFO1,
     SEL_PFIFO2,
 )
+from polycnc.controllers.imc.library._declared import SEGMENT_AXES_MOST, PFIFOSegData
 from polycnc.controllers.imc.library._memory import signed_32
 from polycnc.controllers.imc.library._network import IMC_HANDLE
-from polycnc.controllers.imc.library._structs import SEGMENT_AXES_MOST, EventInfo, PFIFOSegData
+from polycnc.controllers.imc.library._structs import EventInfo
 from polycnc.controllers.imc.library._types import (
     IMC32,
     AnyQueue,

@@ -7,30 +7,20 @@ Sizes, gaps, unions and what becomes of a number that is too large are as in C.
 
 from __future__ import annotations
 
-import ctypes
-from typing import Annotated, Self, TypeAlias
+from typing import Self
 
 from polycnc.controllers.imc.core._event_codes import EventCommand, constant_words
 from polycnc.controllers.imc.core._event_codes import EventType as Trigger
-from polycnc.controllers.library import Number, Structure, Texts, Times, Union, layouts, structure
-
-ADAPTERS_MOST = 16
-DESCRIPTION_SIZE = 256
-SEGMENT_AXES_MOST = 16
-
-WORD: TypeAlias = Annotated[int, Number("WORD", ctypes.c_uint16)]
-IMC16: TypeAlias = Annotated[int, Number("IMC16", ctypes.c_int16)]
-IMC32: TypeAlias = Annotated[int, Number("IMC32", ctypes.c_int32)]
-INT64: TypeAlias = Annotated[int, Number("__int64", ctypes.c_int64)]
-Words: TypeAlias = Annotated[ctypes.Array[ctypes.c_uint16], Number("WORD", ctypes.c_uint16)]
-Numbers32: TypeAlias = Annotated[ctypes.Array[ctypes.c_int32], Number("IMC32", ctypes.c_int32)]
+from polycnc.controllers.imc.library import _declared
+from polycnc.controllers.imc.library._declared import (
+    HEADER,
+)
 
 
-@structure()
-class NIC_INFO(Structure):
+class NIC_INFO(_declared.NIC_INFO):
     """The network adapters of the PC: up to 16 descriptions; the index of one is the `netcardsel` of a call."""
 
-    description: Annotated[Texts, Times(ADAPTERS_MOST, DESCRIPTION_SIZE)]
+    __slots__ = ()
 
     def descriptions(self) -> list[str]:
         """Return the descriptions that are not empty."""
@@ -38,14 +28,10 @@ class NIC_INFO(Structure):
         return [text for text in texts if text]
 
 
-@structure()
-class WR_MUL_DES(Structure):
+class WR_MUL_DES(_declared.WR_MUL_DES):
     """One parameter of several that are read or written together: `len` words, the low one first."""
 
-    addr: WORD
-    axis: WORD
-    len: WORD
-    data: Annotated[Words, Times(4)]
+    __slots__ = ()
 
     @classmethod
     def of(cls, addr: int, axis: int = 0, length: int = 1, value: int = 0) -> Self:
@@ -62,54 +48,10 @@ class WR_MUL_DES(Structure):
         return int.from_bytes(b"".join(word.to_bytes(2, "little") for word in words), "little", signed=True)
 
 
-@structure()
-class Src2Param(Structure):
-    """Second operand of an event: a parameter."""
-
-    Src2_loc: IMC16
-    Src2_axis: IMC16
-    reserve: IMC32
-
-
-@structure()
-class Src2Data16(Structure):
-    """Second operand of an event: a constant of 16 bits."""
-
-    data: IMC16
-    reserve1: IMC16
-    reserve2: IMC32
-
-
-@structure()
-class Src2Data32(Structure):
-    """Second operand of an event: a constant of 32 bits."""
-
-    data: IMC32
-    reserve: IMC32
-
-
-@structure()
-class Operand2(Union):
-    """Second operand of an event; the command says which member counts."""
-
-    param: Src2Param
-    data16: Src2Data16
-    data32: Src2Data32
-    data48: INT64
-
-
-@structure()
-class EventInfo(Structure):
+class EventInfo(_declared.EventInfo):
     """One event: a command, when it acts, two operands, and where the result goes (0: nowhere)."""
 
-    EventCMD: IMC16
-    EventType: IMC16
-    Src1_loc: IMC16
-    Src1_axis: IMC16
-    Src2: Operand2
-    dest_loc: IMC16
-    dest_axis: IMC16
-    reserve: IMC32
+    __slots__ = ()
 
     @classmethod
     def of(
@@ -136,15 +78,10 @@ class EventInfo(Structure):
         return made
 
 
-@structure()
-class PFIFOSegData(Structure):
+class PFIFOSegData(_declared.PFIFOSegData):
     """A segment: where the axes end, and for an arc its centre and direction (0 clockwise, -1 counter-clockwise)."""
 
-    datanum: IMC32
-    SegEndData: Annotated[Numbers32, Times(SEGMENT_AXES_MOST)]
-    CenterX: IMC32
-    CenterY: IMC32
-    dir: IMC32
+    __slots__ = ()
 
     @classmethod
     def of(cls, *ends: int, center: tuple[int, int] = (0, 0), direction: int = 0) -> Self:
@@ -155,13 +92,10 @@ class PFIFOSegData(Structure):
         return made
 
 
-@structure()
-class PFIFOSegInfo(Structure):
+class PFIFOSegInfo(_declared.PFIFOSegInfo):
     """A segment with its speed and the speed at its end."""
 
-    SegTgVel: IMC32
-    SegEndVel: IMC32
-    data: PFIFOSegData
+    __slots__ = ()
 
     @classmethod
     def of(cls, speed: int, end_speed: int, data: PFIFOSegData) -> Self:
@@ -169,7 +103,7 @@ class PFIFOSegInfo(Structure):
         return cls(speed, end_speed, data)
 
 
-STRUCTURES = layouts(NIC_INFO, WR_MUL_DES, EventInfo, PFIFOSegData, PFIFOSegInfo)
+STRUCTURES = HEADER.layouts
 """What lies where, by the structure's name."""
 
 # fmt: off
