@@ -62,6 +62,9 @@ def prepare(
     channel = Channel(text, load_dialect(dialect), machine, options=options, **arguments)
     give_to_path(machine.state, channel.path)
     channel.fill()
+    while channel.paused:
+        machine.clock.tick(1)  # more is prepared with the next cycle
+        channel.fill()
     assert channel.done, "the program does not fit into the queue"
     return channel
 

@@ -374,7 +374,7 @@ def test_calls_without_a_block_leave_the_control_its_turn() -> None:
     assert control.advance(2) == 2
     counted = control.macros.get(500)
     assert counted is not None
-    assert 1000 < counted < 200_000
+    assert 60 < counted < 500  # 125 calls or blocks without motion in a cycle
     control.reset()
     control.advance(2)
     assert control.macros.get(500) == counted

@@ -15,7 +15,6 @@ from polycnc.kernel import FEED_S
 from polycnc.machine import Reason
 
 Condition: TypeAlias = Callable[[], bool]
-_MOST_STANDSTILLS = 10_000
 
 
 class ControlEvent(IntFlag):
@@ -56,16 +55,12 @@ class ControlTime:
         condition = until if callable(until) else None
         events = 0 if until is None or callable(until) else int(until)
         done = 0
-        standstills = 0
         while done < cycles:
             self.raised = ControlEvent.NONE
             passed = self._stretch(1 if condition is not None else cycles - done)
             done += passed
-            standstills = 0 if passed else standstills + 1
             if self.raised & events or (condition is not None and condition()):
                 break
-            if standstills > _MOST_STANDSTILLS:
-                break  # a program that loops without motion, as fast as time can pass
         return done
 
     def _stretch(self, cycles: int) -> int:
@@ -78,6 +73,8 @@ class ControlTime:
             self._take_answers(channel)  # somebody may have answered since
             if channel.run is not None and not channel.returning:
                 cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
+        if [channel.run_state for channel in self._of.channels] != states:
+            cycles = min(cycles, 1)  # a program has ended, or failed, while it was prepared
         due = self._of.plc.due_cycle()
         if due is not None:
             cycles = min(cycles, max(1, due - self._of.clock.cycles))
@@ -85,16 +82,16 @@ class ControlTime:
         watch = self.watch
         if watch is not None and watch.is_awake:
             cycles = min(cycles, 1)
-        cutting_s = self._cutting_s()
         reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
         passed = self._of.machine.advance(cycles, until=int(row["mask"]) | reasons)
         self._of.timers.count(
             passed,
             operating=RunState.ACTIVE in states,
-            cutting_s=self._cutting_s() - cutting_s,
+            cut_s=self._cut_s(),
             tool=self._tool(),
         )
         self._look(passed, states)
+        self._of.clock.changes += 1  # where no cycle has passed as well
         if watch is not None and watch.is_awake:
             watch.look()
         if [channel.run_state for channel in self._of.channels] != states:
@@ -143,7 +140,7 @@ class ControlTime:
         if self._of.functions.take_answers(channel):
             self.raised |= ControlEvent.FUNCTION
 
-    def _cutting_s(self) -> float:
+    def _cut_s(self) -> float:
         return float(self._of.machine.state.paths.totals[:, FEED_S].sum())
 
     def _tool(self) -> int:

@@ -483,13 +483,14 @@ class ProgramRun:
 
     # ------------------------------------------------------------------ time
 
-    def advance(self, cycles: int, *, until: Until | None = None) -> int:
+    def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
         It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
-        `until` when one of those reasons was met or the condition holds after a cycle.
+        `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
+        is not asked meanwhile, since nothing can have come.
         """
-        return self._conduct.advance(cycles, until=until)
+        return self._conduct.advance(cycles, until=until, asleep=asleep)
 
     def skip(self) -> int:
         """Go along what is planned in closed form, to the next thing to be done; return the cycles.

@@ -48,7 +48,8 @@ from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
 from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
 from polycnc.runner._program_control import Surroundings, control_for
 from polycnc.runner._result import RunResult
-from polycnc.runner._run import run
+from polycnc.runner._run import run_program
+from polycnc.runner._settings import RunSettings
 
 DEFAULT_TOLERANCE_MM = 1e-3
 TOOL_AXIS_TOLERANCE_DEG = 0.01
@@ -172,7 +173,7 @@ def verify_post(
     )
     path_feed_mm, path_rapid_mm = moves.length_mm()
     with tempfile.TemporaryDirectory(prefix="polycnc-") as root:  # nothing is left beside the program
-        result = run(program, config, read, check=False, root=root)
+        result = run_program(program, RunSettings(config, read, root=root), check=False)
         if len(block_map.line) > _MANY_BLOCKS:
             gc.collect()  # the machine of that run, before there is another one
         comparison = _Comparison(moves, block_map, carried, config, read, frame)

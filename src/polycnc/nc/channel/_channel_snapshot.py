@@ -21,6 +21,7 @@ from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.channel._running import Back, SavedCall
+from polycnc.nc.channel._turns import SavedTurns
 from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement
@@ -43,7 +44,7 @@ class ChannelSnapshot(NamedTuple):
     errors: tuple[ProgramError, ...]
     messages: tuple[dict[str, Message], str]
     flags: tuple[bool, bool]
-    turns: int
+    turns: SavedTurns
     suppressed: Suppressed
     writer: WriterSnapshot
     records: SavedRecords
@@ -54,7 +55,7 @@ class ChannelSnapshot(NamedTuple):
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Corner, Cycle, CycleWords, Event, Feed, Frame, Leg, Line, Message, ModalSnapshot,
     Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation, SavedRecords, SavedState,
-    SavedTables, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
+    SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
 

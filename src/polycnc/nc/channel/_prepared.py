@@ -76,6 +76,11 @@ class Prepared:
         return not writer.backlog and not writer.stops and free_slots(writer.paths, self._path) > RESERVE
 
     @property
+    def tail(self) -> int:
+        """How many segments have been put into the queue so far."""
+        return int(self._kernel.paths.row[self._path]["tail"])
+
+    @property
     def is_plain(self) -> bool:
         """Whether the modal state is one that the compiled kernel knows."""
         return not self.state.modal.whole[ORDINARY]

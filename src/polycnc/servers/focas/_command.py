@@ -44,7 +44,7 @@ class View:
     @cached_property
     def positions(self) -> tuple[AxisPositions, ...]:
         """Where its axes are, in increments."""
-        return self.control.positions.read(self.status)
+        return self.control.positions.read()
 
     def forget(self) -> None:
         """Read anew: something has been changed."""

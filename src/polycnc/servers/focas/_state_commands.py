@@ -165,7 +165,7 @@ def positions(view: View, request: Request) -> bytes:
 
 def feed(view: View, request: Request) -> bytes:
     """Return the actual feed: mm/min, with inch input 0.01 inch/min."""
-    return bytes(Value8(view.control.positions.feed(view.status), 2 if view.control.inch_input else 0))
+    return bytes(Value8(view.control.positions.feed(), 2 if view.control.inch_input else 0))
 
 
 def spindle_speed(view: View, request: Request) -> bytes:

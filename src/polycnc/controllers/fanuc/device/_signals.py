@@ -396,7 +396,7 @@ class Signals:
             case 54 | 55:
                 return power_mate.custom_macros.user_outputs >> 8 * (address - 54) & 0xFF
             case 94:
-                at = [power_mate.positions.read(status)[k].machine == 0 for k in range(power_mate.axes)]
+                at = [power_mate.positions.read()[k].machine == 0 for k in range(power_mate.axes)]
                 return _bits(dict(enumerate(at)))
             case 102:
                 return _bits({k: axis.velocity != 0.0 for k, axis in enumerate(status.axes.values())})
