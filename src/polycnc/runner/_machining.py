@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,23 +15,28 @@ from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import CONTEXT_SHIFT, BlockRecords, ProgramText
 from polycnc.runner._blocks import Blocks, BlockTable
-from polycnc.stock import (
-    Collision,
-    Course,
-    Cutting,
-    Form,
-    Rows,
-    Stock,
-    Tool,
-    ToolKind,
-    tool_number,
-    tool_of_remark,
-)
+from polycnc.stock import ContactKind, Course, Cutting, Form, Rows, Stock, Tool, ToolKind, tool_number, tool_of_remark
 
 Floats = npt.NDArray[np.float64]
 _PLACES = ("X", "Y", "Z")
 _REMARK_OR_TOOL = re.compile(rb"\(([^)\r\n]*)\)|;([^\r\n]*)|[Tt][ \t]*0*([0-9]+)")
 _INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
+
+
+@dataclass(frozen=True, slots=True)
+class Collision:
+    """Say what went wrong in a block: kind, program and line (from 1), when first, and where it was how deep (mm)."""
+
+    kind: ContactKind
+    program: str
+    line: int
+    t_s: float
+    place: tuple[float, float, float]
+    depth_mm: float
+
+    def __str__(self) -> str:
+        place = " ".join(f"{name}{value:.3f}" for name, value in zip(_PLACES, self.place, strict=True))
+        return f"{self.kind}, {self.depth_mm:.3f} mm deep at {place}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +57,38 @@ class Machined:
     def volume_mm3(self) -> float:
         """What all blocks have removed."""
         return float(self.removed_mm3.sum())
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return sizes, volumes and collisions as plain data for JSON; lines are those of the programs."""
+        lines: dict[tuple[str, int], float] = {}
+        for number in np.flatnonzero(self.removed_mm3).tolist():
+            block = self.blocks[number]
+            key = block.program, block.line
+            lines[key] = lines.get(key, 0.0) + float(self.removed_mm3[number])
+        return {
+            "low_mm": list(self.stock.box.low),
+            "high_mm": list(self.stock.box.high),
+            "cell_mm": self.stock.cell_mm,
+            "volume_mm3": self.stock.volume_mm3,
+            "removed_mm3": self.volume_mm3,
+            "removed_by_tool_mm3": {str(tool): volume for tool, volume in self.by_tool_mm3.items()},
+            "removed_by_line_mm3": [
+                {"program": program, "line": line, "volume_mm3": volume}
+                for (program, line), volume in lines.items()
+            ],
+            "collisions": [
+                {
+                    "kind": each.kind.name.lower(),
+                    "text": str(each),
+                    "program": each.program,
+                    "line": each.line,
+                    "time_s": each.t_s,
+                    "place_mm": list(each.place),
+                    "depth_mm": each.depth_mm,
+                }
+                for each in self.collisions
+            ],
+        }
 
 
 class MachiningCollector:
@@ -109,12 +147,14 @@ class MachiningCollector:
             self._origin = offset
         return (zero - offset + self._origin).tolist(), words.tool, words.spindle_direction != 0
 
-    def machined(self, form: Form, tools: Mapping[int, Tool]) -> Machined:
-        """Cut the body that a form tells.
+    def machined(self, form: Form, tools: Mapping[int, Tool] | None = None) -> Machined:
+        """Cut the body that a form tells, with the tools that machine and programs describe if none are given.
 
         Raises:
             UsageError: a body that cannot be told, or none that can be cut.
         """
+        if tools is None:
+            tools = tools_of(self._config, self.texts)
         course = self._course.rows()
         stock = form.body(course, tools)
         cutting = Cutting(stock, tools)
@@ -125,10 +165,15 @@ class MachiningCollector:
             for number in sorted(cutting.unknown_tools)
         ]
         blocks = self._table.blocks()
+        collisions = [
+            Collision(each.kind, at.program, at.line, each.t_s, each.place, each.depth_mm)
+            for each in cutting.contacts
+            for at in [blocks[each.block]]
+        ]
         removed = np.zeros(len(blocks))
         known = cutting.by_block_mm3[: len(blocks)]
         removed[: len(known)] = known
-        return Machined(stock, blocks, removed, cutting.by_tool_mm3, cutting.collisions, messages)
+        return Machined(stock, blocks, removed, cutting.by_tool_mm3, collisions, messages)
 
 
 def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[int, Tool]:

@@ -25,7 +25,7 @@ LEAST_DEPTH_SHARE = 0.5
 """How deep something must be in the material to count as a collision, as a part of a cell."""
 
 
-class CollisionKind(StrEnum):
+class ContactKind(StrEnum):
     """What went wrong."""
 
     RAPID = "rapid through stock"
@@ -35,10 +35,10 @@ class CollisionKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Collision:
+class Contact:
     """Say what went wrong in a block, the first time: number of the block, time, place and depth (mm)."""
 
-    kind: CollisionKind
+    kind: ContactKind
     block: int
     t_s: float
     place: tuple[float, float, float]
@@ -73,7 +73,7 @@ class Rows:
 
 
 class Cutting:
-    """Let tools cut a body: what each block removed (mm3), and collisions.
+    """Let tools cut a body: what each block removed (mm3), and what went wrong (`contacts`).
 
     A tool that is not among `tools` cuts nothing; its number is kept in `unknown_tools`.
     """
@@ -88,7 +88,7 @@ class Cutting:
         self._tools = tools
         self._removed = np.zeros(0)
         self._by_tool: dict[int, float] = {}
-        self._collisions: dict[tuple[CollisionKind, int], Collision] = {}
+        self._contacts: dict[tuple[ContactKind, int], Contact] = {}
         self._last: Floats | None = None
 
     @property
@@ -107,9 +107,9 @@ class Cutting:
         return dict(self._by_tool)
 
     @property
-    def collisions(self) -> list[Collision]:
+    def contacts(self) -> list[Contact]:
         """What went wrong, in the order of time; one for each kind and block, with its greatest depth."""
-        return sorted(self._collisions.values(), key=lambda each: each.t_s)
+        return sorted(self._contacts.values(), key=lambda each: each.t_s)
 
     def add(self, rows: Rows) -> None:
         """Take the next rows; the tool comes from where the last ones ended."""
@@ -145,23 +145,23 @@ class Cutting:
         deep = depth > LEAST_DEPTH_SHARE * self.stock.cell_mm
         flutes = self._tools[number].flute_mm
         for kind, wrong, figures in (
-            (CollisionKind.RAPID, deep & rows.rapid[ends], cut),
-            (CollisionKind.SPINDLE, deep & ~rows.rapid[ends] & ~rows.turns[ends], cut),
-            (CollisionKind.FLUTES, depth > flutes, cut),
-            (CollisionKind.HOLDER, touched[:, DEPTH_MM] > LEAST_DEPTH_SHARE * self.stock.cell_mm, touched),
+            (ContactKind.RAPID, deep & rows.rapid[ends], cut),
+            (ContactKind.SPINDLE, deep & ~rows.rapid[ends] & ~rows.turns[ends], cut),
+            (ContactKind.FLUTES, depth > flutes, cut),
+            (ContactKind.HOLDER, touched[:, DEPTH_MM] > LEAST_DEPTH_SHARE * self.stock.cell_mm, touched),
         ):
             for way in np.flatnonzero(wrong).tolist():
                 self._note(kind, int(ends[way]), figures[way], places[way : way + 2], rows)
 
-    def _note(self, kind: CollisionKind, row: int, figures: Floats, way: Floats, rows: Rows) -> None:
+    def _note(self, kind: ContactKind, row: int, figures: Floats, way: Floats, rows: Rows) -> None:
         key = kind, int(rows.block[row])
         depth = float(figures[DEPTH_MM])
-        known = self._collisions.get(key)
+        known = self._contacts.get(key)
         if known is not None and known.depth_mm >= depth:
             return
         t_s = float(rows.t_s[row]) if known is None else known.t_s
         place = float(figures[AT_X]), float(figures[AT_Y]), float(way[:, 2].min())
-        self._collisions[key] = Collision(kind, key[1], t_s, place, depth)
+        self._contacts[key] = Contact(kind, key[1], t_s, place, depth)
 
 
 def _runs(values: Integers) -> Iterator[tuple[int, int]]:

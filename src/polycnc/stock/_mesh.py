@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.outputs import complete_or_absent
-from polycnc.stock._stock import Stock
+from polycnc.stock._sweep import Grid
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,13 +38,12 @@ class Mesh:
             partial.write_bytes(b"polycnc".ljust(80) + np.uint32(len(rows)).tobytes() + rows.tobytes())
 
 
-def mesh(stock: Stock) -> Mesh:
+def mesh(grid: Grid) -> Mesh:
     """Return the surface of a body: its heights at the corners of the cells' middles, walls and bottom.
 
     Cells without material are left out; a wall between two cells is as wide as a cell, the sides are upright.
     """
-    grid = stock.grid
-    x, y = stock.places()
+    x, y = grid.x, grid.y
     half = 0.5 * grid.cell_mm
     x = np.concatenate(([x[0] - half] * 2, x, [x[-1] + half] * 2))
     y = np.concatenate(([y[0] - half] * 2, y, [y[-1] + half] * 2))

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.errors import UsageError
+from polycnc.stock._mesh import Mesh, mesh
 from polycnc.stock._sweep import Grid
 
 Floats = npt.NDArray[np.float64]
@@ -71,7 +72,7 @@ class Stock:
         """
         radius = 0.5 * diameter_mm
         stock = cls(Box((-radius, -radius, low_z), (radius, radius, high_z)), cell_mm)
-        x, y = stock.places()
+        x, y = stock.grid.x, stock.grid.y
         stock.grid.z[x**2 + y[:, None] ** 2 > radius**2] = low_z
         return stock
 
@@ -84,13 +85,6 @@ class Stock:
     def heights(self) -> Floats:
         """The height of each cell, [along y, along x]; those without material have that of the bottom."""
         return self.grid.z
-
-    def places(self) -> tuple[Floats, Floats]:
-        """Return x of the columns and y of the rows: the middles of the cells."""
-        grid = self.grid
-        ny, nx = grid.z.shape
-        columns, rows = np.arange(nx, dtype=np.float64), np.arange(ny, dtype=np.float64)
-        return grid.x0 + grid.cell_mm * columns, grid.y0 + grid.cell_mm * rows
 
     @property
     def volume_mm3(self) -> float:
@@ -113,3 +107,7 @@ class Stock:
         other.box = self.box
         other.grid = self.grid._replace(z=self.grid.z.copy())
         return other
+
+    def mesh(self) -> Mesh:
+        """Return the surface as triangles."""
+        return mesh(self.grid)

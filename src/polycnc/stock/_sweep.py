@@ -34,6 +34,16 @@ class Grid(NamedTuple):
     bottom: float
     z: Floats  # [ny, nx]
 
+    @property
+    def x(self) -> Floats:
+        """X of the columns: the middles of the cells."""
+        return self.x0 + self.cell_mm * np.arange(self.z.shape[1], dtype=np.float64)
+
+    @property
+    def y(self) -> Floats:
+        """Y of the rows."""
+        return self.y0 + self.cell_mm * np.arange(self.z.shape[0], dtype=np.float64)
+
 
 VOLUME_MM3, DEPTH_MM, WIDTH_LOW_MM, WIDTH_HIGH_MM, AT_X, AT_Y = range(6)
 """Columns of what a chord has done: volume, greatest depth, how far left and right of the way, where it was deepest."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from polycnc.errors import UsageError
-from polycnc.stock import Arc, Box, CollisionKind, Cutting, Line, Rows, Stock, Tool, ToolKind, make_profile
+from polycnc.stock import Arc, Box, ContactKind, Cutting, Line, Rows, Stock, Tool, ToolKind, make_profile
 
 PLACES = [(-19.0, 11.0, 4.0), (-19.0, 11.0, -3.0), (47.0, 11.0, -3.0), (47.0, 11.0, 4.0), (-19.0, 25.0, 4.0)]
 RAPID = np.array([True, True, False, False, True])
@@ -37,7 +37,7 @@ def test_a_right_program_has_no_collision() -> None:
     found = cutting(END_MILL)
     found.add(record())
     assert found.removed_mm3 == pytest.approx(30.0 * 6.0 * 3.0, rel=0.03)
-    assert found.collisions == []
+    assert found.contacts == []
     assert found.by_tool_mm3 == {7: found.removed_mm3}
     assert found.by_block_mm3[12] == found.removed_mm3
 
@@ -45,8 +45,8 @@ def test_a_right_program_has_no_collision() -> None:
 def test_a_rapid_through_stock_is_found_at_its_block() -> None:
     found = cutting(END_MILL)
     found.add(replace(record(), rapid=np.array([True, True, True, False, True])))
-    [collision] = found.collisions
-    assert (collision.kind, collision.block) == (CollisionKind.RAPID, 12)
+    [collision] = found.contacts
+    assert (collision.kind, collision.block) == (ContactKind.RAPID, 12)
     assert collision.depth_mm == 3.0
     assert collision.t_s == 1.5
     assert collision.place[2] == -3.0
@@ -55,18 +55,18 @@ def test_a_rapid_through_stock_is_found_at_its_block() -> None:
 def test_a_spindle_at_rest_is_found() -> None:
     found = cutting(END_MILL)
     found.add(replace(record(), turns=np.array([True, True, False, True, True])))
-    assert [(each.kind, each.block) for each in found.collisions] == [(CollisionKind.SPINDLE, 12)]
+    assert [(each.kind, each.block) for each in found.contacts] == [(ContactKind.SPINDLE, 12)]
 
 
 def test_short_flutes_and_a_low_holder_are_found() -> None:
     deep = [(x, y, -15.0 if z < 0.0 else z) for x, y, z in PLACES]
     found = cutting(END_MILL)
     found.add(record(deep))
-    assert [(each.kind, each.depth_mm) for each in found.collisions] == [(CollisionKind.FLUTES, 15.0)]
+    assert [(each.kind, each.depth_mm) for each in found.contacts] == [(ContactKind.FLUTES, 15.0)]
     low = cutting(replace(END_MILL, flute_mm=30.0, holder=((13.5, 14.0),)))
     low.add(record(deep))
-    assert [(each.kind, each.block, each.depth_mm) for each in low.collisions] == [
-        (CollisionKind.HOLDER, 12, 1.5)
+    assert [(each.kind, each.block, each.depth_mm) for each in low.contacts] == [
+        (ContactKind.HOLDER, 12, 1.5)
     ]
 
 
@@ -74,7 +74,7 @@ def test_the_holder_follows_the_cutter() -> None:
     """A holder in the slot that its own cutter has just made touches nothing."""
     found = cutting(replace(END_MILL, flute_mm=30.0, holder=((13.5, 2.9),)))
     found.add(record([(x, y, -15.0 if z < 0.0 else z) for x, y, z in PLACES]))
-    assert found.collisions == []
+    assert found.contacts == []
 
 
 def test_an_unknown_tool_cuts_nothing_and_is_named() -> None:

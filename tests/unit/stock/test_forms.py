@@ -20,7 +20,6 @@ from polycnc.stock import (
     Stock,
     Tool,
     ToolKind,
-    mesh,
     tool_number,
     tool_of_remark,
 )
@@ -86,7 +85,7 @@ def test_a_body_goes_to_a_file_and_comes_back(tmp_path: Path) -> None:
     stock = Stock(Box((-3.0, -2.0, -12.0), (57.0, 38.0, 1.5)), 0.25)
     Cutting(stock, TOOLS).add(circle())
     file = tmp_path / "first side.stl"
-    mesh(stock).write_stl(file)
+    stock.mesh().write_stl(file)
     back = Form(str(file), 0.25).body(circle(), TOOLS)
     assert back.volume_mm3 == pytest.approx(stock.volume_mm3, rel=2e-3)
     assert back.box.high == (57.0, 38.0, 1.5)
@@ -131,7 +130,7 @@ def test_wrong_files_are_refused(tmp_path: Path, content: bytes, wrong: str) -> 
 
 def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
     file = tmp_path / "body.stl"
-    surface = mesh(Stock(Box((0.0, 0.0, 0.0), (3.0, 4.0, 5.0)), 1.0))
+    surface = Stock(Box((0.0, 0.0, 0.0), (3.0, 4.0, 5.0)), 1.0).mesh()
     type(surface)(surface.vertices, surface.faces[:, ::-1]).write_stl(file)
     with pytest.raises(UsageError, match="inside out"):
         Form(str(file)).body(circle(), TOOLS)

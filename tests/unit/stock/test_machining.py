@@ -10,7 +10,7 @@ import pytest
 from polycnc import runner
 from polycnc.errors import UsageError
 from polycnc.machine import load_machine
-from polycnc.stock import CollisionKind, Form, Tool, ToolKind
+from polycnc.stock import ContactKind, Form, Tool, ToolKind
 
 BRACKET = Path(__file__).resolve().parents[3] / "examples" / "bracket.nc"
 PLATE = """(T1 D=10. CR=0. - flat end mill)
@@ -53,11 +53,11 @@ def test_two_slots_in_a_plate() -> None:
 
 
 FAULTS = {
-    "a rapid across the plate": ("G0 Z20\nX-10 Y30", "G0 X-10 Y30", CollisionKind.RAPID, 8),
-    "a rapid down into the plate": ("Z-4\nG1 X70 F1500", "X30 Z-4\nG1 X70 F1500", CollisionKind.RAPID, 6),
-    "no spindle": ("S5000 M3\n", "S5000\n", CollisionKind.SPINDLE, 7),
-    "the spindle stopped too early": ("Z-4\nG1 X70\n", "Z-4 M5\nG1 X70\n", CollisionKind.SPINDLE, 11),
-    "short flutes": ("Z-4\nG1 X70 F1500", "Z-12.5\nG1 X70 F1500", CollisionKind.FLUTES, 7),
+    "a rapid across the plate": ("G0 Z20\nX-10 Y30", "G0 X-10 Y30", ContactKind.RAPID, 8),
+    "a rapid down into the plate": ("Z-4\nG1 X70 F1500", "X30 Z-4\nG1 X70 F1500", ContactKind.RAPID, 6),
+    "no spindle": ("S5000 M3\n", "S5000\n", ContactKind.SPINDLE, 7),
+    "the spindle stopped too early": ("Z-4\nG1 X70\n", "Z-4 M5\nG1 X70\n", ContactKind.SPINDLE, 11),
+    "short flutes": ("Z-4\nG1 X70 F1500", "Z-12.5\nG1 X70 F1500", ContactKind.FLUTES, 7),
 }
 
 
@@ -67,15 +67,15 @@ def test_a_planted_fault_is_found_at_its_block(fault: str) -> None:
     assert PLATE.count(right) == 1
     found = machined(PLATE.replace(right, wrong), TOOLS)
     first = found.collisions[0]
-    assert (first.kind, found.blocks[first.block].line) == (kind, line)
+    assert (first.kind, first.line) == (kind, line)
     assert {each.kind for each in found.collisions} == {kind}
 
 
 def test_a_low_holder_is_found_and_a_long_tool_is_right() -> None:
     low = {1: Tool(ToolKind.FLAT, 10.0, holder=((3.5, 25.0),))}
     found = machined(PLATE, low)
-    assert {each.kind for each in found.collisions} == {CollisionKind.HOLDER}
-    assert found.blocks[found.collisions[0].block].line == 6
+    assert {each.kind for each in found.collisions} == {ContactKind.HOLDER}
+    assert found.collisions[0].line == 6
     assert machined(PLATE, TOOLS).collisions == []
 
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind, mesh
+from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind
 
 TOOLS = {
     "flat": Tool(ToolKind.FLAT, 8.0),
@@ -88,7 +88,7 @@ def test_a_way_leaves_what_the_tool_leaves_at_all_of_its_places(
     radii = np.linspace(0.0, tool.radius_mm, 3001)
     profile = tool.cutting_profile()
     outline = np.array([profile.height(float(r)) for r in radii])
-    x, y = stock.places()
+    x, y = stock.grid.x, stock.grid.y
     steep = abs(end[2] - begin[2]) / 3000.0 + 1e-6
     near = np.random.default_rng(5).integers(0, stock.heights.size, 150)
     for iy, ix in zip(*np.unravel_index(near, stock.heights.shape), strict=True):
@@ -125,7 +125,7 @@ def test_the_surface_is_closed_and_has_the_volume_of_the_body() -> None:
     stock = block_of(0.25)
     cut(stock, TOOLS["ball"], [(11.0, 17.0, 5.0), (11.0, 17.0, -2.5), (43.0, 21.0, -6.5)])
     cut(stock, TOOLS["drill"], [(50.0, 30.0, 5.0), (50.0, 30.0, -20.0)])
-    surface = mesh(stock)
+    surface = stock.mesh()
     edges = np.sort(surface.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     _, uses = np.unique(edges, axis=0, return_counts=True)
     assert np.all(uses % 2 == 0)
