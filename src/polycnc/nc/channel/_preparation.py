@@ -70,7 +70,7 @@ class Preparation:
         if not self.begun:
             self.begun = True
             self._calls.begin()
-        if not prepared.catch_up():
+        if prepared.writer.backlog and not prepared.writer.catch_up():
             return
         most = None if blocks is None else reader.blocks + blocks
         while not self.over and (most is None or reader.blocks < most) and prepared.has_room():

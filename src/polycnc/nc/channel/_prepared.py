@@ -66,10 +66,6 @@ class Prepared:
         self.writer.answers = options.answers
         self.writer.marks = deque() if options.marks else None
 
-    def catch_up(self) -> bool:
-        """Put what waits for room into the queue; return whether nothing waits any more."""
-        return not self.writer.backlog or self.writer.catch_up()
-
     def has_room(self) -> bool:
         """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
         writer = self.writer
