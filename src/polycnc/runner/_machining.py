@@ -10,12 +10,23 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.errors import UsageError
+from polycnc.errors import SourcePosition, UsageError
 from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import CONTEXT_SHIFT, BlockRecords, ProgramText
-from polycnc.runner._blocks import Blocks, BlockTable
-from polycnc.stock import ContactKind, Course, Cutting, Form, Rows, Stock, Tool, ToolKind, tool_number, tool_of_remark
+from polycnc.runner._blocks import Blocks, BlockTable, ExecutedBlock
+from polycnc.stock import (
+    ContactKind,
+    Course,
+    Cutting,
+    Form,
+    Rows,
+    Stock,
+    Tool,
+    ToolKind,
+    tool_number,
+    tool_of_remark,
+)
 
 Floats = npt.NDArray[np.float64]
 _PLACES = ("X", "Y", "Z")
@@ -25,11 +36,15 @@ _INCH = re.compile(rb"[Gg]0*20(?![0-9.])")
 
 @dataclass(frozen=True, slots=True)
 class Collision:
-    """Say what went wrong in a block: kind, program and line (from 1), when first, and where it was how deep (mm)."""
+    """Say what went wrong in a block: kind, program and line (from 1), when first, and where it was how deep (mm).
+
+    `position` is the block's place in its text, None where that is not known.
+    """
 
     kind: ContactKind
     program: str
     line: int
+    position: SourcePosition | None
     t_s: float
     place: tuple[float, float, float]
     depth_mm: float
@@ -147,6 +162,10 @@ class MachiningCollector:
             self._origin = offset
         return (zero - offset + self._origin).tolist(), words.tool, words.spindle_direction != 0
 
+    def _place(self, block: ExecutedBlock) -> SourcePosition | None:
+        text = self.texts.get(block.program)
+        return None if text is None or not block.line else text.line_position(block.line)
+
     def machined(self, form: Form, tools: Mapping[int, Tool] | None = None) -> Machined:
         """Cut the body that a form tells, with the tools that machine and programs describe if none are given.
 
@@ -166,7 +185,7 @@ class MachiningCollector:
         ]
         blocks = self._table.blocks()
         collisions = [
-            Collision(each.kind, at.program, at.line, each.t_s, each.place, each.depth_mm)
+            Collision(each.kind, at.program, at.line, self._place(at), each.t_s, each.place, each.depth_mm)
             for each in cutting.contacts
             for at in [blocks[each.block]]
         ]

@@ -290,6 +290,7 @@ class RunResult:
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
             **({"variables": self.variables} if self.variables else {}),
+            **({} if self.machined is None else {"stock": self.machined.as_dict()}),
         }
 
 

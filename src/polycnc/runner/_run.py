@@ -197,7 +197,9 @@ def run_program(
         execution.channel.messages.note(remark, 0)
     result = _result(execution, log, collector, stuck)
     if form is not None and machining is not None:
-        result = replace(result, machined=machining.machined(form))
+        machined = machining.machined(form)
+        notes = [RunMessage(text, 0, 1) for text in machined.messages]
+        result = replace(result, machined=machined, messages=[*result.messages, *notes])
     if control is not None:
         result.variables.update(control.variables())
     if check:

@@ -25,6 +25,7 @@ _KINDS = (
     (re.compile(r"drill|\btap\b|\bream", re.IGNORECASE), ToolKind.DRILL),
     (re.compile(r"taper", re.IGNORECASE), ToolKind.TAPER),
     (re.compile(r"\bmill|cutter|\bflat|\bslot", re.IGNORECASE), ToolKind.FLAT),
+    (re.compile(r"\bholes?\b", re.IGNORECASE), ToolKind.DRILL),
 )
 
 

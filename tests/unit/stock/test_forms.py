@@ -148,6 +148,8 @@ def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
         ("Four holes, drill 5.5 mm, chip breaking", Tool(ToolKind.DRILL, 5.5, angle_deg=118.0)),
         ("T7 V-Bit 90 deg 12 mm", Tool(ToolKind.CHAMFER, 12.0, angle_deg=90.0)),
         ('1/4 inch end mill 0.25"', Tool(ToolKind.FLAT, 6.35)),
+        ("Four holes of 6.6 mm through the corners", Tool(ToolKind.DRILL, 6.6, angle_deg=118.0)),
+        ("Hole, end mill 8 mm on a helix", Tool(ToolKind.FLAT, 8.0)),
         ("T1 D=0. - flat end mill", None),
         ("Pocket 32 mm wide", None),
         ("Finish everything", None),
