@@ -56,9 +56,11 @@ from polycnc.machine import (
     Snapshot,
     SnapshotError,
     Store,
+    described,
     load_machine,
 )
 from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
+from polycnc.nc.macro import language_for
 
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MDI_NAME = "MDI"
@@ -74,7 +76,7 @@ class Control:
     them where they set or stop something, if it is not given.
     `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
-    `languages` are those of the channels' programs, one for each channel.
+    `languages` are those of the channels' programs, one for each channel; without any, the language of the dialect.
     """
 
     def __init__(
@@ -127,7 +129,7 @@ class Control:
                 library=self._sub_program,
                 dry_run_mm_min=data.dry_run_mm_min,
                 on_event=self._meet,
-                language=languages[path] if path < len(languages) else None,
+                language=languages[path] if path < len(languages) else language_for(self.dialect),
             )
             for path, share in enumerate(shares)
         )
@@ -188,9 +190,12 @@ class Control:
         """
         for channel in self.channels:
             check_over(channel)
+        other = dialect.language != self.dialect.language
         self.dialect = self._parts.dialect = dialect
         for channel in self.channels:
             channel.change_config(self._live, dialect)
+            if other:
+                channel.language = language_for(dialect)
 
     @property
     def mode(self) -> Mode:
@@ -285,8 +290,8 @@ class Control:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
-                interrupted, or axes still brake.
+            ControlError: A skip mark that is not from 1 to 9, a dry run without a feed, or the machine lock while a
+                program is executed or interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
@@ -298,6 +303,10 @@ class Control:
         if block_delete is not None and not block_delete <= frozenset(range(1, 10)):
             raise ControlError(
                 Refusal.DATA, f"{sorted(block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
+            )
+        if dry_run and not self.data.dry_run_mm_min > 0.0:
+            raise ControlError(
+                Refusal.DATA, "there is no feed for a dry run", hint="Set one (dry_run_mm_min)."
             )
         chosen = self._chosen(channel)
         changes = {name: each for name, each in given.items() if each is not None}
@@ -398,10 +407,8 @@ class Control:
                 )
             search = Search(line) if line > 1 else None if is_mdi else chosen.search
             chosen.begin(text, mdi=is_mdi, step=step, search=search)
-            self._time.note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
-        self._time.note_running()
-        self._time.raised |= ControlEvent.RUN_STATE
+        self._time.note_start(chosen)
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.
@@ -655,12 +662,12 @@ class Control:
         self._edits.close_all()
         self._time.raised = ControlEvent(moment.raised)
         put_back(self._parts, moment, tuple(each() for each in back))
-        self._time.note_running()
+        self._time.forget()
 
     @property
     def _made_from(self) -> str:
         shares = tuple(channel.data for channel in self.channels)
-        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {shares!r} {self.data!r}"
+        return described((self.machine.config, self.dialect, shares, self.data))
 
     def _text(self, name: str) -> ProgramText | None:
         """Return the present text of a program, of the memory or of a file."""
