@@ -84,7 +84,8 @@ def _numbers(text: str, numbers: str, count: int) -> list[float]:
 def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     """Return the box that holds what is cut, with a margin beside and below it.
 
-    Its top is program zero where the tool cuts below that, else the highest cut across.
+    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down at
+    rapid, close to a side, the box ends beside it.
 
     Raises:
         UsageError: nothing is cut.
@@ -108,7 +109,19 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     lowest = float(places[:, 2].min())
     top = 0.0 if lowest < 0.0 else float(end[across if across.any() else cuts][:, 2].max())
     below = lowest - MARGIN_MM
-    return Box(
-        (float(low_xy[0]), float(low_xy[1]), below),
-        (float(high_xy[0]), float(high_xy[1]), max(top, below + 2.0 * MARGIN_MM)),
-    )
+    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), max(top, below + 2.0 * MARGIN_MM)]
+    deep = course.rapid[1:] & (end[:, 2] < high[2])
+    for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
+        _leave_out((x, y), away, low, high)
+    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:
+    """Draw one side of a box in, so that a tool that came to a place at rapid, beside what it cuts, is beside it."""
+    if any(not low[i] - radius < place[i] < high[i] + radius for i in range(2)):
+        return
+    sides = [(place[i] + radius - low[i], i, low) for i in range(2)]
+    sides += [(high[i] - place[i] + radius, i, high) for i in range(2)]
+    drawn, i, side = min(sides, key=lambda each: each[0])
+    if drawn <= 2.0 * (radius + MARGIN_MM):
+        side[i] = place[i] + radius if side is low else place[i] - radius

@@ -71,6 +71,15 @@ def test_a_planted_fault_is_found_at_its_block(fault: str) -> None:
     assert {each.kind for each in found.collisions} == {kind}
 
 
+def test_an_auto_body_begins_where_the_tool_comes_down_at_rapid() -> None:
+    found = machined(PLATE, TOOLS, "auto")
+    assert found.collisions == []
+    assert found.stock.box.low == pytest.approx((-5.0, 6.0, -5.0))
+    assert found.stock.box.high == pytest.approx((76.0, 36.0, 0.0))
+    wrong = machined(PLATE.replace("G0 Z20\nX-10 Y30", "G0 X-10 Y30"), TOOLS, "auto")
+    assert [(each.kind, each.line) for each in wrong.collisions] == [(ContactKind.RAPID, 8)]
+
+
 def test_a_low_holder_is_found_and_a_long_tool_is_right() -> None:
     low = {1: Tool(ToolKind.FLAT, 10.0, holder=((3.5, 25.0),))}
     found = machined(PLATE, low)
@@ -104,7 +113,8 @@ def test_the_bracket() -> None:
     in_pocket = sum(v for line, v in by_line.items() if found.blocks.names and 20 <= line <= 27)
     assert in_pocket == pytest.approx(pocket, rel=0.02)
     assert found.collisions == []
-    assert found.messages[1:] == ["the shape of tool 3 is not known: it cuts nothing here"]
+    assert found.stock.height(10.0, 10.0) == -12.0  # a hole through a corner
+    assert found.messages[1:] == []
 
 
 def test_a_lathe_is_refused() -> None:
