@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from polycnc.controllers.fanuc import AxisPositions, PowerMate
-from polycnc.controllers.fanuc.wire import Content, Request, Value8, layout_of, record
+from polycnc.controllers.fanuc.wire import CNC, Content, Request, Value8, layout_of, record
 from polycnc.servers.focas._profile import Profile
 
 if TYPE_CHECKING:
@@ -53,6 +53,22 @@ class View:
 
 Command: TypeAlias = Callable[[View, Request], Content]
 """Carries out a request and returns what the reply holds; it refuses by raising `RefusedError`."""
+COMMANDS: dict[tuple[int, int], Command] = {}
+"""The commands that are answered, by target and code."""
+WRITING: set[tuple[int, int]] = set()
+"""Those that change something."""
+
+
+def answers(*codes: int, target: int = CNC, writes: bool = False) -> Callable[[Command], Command]:
+    """Say which commands a function answers; what stands in request and reply is in `wire.LAYOUTS`."""
+
+    def note(function: Command) -> Command:
+        keys = [(target, code) for code in codes]
+        COMMANDS.update(dict.fromkeys(keys, function))
+        WRITING.update(keys if writes else ())
+        return function
+
+    return note
 
 
 def numbers(request: Request) -> range:
