@@ -14,10 +14,12 @@ from polycnc.servers.focas._profile import Profile
 if TYPE_CHECKING:
     from polycnc.cnc import Status
 
-NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED, REJECTED = 1, 2, 3, 4, 5, 6, 7, 13
+NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED = range(1, 8)
+WRONG_PATH, REJECTED = 11, 13
 """Codes that clients get, by the names of the function library."""
 ALL = -1
-MOST_NUMBERS = 200
+MOST_NUMBERS = 433
+"""Values of eight bytes that the largest frame of all series holds."""
 
 
 class RefusedError(Exception):
@@ -74,8 +76,10 @@ def answers(*codes: int, target: int = CNC, writes: bool = False) -> Callable[[C
 def numbers(request: Request) -> range:
     """Return the numbers from the first to the second argument."""
     first, last = request.arguments[:2]
-    if last < first or last - first >= MOST_NUMBERS:
+    if last < first:
         raise RefusedError(NUMBER)
+    if last - first >= MOST_NUMBERS:
+        raise RefusedError(LENGTH)
     return range(first, last + 1)
 
 

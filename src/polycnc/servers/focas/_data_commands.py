@@ -95,8 +95,10 @@ def write_macros(view: View, request: Request) -> Content:
 def read_doubles(view: View, request: Request) -> Content:
     """Return macro variables as floating-point numbers; a vacant one is no number."""
     first, count = request.arguments[:2]
-    if not 0 < count <= MOST_NUMBERS:
+    if count < 1:
         raise RefusedError(NUMBER)
+    if count > MOST_NUMBERS:
+        raise RefusedError(LENGTH)
     values = [_readable_macro(view, number) for number in range(first, first + count)]
     return [math.nan if value is None else value for value in values]
 
@@ -302,8 +304,8 @@ def write_work_offset(view: View, request: Request) -> Content:
 # ---------------------------------------------------------------------- timers
 
 
-_TIMERS = {0: (None, 6750), 1: (6751, 6752), 2: (6753, 6754), 3: (6757, 6758)}
-"""Parameters of each timer: milliseconds and minutes."""
+_TIMERS = {0: (None, 6750), 1: (6751, 6752), 2: (6753, 6754), 3: (6757, 6758), 4: (6755, 6756)}
+"""Parameters of each timer: milliseconds and minutes; 4 is the time of an external signal."""
 
 
 @answers(0x120)

@@ -211,7 +211,7 @@ def counts(view: View, request: Request) -> Content:
     return {"count": 1 if request.arguments[0] == _SPINDLES else view.control.axes}
 
 
-_LOAD_PERCENT = 1
+_LOAD_PERCENT, _KINDS_OF_METERS = 1, range(4)
 
 
 @answers(0x56)
@@ -222,7 +222,7 @@ def servo_meter(view: View, request: Request) -> Content:
     the torque override allows, and none with the servo off. Amperes this control does not know.
     """
     if request.arguments[0] != _LOAD_PERCENT:
-        raise RefusedError(NOT_THERE)
+        raise RefusedError(NOT_THERE if request.arguments[0] in _KINDS_OF_METERS else ATTRIBUTE)
     control, signals = view.control, view.control.signals
     made = []
     for number, axis in enumerate(view.status.axes.values(), 1):
