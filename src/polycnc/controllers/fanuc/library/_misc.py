@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from polycnc.cnc import PROGRAM_MESSAGE
@@ -196,9 +197,9 @@ def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt
     """
     device = link.read("cnc_rdcurrent")
     found = [0] * device.max_axis
-    for k, axis in enumerate(device.status().axes.values()):
+    for k, axis in enumerate(device.control.axes().values()):
         rated = device.parameters.value(2086, k + 1)
-        share = axis.velocity / device.machine.config.axes[k].vmax
+        share = math.copysign(axis.load_percent / 100.0, axis.velocity)
         most = device.signals.torque_override(k + 1) / 100.0
         if not device.signals.servo_is_off(k + 1):
             found[k] = round(rated * max(-most, min(most, share)))
@@ -209,7 +210,7 @@ def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt
 def cnc_rdsrvspeed(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("speed"), Many("MAX_AXIS")]]:
     """Read the actual speed of each axis (Manual 000, cnc_rdsrvspeed). Ruling: mm/min, deg/min."""
     device = link.read("cnc_rdsrvspeed")
-    speeds = [round(axis.velocity * _MM_MIN) for axis in device.status().axes.values()]
+    speeds = [round(axis.velocity * _MM_MIN) for axis in device.control.axes().values()]
     return EW.EW_OK, speeds + [0] * (device.max_axis - len(speeds))
 
 
