@@ -251,7 +251,7 @@ class RadiusCompensation:
             return [item]
         if isinstance(item, Spline):
             raise _refusal("spline", item.line)
-        leg = self._leg_of(item)
+        leg = _leg_of(item, self._plane)
         if leg is None or isinstance(item, Wait):
             if self._pending:
                 self._hold.append(item)
@@ -264,17 +264,6 @@ class RadiusCompensation:
         if self._offset == 0.0:
             return [item]
         return self._follow(item, leg)
-
-    def _leg_of(self, item: Move | Wait) -> Leg | None:
-        if isinstance(item, Wait):
-            return None
-        i, j, _ = self._plane
-        start, end = item.start, item.end
-        if isinstance(item, Line):
-            return line_leg(start[i], start[j], end[i], end[j])
-        if item.plane != self._plane:
-            raise _refusal("plane_change", item.line)
-        return arc_leg(start[i], start[j], end[i], end[j], *item.center, item.sweep_rad)
 
     def _enter(self, item: Move, leg: Leg) -> list[QueueItem]:
         if isinstance(item, Arc):
@@ -415,6 +404,18 @@ class RadiusCompensation:
         values = list(point)
         values[self._plane[0]], values[self._plane[1]] = at
         return tuple(values)
+
+
+def _leg_of(item: Move | Wait, plane: tuple[int, int, int]) -> Leg | None:
+    if isinstance(item, Wait):
+        return None
+    i, j, _ = plane
+    start, end = item.start, item.end
+    if isinstance(item, Line):
+        return line_leg(start[i], start[j], end[i], end[j])
+    if item.plane != plane:
+        raise _refusal("plane_change", item.line)
+    return arc_leg(start[i], start[j], end[i], end[j], *item.center, item.sweep_rad)
 
 
 def _vanishes(travel_mm: float, line: int) -> bool:
