@@ -38,11 +38,57 @@ def _prepared(source: Path, dialect: Path, *programs: str) -> list[tuple[list[li
     return [(ends, error) for ends, error in json.loads(run.stdout)]
 
 
-def test_a_g_code_is_one_row_and_one_function(tmp_path: Path) -> None:
-    package = tmp_path / "polycnc"
-    shutil.copytree(
-        Path(polycnc.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__", "front")
+_LINKS = """
+import json, sys
+from polycnc.nc.cpl import Linker, Run
+from support.cpl_host import RecordingHost
+found = []
+for text in sys.argv[1:]:
+    host = RecordingHost()
+    linker = Linker(host.program)
+    main, errors = linker.link(text, "main.cpl")
+    run = main and Run(main, linker, host)
+    while run and run.step() is not None:
+        pass
+    found.append([run.globals if run else {}, [str(error) for error in errors]])
+print(json.dumps(found))
+"""
+
+
+def _copy(folder: Path) -> Path:
+    package, ignored = Path(polycnc.__file__).parent, shutil.ignore_patterns("__pycache__", "front")
+    return Path(shutil.copytree(package, folder / "polycnc", ignore=ignored))
+
+
+def test_a_cpl_function_is_one_decorated_function(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    page = REPOSITORY / "docs" / "how-to" / "add-a-cpl-function.md"
+    (function,) = (each for each in fences(page) if each.title)
+    with (package / function.title).open("a", encoding="utf-8") as file:
+        file.write(f"\n\n{function.text}")
+    programs = (
+        "1 A=5 : #A=HYP(A,12) : #B=HYP(3,4,12)",
+        "1 #A=HYP(5)",
+        '1 #A=HYP(5,"12")',
+        "1 HYP=3",
     )
+    run = subprocess.run(
+        [sys.executable, "-c", _LINKS, *programs],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(REPOSITORY / "tests")))},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    (values, _), *refused = json.loads(run.stdout)
+    assert values == {"#A": 13, "#B": 13}
+    number = "HYP takes 2 to 3 arguments, not "
+    whats = (f"{number}1", "HYP takes a number, not a string", f"{number}0")
+    for (_, errors), what in zip(refused, whats, strict=True):
+        assert what in errors[0]
+
+
+def test_a_g_code_is_one_row_and_one_function(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
     row, function, dialect = (
         each for each in fences(REPOSITORY / "docs" / "how-to" / "add-a-g-code.md") if each.title
     )
