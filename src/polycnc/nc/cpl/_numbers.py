@@ -142,13 +142,21 @@ def _in_degrees(function: Callable[[float], float], value: float) -> float:
 
 @function("ASIN(value)", "R", Takes.NUMBER)
 def arc_sine(value: float) -> float:
-    """Return the angle of a sine, in degrees; ValueError if there is none."""
+    """Return the angle of a sine, in degrees.
+
+    Raises:
+        ValueError: There is none.
+    """
     return _in_degrees(math.asin, value)
 
 
 @function("ACOS(value)", "R", Takes.NUMBER)
 def arc_cosine(value: float) -> float:
-    """Return the angle of a cosine, in degrees; ValueError if there is none."""
+    """Return the angle of a cosine, in degrees.
+
+    Raises:
+        ValueError: There is none.
+    """
     return _in_degrees(math.acos, value)
 
 
@@ -177,13 +185,13 @@ ABSOLUTE = Function(
 
 @function("INT(value)", "I", Takes.NUMBER)
 def whole(value: float) -> int:
-    """Return a number without its decimals (INT)."""
+    """Return a number without its decimals."""
     return _bounded(math.trunc(value))
 
 
 @function("ROUND(value)", "I", Takes.NUMBER)
 def nearest(value: float) -> int:
-    """Return a number rounded to the nearest whole one, halves away from zero (ROUND)."""
+    """Return a number rounded to the nearest whole one, halves away from zero."""
     return _bounded(math.floor(value + 0.5) if value >= 0 else math.ceil(value - 0.5))
 
 
