@@ -175,6 +175,7 @@ class Conduct:
 
         What must end `machine.advance` early is put into the clock's mask, beside what is there; `asleep` as `advance`.
         """
+        self.machine.state.clock[0]["mask"] |= kernel.RECORDER_FULL  # rows are kept whatever the program does
         if self.moment.dropping or (self.moment.state is RunState.HOLD and self.at_rest):
             return 0 if self.at_rest else cycles
         if self.moment.state not in _GOING:
