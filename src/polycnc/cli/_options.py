@@ -150,6 +150,57 @@ Done = Annotated[
 ]
 Again = Annotated[bool, typer.Option("--again", help="Do everything again.")]
 
+# ---------------------------------------------------------------------- of posting
+
+ToolPath = Annotated[
+    Path | None,
+    typer.Argument(help="The tool path: APT words (ISO 4343), or JSON (.json).", metavar="TOOLPATH"),
+]
+Control = Annotated[
+    str | None,
+    typer.Option(
+        "--control",
+        "-c",
+        help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-5axis, fanuc-lathe, fanuc-mill, haas-mill or "
+        "a file.",
+        metavar="FILE|NAME",
+    ),
+]
+PostOutput = Annotated[
+    Path | None,
+    typer.Option("--output", "-o", help="Write the program to a file, not to the screen.", metavar="FILE"),
+]
+Verify = Annotated[
+    bool, typer.Option("--verify", help="Run the program and compare its path with the tool path.")
+]
+PostTolerance = Annotated[
+    float,
+    typer.Option(help="Greatest deviation that --verify accepts, in mm.", metavar="MM", min=1e-6, max=10.0),
+]
+PostMachine = Annotated[
+    str | None,
+    typer.Option(
+        "--machine",
+        "-m",
+        help="Machine for --verify: a preset or a TOML file (default: the control file's).",
+        metavar="FILE|PRESET",
+    ),
+]
+ArcSense = Annotated[
+    str | None,
+    typer.Option(
+        help="What the axes of CIRCLE/ are for: counterclockwise (right-hand rule) or clockwise; "
+        "default: clockwise in a CLSF of NX.",
+        metavar="SENSE",
+    ),
+]
+PostAsJson = Annotated[
+    bool, typer.Option("--json", help="Print one JSON object instead of text; needs --output.")
+]
+ShowControl = Annotated[
+    bool, typer.Option("--show-control", help="Print the control file, to start one's own from.")
+]
+
 
 def codes_of(texts: list[str] | None) -> tuple[str, ...]:
     """Return the codes of all --ignore options."""

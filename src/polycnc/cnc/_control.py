@@ -56,6 +56,7 @@ from polycnc.machine import (
     Snapshot,
     SnapshotError,
     Store,
+    described,
     load_machine,
 )
 from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
@@ -675,7 +676,7 @@ class Control:
     @property
     def _made_from(self) -> str:
         shares = tuple(channel.data for channel in self.channels)
-        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {shares!r} {self.data!r}"
+        return described((self.machine.config, self.dialect, shares, self.data))
 
     def _text(self, name: str) -> ProgramText | None:
         """Return the present text of a program, of the memory or of a file."""
