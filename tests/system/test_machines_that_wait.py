@@ -7,8 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from support.focas_line import Line, serve
-from system.test_focas_fleet import free_port
+from support.focas_line import Line, free_port, serve
 
 MACHINES = 20
 MEDIAN_S, END_S = 0.5, 10.0  # 0.02 s and 0.6 s on a computer of its own; they never answered, nor ended
