@@ -24,7 +24,7 @@ from polycnc.cnc._status import (
     ToolInUse,
     WorkOffset,
 )
-from polycnc.kernel import RAPID, RUNNING, WAIT
+from polycnc.kernel import RAPID, RUNNING, WAIT, planned_s
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecord, Group
 
@@ -42,6 +42,9 @@ class StatusReader:
         self._names: tuple[str, ...] = config.axis_names
         self._units = tuple(axis.unit for axis in config.axes)
         self._limit(config)
+        planned_s(
+            of.machine.state.seg, of.machine.state.paths, 0, of.clock.cycle_s
+        )  # load it before time passes
         self._blocks = [_BlockPart(of, channel) for channel in of.channels]
         self._moment: tuple[object, ...] = ()
         self._status: Status | None = None
@@ -84,6 +87,7 @@ class StatusReader:
                 of.messages.shown,
                 of.manual.wheel,
                 FrozenDict(of.timers.shown_s()),
+                tuple(self._left_s(channel.path) for channel in of.channels),
                 of.parts.parts,
             )
         return self._status
@@ -153,6 +157,13 @@ class StatusReader:
         return zero, to_go
 
     # ------------------------------------------------------------------ channels
+
+    def _left_s(self, path: int) -> float:
+        state = self._of.machine.state
+        row = state.paths.row[path]
+        if row["head"] >= row["prepared"]:
+            return 0.0
+        return planned_s(state.seg, state.paths, path, self._of.clock.cycle_s)
 
     def _channel(self, number: int) -> ChannelStatus:
         if (known := self._channels[number]) is not None:
