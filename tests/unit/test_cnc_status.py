@@ -234,6 +234,7 @@ def test_the_public_commands_are_all_tried() -> None:
         "advance",
         "be_watched",
         "waiting_functions",
+        "tool_in_use",
     }
     names = {
         name
@@ -251,6 +252,10 @@ def test_a_status_is_one_object_until_time_passes(state: str) -> None:
     assert made.status() is first
     assert made.axes() is first.axes
     assert made.channel_status() is first.channel
+    if first.channel.block is None:
+        assert made.tool_in_use() is None
+    else:
+        assert made.tool_in_use() is first.channel.tool
     made.advance(1)
     assert made.status() is not first
     assert made.status().cycle == first.cycle + 1

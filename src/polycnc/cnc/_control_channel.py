@@ -317,12 +317,20 @@ class ControlChannel:
         self._go(step)
 
     def _go(self, step: Step) -> None:
-        """Begin or go on, as far as `step` says; a single block goes no farther than one block."""
+        """Begin or go on, as far as `step` says; a single block goes no farther than one block.
+
+        Raises:
+            ControlError: The run cannot.
+        """
         assert self.run is not None
         self._clock.changes += 1
-        {
+        go = {
             Step.RUN: self.run.start,
             Step.INTO: self.run.step_into,
             Step.OVER: self.run.step_over,
             Step.OUT: self.run.step_out,
-        }[step]()
+        }[step]
+        try:
+            go()
+        except UsageError as error:
+            raise ControlError(Refusal.RUNNING, error.what, hint=error.hint) from error

@@ -20,6 +20,7 @@ from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, Event, Language, Library
+from polycnc.nc.macro import language_for
 
 
 def check_shares(channels: Sequence[ChannelData], config: MachineConfig) -> tuple[ChannelData, ...]:
@@ -74,7 +75,7 @@ def make_parts(
                 library=library,
                 dry_run_mm_s=data.dry_run_mm_min / 60.0,
                 on_event=partial(on_event, path),
-                language=languages[path] if path < len(languages) else None,
+                language=languages[path] if path < len(languages) else language_for(dialect),
             ),
         )
         for path, share in enumerate(shares)

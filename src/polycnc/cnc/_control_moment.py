@@ -8,7 +8,7 @@ from polycnc.cnc._control_snapshot import ChannelMoment, ControlMoment, ControlS
 from polycnc.cnc._control_time import ControlEvent, ControlTime
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._run_snapshot import file_text
-from polycnc.machine import Snapshot, SnapshotError
+from polycnc.machine import Snapshot, SnapshotError, described
 from polycnc.nc import ProgramText
 
 
@@ -133,13 +133,13 @@ class Keeping:
         self._of.edits.close_all()
         self._time.raised = ControlEvent(moment.raised)
         put_back(self._of, moment, tuple(each() for each in back))
-        self._time.note_running()
+        self._time.forget()
 
     @property
     def _made_from(self) -> str:
         of = self._of
         shares = tuple(channel.data for channel in of.channels)
-        return f"{of.machine.config.model_dump_json()} {of.dialect!r} {shares!r} {of.data!r}"
+        return described((of.machine.config, of.dialect, shares, of.data))
 
     def _text(self, name: str) -> ProgramText | None:
         """Return the present text of a program, of the memory or of a file."""

@@ -49,6 +49,7 @@ class ControlTime:
         self._fail = fail
         self.raised = ControlEvent.NONE
         self.watch: CycleWatch | None = None
+        self._noted = [channel.run_state for channel in of.channels]
 
     def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
@@ -90,38 +91,60 @@ class ControlTime:
             cut_s=self._cut_s(),
             tool=self._tool(),
         )
-        self._look(passed, states)
+        self._look(passed, alarms)
         self._of.clock.changes += 1  # where no cycle has passed as well
         if watch is not None and watch.is_awake:
             watch.look()
         if [channel.run_state for channel in self._of.channels] != states:
             self.raised |= ControlEvent.RUN_STATE
-        if any(alarm not in alarms for alarm in self._of.alarms.active):
-            self.raised |= ControlEvent.ALARM
         if manual and not self._of.manual.active:
             self.raised |= ControlEvent.MANUAL
         return passed
 
-    def _look(self, passed: int, states: list[RunState]) -> None:
-        """Look at what the last cycles have brought since the channels had these states."""
-        alarms = self._of.alarms.active
+    def _look(self, passed: int, alarms: tuple[Alarm, ...]) -> None:
+        """Look at what the last cycles have brought since these alarms were on."""
         self._of.manual.after()
-        for number, channel in enumerate(self._of.channels):
+        for channel in self._of.channels:
             if channel.run is not None and not channel.returning:
                 channel.run.after_cycles(passed)
-            if channel.run_state is not states[number]:
-                self.note_end(channel)
             channel.look()
+            self._note_state(channel)
             self._take_answers(channel)
         self._of.functions.note_failures(self._of.alarms)
         for index, axis in enumerate(self._of.machine.config.axes):
             if self._of.machine.state.servo.error_tripped[index]:
                 self._of.alarms.put("following_error", axis=axis.name)
-        self._fail(alarm for alarm in self._of.alarms.active if alarm not in alarms)
+        self._fail_for(alarms)
         self.note_running()
 
-    def note_end(self, channel: ControlChannel) -> None:
-        """Count the part of a program that has ended, or put its error among the alarms."""
+    def _fail_for(self, before: tuple[Alarm, ...]) -> None:
+        """Stop what the alarms stop that have come since these."""
+        if new := [alarm for alarm in self._of.alarms.active if alarm not in before]:
+            self.raised |= ControlEvent.ALARM
+            self._fail(new)
+
+    def note_start(self, channel: ControlChannel) -> None:
+        """Take note that a program was started, or went on; it may be over, or wrong, before anything moves."""
+        alarms = self._of.alarms.active
+        self._noted[channel.path] = RunState.ACTIVE
+        self._note_state(channel)
+        self._fail_for(alarms)
+        self.note_running()
+        self.raised |= ControlEvent.RUN_STATE
+
+    def forget(self) -> None:
+        """Take what channels do now as known."""
+        self._noted = [channel.run_state for channel in self._of.channels]
+        self.note_running()
+
+    def _note_state(self, channel: ControlChannel) -> None:
+        """Count the part of a program that has ended since this was asked last, or put its error among the alarms.
+
+        Every way into an end or an alarm comes by here, whether a cycle or a command has led to it.
+        """
+        if channel.run_state is self._noted[channel.path]:
+            return
+        self._noted[channel.path] = channel.run_state
         run = channel.run
         counts = self._of.data.count_parts and channel.path == 0 and not channel.is_mdi
         if channel.run_state is RunState.COMPLETED and counts:

@@ -116,10 +116,8 @@ class ProgramCommands:
                 )
             search = Search(line) if line > 1 else None if is_mdi else chosen.search
             chosen.begin(text, mdi=is_mdi, step=step, search=search)
-            self._time.note_end(chosen)  # of a program that is over or wrong before anything moves
             self._of.timers.start_cycle()
-        self._time.note_running()
-        self._time.raised |= ControlEvent.RUN_STATE
+        self._time.note_start(chosen)
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.

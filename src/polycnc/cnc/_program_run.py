@@ -19,7 +19,7 @@ from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import Machine, MachineConfig, Snapshot, SnapshotError
+from polycnc.machine import Machine, MachineConfig, Snapshot, SnapshotError, described
 from polycnc.nc import (
     BlockRecord,
     Call,
@@ -573,10 +573,7 @@ class ProgramRun:
 
     @property
     def _made_from(self) -> str:
-        axes = None if self._axes is None else tuple(self._axes)
-        return (
-            f"{self.machine.config.model_dump_json()} {self.path} {self.dialect!r} {self._options!r} {axes!r}"
-        )
+        return described((self.machine.config, self.path, self.dialect, self._options, self._axes))
 
     # ------------------------------------------------------------------ within
 

@@ -13,6 +13,7 @@ from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._stopping import break_off
 from polycnc.machine import AnyAxis
 from polycnc.nc import Dialect
+from polycnc.nc.macro import language_for
 
 
 class Settings:
@@ -52,6 +53,9 @@ class Settings:
         """
         for channel in self._of.channels:
             check_over(channel)
+        if dialect.language != self._of.dialect.language:
+            for channel in self._of.channels:
+                channel.runs.language = language_for(dialect)
         self._of.dialect = dialect
         self._change_config()
 
@@ -134,8 +138,8 @@ class Settings:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
-                interrupted, or axes still brake.
+            ControlError: A skip mark that is not from 1 to 9, a dry run without a feed, or the machine lock while a
+                program is executed or interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
@@ -147,6 +151,10 @@ class Settings:
         if block_delete is not None and not block_delete <= frozenset(range(1, 10)):
             raise ControlError(
                 Refusal.DATA, f"{sorted(block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
+            )
+        if dry_run and not self._of.data.dry_run_mm_min > 0.0:
+            raise ControlError(
+                Refusal.DATA, "there is no feed for a dry run", hint="Set one (dry_run_mm_min)."
             )
         chosen = self._of.chosen(channel)
         changes = {name: each for name, each in given.items() if each is not None}

@@ -25,6 +25,7 @@ from polycnc.nc.channel._search import Search
 from polycnc.nc.channel._sub_programs import Library, SubPrograms
 from polycnc.nc.channel._turns import Turns
 from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.sources._block_source import (
@@ -192,10 +193,10 @@ class Channel:
         """Give up the program: what a language holds for it ends."""
         self._preparation.close()
 
-    def _reference(self, line: int) -> int:
-        """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
+    def _reference(self, line: int, modal: ModalSnapshot) -> int:
+        """Return the reference of the block on `line` of the present program, which leaves this in force."""
         text = self._reader.place.text
-        return self.records.reference(text, self._calls.stack, self.state.snapshot(), line)
+        return self.records.reference(text, self._calls.stack, modal, line)
 
     # ------------------------------------------------------------------ beginning elsewhere
 
@@ -244,7 +245,7 @@ class Channel:
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:
         """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
-        self._prepared.go_straight(position, line, self._reference(line))
+        self._prepared.go_straight(position, line, self._reference(line, self.state.snapshot()))
 
     # ------------------------------------------------------------------ going back
 

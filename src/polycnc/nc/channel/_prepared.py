@@ -26,7 +26,7 @@ class Prepared:
     """Keep the queue, the records and the modal state of a path, as far as preparation has come.
 
     `before` is what has been prepared for the path until now: queue and records go on, and with `keeps_modal` the modal
-    state. `axes` are the names of the machine's axes in programs.
+    state. `row` is the path in the kernel. `axes` are the names of the machine's axes in programs.
     """
 
     def __init__(
@@ -44,6 +44,7 @@ class Prepared:
     ) -> None:
         kernel = machine.state
         self._kernel = kernel
+        self.row = kernel.paths.row[path]
         self._path = path
         self._tables = dialect.tables()
         if before is None:
@@ -72,11 +73,6 @@ class Prepared:
         return not writer.backlog and not writer.stops and free_slots(writer.paths, self._path) > RESERVE
 
     @property
-    def tail(self) -> int:
-        """How many segments have been put into the queue so far."""
-        return int(self._kernel.paths.row[self._path]["tail"])
-
-    @property
     def is_plain(self) -> bool:
         """Whether the modal state is one that the compiled kernel knows."""
         return not self.state.modal.whole[ORDINARY]
@@ -94,7 +90,7 @@ class Prepared:
         calls: tuple[Call, ...],
     ) -> tuple[int, int]:
         """Let the compiled kernel prepare blocks `first` up to `after`; return the next one, and why it stopped."""
-        self.state.coordinates.take_changes()
+        self.state.take_changes()
         begin = int(words.offset[first]), int(words.line[first])
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel

@@ -39,18 +39,16 @@ class Turns:
         self._looks: set[tuple[str, int]] = set()
         self.paused = False
 
-    @property
-    def used_up(self) -> bool:
-        """Whether nothing more is prepared in this cycle."""
-        return self.paused and self._cycle == self._clock.cycles
-
-    def begin(self) -> None:
-        """Take note that preparation goes on."""
-        if self._cycle != self._clock.cycles:
-            self._cycle, self._taken = self._clock.cycles, 0
-            if not self.paused:
-                self._looks.clear()
+    def begin(self) -> bool:
+        """Take note that preparation goes on; False where nothing more is prepared in this cycle."""
+        cycle = self._clock.cycles
+        if self._cycle == cycle:
+            return not self.paused
+        self._cycle, self._taken = cycle, 0
+        if not self.paused:
+            self._looks.clear()
         self.paused = False
+        return True
 
     def take(self, turns: int = 1) -> None:
         """Count turns; after the last one of a cycle preparation pauses."""
