@@ -352,18 +352,18 @@ class Signals:
         panel = power_mate.panel.image(address)
         if panel is not None:
             return panel
-        status = power_mate.status()
-        mode, channel, switches = power_mate.mode, status.channel, status.switches
+        control, mode = power_mate.control, power_mate.mode
+        channel, switches = control.channel_status(), control.switches
         moving = channel.motion is Motion.MOVING
         match address:
             case 0:
                 active, held = channel.run_state is RunState.ACTIVE, channel.run_state is RunState.HOLD
-                ready = status.emergency is Emergency.OFF
+                ready = control.emergency is Emergency.OFF
                 return _bits(
                     {4: held, 5: active, 6: ready, 7: active or held or channel.run_state in _INTERRUPTED}
                 )
             case 1:
-                alarm, low = bool(shown(status.alarms)), self.state.battery_low
+                alarm, low = bool(shown(control.alarms.active)), self.state.battery_low
                 return _bits({0: alarm, 1: self.reset_is_on, 2: low, 7: True})
             case 2:
                 rapid = moving and channel.feed.rapid
@@ -385,11 +385,11 @@ class Signals:
                 at = [power_mate.positions.read()[k].machine == 0 for k in range(power_mate.axes)]
                 return _bits(dict(enumerate(at)))
             case 102:
-                return _bits({k: axis.velocity != 0.0 for k, axis in enumerate(status.axes.values())})
+                return _bits({k: axis.velocity != 0.0 for k, axis in enumerate(control.axes().values())})
             case 106:
-                return _bits({k: axis.velocity < 0.0 for k, axis in enumerate(status.axes.values())})
+                return _bits({k: axis.velocity < 0.0 for k, axis in enumerate(control.axes().values())})
             case 120:
-                return _bits({k: axis.referenced for k, axis in enumerate(status.axes.values())})
+                return _bits({k: axis.referenced for k, axis in enumerate(control.axes().values())})
             case _:
                 return self._function_byte(address, channel.functions)
 
