@@ -70,9 +70,9 @@ def dialects_page() -> str:
     return page()
 
 
-def stub(module: str) -> str:
-    """Return the type stub of a module that reads structures from a header."""
-    made: Callable[[str], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_stubs.py"))["stub"]
+def stub(module: str, kind: str = "stub") -> str:
+    """Return the type stub of a module that reads structures from a header, or functions from rows."""
+    made: Callable[[str], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_stubs.py"))[kind]
     return made(module)
 
 
@@ -84,7 +84,9 @@ STUBS = {
         "polycnc.controllers.imc.library._declared",
     )
 }
-
+STUBS["src/polycnc/controllers/imc/library/_motion.pyi"] = partial(
+    stub, "polycnc.controllers.imc.library._motion", "functions_stub"
+)
 
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,

@@ -97,9 +97,9 @@ class Pnc:
                 stepping=stepping,
             )
             hosts.append(host)
-            channel.language = host.language
+            channel.runs.language = host.language
             channel.change_config(self.system.live_config(), dialect)
-            channel.names = axes.names_in(number)
+            channel.runs.names = axes.names_in(number)
         self.hosts = tuple(hosts)
         self.system.links.start_up()
         places = ((area, first_of(self.system.directory, name)) for area, name in AREAS.items())
@@ -294,7 +294,7 @@ class Pnc:
             [tuple(map(self.system.axes.physical_name, own)) for own in self.system.axes.channels.values()]
         )
         for number, each in enumerate(self._control.channels, 1):
-            each.names = self.system.axes.names_in(number)
+            each.runs.names = self.system.axes.names_in(number)
 
     # ------------------------------------------------------------------ what it knows
 

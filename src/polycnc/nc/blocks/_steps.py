@@ -62,6 +62,7 @@ def words(block: BlockContext) -> None:
         refuse_others(block)
     if found.left_out:
         leave_out(block)
+    block.notes += found.remarks
 
 
 def ends(block: BlockContext) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from datetime import datetime
 
 from polycnc.cnc import PROGRAM_MESSAGE, Alarm
@@ -208,10 +209,10 @@ def servo_meter(view: View, request: Request) -> Content:
     """
     if request.arguments[0] != _LOAD_PERCENT:
         raise RefusedError(NOT_THERE)
-    control, signals = view.control, view.control.signals
+    signals = view.control.signals
     made = []
     for number, axis in enumerate(view.status.axes.values(), 1):
-        share = 100.0 * axis.velocity / control.machine.config.axes[number - 1].vmax
+        share = math.copysign(axis.load_percent, axis.velocity)
         most = signals.torque_override(number)
         made.append(Value8.of(0.0 if signals.servo_is_off(number) else max(-most, min(most, share)), 0))
     return padded(made, view)
