@@ -23,7 +23,7 @@ from polycnc.cnc._plc import Script
 from polycnc.cnc._program_commands import ProgramCommands
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._settings import Settings
-from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Status
+from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Status, ToolInUse
 from polycnc.cnc._status_reading import StatusReader
 from polycnc.cnc._stopping import PROGRAM_MESSAGE, stop_for
 from polycnc.cnc._stops import Step
@@ -261,6 +261,15 @@ class Control:
         """
         return self._time.advance(cycles, until=until)
 
+    def be_shared(self, is_enough: Condition | None) -> None:
+        """Let `advance` return early when this holds: its thread has more to do than to let the time of this pass."""
+        self._time.is_enough = is_enough
+
+    @property
+    def has_enough(self) -> bool:
+        """Whether its thread has more to do now than to let the time of this pass."""
+        return self._time.has_enough
+
     def be_watched(self, watch: CycleWatch | None) -> None:
         """Let somebody look at every cycle for as long as it is awake; time passes slower then."""
         self._time.watch = watch
@@ -301,6 +310,10 @@ class Control:
             ControlError: There is no such channel.
         """
         return self._reader.channel(self._parts.channel(channel).path)
+
+    def tool_in_use(self, channel: int = 0) -> ToolInUse | None:
+        """Return the tool of a channel of the status, without the rest of it; None before the first block."""
+        return self._reader.tool(self._parts.channel(channel).path)
 
     def inventory(self) -> Inventory:
         """Return what changes seldom: programs, tools, offsets, limits, histories; the same object until it does."""
