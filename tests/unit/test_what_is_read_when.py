@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import pytest
 
-from polycnc.cnc import ControlEvent, RunState
+from polycnc.cnc import Answer, Control, ControlData, ControlEvent, Function, RunState
 from polycnc.controllers.fanuc import PowerMate
+from support.cnc_machine import cnc_machine
 
 TEXT = "O0001\nG90G1X10.F600\nX20.\nX[#500]\nY[#501]\nM30\n"
 
@@ -72,3 +73,26 @@ def test_tool_offsets_count_for_blocks_that_have_not_been_read() -> None:
     made.advance(300)
     made.tool_offsets.set_all({3: 21_500, 4: 3_250})
     assert end_of(made) == {"X": 21.5, "Y": 3.25}
+
+
+@pytest.mark.parametrize("words", ["M6", "T2 M6", "M8", "S900 M3"])
+@pytest.mark.parametrize("cut", [1, 211])
+def test_what_the_plc_changes_counts_behind_its_function(words: str, cut: int) -> None:
+    """While a function waits for its answer nothing behind it is read: offsets that are measured then count."""
+    made = Control(
+        cnc_machine(),
+        dialect="fanuc",
+        data=ControlData(reference_required=False),
+        script={(each, None): Answer(after_s=None) for each in Function},
+    )
+    made.programs.create("PART", f"G1 X3 F3000\n{words}\nG54 X5\nM30\n")
+    made.select_program("PART")
+    made.cycle_start()
+    while not made.waiting_functions(0):
+        made.advance(cut)
+    made.offsets.set("G54", {"X": 1.25})
+    while made.waiting_functions(0):
+        made.plc.answer()
+        made.advance(1)
+    made.advance(100_000, until=ControlEvent.RUN_STATE)
+    assert made.status().axes["X"].machine == pytest.approx(6.25)
