@@ -225,7 +225,16 @@ def test_no_command_leaves_an_old_status(state: str) -> None:
 
 def test_the_public_commands_are_all_tried() -> None:
     text = Path(__file__).read_text()
-    others = {"status", "axes", "channel_status", "snapshot", "advance", "be_watched", "waiting_functions"}
+    others = {
+        "status",
+        "axes",
+        "channel_status",
+        "inventory",
+        "snapshot",
+        "advance",
+        "be_watched",
+        "waiting_functions",
+    }
     names = {
         name
         for name, value in vars(Control).items()

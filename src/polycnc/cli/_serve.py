@@ -157,7 +157,9 @@ async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
     late = _Late()
     try:
         for address in addresses:
-            control = PowerMate(wanted.axes, memory=wanted.memory)
+            control = PowerMate(
+                wanted.axes, memory=wanted.memory, characters=wanted.profile.program_characters
+            )
             controls.append(control)
             if content is not None:
                 number, text = _numbered(content)

@@ -11,7 +11,7 @@ from polycnc.cnc._alarms import Alarm, OperatorMessage
 from polycnc.cnc._control_data import Mode, Overrides, Switches
 from polycnc.cnc._frozen import row
 from polycnc.cnc._manual import Handwheel
-from polycnc.cnc._run_state import RunState
+from polycnc.cnc._run_state import INTERRUPTED, RunState
 from polycnc.cnc._spindle import SpindleState
 from polycnc.cnc._timers import Parts, Timer
 from polycnc.nc import BlockRecord, ModalWords
@@ -113,6 +113,16 @@ class ChannelStatus(NamedTuple):
     overrides: Overrides
     switches: Switches
     axes: tuple[str, ...]
+
+    @property
+    def active(self) -> bool:
+        """Whether a program is being executed, or about to when axes have returned."""
+        return self.returning or self.run_state is RunState.ACTIVE
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether a program stands and could go on."""
+        return self.run_state in INTERRUPTED
 
 
 @row

@@ -58,7 +58,7 @@ def _stopped(power_mate: PowerMate, axis: int) -> int:
 
 
 def _axis_state(power_mate: PowerMate, axis: int) -> int:
-    status = power_mate.status().axes[power_mate.axis_name(axis)]
+    status = power_mate.control.axes()[power_mate.axis_name(axis)]
     return 0 if not status.moving else 2 if status.manual != "none" else 1
 
 

@@ -237,7 +237,7 @@ class PowerMate:
         """Have no program selected."""
         self._state["selected"] = 0
         self.state.cursor = 0
-        self.control.channels[0].program = None
+        self.control.channels[0].select(None)
 
     @property
     def cursor(self) -> int:
