@@ -64,7 +64,7 @@ from polycnc.nc import Dialect, load_dialect
 MOST_AXES = {"H": 6, "D": 2}
 _STATE = "fanuc.state"
 _MM_PER_MIN = 60.0
-_BLOCKS_AHEAD = 5
+_BLOCKS_AHEAD = 1  # Manual 000, cnc_modal: the next block, and the next but one at the most
 _ACT_ON_MOTION = frozenset({0, 1320, 1321, 1420, 1423, 1620, 1825, 1828, 3401})
 _ALL_KEYS = frozenset({1, 2, 3, 4})
 
