@@ -53,10 +53,8 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
         "cnc/_run_conduct.py Conduct",
-        "controllers/bosch/ncs/_partner.py Partner",
         "controllers/fanuc/device/_power_mate.py",
         "controllers/fanuc/device/_power_mate.py PowerMate",
-        "controllers/fanuc/device/_power_mate.py PowerMate.__init__",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (
         "nc/cpl/_blocks.py",
@@ -73,11 +71,7 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "nc/macro/_shape.py shape",
         "nc/macro/_system.py SystemVariables._modal",
     ),
-    "a table, a line for each row": (
-        "controllers/bosch/ncs/_data_services.py _rows",
-        "controllers/fanuc/device/_signals.py Signals",
-        "controllers/fanuc/device/_signals.py Signals.f",
-    ),
+    "a table, a line for each row": ("controllers/bosch/ncs/_data_services.py _rows",),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
         "post/output/_motion.py Motion",
