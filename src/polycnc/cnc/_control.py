@@ -23,7 +23,7 @@ from polycnc.cnc._plc import Script
 from polycnc.cnc._program_commands import ProgramCommands
 from polycnc.cnc._program_edit import ProgramEdit
 from polycnc.cnc._settings import Settings
-from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Status
+from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Status, ToolInUse
 from polycnc.cnc._status_reading import StatusReader
 from polycnc.cnc._stopping import PROGRAM_MESSAGE, stop_for
 from polycnc.cnc._stops import Step
@@ -310,6 +310,10 @@ class Control:
             ControlError: There is no such channel.
         """
         return self._reader.channel(self._parts.channel(channel).path)
+
+    def tool_in_use(self, channel: int = 0) -> ToolInUse | None:
+        """Return the tool of a channel of the status, without the rest of it; None before the first block."""
+        return self._reader.tool(self._parts.channel(channel).path)
 
     def inventory(self) -> Inventory:
         """Return what changes seldom: programs, tools, offsets, limits, histories; the same object until it does."""

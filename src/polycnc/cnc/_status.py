@@ -130,6 +130,8 @@ class Status(NamedTuple):
     """A control at one cycle; mode, overrides and switches are those of the first channel.
 
     `last_alarm` is the machine's date and time (ISO) when the newest alarm of the history came; it may be gone.
+    `left_s` is how long what each channel has planned ahead still takes, without holds (s); how long its program has
+    taken so far is `Timer.CYCLE`.
     """
 
     cycle: int
@@ -147,6 +149,7 @@ class Status(NamedTuple):
     messages: tuple[OperatorMessage, ...]
     wheel: Handwheel
     timers_s: Mapping[Timer, float]
+    left_s: tuple[float, ...]
     parts: Parts
 
     @property

@@ -5,14 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from datetime import datetime
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from polycnc.controllers.fanuc import AxisPositions, PowerMate
 from polycnc.controllers.fanuc.wire import CNC, Content, Request, Value8, layout_of, record
 from polycnc.servers.focas._profile import Profile
-
-if TYPE_CHECKING:
-    from polycnc.cnc import Status
 
 NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED = range(1, 8)
 WRONG_PATH, REJECTED = 11, 13
@@ -38,18 +35,12 @@ class View:
         self.profile = profile
 
     @cached_property
-    def status(self) -> Status:
-        """What the control is and does."""
-        return self.control.status()
-
-    @cached_property
     def positions(self) -> tuple[AxisPositions, ...]:
         """Where its axes are, in increments."""
         return self.control.positions.read()
 
     def forget(self) -> None:
         """Read anew: something has been changed."""
-        self.__dict__.pop("status", None)
         self.__dict__.pop("positions", None)
 
 

@@ -59,7 +59,7 @@ _LATER_MOTION = {3: 2}
 @answers(0x19)
 def state(view: View, request: Request) -> Content:
     """Return mode, run state, motion, functions, emergency stop, alarm and editing."""
-    found = named(request, read_state(view.control, view.status))
+    found = named(request, read_state(view.control))
     if not view.profile.old_states:
         found["run"] = _LATER_RUN.get(found["run"], found["run"])
         found["motion"] = _LATER_MOTION.get(found["motion"], found["motion"])
@@ -104,7 +104,7 @@ def alarm_bits(view: View, request: Request) -> Content:
     if view.profile.old_states:
         return {"alarms": int(view.control.alarm_bits)}
     later = 0
-    for alarm in shown(view.status.alarms):
+    for alarm in shown(view.control.control.alarms.active):
         later |= 1 << _type_of(view, alarm)
     return {"alarms": later}
 
@@ -120,7 +120,7 @@ def alarms(view: View, request: Request) -> Content:
         raise RefusedError(LENGTH)
     rows = []
     names = [view.control.axis_name(axis) for axis in range(1, view.control.axes + 1)]
-    for alarm in shown(view.status.alarms):
+    for alarm in shown(view.control.control.alarms.active):
         number = _type_of(view, alarm)
         if kind in (ALL, number):
             axis = names.index(alarm.axis) + 1 if alarm.axis in names else 0
@@ -147,7 +147,7 @@ def messages(view: View, request: Request) -> Content:
         raise RefusedError(NO_OPTION)
     made = [
         {"number": each.number, "type": kind, "length": len(words.rstrip(b"\0")), "text": words}
-        for each in view.status.messages
+        for each in view.control.control.messages.shown
         if kind == (_MACRO_STOP if each.number == PROGRAM_MESSAGE else _OPERATOR)
         for words in [text(each.text, 256)]
     ]
@@ -187,7 +187,7 @@ def feed(view: View, request: Request) -> Content:
 @answers(0x25)
 def spindle_speed(view: View, request: Request) -> Content:
     """Return the actual spindle speed."""
-    return {"rpm": Value8.of(abs(view.status.spindle.actual_rpm), 0)}
+    return {"rpm": Value8.of(abs(view.control.control.spindle.state().actual_rpm), 0)}
 
 
 @answers(0x89)
@@ -226,7 +226,7 @@ def servo_meter(view: View, request: Request) -> Content:
         raise RefusedError(NOT_THERE if request.arguments[0] in _KINDS_OF_METERS else ATTRIBUTE)
     signals = view.control.signals
     made = []
-    for number, axis in enumerate(view.status.axes.values(), 1):
+    for number, axis in enumerate(view.control.control.axes().values(), 1):
         share = math.copysign(axis.load_percent, axis.velocity)
         most = signals.torque_override(number)
         made.append(Value8.of(0.0 if signals.servo_is_off(number) else max(-most, min(most, share)), 0))
@@ -247,7 +247,7 @@ def spindle(view: View, request: Request) -> Content:
     if asked not in (ALL, 1):
         raise RefusedError(ATTRIBUTE)
     most = view.control.machine.config.spindle.max_rpm
-    rpm = abs(view.status.spindle.actual_rpm)
+    rpm = abs(view.control.control.spindle.state().actual_rpm)
     if kind in (_RAW_LOAD, _LOAD_METER) and view.profile.wide_values:
         value = 100.0 * rpm / most
     elif kind in (_MOST_RPM, _MOTOR_RPM):
