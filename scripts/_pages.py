@@ -64,6 +64,12 @@ def bosch_ncs_page() -> str:
     return page()
 
 
+def cpl_page() -> str:
+    """Return the page of CPL."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_cpl_page.py"))["page"]
+    return page()
+
+
 def dialects_page() -> str:
     """Return the page of the dialects, its tables written anew."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_dialect_page.py"))["page"]
@@ -94,6 +100,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/apci-system-file.md": apci_system_file_page,
     "docs/reference/bosch-ncs.md": bosch_ncs_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/cpl.md": cpl_page,
     "docs/reference/dialects.md": dialects_page,
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),

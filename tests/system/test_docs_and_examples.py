@@ -29,6 +29,7 @@ def _name(page: Path) -> str:
 ELSEWHERE = {
     "docs/tutorials/test-your-collector.md",
     "docs/how-to/add-a-g-code.md",
+    "docs/how-to/add-a-cpl-function.md",
     "docs/how-to/add-a-library-function.md",
 }
 

@@ -47,6 +47,50 @@ def _copy(folder: Path) -> Path:
     return package
 
 
+_LINKS = """
+import json, sys
+from polycnc.nc.cpl import Linker, Run
+from support.cpl_host import RecordingHost
+found = []
+for text in sys.argv[1:]:
+    host = RecordingHost()
+    linker = Linker(host.program)
+    main, errors = linker.link(text, "main.cpl")
+    run = main and Run(main, linker, host)
+    while run and run.step() is not None:
+        pass
+    found.append([run.globals if run else {}, [str(error) for error in errors]])
+print(json.dumps(found))
+"""
+
+
+def test_a_cpl_function_is_one_decorated_function(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    page = REPOSITORY / "docs" / "how-to" / "add-a-cpl-function.md"
+    (function,) = (each for each in fences(page) if each.title)
+    with (package / function.title).open("a", encoding="utf-8") as file:
+        file.write(f"\n\n{function.text}")
+    programs = (
+        "1 A=5 : #A=HYP(A,12) : #B=HYP(3,4,12)",
+        "1 #A=HYP(5)",
+        '1 #A=HYP(5,"12")',
+        "1 HYP=3",
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", _LINKS, *programs],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(REPOSITORY / "tests")))},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    (values, _), *refused = json.loads(run.stdout)
+    assert values == {"#A": 13, "#B": 13}
+    number = "HYP takes 2 to 3 arguments, not "
+    whats = (f"{number}1", "HYP takes a number, not a string", f"{number}0")
+    for (_, errors), what in zip(refused, whats, strict=True):
+        assert what in errors[0]
+
+
 def _put(file: Path, text: str, before: str) -> None:
     """Write text into a file before what stands there once."""
     content = file.read_text(encoding="utf-8")

@@ -197,3 +197,9 @@ def test_a_header_declares_constants_types_and_what_lies_beside() -> None:
     assert (header.constants, list(header.classes)) == ({"DEPTH": 3}, ["TAPE", "EITHER"])
     assert ctypes.sizeof(header.classes["EITHER"]) == 48
     assert [each.declaration for each in header.layouts["TAPE"].fields][1:3] == ["WORD wound[3]", "WORD end"]
+
+
+def test_without_a_word_about_packing_c_aligns_and_cuts() -> None:
+    made = Header("typedef struct { char a; long b; } LOOSE;", __name__).classes["LOOSE"]
+    assert (ctypes.sizeof(made), made.b.offset) == (8, 4)
+    assert made(b=2**32 + 5).b == 5

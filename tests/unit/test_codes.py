@@ -33,7 +33,7 @@ def test_every_code_is_carried_out_by_one_function() -> None:
         action
         for module in vars(_codes).values()
         for function in getattr(module, "__dict__", {}).values()
-        for action in getattr(function, "carries_out", ())
+        for action in getattr(function, "_carries_out", ())
         if getattr(function, "__module__", "") == getattr(module, "__name__", None)
     ]
     assert sorted(marked) == sorted(CODES)

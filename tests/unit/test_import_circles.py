@@ -18,7 +18,7 @@ KNOWN = {
     ),
     "polycnc.controllers.imc.card": "_card _status",
     "polycnc.runner": (
-        "_result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
+        "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
         "batches._report batches._store batches._sweep batches._thumbnail batches._workers batches._write "
         "comparison._both comparison._compare plots plots._over_time plots._paths plots._plot plots._scene "
         "view view._page view._part_frame view._track view._view"

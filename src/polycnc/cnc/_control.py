@@ -261,6 +261,15 @@ class Control:
         """
         return self._time.advance(cycles, until=until)
 
+    def be_shared(self, is_enough: Condition | None) -> None:
+        """Let `advance` return early when this holds: its thread has more to do than to let the time of this pass."""
+        self._time.is_enough = is_enough
+
+    @property
+    def has_enough(self) -> bool:
+        """Whether its thread has more to do now than to let the time of this pass."""
+        return self._time.has_enough
+
     def be_watched(self, watch: CycleWatch | None) -> None:
         """Let somebody look at every cycle for as long as it is awake; time passes slower then."""
         self._time.watch = watch

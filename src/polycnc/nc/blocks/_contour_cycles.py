@@ -20,7 +20,7 @@ from polycnc.nc.blocks._contours import (
     names_x_and_z,
     numbered_block,
     without_compensation,
-)  # fmt: skip
+)
 from polycnc.nc.blocks._corner_blocks import refuse_open
 from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline

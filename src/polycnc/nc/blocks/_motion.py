@@ -27,7 +27,7 @@ from polycnc.nc.modal._modal import (
     NO_AXIS,
     RAPID_STOP,
     short_way,
-)  # fmt: skip
+)
 
 
 def begin(block: BlockContext, g: GWord) -> None:

@@ -8,13 +8,15 @@ from functools import cached_property
 from typing import Any, TypeAlias
 
 from polycnc.controllers.fanuc import AxisPositions, PowerMate
-from polycnc.controllers.fanuc.wire import Content, Request, Value8, layout_of, record
+from polycnc.controllers.fanuc.wire import CNC, Content, Request, Value8, layout_of, record
 from polycnc.servers.focas._profile import Profile
 
-NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED, REJECTED = 1, 2, 3, 4, 5, 6, 7, 13
+NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED = range(1, 8)
+WRONG_PATH, REJECTED = 11, 13
 """Codes that clients get, by the names of the function library."""
 ALL = -1
-MOST_NUMBERS = 200
+MOST_NUMBERS = 433
+"""Values of eight bytes that the largest frame of all series holds."""
 
 
 class RefusedError(Exception):
@@ -44,13 +46,31 @@ class View:
 
 Command: TypeAlias = Callable[[View, Request], Content]
 """Carries out a request and returns what the reply holds; it refuses by raising `RefusedError`."""
+COMMANDS: dict[tuple[int, int], Command] = {}
+"""The commands that are answered, by target and code."""
+WRITING: set[tuple[int, int]] = set()
+"""Those that change something."""
+
+
+def answers(*codes: int, target: int = CNC, writes: bool = False) -> Callable[[Command], Command]:
+    """Say which commands a function answers; what stands in request and reply is in `wire.LAYOUTS`."""
+
+    def note(function: Command) -> Command:
+        keys = [(target, code) for code in codes]
+        COMMANDS.update(dict.fromkeys(keys, function))
+        WRITING.update(keys if writes else ())
+        return function
+
+    return note
 
 
 def numbers(request: Request) -> range:
     """Return the numbers from the first to the second argument."""
     first, last = request.arguments[:2]
-    if last < first or last - first >= MOST_NUMBERS:
+    if last < first:
         raise RefusedError(NUMBER)
+    if last - first >= MOST_NUMBERS:
+        raise RefusedError(LENGTH)
     return range(first, last + 1)
 
 

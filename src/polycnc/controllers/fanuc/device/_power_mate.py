@@ -147,6 +147,7 @@ class PowerMate:
         self.parameters.on_change = self._parameters_changed
         self.custom_macros = Macros(self, self.macros, self.state.macros)
         self.control = self._switched_on(None)
+        self.control.be_watched(self.history)
         if self.selected not in self.programs:
             self.unselect()
         self._begin_signals()
@@ -385,6 +386,7 @@ class PowerMate:
         self.state.inch = self.parameters.bit(0, 2)
         self.custom_macros.switched_on()
         self.control = self._switched_on(old.machine)
+        self.control.be_watched(self.history)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self.state.mode = PowerMateMode.MEM
         if self.selected:
@@ -420,7 +422,8 @@ class PowerMate:
             passed = self.control.advance(step, until=watch if busy else until)
             done += passed
             over = callable(until) and until()
-            if over or self.control.raised & events or (passed < step and not busy) or not passed:
+            is_over = over or self.control.has_enough or (passed < step and not busy) or not passed
+            if is_over or self.control.raised & events:
                 break
         self.axis_motion.look()
         self.history.sample(force=False)
