@@ -42,6 +42,7 @@ def _prepare(text: str) -> None:
     program = ProgramText.from_text(text)
     channel = Channel(program, load_dialect("fanuc"), machine, language=MacroLanguage())
     while not channel.done:
+        channel.machine.clock.tick(1)  # a control prepares so much in a cycle
         channel.fill()
     assert channel.error is None
 

@@ -6,7 +6,7 @@ from types import ModuleType
 from typing import Any
 
 from polycnc.controllers.imc import imclib
-from polycnc.controllers.imc.core import _parameters
+from polycnc.controllers.imc.core import _bits, _ownership, _parameters
 from polycnc.controllers.imc.library import _device, _expansions, _memory, _motion, _network, _path
 
 _GROUPS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
@@ -56,6 +56,42 @@ def parameters_page() -> str:
         for each in rows
     )
     return _HEAD.format(title="iMC parameters", text=_PARAMETERS.rstrip("\n")) + "".join(lines)
+
+
+_OWNERSHIP = """What moves the main coordinate system of an axis (rows), and what a command does to it (columns).
+Superimposed moves (`pcsgo`, `pcstgvel`) touch none of it. A path or contour takes over whatever moves its axes.
+
+A gear (`IMC_GearInDist`, `IMC_GearInTime`) or synchronous motion that has been set up waits for `startsyn` beside
+whatever moves the axis, and no motion takes it away. An error that stops the axis, leaving run, an emergency stop,
+`clear`, `engear := 0` and `enasyn := 0` end the wait: `engear`, `startsyn` and `enasyn` read 0 then. `startsyn` counts
+when it is written after what it starts; where nothing waits and `enasyn` is 0 it reads 0 in the next cycle.
+
+A command that takes over shows in the flags of what it ends: `mcsgo`, `gohome`, `engear`, `startsyn`, `enasyn` read 0.
+A refused one reads 0 itself.
+"""
+
+_BITS = """Bits that are not named are 0 and do nothing. `stopfilt` (stops the axis), `stopmode` (at once), `exitfilt`
+(clears `run`) and `emstop` (sets the bits in every axis) have the bits of `error`. To switch a limit switch on that
+opens when it is reached, so that its terminal is high: `aioctr := 0003h` for the positive one, `000Ch` for the negative
+one, `000Fh` for both; `C000h` more for the software limits.
+"""
+
+
+def axis_page() -> str:
+    """Return the page of who moves an axis, and of the bits of its registers."""
+    return _HEAD.format(title="iMC axes", text="".join(_axis()).strip("\n"))
+
+
+def _axis() -> Iterator[str]:
+    yield f"## Who moves an axis\n\n{_OWNERSHIP}\n| |"
+    yield "".join(f" {command.replace('FFFFh', '-1')} |" for command in _ownership.COMMANDS)
+    yield f"\n{'| --- ' * (len(_ownership.COMMANDS) + 1)}|\n"
+    for owner, effects in zip(_ownership.OWNERS, _ownership.OWNERSHIP, strict=True):
+        yield f"| {owner} |{''.join(f' {_ownership.EFFECTS[effect]} |' for effect in effects)}\n"
+    yield f"\n## Bits\n\n{_BITS}"
+    for register, bits in _bits.REGISTERS.items():
+        yield f"\n### {register}\n\n| mask | name | while it is set |\n| --- | --- | --- |\n"
+        yield from (f"| {bit.mask:04X}h | {bit.name} | {bit.meaning} |\n" for bit in bits)
 
 
 def _functions() -> Iterator[str]:

@@ -96,6 +96,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),
     "docs/reference/focas-protocol.md": focas_page,
+    "docs/reference/imc-axes.md": partial(imc_page, "axis_page"),
     "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),
     "docs/reference/machine-file.md": machine_file_reference,

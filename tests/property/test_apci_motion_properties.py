@@ -16,8 +16,8 @@ from polycnc.controllers.apci.board._axis_commands import cl, clv, ol, ra, utrov
 from polycnc.controllers.apci.board._jog_commands import ja, jhi, jhl, jr, js, ms
 from polycnc.controllers.apci.board._move_commands import Speeds, mca, mcr, mcr3d, mhr, mla, mlr
 from polycnc.controllers.apci.board._spool_commands import free_bytes, sdels, spd, ssf, ssms, sstps, sstvl
-from polycnc.controllers.apci.core._registers import Axst, ModeReg
 from polycnc.controllers.apci.core._state import IDLE, MOVE, SPOOL_ENTRIES, TABLE, WAITING
+from support.apci_bits import Axst, ModeReg
 from support.apci_rig import SCAN_S, Rig
 
 Random = np.random.Generator

@@ -46,7 +46,13 @@ def state(control: PowerMate) -> tuple[Any, ...]:
         {number: control.macros.get(number) for number in (*range(100, 200), *range(500, 1000))},
         [control.tool_offsets.get(number) for number in range(1, 100)],
         [(each, control.programs.read(each.number)) for each in control.programs.directory()],
-        (control.selected, control.cursor, control.mdi.blocks, control.mdi.start, control.alarm_bits),
+        (
+            control.selected,
+            control.cursor,
+            control.mdi.state.blocks,
+            control.mdi.state.start,
+            control.alarm_bits,
+        ),
         control.control.relative_zero,
     )
 

@@ -39,7 +39,7 @@ class Rig:
             Machine(config, segments=256),
             ProgramText.from_path(main),
             load_dialect("fanuc"),
-            options=RunOptions(asks_often=True),
+            options=RunOptions(),
             language=self.language,
         )
 
@@ -99,7 +99,7 @@ class CplRig(Rig):
             self.machine,
             ProgramText.from_text(programs["main.cpl"], "main.cpl"),
             load_dialect("bosch"),
-            options=RunOptions(asks_often=True),
+            options=RunOptions(),
             language=self.cpl,
         )
 
@@ -293,7 +293,7 @@ def test_a_run_without_its_language_is_refused(tmp_path: Path) -> None:
         Machine(load_machine(None), segments=256),
         rig.run.program,
         load_dialect("fanuc"),
-        options=RunOptions(asks_often=True),
+        options=RunOptions(),
     )
     with pytest.raises(SnapshotError):
         alone.restore(RunSnapshot.from_bytes(kept[0]))

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from polycnc.controllers.apci.board._axis_commands import cl
 from polycnc.controllers.apci.board._board import LATENCY_SCANS, Board
 from polycnc.controllers.apci.board._system_file import parse_system_file
-from polycnc.controllers.apci.core._registers import Axst
 from polycnc.kernel import LEADING
 
 SCAN_S = 0.00128
@@ -54,9 +53,9 @@ class Rig:
         axis.jac = -jdec
         axis.jvl, axis.jtvl = jvl, jtvl
 
-    def bits(self, i: int = 0) -> Axst:
+    def bits(self, i: int = 0) -> int:
         """Return the status word of an axis."""
-        return self.board.axes[i].axst
+        return int(self.board.axes[i].axst)
 
     def free_entries(self) -> int:
         """Return how many spooler entries nobody uses."""

@@ -11,6 +11,7 @@ from polycnc.cnc import (
     ControlData,
     ControlError,
     Refusal,
+    Status,
 )
 from support.cnc_machine import cnc_machine
 
@@ -42,12 +43,18 @@ def started(data: ControlData | None = None, program: str = "PART", **keys: obje
 
 
 def refused(reason: Refusal, call: Callable[[], object], made: Control) -> None:
-    before = made.status()
+    before = fresh(made)
     with pytest.raises(ControlError) as caught:
         call()
     assert caught.value.reason is reason
     assert caught.value.hint
-    assert made.status() == before
+    assert fresh(made) == before
+
+
+def fresh(made: Control) -> Status:
+    """Return a status that is read anew, whatever was read before."""
+    made.clock.changes += 1
+    return made.status()
 
 
 def x_of(made: Control) -> float:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -62,6 +63,9 @@ def prepare(
     channel = Channel(text, load_dialect(dialect), machine, options=options, **arguments)
     give_to_path(machine.state, channel.path)
     channel.fill()
+    while channel.paused:
+        machine.clock.tick(1)  # more is prepared with the next cycle
+        channel.fill()
     assert channel.done, "the program does not fit into the queue"
     return channel
 
@@ -173,7 +177,7 @@ def channel_state(channel: Channel) -> dict[str, object]:
         "shift": state.coordinates.shift.tolist(),
         "length": state.coordinates.length.tolist(),
         "length_sign": state.coordinates.length_sign,
-        "plain": state.plain()._replace(feed_word=0.0),  # of the present block only
+        "plain": replace(state.plain(), feed_word=0.0),  # of the present block only
         "compensation": dict(vars(stage)) if stage.active else {},
         "messages": [(message.text, message.line, message.count) for message in channel.messages.all()],
         "tolerance": float(channel.writer.paths.row[channel.path]["tolerance_mm"]),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci.core._registers import Axst, ModeReg
+from support.apci_bits import Axst, ModeReg
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
 DRIVE = '[[axis]]\nkp = 20\njac = 100.0\njvl = 100.0\n[axis.plant]\nkind = "lag"\nvelocity_at_10_v = 500\n'
@@ -28,8 +28,8 @@ def jog(pc: Pc, *axes: int, by: float) -> None:
     pc.board.advance(LATENCY)
 
 
-def bit(an: int, flag: Axst) -> bool:
-    return pcap.rdaxstb(an, (flag.number or 0) + 1) == 1
+def bit(an: int, flag: int) -> bool:
+    return pcap.rdaxstb(an, flag.bit_length()) == 1
 
 
 # ------------------------------------------------------------------ monitors
@@ -127,6 +127,36 @@ def test_gear_factor_and_resolution_convert_counts_to_the_unit_of_the_axis(how: 
     assert pc.dv(1) == near(60.0 / along)
     pc.scans_until_rest()
     assert (pc.rp(0), pc.rp(1)) == near((2.0, 3.0))
+
+
+@pytest.mark.covers("apci.wrgf", "apci.wrslsp")
+@pytest.mark.parametrize(("gf", "slsp"), [(0.375, 4000.0), (0.25, 7000.0), (0.1, 900.0)])
+def test_positions_speeds_and_a_running_jog_keep_their_numbers_when_counts_per_unit_change(
+    gf: float, slsp: float
+) -> None:
+    runs = []
+    for change in (False, True):
+        pc = Pc("[[axis]]\nslsp = 4000.0\ngf = 0.25\n")
+        record = pcap.TSRP(an=0, jac=300.0, jvl=35.0)
+        pcap.wrjac(record)
+        pcap.wrjvl(record)
+        jog(pc, 0, by=17.5)
+        pc.run(0.0512)
+        if change:
+            pcap.wrgf(pcap.TSRP(an=0, gf=gf))
+            pcap.wrslsp(0, slsp)
+        pcap.rdjac(record)
+        pcap.rdjvl(record)
+        seen = [record.jac, record.jvl, pc.rp(0), pc.dv(0)]
+        for _ in range(4):
+            pc.run(0.0512)
+            seen += [pc.rp(0), pc.dv(0)]
+        pc.scans_until_rest()
+        runs.append([*seen, pc.rp(0)])
+        pcap.detach()
+    assert runs[0] == runs[1]
+    assert (runs[1][:2], runs[1][-1]) == (near([300.0, 35.0]), near(17.5))
+    assert runs[1][3] > 0.0
 
 
 @pytest.mark.covers("apci.wrEffRadius", "apci.var.effradius", "apci.interp.surface")

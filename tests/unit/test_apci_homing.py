@@ -8,7 +8,8 @@ from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, shp, write
 from polycnc.controllers.apci.board._jog_commands import ja, jhi, jhl, jhr, jr, js
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.core._latches import BY_STROBE
-from polycnc.controllers.apci.core._registers import Axst, Digi
+from polycnc.controllers.apci.core._registers import Digi
+from support.apci_bits import Axst
 from support.apci_rig import LATENCY, SCAN_S, Rig
 
 SYSTEM = """

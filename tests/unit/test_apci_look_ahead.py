@@ -9,7 +9,7 @@ import pytest
 
 from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
 from polycnc.controllers.apci.board._spool_commands import ssf, ssms
-from polycnc.controllers.apci.core._registers import ErrorReg, ModeReg
+from support.apci_bits import ErrorReg, ModeReg
 from support.apci_rig import SCAN_S, Rig, scans_for
 
 FAST = Speeds(500.0, 40.0, 40.0)

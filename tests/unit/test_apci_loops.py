@@ -24,7 +24,7 @@ from polycnc.controllers.apci.board._axis_commands import (
 from polycnc.controllers.apci.board._jog_commands import ja, jr, js
 from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
 from polycnc.controllers.apci.board._system_file import parse_system_file
-from polycnc.controllers.apci.core._registers import Axst, ModeReg
+from support.apci_bits import Axst, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig
 
 LAG = '[[axis]]\nkp = 30\n[axis.plant]\nkind = "lag"\nlag_s = 0.005\n'

@@ -9,7 +9,7 @@ from polycnc.controllers.apci.board._axis_commands import ra, utrovr
 from polycnc.controllers.apci.board._jog_commands import jr
 from polycnc.controllers.apci.board._move_commands import Speeds, mcr, mlr
 from polycnc.controllers.apci.board._spool_commands import ssms
-from polycnc.controllers.apci.core._registers import Axst, ModeReg
+from support.apci_bits import Axst, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig, scans_for
 
 PATH = Speeds(100.0, 50.0)

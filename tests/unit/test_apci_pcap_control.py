@@ -6,7 +6,8 @@ from collections.abc import Iterator
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci.core._registers import Axst, Digi, Ifs
+from polycnc.controllers.apci.core._registers import Digi, Ifs
+from support.apci_bits import Axst
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
 SYSTEM = """
@@ -115,7 +116,7 @@ def test_ra_resets_its_axes_and_keeps_their_parameters(pc: Pc) -> None:
     line(pc, axes, 5.0, 0.0, 5.0)
     pcap.wrjac(pcap.TSRP(an=0, jac=77.0))
     pcap.wrdigo(pcap.TSRP(an=0, digo=0b0000_0110))
-    assert pcap.rdaxstb(0, Axst.referenced.number + 1) == 1
+    assert pcap.rdaxstb(0, Axst.referenced.bit_length()) == 1
     pcap.ra(pcap.AS.of(0))
     record = pcap.TSRP(an=0)
     pcap.rdap(record)
@@ -123,7 +124,7 @@ def test_ra_resets_its_axes_and_keeps_their_parameters(pc: Pc) -> None:
     assert (record.rp, record.dp, record.mcp, record.jovr, record.jac) == (0.0, 0.0, 0, 1.0, 77.0)
     assert pcap.rdMCiS(0) == 0
     assert record.digo & 0b1000_0001 == 0b1000_0000  # as planned, and its PAE off
-    assert pcap.rdaxstb(2, Axst.cl.number + 1) == 1
+    assert pcap.rdaxstb(2, Axst.cl.bit_length()) == 1
 
 
 @pytest.mark.covers("apci.rs", "apci.rule.commonpersist", "apci.rule.override_reset", "apci.rule.referenced")
@@ -161,7 +162,7 @@ def test_rs_resets_all_axes_and_keeps_parameters_common_variables_and_ifs(pc: Pc
 
 @pytest.mark.covers("apci.rule.referenced", "apci.cl", "apci.ol")
 def test_a_stepper_is_not_referenced_any_more_when_its_loop_opens_or_closes(pc: Pc) -> None:
-    referenced = Axst.referenced.number + 1
+    referenced = Axst.referenced.bit_length()
     for change in (pcap.cl, pcap.ol):
         for an in (0, 1):
             pcap.shp(pcap.TSRP(an=an))
@@ -216,22 +217,22 @@ def test_old_operating_systems_lack_some_status_bits() -> None:
 def test_shp_sets_the_machine_zero_and_arms_the_software_limits(pc: Pc) -> None:
     pc.close(0)
     go(pc, 0, 30.0)  # beyond slr = 20, which is not watched yet
-    assert (pc.rp(0), pcap.rdaxstb(0, Axst.lsrs.number + 1)) == (30.0, 0)
+    assert (pc.rp(0), pcap.rdaxstb(0, Axst.lsrs.bit_length())) == (30.0, 0)
     pcap.shp(pcap.TSRP(an=0, tp=5.0))
-    assert (pc.rp(0), pcap.rdaxstb(0, Axst.referenced.number + 1)) == (5.0, 1)
+    assert (pc.rp(0), pcap.rdaxstb(0, Axst.referenced.bit_length())) == (5.0, 1)
     go(pc, 0, 8.0)
     assert pc.rp(0) == 8.0  # targets count from the new zero
     pcap.wrslr(pcap.TSRP(an=0, slr=12.0))
     pcap.wrsll(pcap.TSRP(an=0, sll=2.0))
     go(pc, 0, 15.0)
-    assert pcap.rdaxstb(0, Axst.lsrs.number + 1) == 1
+    assert pcap.rdaxstb(0, Axst.lsrs.bit_length()) == 1
     assert pc.rp(0) == near(12.0, abs=50.0 * SCAN_S)  # SMA holds the setpoint
     go(pc, 0, 0.0)
-    assert pcap.rdaxstb(0, Axst.lsls.number + 1) == 1
+    assert pcap.rdaxstb(0, Axst.lsls.bit_length()) == 1
     pcap.ra(pcap.AS.of(0))
     pc.close(0)
     go(pc, 0, 15.0)
-    assert (pc.rp(0), pcap.rdaxstb(0, Axst.lsrs.number + 1)) == (near(15.0), 0)
+    assert (pc.rp(0), pcap.rdaxstb(0, Axst.lsrs.bit_length())) == (near(15.0), 0)
 
 
 @pytest.mark.covers("apci.shp", "apci.szpa", "apci.rule.toolradius_spline")
@@ -438,7 +439,7 @@ def test_lps_latches_every_so_many_scans_and_reading_clears_the_flag(pc: Pc) -> 
     pcap.jr(axes, pc.tsrp)
     pc.run(1.0)
     pcap.lps(0, 10)
-    flag = Axst.lpsf.number + 1
+    flag = Axst.lpsf.bit_length()
     for _ in range(3):
         assert pcap.rdaxstb(0, flag) == 0
         pc.board.advance(9)

@@ -14,6 +14,7 @@ from polycnc.controllers.apci import pcap
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import InitCode
 from polycnc.controllers.apci.board._system_file import parse_system_file
+from polycnc.controllers.apci.library._call import LIBRARY
 from polycnc.controllers.apci.pc._installed import InstalledBoard
 from polycnc.controllers.library import IN
 from polycnc.errors import UsageError
@@ -428,6 +429,19 @@ def test_what_no_c_compiler_takes_is_told_with_the_prototype() -> None:
         with pytest.raises(UsageError, match="cannot be") as told:
             call(*given)
         assert call.__name__ in str(told.value.hint)
+
+
+def test_a_wrong_number_of_arguments_of_any_function_is_reported_with_its_prototype() -> None:
+    Pc()
+    for name, function in LIBRARY.functions.items():
+        call = getattr(pcap, name)
+        for given in ((0,) * (len(function.passed) + 1), *([()] if function.passed else [])):
+            with pytest.raises(UsageError, match=name) as told:
+                call(*given)
+            assert told.value.hint == function.prototype
+            assert f"{name}(" in str(told.value.hint)
+    with pytest.raises(UsageError, match=r"wrgf: .*speed"):
+        pcap.wrgf(pcap.TSRP(an=0), speed=3)  # type: ignore[call-arg]
 
 
 def test_the_library_keeps_no_state_but_what_is_attached() -> None:

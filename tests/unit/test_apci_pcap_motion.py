@@ -8,7 +8,7 @@ import pytest
 
 from polycnc.controllers.apci import pcap
 from polycnc.controllers.apci.board._board import Board
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
+from support.apci_bits import Axst, ErrorReg, ModeReg
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
 SYSTEM = """
@@ -511,7 +511,7 @@ def test_numbers_that_are_none_change_nothing(pc: Pc, value: float) -> None:
     pcap.ja(pcap.AS.of(0), pc.tsrp)
     assert pc.scans_until_rest() == scans(2.5)
     assert at(pc) == (100.0, 0.0, 0.0, 0.0)
-    assert pcap.rdaxstb(0, Axst.cl.number + 1) == 1
+    assert pcap.rdaxstb(0, Axst.cl.bit_length()) == 1
 
 
 def test_a_selection_with_an_unknown_axis_is_ignored_as_a_whole() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 import pytest
 
 from polycnc.controllers.apci import pcap
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
+from support.apci_bits import Axst, ErrorReg, ModeReg
 from support.apci_pc import LATENCY, SCAN_S, Pc, near
 
 SYSTEM = """

@@ -11,7 +11,7 @@ from polycnc.controllers.apci.board._axis_commands import cl, ol, ra, utrovr
 from polycnc.controllers.apci.board._jog_commands import ja, jr, js
 from polycnc.controllers.apci.board._move_commands import Speeds, mla, mlr
 from polycnc.controllers.apci.board._spool_commands import ssms
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
+from support.apci_bits import Axst, ErrorReg, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig, integrated, scans_for
 
 A = 100.0
@@ -328,7 +328,7 @@ def test_move_with_impossible_speeds_is_discarded(speeds: Speeds, spool: bool) -
 @pytest.mark.parametrize(
     ("speeds", "error"), [(Speeds(A, 0.0), ErrorReg.VelocityZero), (Speeds(0.0, TOP), ErrorReg.AccelZero)]
 )
-def test_move_without_velocity_or_acceleration(speeds: Speeds, error: ErrorReg) -> None:
+def test_move_without_velocity_or_acceleration(speeds: Speeds, error: int) -> None:
     rig = Rig()
     mlr(rig.board, (0,), (10.0,), speeds)
     rig.board.advance(LATENCY + 1)

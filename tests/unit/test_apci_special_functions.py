@@ -7,7 +7,7 @@ import pytest
 from polycnc.controllers.apci.board._axis_commands import cl
 from polycnc.controllers.apci.board._move_commands import Speeds, mlr
 from polycnc.controllers.apci.board._spool_commands import moves_queued, ssf, ssms
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg
+from support.apci_bits import Axst, ErrorReg
 from support.apci_rig import SCAN_S, Rig
 
 SLOW = Speeds(100.0, 50.0)

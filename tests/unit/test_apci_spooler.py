@@ -22,7 +22,7 @@ from polycnc.controllers.apci.board._spool_commands import (
     sstps,
     sstvl,
 )
-from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
+from support.apci_bits import Axst, ErrorReg, ModeReg
 from support.apci_rig import LATENCY, SCAN_S, Rig, scans_for
 
 SLOW = Speeds(100.0, 50.0)

@@ -19,8 +19,8 @@ from polycnc.controllers.apci.board._system_file import (
 )
 from polycnc.controllers.apci.board._system_text import system_file_text
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit, ratio, seconds
-from polycnc.controllers.apci.core._registers import ModeReg
 from polycnc.errors import ConfigurationError, UsageError
+from support.apci_bits import ModeReg
 
 
 def refused(text: str) -> ConfigurationError:

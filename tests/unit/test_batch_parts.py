@@ -83,7 +83,7 @@ def test_what_fails_on_a_program_is_in_its_report(monkeypatch: pytest.MonkeyPatc
     def fail(*_: object, **__: object) -> None:
         raise next(errors)
 
-    monkeypatch.setattr(_job, "run", fail)
+    monkeypatch.setattr(_job, "run_program", fail)
     first, second = (report_of(_job_of("G0 X1\n"), Setup(MILL)) for _ in range(2))
     assert first.errors == ["polycnc failed on it: ZeroDivisionError: by nothing"]
     assert (second.errors, second.status) == (["not so"], "error")

@@ -126,7 +126,7 @@ def test_timers_are_saved_when_so_much_time_has_passed(tmp_path: Path) -> None:
         store, clock = Store(tmp_path / f"{each}"), Clock(0.001)
         timers = Timers(store, clock)
         clock.tick(cycles)
-        timers.count(cycles, cutting_s=1.5)
+        timers.count(cycles, cut_s=1.5)
         assert timers.tools == ()  # nothing is in the spindle
         store.close()
         assert Timers(Store(tmp_path / f"{each}"), Clock(0.001)).seconds(Timer.POWER_ON) == kept
@@ -136,12 +136,12 @@ def test_a_timer_that_is_set_counts_on_from_there() -> None:
     clock = Clock(0.001)
     timers = Timers(Store(), clock)
     clock.tick(500)
-    timers.count(500, operating=True, cutting_s=0.25, tool=2)
+    timers.count(500, operating=True, cut_s=0.25, tool=2)
     timers.set_seconds(Timer.OPERATING, 0.0)
     timers.set_tool_seconds(1, 0.0)
     saved = timers.snapshot()
     clock.tick(250)
-    timers.count(250, operating=True, cutting_s=0.125, tool=2)
+    timers.count(250, operating=True, cut_s=0.375, tool=2)
     assert timers.seconds(Timer.OPERATING) == pytest.approx(0.25)
     assert timers.seconds(Timer.POWER_ON) == pytest.approx(0.75)
     assert (timers.tools, timers.tool_seconds(2), timers.tool_seconds(9)) == ((1, 2), 0.375, 0.0)

@@ -110,13 +110,13 @@ def test_messages_are_shown_by_number_and_withdrawn() -> None:
 def test_timers_count_what_runs_and_last(tmp_path: Path) -> None:
     store, clock = Store(tmp_path / "s"), Clock(0.002)
     timers = Timers(store, clock, save_every_s=10.0)
-    for cycles, operating, cutting_s, tool in (
+    for cycles, operating, cut_s, tool in (
         (700, False, 0.0, 0),
         (1500, True, 0.0, 3),
         (900, True, 1.75, 3),
     ):
         clock.tick(cycles)
-        timers.count(cycles, operating=operating, cutting_s=cutting_s, tool=tool)
+        timers.count(cycles, operating=operating, cut_s=cut_s, tool=tool)
     shown = {timer: timers.seconds(timer) for timer in Timer}
     assert shown == pytest.approx(
         {Timer.POWER_ON: 6.2, Timer.OPERATING: 4.8, Timer.CUTTING: 1.75, Timer.CYCLE: 4.8}

@@ -97,7 +97,7 @@ def test_a_program_that_was_edited_since_is_refused_before_anything_changes() ->
 def test_a_control_without_the_language_refuses_and_is_as_it_was() -> None:
     control, _ = started()
     control.advance(150)
-    other = Control(dialect="fanuc")
+    other = Control(dialect="fanuc", languages=(None,))
     before = other.snapshot()
     with pytest.raises(SnapshotError):
         other.restore(control.snapshot())

@@ -45,7 +45,7 @@ def at_run_time(text: str, host: RecordingHost | None = None) -> ProgramError:
 
 def test_a_number_of_many_digits_is_gone_through_once() -> None:
     """It is followed by what makes it none: every part of it was tried once, and every part of that."""
-    assert errors(f"10 #A=1\nN20 G1 Y[#A] X{'9' * 20_000}]") == ["2:14 'X' begins no word"]
+    assert errors(f"10 #A=1\nN20 G1 Y[#A] X{'9' * 20_000}]") == ["2:14 the number of 'X' is too large"]
 
 
 @pytest.mark.covers("cpl.ncblock", "cpl.ex.353", "cpl.program")
@@ -87,7 +87,7 @@ def test_brackets_hold_expressions_of_nc_words() -> None:
     assert errors("N10 P[5]") == ["1:5 the address P takes no expression"]
     assert errors('N10 X["A"]') == ["1:5 the address X takes a number, not a string"]
     assert errors("N10 X[A") == ["1:8 ']' is missing before the end"]
-    assert errors("N10 X[2] %") == ["1:10 '%' begins no word"]
+    assert errors("N10 X[2] %") == ["1:10 '%' may stand only at the beginning of a block"]
     assert at_run_time("1 A=1\nN10 X[B]").position.line == 2  # type: ignore[union-attr]
 
 
@@ -125,6 +125,43 @@ def test_a_colon_goes_on_with_a_block_and_rem_ends_it() -> None:
     assert Ran("10 #A=1\r\n20 #B=2\r\nN5 X1").blocks == ["N5 X1"]
     assert errors("10 #A=1 :\nN20 X5") == ["2:5 = MISSING"]
     assert errors("10 #A=1 :\n?") == ["2:1 '?' has no meaning here"]
+
+
+@pytest.mark.covers("cpl.remark.nc", "cpl.nc.MSG_text")
+@pytest.mark.parametrize("remark", ["", "(a)", "(to hole) (b)"])
+@pytest.mark.parametrize("gap", ["", " ", "\t"])
+def test_no_word_beside_a_message_is_lost(gap: str, remark: str) -> None:
+    message = "(MSG, GO, [A] on)"
+    words = ["G1", "F1000", "X[A*10]", "Y2=[A]", "Z-3.5", "M[A+1]"]
+    for place in range(len(words) + 1):
+        line = gap.join([*words[:place], message, *words[place:], remark])
+        (block,) = Ran(f"1 A=3\nN5 {line}").events
+        assert isinstance(block, NcValues)
+        assert block.message == "GO, [A] on"
+        assert [(each.address, each.extension, each.value) for each in block.words] == [
+            ("G", None, 1), ("F", None, 1000), ("X", None, 30), ("Y", 2, 3), ("Z", None, -3.5), ("M", None, 4),
+        ]  # fmt: skip
+
+
+def test_calls_keep_their_messages_and_their_skip_marks() -> None:
+    host = RecordingHost(programs={"SP": "1 #A=P1", "999": "1 #B%=P1%"})
+    for line in ("N5 P SP[2.5] (MSG,GO) (on)", "P SP [2.5](a)(MSG,GO)"):
+        ran = Ran(line, host)
+        assert ran.events == [NcValues(1, None, 0, (), "GO")]
+        assert ran["#A"] == 2.5
+    assert Ran("/ WAIT\n1 A=1", host).events == [Waiting(1, None, None, 1)]
+    assert Ran("P999 [4]", host).run.globals["#B%"] == 4
+    assert Ran("1 A=2\nG1 X[A]").blocks == ["G1 X2"]
+
+
+def test_what_brackets_do_not_take_is_refused_where_it_stands() -> None:
+    assert errors("N10 G1 X-[2]") == ["1:9 a sign stands inside of the brackets"]
+    assert errors("N10 X[2]5") == ["1:9 '5' begins no word"]
+    assert errors("N10 X[2] .5") == ["1:10 '.' begins no word"]
+    assert errors("N10 X[2] Y") == ["1:10 'Y' has no number"]
+    assert errors("N10 X[2] (\xe4) \xe4") == ["1:14 'byte 0xC3' may not stand in a block"]
+    assert errors("N10 (\xe4) X[2] AB=3") == ["1:14 'A' begins no word"]
+    assert errors("N10 (\xe4) X[2] ]") == ["1:14 ']' begins no word"]
 
 
 def test_remarks_of_nc_blocks_stay_with_the_control() -> None:

@@ -29,6 +29,7 @@ OTHERWISE = [
     "cpl.store-wal .",
     "sub/cpl.store-journal",
 ]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
 HOLDER = """
 import sys
 from pathlib import Path
@@ -155,8 +156,9 @@ def test_a_program_that_fails_lets_the_root_go(counted: Root) -> None:
 
 def test_the_owner_is_another_process_until_it_is_killed(counted: Root) -> None:
     holder = subprocess.Popen(
-        [sys.executable, "-c", HOLDER, str(counted.folder)], stdin=subprocess.PIPE, stdout=subprocess.PIPE
-    )
+        [sys.executable, "-c", HOLDER, str(counted.folder)],
+        env=ENVIRONMENT, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+    )  # fmt: skip
     try:
         assert holder.stdout is not None
         assert holder.stdout.readline() == b"taken\n"
@@ -173,7 +175,8 @@ def test_no_count_is_lost_by_programs_that_run_at_once(counted: Root) -> None:
     program.write_text("1 FOR I%=1 TO 3000\n2 @7=@7+1\n3 NEXT\n")
     command = [sys.executable, "-m", "polycnc", "run", str(program), "--dialect", "bosch"]
     runs = [
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(3)
+        subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        for _ in range(3)
     ]
     told = [(each.communicate()[1], each.returncode) for each in runs]
     done = sum(code == 0 for _, code in told)

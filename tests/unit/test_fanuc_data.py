@@ -294,7 +294,7 @@ def test_parameters_that_are_refused_change_nothing() -> None:
         assert fwlib.cnc_wrparam(handle, length, data) == code
         assert {key: control.parameters.value(*key) for key in before} == before
     assert fwlib.cnc_wrparam(handle, 28, psd(8010, 1, cdata=3)) == OK  # its option is there
-    control.parameters_writable = False
+    control.state.parameters_writable = False
     assert fwlib.cnc_wrparam(handle, 28, psd(8010, 1, cdata=4)) == EW.EW_PROT
     assert parameter(handle, 8010, 1) == 3
     assert fwlib.cnc_rdparam(handle, 9, 0, 28)[0] == EW.EW_NUMBER
@@ -476,7 +476,7 @@ def test_records_that_are_refused_change_nothing() -> None:
     ):
         assert fwlib.cnc_wrparas(handle, length, data) == code
         assert (parameter(handle, 6711), parameter(handle, 1420, 1)) == (0, 15_000)
-    control.parameters_writable = False
+    control.state.parameters_writable = False
     assert fwlib.cnc_wrparas(handle, 8, record(6711, 3, 0, 5)) == EW.EW_PROT
 
 
@@ -595,7 +595,7 @@ def test_settings_that_are_refused() -> None:
     ):
         assert fwlib.cnc_wrsets(handle, length, data) == code
         assert parameter(handle, 6711) == 0
-    control.parameters_writable = False
+    control.state.parameters_writable = False
     assert fwlib.cnc_wrsets(handle, 8, record(6711, 3, 0, 5)) == OK  # settings can always be put in
     control.parameters.rows = {6711: _with_option(6711, "run_hour")}  # type: ignore[assignment]
     assert fwlib.cnc_wrsets(handle, 8, record(6711, 3, 0, 6)) == EW.EW_NOOPT

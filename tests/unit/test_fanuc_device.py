@@ -291,7 +291,12 @@ def test_a_snapshot_is_gone_back_to() -> None:
     for _ in range(2):
         control.advance(400)
         seen.append(
-            (fwlib.cnc_rddynamic(handle, -1, 118)[1], control.mode, control.protection_keys, control.cursor)
+            (
+                fwlib.cnc_rddynamic(handle, -1, 118)[1],
+                control.mode,
+                control.state.protection_keys,
+                control.cursor,
+            )
         )
         control.reset()
         control.advance(50)

@@ -218,9 +218,9 @@ def test_mdi_programs_that_are_refused() -> None:
     control, handle = attached(axes=1)
 
     def put(text: str, length: int | None = None) -> EW:
-        before = control.mdi.blocks
+        before = control.mdi.state.blocks
         code = fwlib.cnc_wrmdiprog(handle, len(text) if length is None else length, text)
-        assert (control.mdi.blocks == before) is (code != OK)
+        assert (control.mdi.state.blocks == before) is (code != OK)
         return code
 
     assert put(FORMAT) == EW.EW_MODE
@@ -298,7 +298,7 @@ def test_mdi_pointers_that_are_refused() -> None:
     assert fwlib.cnc_wrmdipntr(handle, 1) == OK
     for block in (-1, 2, 99):
         assert fwlib.cnc_wrmdipntr(handle, block) == EW.EW_DATA
-        assert control.mdi.start == 1
+        assert control.mdi.state.start == 1
     registered(control, O5="\nM30\n")
     with control.programs.edit(5, background=True):
         assert fwlib.cnc_wrmdipntr(handle, 0) == EW.EW_REJECT

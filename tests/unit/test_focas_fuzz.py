@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from polycnc.controllers.fanuc import PowerMate
+from polycnc.machine import copied
 from polycnc.servers.focas import (
     COMMANDS,
     PROFILES,
@@ -87,11 +88,11 @@ class Bench:
         made = self.power_mate
         seen = (
             made.status(),
-            made.signals.snapshot(),
-            made.pmc.snapshot(),
+            copied(made.signals.state),
+            copied(made.state.pmc),
             made.mode,
             made.cursor,
-            made.mdi.blocks,
+            made.mdi.state.blocks,
         )
         return content, seen, made.transfer is None, made.clock.epoch
 

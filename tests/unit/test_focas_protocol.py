@@ -265,18 +265,50 @@ def test_a_connection_lost_in_a_download_drops_it() -> None:
     assert (control.aborted, control.sessions) == (1, 0)
 
 
+def sent_in_turns(session: Session, data: bytes) -> list[list[Frame]]:
+    """Return the frames that leave for `data`, by the turn that they leave in."""
+    turns = [frames(session.receive(data))]
+    while session.more:
+        assert session.pause_s > 0.0
+        turns.append(frames(session.receive(b"")))
+    assert session.pause_s == 0.0
+    return turns
+
+
+def test_what_comes_while_a_program_goes_out_is_answered_after_it() -> None:
+    session = Session(Control())
+    session.receive(OPEN_TRANSFER)
+    both = transfer(FrameType.UPLOAD_START, "O0100-O0100") + bytes(Frame(FrameType.UPLOAD_ACKNOWLEDGED))
+    turns = [frames(session.receive(both)), frames(session.receive(CLOSE))]
+    while session.more:
+        turns.append(frames(session.receive(b"")))
+    names = [[frame.name for frame in turn] for turn in turns]
+    assert names == [["UPLOAD_STARTED"], ["UPLOAD_DATA"], ["UPLOAD_DATA"], ["UPLOAD_FINISHED"], ["CLOSED"]]
+    assert session.ending is Ending.CLOSE
+
+
+def test_who_is_lost_while_a_program_goes_out_gets_no_more() -> None:
+    control = Control()
+    session = Session(control)
+    session.receive(OPEN_TRANSFER)
+    session.receive(transfer(FrameType.UPLOAD_START, "O0100-O0100"))
+    session.lost()
+    assert (session.receive(b""), session.more, control.sessions) == (b"", False, 0)
+
+
 def test_a_program_goes_out_in_pieces() -> None:
     session = Session(Control())
     session.receive(OPEN_TRANSFER)
     (missing,) = frames(session.receive(transfer(FrameType.UPLOAD_START, "O7-O7")))
     assert (missing.type, missing.body.hex()) == (FrameType.UPLOAD_STARTED, "00000005")
-    sent = frames(session.receive(transfer(FrameType.UPLOAD_START, "O0100-O0100")))
-    assert [frame.name for frame in sent] == [
-        "UPLOAD_STARTED",
-        "UPLOAD_DATA",
-        "UPLOAD_DATA",
-        "UPLOAD_FINISHED",
+    turns = sent_in_turns(session, transfer(FrameType.UPLOAD_START, "O0100-O0100"))
+    assert [[frame.name for frame in turn] for turn in turns] == [
+        ["UPLOAD_STARTED"],
+        ["UPLOAD_DATA"],
+        ["UPLOAD_DATA"],
+        ["UPLOAD_FINISHED"],
     ]
+    sent = [frame for turn in turns for frame in turn]
     assert len(sent[1].body) == 0x500
     assert b"".join(frame.body for frame in sent[1:3]) == b"\nO0100\n" + b"G4P1\n" * 300 + b"%"
     assert session.receive(bytes(Frame(FrameType.UPLOAD_ACKNOWLEDGED))) == b""
@@ -286,14 +318,14 @@ def test_a_program_goes_out_in_pieces() -> None:
 def test_an_old_series_sends_an_empty_piece_for_a_program_that_is_not_there() -> None:
     session = Session(Control(version=2))
     session.receive(OPEN_TRANSFER)
-    missing = frames(session.receive(transfer(FrameType.UPLOAD_START, "O7-O7")))
+    missing = [each for (each,) in sent_in_turns(session, transfer(FrameType.UPLOAD_START, "O7-O7"))]
     assert [(each.name, len(each.body)) for each in missing] == [
         ("UPLOAD_STARTED", 513),
         ("UPLOAD_DATA", 0),
         ("UPLOAD_FINISHED", 0),
     ]
     assert session.receive(bytes(Frame(FrameType.UPLOAD_ACKNOWLEDGED))) == b""
-    sent = frames(session.receive(transfer(FrameType.UPLOAD_START, "O0100-O0100")))
+    sent = [each for (each,) in sent_in_turns(session, transfer(FrameType.UPLOAD_START, "O0100-O0100"))]
     assert [len(each.body) for each in sent] == [513, 0x500, 228, 0]
 
 

@@ -46,7 +46,7 @@ def arranged(kind: str) -> tuple[PowerMate, Any, int]:
     control = PowerMate()
     library, handle = at(control)
     control.signals.give(12, 255 if kind == "byte" else 255 - 173)
-    control.signals.torque_mode = 4
+    control.signals.state.torque_mode = 4
     control.signals.set_torque_override(1, 153)
     if kind == "2word_axis":
         control.signals.give(12, 155)

@@ -551,7 +551,7 @@ def test_an_operation_signal_is_refused(number: int, value: int, axis: int, code
 def test_a_busy_control_is_asked_again() -> None:
     control, library, handle = started()
     library.cnc_wropnlgnrl(handle, fwlib.IODBGNRL(type=1, sgnal=1))
-    control.axis_motion.finished[0] = True
+    control.axis_motion.state.finished[0] = True
     library.nodes[0].fault = EW.EW_BUSY
     fin = fwlib.ODBFIN(cdata=[1] * 8)
     answers = [
@@ -561,7 +561,7 @@ def test_a_busy_control_is_asked_again() -> None:
         library.cnc_setfin(handle, fin),
     ]
     assert answers == [EW.EW_BUSY] * 4
-    assert (state(control), control.axis_motion.finished[0]) == (RunState.ACTIVE, True)
+    assert (state(control), control.axis_motion.state.finished[0]) == (RunState.ACTIVE, True)
     library.nodes[0].fault = EW.EW_OK
     assert [library.cnc_finstate(handle)[1].cdata[0], library.cnc_setfin(handle, fin)] == [1, EW.EW_OK]
     assert (give(library, handle, 2, 0), state(control)) == (EW.EW_OK, RunState.HOLD)

@@ -225,9 +225,9 @@ def test_dry_run(value: int, mm_min: int) -> None:
 @pytest.mark.covers("fanuc.IODBSGNL.mem_prtct")
 def test_memory_protection() -> None:
     control, library, handle = written(mem_prtct=1)
-    assert control.protection_keys == {1, 2, 3, 4}
+    assert control.state.protection_keys == {1, 2, 3, 4}
     assert library.cnc_wropnlsgnl(handle, fwlib.IODBSGNL(type=1 << 11, mem_prtct=0)) == 0
-    assert control.protection_keys == set()
+    assert control.state.protection_keys == set()
 
 
 @pytest.mark.covers("fanuc.IODBSGNL.feed_hold.0", "fanuc.IODBSGNL.feed_hold.1")

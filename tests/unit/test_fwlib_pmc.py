@@ -341,7 +341,7 @@ def test_switches_and_keys_are_signals() -> None:
     write(library, handle, G, 46, 0x82 | 0x50)
     switches = control.control.switches
     assert (switches.single_block, switches.dry_run, switches.block_delete) == (True, True, frozenset({1}))
-    assert control.protection_keys == {1, 3}
+    assert control.state.protection_keys == {1, 3}
     assert read(library, handle, F, 4) == [0x09]
     control.control.set_switches(single_block=False)
     assert read(library, handle, G, 46) == [0x80 | 0x50]

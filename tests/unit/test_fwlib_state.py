@@ -262,7 +262,7 @@ def test_alarm_and_low_battery() -> None:
     library, handle = at(control)
     control.emergency_stop()
     assert library.cnc_statinfo(handle)[1].alarm == 0
-    control.signals.battery_low = True
+    control.signals.state.battery_low = True
     assert library.cnc_statinfo(handle)[1].alarm == 2
     control.raise_alarm(85, "OVERRUN")
     assert library.cnc_statinfo(handle)[1].alarm == 1

@@ -342,10 +342,10 @@ LONG_NUMBERS = {
 
 
 @pytest.mark.parametrize("case", LONG_NUMBERS)
-def test_numbers_of_five_thousand_digits_are_numbers_or_errors(case: str) -> None:
+def test_numbers_of_five_thousand_digits_are_numbers_or_errors(case: str, tmp_path: Path) -> None:
     dialect, text = LONG_NUMBERS[case]
-    errors = runner.check(text, dialect=dialect)
-    result = runner.run(text, dialect=dialect, check=False)
+    errors = runner.check(text, dialect=dialect, root=tmp_path)
+    result = runner.run(text, dialect=dialect, check=False, root=tmp_path)
     assert all(error.position is not None for error in errors)
     assert all(alarm.text for alarm in result.alarms)
     assert errors or case not in ("goto", "variable", "macro call")

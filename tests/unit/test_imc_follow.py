@@ -249,9 +249,7 @@ def test_a_distance_is_moved_in_a_time_and_ends_at_rest(absolute: int, distance:
     assert (card.read("curvel", 1), card.read("moving", 1), card.read("curpos", 1)) == (0, 0, end)
 
 
-@pytest.mark.covers(
-    "imc.param.enasyn", *(f"imc.synsourcetype.{k}" for k in range(5)), "imc.const.synsourcetype"
-)
+@pytest.mark.covers("imc.param.enasyn")
 @pytest.mark.parametrize("name", ["curpos", "encp", "mcspos", "pcspos", "encs"])
 def test_a_distance_is_moved_within_the_distance_of_another_parameter(name: str) -> None:
     card = ready_card()

@@ -144,6 +144,31 @@ def test_it_can_go_to_a_place_in_the_end(returns: int) -> None:
     assert [card.read(name) for name in ("homed", "moving", "mcsgo", "poserr")] == [FLAG, 0, 0, 0]
 
 
+@pytest.mark.parametrize("index", [0, 1])
+@pytest.mark.parametrize("returns", [0, 1, 2])
+@pytest.mark.parametrize("top", [0, 55])
+def test_the_closing_move_has_the_speed_of_the_last_stage_whatever_mcsmaxvel_is(
+    returns: int, index: int, top: int
+) -> None:
+    card = ready_card(AXIS)
+    set_now(card, ("homestpos", 4321), ("mcsmaxvel", top), ("highvel", 8), ("lowvel", 3), ("mcsdecel", 0.5))
+    home(card, returns=returns, index=index, go_to=True)
+    ways = run_home(card)
+    speeds = [abs(b - a) for a, b in pairwise(ways)]
+    assert [card.read(name) for name in ("curpos", "homed", "error")] == [4321, FLAG, 0]
+    assert (max(speeds), max(speeds[-300:])) == (8, 8 if returns == 0 else 3)
+    assert max(abs(b - a) for a, b in pairwise(speeds)) <= 2  # mcsaccel, in whole pulses: it never stops dead
+
+
+@pytest.mark.parametrize("top", [0, 55])
+def test_the_closing_move_after_index_pulses_alone_has_highvel(top: int) -> None:
+    card = ready_card(AXIS)
+    set_now(card, ("homestpos", 2222), ("mcsmaxvel", top), ("highvel", 7), ("lowvel", 3))
+    home(card, switch=0, index=1, go_to=True)
+    ways = run_home(card)
+    assert (card.read("curpos"), max(abs(b - a) for a, b in pairwise(ways))) == (2222, 7)
+
+
 def test_an_origin_switch_that_is_low_when_on_has_its_edges_the_other_way() -> None:
     card = ready_card(AXIS + 'low_when_on = ["origin"]\n')
     home(card, rising=True)

@@ -335,3 +335,30 @@ def test_two_cards_keep_in_step() -> None:
     assert cards[0].clock.cycles == cards[1].clock.cycles
     assert cards[0].read("curpos") == cards[1].read("curpos") >= 1000
     lib.detach()
+
+
+@pytest.mark.parametrize(
+    ("code", "cycles"),
+    [
+        pytest.param(code, cycles, marks=pytest.mark.covers(f"imc.synsourcetype.{code}"))
+        for code, cycles in enumerate((420, 210, 700, 1050, 300))
+    ],
+)
+@pytest.mark.covers("imc.IMC_GearInDist", "imc.const.synsourcetype")
+def test_each_sync_source_paces_the_engagement_by_its_own_quantity(
+    program: Program, code: int, cycles: int
+) -> None:
+    # Axis 2 shows five speeds: curpos 5, encp 10 (by its factor), mcspos 3, pcspos 2, encs 7 pulses per cycle.
+    program.card.write("encpfactor", 2, 2)
+    program.card.spin_handwheel(2, 7)
+    program.ok(lib.IMC_MoveVelocity, 3 * 65536, 2, IF)
+    program.set("pcstgvel", 2 * 65536, 2)
+    program.ok(lib.IMC_MoveVelocity, 8 * 65536, 0, IF)
+    program.run(50)
+    program.ok(lib.IMC_GearInDist, 0.5, 0, 0, 2, code, 2100, 1, IF)
+    program.set("startsyn", -1, 1)
+    program.run(1)
+    needed = program.until(lambda: program.get("startsyn", 1) == 0)
+    assert needed == pytest.approx(cycles, abs=3)
+    program.run(1)
+    assert program.get("curvel", 1) == 4 * 65536

@@ -298,14 +298,27 @@ def test_settings_of_an_axis_that_the_simulation_does_not_use_are_kept_for_each_
     "imc.param.out2",
 )
 @pytest.mark.parametrize(
-    "name",
-    ["waitfilt", "waitequ", "giod", "eventid", "eventbase", "out1", "out2"],
+    ("name", "printed"),
+    [
+        ("waitfilt", 479),
+        ("waitequ", 480),
+        ("giod", 561),
+        ("eventid", 549),
+        ("eventbase", 568),
+        ("out1", 624),
+        ("out2", 625),
+    ],
 )
-def test_settings_of_the_card_without_a_known_meaning_are_kept(name: str) -> None:
+def test_settings_of_the_card_without_a_known_meaning_are_kept_at_their_address(
+    name: str, printed: int
+) -> None:
     card = ready_card()
     send(card, IFIFO, (name, 3, 2))
     card.advance(1)
-    assert [card.read(name, i) for i in range(4)] == [3] * 4
+    assert [card.read_raw(printed, i) for i in range(4)] == [3] * 4
+    card.write_raw(printed, -7)
+    assert card.read_raw(printed, 1) == -7
+    assert int(card.read(name)) & 0xFFFF == 0xFFF9
 
 
 @pytest.mark.covers(

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
+from polycnc.cli import _options as options
 from polycnc.cli._output import bold, print_json, progress_bar, say
-from polycnc.cli._run import DIALECT, MACHINE, ROOT
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -20,51 +19,21 @@ _MOST_TOLD = 20  # errors that are printed; the report has them all
 
 
 def batch_command(
-    paths: Annotated[list[Path], typer.Argument(help="Programs, and folders of them.", metavar="PATH")],
-    machine: Annotated[str | None, MACHINE] = None,
-    dialect: Annotated[str | None, DIALECT] = None,
-    check: Annotated[bool, typer.Option("--check", help="Report errors only; run nothing.")] = False,
-    jobs: Annotated[
-        int | None,
-        typer.Option("--jobs", "-j", help="Processes (default: one for each core).", metavar="N", min=1),
-    ] = None,
-    cluster: Annotated[
-        str | None,
-        typer.Option(
-            help="Run on the Dask cluster of this scheduler, like tcp://host:8786.", metavar="ADDRESS"
-        ),
-    ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option("--output", "-o", help="The report: .html, .parquet or .csv.", metavar="FILE"),
-    ] = None,
-    sweep: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Vary override=80:120:5 (percent), tolerance=0,0.05 (mm) or machine=A,B; may be repeated.",
-            metavar="NAME=VALUES",
-        ),
-    ] = None,
-    pattern: Annotated[
-        list[str] | None,
-        typer.Option(help="Programs of a folder, like '*.txt' (default: the usual endings).", metavar="GLOB"),
-    ] = None,
-    root: Annotated[Path | None, ROOT] = None,
-    timeout: Annotated[
-        float, typer.Option(help="Seconds that one program may take; 0: any.", metavar="S", min=0.0)
-    ] = 600.0,
-    memory: Annotated[
-        float, typer.Option(help="Memory that one program may take, MB; 0: any.", metavar="MB", min=0.0)
-    ] = 4096.0,
-    done: Annotated[
-        Path | None,
-        typer.Option(
-            help="Keep here what is done, and do it not again (default: the report's name and .done).",
-            metavar="FILE",
-        ),
-    ] = None,
-    again: Annotated[bool, typer.Option("--again", help="Do everything again.")] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+    paths: options.Paths,
+    machine: options.Machine = None,
+    dialect: options.Dialect = None,
+    check: options.CheckOnly = False,
+    jobs: options.Jobs = None,
+    cluster: options.Cluster = None,
+    output: options.Report = None,
+    sweep: options.Sweep = None,
+    pattern: options.Pattern = None,
+    root: options.Root = None,
+    timeout: options.Timeout = 600.0,
+    memory: options.Memory = 4096.0,
+    done: options.Done = None,
+    again: options.Again = False,
+    as_json: options.AsJson = False,
 ) -> None:
     """Run or check many programs; one that is broken or hangs stops no other."""
     from polycnc.runner import batches
@@ -73,18 +42,13 @@ def batch_command(
         raise UsageError(
             "--jobs and --cluster", hint="A cluster has as many workers as it has; leave --jobs out."
         )
-    swept: dict[str, tuple[float | str, ...]] = {}
-    for text in sweep or ():
-        name, values = batches.parse_sweep(text)
-        if name in swept:
-            raise UsageError(f"--sweep {name} stands twice", hint=f"Write all values in one: {name}=A,B,C.")
-        swept[name] = values
+    swept = _swept(sweep or ())
     given = [Path(each) for each in (machine, dialect) if each is not None]
     if output is not None:
         batches.check_batch_file(output, [*batches.find_programs(paths, pattern or ()), *given])
         done = done or output.with_name(output.name + ".done")
     if again and done is not None:
-        _forget(done)
+        batches.forget_done(done)
     with ExitStack() as stack:
         client = None
         if cluster is not None:
@@ -110,21 +74,32 @@ def batch_command(
                 progress=None if bar is None else (lambda seen, total: bar(seen / total)),
             )
         )
-        if output is not None:
-            result.save(output)
-        if as_json:
-            _print_json(result)
-        else:
-            _tell(result, output)
-        status = 0 if result.ok else 1
+        status = _finish(result, output, as_json=as_json)
     sys.exit(status)
 
 
-def _forget(done: Path) -> None:
-    """Remove what was kept, if it is that."""
-    from polycnc.runner.batches import forget_done
+def _swept(sweeps: Iterable[str]) -> dict[str, tuple[float | str, ...]]:
+    """Return what all --sweep options vary."""
+    from polycnc.runner.batches import parse_sweep
 
-    forget_done(done)
+    swept: dict[str, tuple[float | str, ...]] = {}
+    for text in sweeps:
+        name, values = parse_sweep(text)
+        if name in swept:
+            raise UsageError(f"--sweep {name} stands twice", hint=f"Write all values in one: {name}=A,B,C.")
+        swept[name] = values
+    return swept
+
+
+def _finish(result: BatchResult, output: Path | None, *, as_json: bool) -> int:
+    """Write the report and say what came out; return the exit status."""
+    if output is not None:
+        result.save(output)
+    if as_json:
+        _print_json(result)
+    else:
+        _tell(result, output)
+    return 0 if result.ok else 1
 
 
 def _print_json(result: BatchResult) -> None:

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import sys
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
+from polycnc.cli import _options as options
 from polycnc.cli._errors import PROGRAM, USAGE
 from polycnc.cli._output import bold, bold_red, print_json, say, say_problem
 from polycnc.cli._programs import read_program
-from polycnc.cli._run import DIALECT, IGNORE, MACHINE, ROOT, codes_of
 from polycnc.errors import SourcePosition, UsageError
 
 if TYPE_CHECKING:
@@ -37,15 +34,13 @@ class _Findings:
 
 
 def check_command(
-    programs: Annotated[
-        list[Path], typer.Argument(help="The part programs; - is standard input.", metavar="PROGRAM")
-    ],
-    machine: Annotated[str | None, MACHINE] = None,
-    dialect: Annotated[str | None, DIALECT] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Let remarks on the machining be errors.")] = False,
-    ignore: Annotated[list[str] | None, IGNORE] = None,
-    root: Annotated[Path | None, ROOT] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+    programs: options.Programs,
+    machine: options.Machine = None,
+    dialect: options.Dialect = None,
+    strict: options.Strict = False,
+    ignore: options.Ignore = None,
+    root: options.Root = None,
+    as_json: options.AsJson = False,
 ) -> None:
     """Report every error of part programs, each with its place and what to do, and remarks on the machining."""
     from polycnc import runner
@@ -62,7 +57,9 @@ def check_command(
         except UsageError as error:
             found.unreadable[str(program)] = error
             continue
-        found.reports[text.name] = runner.inspect(text, config, dialect, root=root, ignore=codes_of(ignore))
+        found.reports[text.name] = runner.inspect(
+            text, config, dialect, root=root, ignore=options.codes_of(ignore)
+        )
     if as_json:
         print_json(_as_dict(found, strict))
     else:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from polycnc.cli import _options as options
 from polycnc.cli._output import bold, bold_red, columns, print_json, progress_bar, say
-from polycnc.cli._run import DIALECT, MACHINE
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
@@ -24,8 +24,8 @@ def compare_command(
             help="Another; absent: A once more, on --machine-b or with --dialect-b.", metavar="[B]"
         ),
     ] = None,
-    machine: Annotated[str | None, MACHINE] = None,
-    dialect: Annotated[str | None, DIALECT] = None,
+    machine: options.Machine = None,
+    dialect: options.Dialect = None,
     machine_b: Annotated[
         str | None, typer.Option(help="The machine of B (default: that of A).", metavar="FILE|PRESET")
     ] = None,
@@ -38,7 +38,7 @@ def compare_command(
             help="How far apart the paths may be, mm; more is exit status 1.", metavar="MM", min=0.0
         ),
     ] = 0.01,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object instead of text.")] = False,
+    as_json: options.AsJson = False,
     output: Annotated[
         Path | None,
         typer.Option("--output", "-o", help="Write both paths as one page, an .html file.", metavar="FILE"),

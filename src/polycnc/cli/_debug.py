@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from polycnc.cli._run import DIALECT, MACHINE, ROOT
+from polycnc.cli import _options as options
 
 
 def debug_command(
-    program: Annotated[Path, typer.Argument(help="The part program.", metavar="PROGRAM")],
-    machine: Annotated[str | None, MACHINE] = None,
-    dialect: Annotated[str | None, DIALECT] = None,
-    root: Annotated[Path | None, ROOT] = None,
+    program: options.Program,
+    machine: options.Machine = None,
+    dialect: options.Dialect = None,
+    root: options.Root = None,
     rate: Annotated[
         float, typer.Option(help="Machine seconds that pass in a second.", min=0.001, max=1000.0, metavar="X")
     ] = 1.0,

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, cast
 
 import typer
 
+from polycnc.cli import _options as options
 from polycnc.cli._output import bold, bold_red, print_json, progress_bar, say, say_error
 from polycnc.errors import UsageError
 
@@ -20,58 +20,15 @@ _TOLERANCE_MM = 1e-3
 
 
 def post_command(
-    tool_path: Annotated[
-        Path | None,
-        typer.Argument(help="The tool path: APT words (ISO 4343), or JSON (.json).", metavar="TOOLPATH"),
-    ] = None,
-    control: Annotated[
-        str | None,
-        typer.Option(
-            "--control",
-            "-c",
-            help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-5axis, fanuc-lathe, fanuc-mill, haas-mill or "
-            "a file.",
-            metavar="FILE|NAME",
-        ),
-    ] = None,
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output", "-o", help="Write the program to a file, not to the screen.", metavar="FILE"
-        ),
-    ] = None,
-    verify: Annotated[
-        bool, typer.Option("--verify", help="Run the program and compare its path with the tool path.")
-    ] = False,
-    tolerance: Annotated[
-        float,
-        typer.Option(
-            help="Greatest deviation that --verify accepts, in mm.", metavar="MM", min=1e-6, max=10.0
-        ),
-    ] = _TOLERANCE_MM,
-    machine: Annotated[
-        str | None,
-        typer.Option(
-            "--machine",
-            "-m",
-            help="Machine for --verify: a preset or a TOML file (default: the control file's).",
-            metavar="FILE|PRESET",
-        ),
-    ] = None,
-    arc_axis: Annotated[
-        str | None,
-        typer.Option(
-            help="What the axes of CIRCLE/ are for: counterclockwise (right-hand rule) or clockwise; "
-            "default: clockwise in a CLSF of NX.",
-            metavar="SENSE",
-        ),
-    ] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print one JSON object instead of text; needs --output.")
-    ] = False,
-    show_control: Annotated[
-        bool, typer.Option("--show-control", help="Print the control file, to start one's own from.")
-    ] = False,
+    tool_path: options.ToolPath = None,
+    control: options.Control = None,
+    output: options.PostOutput = None,
+    verify: options.Verify = False,
+    tolerance: options.PostTolerance = _TOLERANCE_MM,
+    machine: options.PostMachine = None,
+    arc_axis: options.ArcSense = None,
+    as_json: options.PostAsJson = False,
+    show_control: options.ShowControl = False,
 ) -> None:
     """Turn a tool path into a program for a control, and show with --verify that it cuts what was meant."""
     from polycnc import post, runner

@@ -3,172 +3,131 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack
+from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-import typer
-
+from polycnc.cli import _options as options
 from polycnc.cli._output import bold, print_json, progress_bar, say, say_error
-from polycnc.cli._programs import dialect_names, machine_names, read_program
+from polycnc.cli._programs import read_program
 from polycnc.cli._summary import Units, print_summary
 from polycnc.errors import UsageError
 
 if TYPE_CHECKING:
     from polycnc.machine import MachineConfig
-    from polycnc.runner import RunResult
-
-MACHINE = typer.Option(
-    "--machine",
-    "-m",
-    help="The machine: a preset or a TOML file (default: mill3).",
-    metavar="FILE|PRESET",
-    autocompletion=machine_names,
-)
-DIALECT = typer.Option(
-    "--dialect",
-    "-d",
-    help="The dialect: din, fanuc, haas, ... or a TOML file (default: by the program's extension, else din).",
-    metavar="FILE|NAME",
-    autocompletion=dialect_names,
-)
-ROOT = typer.Option(
-    "--root",
-    help="The control's folder: sub-programs, files and permanent variables (default: the program's).",
-    metavar="DIR",
-)
-IGNORE = typer.Option(
-    "--ignore",
-    help="Codes that count as if they were not there, like G43.4,M198; each is named in the messages.",
-    metavar="CODE,...",
-)
+    from polycnc.nc import ProgramText
+    from polycnc.runner import RunResult, RunSettings
 
 
-def codes_of(texts: list[str] | None) -> list[str]:
-    """Return the codes of all --ignore options."""
-    return [code for text in texts or () for code in text.replace(",", " ").split()]
+@dataclass(frozen=True, slots=True)
+class _Outputs:
+    """The files that a run writes besides its summary."""
+
+    trace: Path | None
+    plot: Path | None
+    screen: Path | None
+
+    def check(self, programs: Sequence[Path], inputs: Iterable[str | Path | None]) -> None:
+        """Refuse files of several programs, and those that are read or written twice."""
+        from polycnc.outputs import keep_apart, keep_inputs
+
+        outputs = (("a trace", self.trace), ("a plot", self.plot), ("a screen", self.screen))
+        read = tuple(inputs)
+        for what, output in outputs:
+            if output is not None and len(programs) > 1:
+                raise UsageError(f"{what} of {len(programs)} programs", hint="Run them one by one.")
+            keep_inputs(output, read, what)
+        keep_apart(outputs)
+
+    def say(self) -> None:
+        """Say what has been written."""
+        for path in (self.trace, self.plot, self.screen):
+            if path is not None:
+                say(f"wrote      {path}")
 
 
 def run_command(
-    programs: Annotated[
-        list[Path], typer.Argument(help="The part programs; - is standard input.", metavar="PROGRAM")
-    ],
-    machine: Annotated[str | None, MACHINE] = None,
-    dialect: Annotated[str | None, DIALECT] = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print one JSON object instead of the summary.")
-    ] = False,
-    units: Annotated[
-        Units, typer.Option(help="Units of lengths and feeds in the summary.", metavar="mm|inch")
-    ] = Units.MM,
-    trace: Annotated[
-        Path | None,
-        typer.Option(
-            help="Write one row per control cycle to a .csv, .npz or .parquet file.", metavar="FILE"
-        ),
-    ] = None,
-    plot: Annotated[
-        Path | None, typer.Option(help="Draw path and speed to a .png, .svg or .pdf file.", metavar="FILE")
-    ] = None,
-    servo: Annotated[
-        bool, typer.Option("--servo", help="Simulate the position loops; the trace gets actual positions.")
-    ] = False,
-    skip: Annotated[
-        list[int] | None,
-        typer.Option(
-            help="Leave out blocks marked /N, as with block delete on; / alone is 1.",
-            metavar="N",
-            min=1,
-            max=9,
-        ),
-    ] = None,
-    stop_at_m0: Annotated[
-        bool, typer.Option("--stop-at-m0", help="End the run at the first M0 instead of passing it.")
-    ] = False,
-    ignore: Annotated[list[str] | None, IGNORE] = None,
-    root: Annotated[Path | None, ROOT] = None,
-    keys: Annotated[
-        Path | None,
-        typer.Option(help="The keys that are pressed when a program asks, one a line.", metavar="FILE"),
-    ] = None,
-    screen: Annotated[
-        Path | None,
-        typer.Option(help="Write what the program shows to a .txt, .svg or .png file.", metavar="FILE"),
-    ] = None,
-    loop_limit: Annotated[
-        float | None,
-        typer.Option(
-            help="How long a CPL loop may go round without a block or a WAIT (10 s of the machine's time).",
-            metavar="S",
-        ),
-    ] = None,
+    programs: options.Programs,
+    machine: options.Machine = None,
+    dialect: options.Dialect = None,
+    as_json: options.AsJsonSummary = False,
+    units: options.SummaryUnits = Units.MM,
+    trace: options.Trace = None,
+    plot: options.Plot = None,
+    servo: options.Servo = False,
+    skip: options.Skip = None,
+    stop_at_m0: options.StopAtM0 = False,
+    ignore: options.Ignore = None,
+    root: options.Root = None,
+    keys: options.Keys = None,
+    screen: options.Screen = None,
+    loop_limit: options.LoopLimit = None,
 ) -> None:
     """Run part programs on a simulated machine and say how long they take and where they go."""
     from polycnc import runner
     from polycnc.machine import load_machine
-    from polycnc.outputs import keep_apart, keep_inputs
 
-    outputs = (("a trace", trace), ("a plot", plot), ("a screen", screen))
-    for what, output in outputs:
-        if output is not None and len(programs) > 1:
-            raise UsageError(f"{what} of {len(programs)} programs", hint="Run them one by one.")
-        keep_inputs(output, (*programs, machine, dialect, keys), what)
-    keep_apart(outputs)
+    outputs = _Outputs(trace, plot, screen)
+    outputs.check(programs, (*programs, machine, dialect, keys))
     texts = [read_program(program) for program in programs]
     config = load_machine(machine)
     if servo:
         _say_if_ideal(config)
+    settings = runner.RunSettings(
+        config,
+        dialect,
+        servo=servo,
+        skip_levels=frozenset(skip or ()),
+        stop_at_m0=stop_at_m0,
+        root=root,
+        keys=() if keys is None else runner.read_keys(keys),
+        screen=screen,
+        ignore=options.codes_of(ignore),
+        loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
+    )
     results = []
     for text in texts:
-        with ExitStack() as stack:
-            picture = None
-            writer = None
-            if plot is not None:
-                runner.check_plot_file(plot)
-                picture = runner.TrackCollector(tuple(axis.unit for axis in config.axes))
-            if trace is not None:
-                writer = stack.enter_context(runner.TraceWriter(trace, config, servo))
-            sinks = [
-                *([picture.add] if picture is not None else []),
-                *([writer.add_tagged] if writer is not None else []),
-            ]
-            with progress_bar(Path(text.name).name) as bar:
-                result = runner.run(
-                    text,
-                    config,
-                    dialect,
-                    servo=servo,
-                    check=False,
-                    skip_levels=skip or (),
-                    stop_at_m0=stop_at_m0,
-                    tagged_rows=_to_all(sinks),
-                    progress=bar,
-                    root=root,
-                    keys=() if keys is None else runner.read_keys(keys),
-                    screen=screen,
-                    ignore=codes_of(ignore),
-                    loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
-                )
-            if picture is not None and plot is not None:
-                names = tuple((axis.name, axis.unit) for axis in config.axes)
-                runner.plot_track(result, names, picture.track(picture.execution()), plot)
-        results.append(result)
+        results.append(_run(text, config, settings, outputs))
         if not as_json:
-            print_summary(result, units)
+            print_summary(results[-1], units)
     if as_json:
         print_json(results[0].as_dict() if len(results) == 1 else _all_as_dict(results))
     else:
-        if len(results) > 1:
-            total = sum(result.time_s for result in results)
-            say(
-                lead="total      "
-                + bold(f"{runner.time_text(total)}, {runner.counted(len(results), 'program')}")
-            )
-        for path in (trace, plot, screen):
-            if path is not None:
-                say(f"wrote      {path}")
+        _say_total(results)
+        outputs.say()
     sys.exit(0 if all(result.ok for result in results) else 1)
+
+
+def _run(text: ProgramText, config: MachineConfig, settings: RunSettings, outputs: _Outputs) -> RunResult:
+    """Run a program, and write its trace and its plot."""
+    from polycnc import runner
+
+    with ExitStack() as stack:
+        sinks: list[Callable[..., None]] = []
+        picture = None
+        if outputs.plot is not None:
+            runner.check_plot_file(outputs.plot)
+            picture = runner.TrackCollector(tuple(axis.unit for axis in config.axes))
+            sinks.append(picture.add)
+        if outputs.trace is not None:
+            writer = stack.enter_context(runner.TraceWriter(outputs.trace, config, settings.servo))
+            sinks.append(writer.add_tagged)
+        with progress_bar(Path(text.name).name) as bar:
+            result = runner.run_program(text, settings, check=False, tagged_rows=_to_all(sinks), progress=bar)
+        if picture is not None and outputs.plot is not None:
+            names = tuple((axis.name, axis.unit) for axis in config.axes)
+            runner.plot_track(result, names, picture.track(picture.execution()), outputs.plot)
+    return result
+
+
+def _say_total(results: Sequence[RunResult]) -> None:
+    from polycnc.runner import counted, time_text
+
+    if len(results) > 1:
+        total = sum(result.time_s for result in results)
+        say(lead="total      " + bold(f"{time_text(total)}, {counted(len(results), 'program')}"))
 
 
 def _to_all(sinks: Sequence[Callable[..., None]]) -> Callable[..., None] | None:

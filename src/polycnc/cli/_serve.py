@@ -60,15 +60,7 @@ def serve_command(
 
     if not fanuc:
         raise UsageError("which control shall be served?", hint="Write --fanuc; others are not there yet.")
-    if not address.startswith("127.") and address not in ("localhost", "::1"):
-        raise UsageError(
-            f"{address} is no address of this computer alone",
-            hint="The protocol knows no passwords: listen on 127.0.0.1 and forward the port where it is needed.",
-        )
-    if count > 1 and memory is not None:
-        raise UsageError(f"{count} controls cannot share {memory}", hint="Serve one control with a memory.")
-    if count > 1 and port == 0:
-        raise UsageError("several controls on port 0", hint="Say the port; they differ in their addresses.")
+    _check_addresses(address, count, port, memory)
     import asyncio
 
     from polycnc.servers.focas import load_faults, load_profile
@@ -84,6 +76,21 @@ def serve_command(
         () if faults is None else load_faults(faults),
     )
     asyncio.run(_serve(wanted, _addresses(address, count)))
+
+
+def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
+    """Refuse addresses of other computers, and what several controls cannot share."""
+    from polycnc.errors import UsageError
+
+    if not address.startswith("127.") and address not in ("localhost", "::1"):
+        raise UsageError(
+            f"{address} is no address of this computer alone",
+            hint="The protocol knows no passwords: listen on 127.0.0.1 and forward the port where it is needed.",
+        )
+    if count > 1 and memory is not None:
+        raise UsageError(f"{count} controls cannot share {memory}", hint="Serve one control with a memory.")
+    if count > 1 and port == 0:
+        raise UsageError("several controls on port 0", hint="Say the port; they differ in their addresses.")
 
 
 @dataclass(frozen=True)

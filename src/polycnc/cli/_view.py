@@ -4,28 +4,17 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
 
-import typer
-
+from polycnc.cli import _options as options
 from polycnc.cli._output import bold_red, progress_bar, say, say_error
-from polycnc.cli._run import DIALECT, MACHINE
 
 
 def view_command(
-    program: Annotated[Path, typer.Argument(help="The part program.", metavar="PROGRAM")],
-    output: Annotated[
-        Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            help="The page, an .html file (default: the program's name with .html, here).",
-            metavar="FILE",
-        ),
-    ] = None,
-    open_page: Annotated[bool, typer.Option("--open", help="Open the page in the browser.")] = False,
-    machine: Annotated[str | None, MACHINE] = None,
-    dialect: Annotated[str | None, DIALECT] = None,
+    program: options.Program,
+    output: options.Page = None,
+    open_page: options.OpenPage = False,
+    machine: options.Machine = None,
+    dialect: options.Dialect = None,
 ) -> None:
     """Run a part program and write a page that shows it: path, time, blocks, tools, speed."""
     from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program

@@ -39,14 +39,22 @@ if TYPE_CHECKING:
     )
     from polycnc.cnc._control_snapshot import ControlSnapshot
     from polycnc.cnc._control_time import ControlEvent
-    from polycnc.cnc._manual import AxisMotion, ManualData, ManualKind, ManualMotion, ManualState
+    from polycnc.cnc._manual import AxisMotion, Handwheel, ManualData, ManualKind, ManualMotion, ManualState
     from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
     from polycnc.cnc._program_edit import ProgramEdit
     from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
     from polycnc.cnc._refusal import ControlError, Refusal
     from polycnc.cnc._spindle import Spindle, SpindleMotion, SpindleState
-    from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Feed, Motion, Status
-    from polycnc.cnc._status_reading import AxisFigures
+    from polycnc.cnc._status import (
+        AxisStatus,
+        ChannelStatus,
+        Emergency,
+        Feed,
+        Motion,
+        Status,
+        ToolInUse,
+        WorkOffset,
+    )
     from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
     from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
@@ -77,14 +85,22 @@ _LATER = {
         "Switches",
     ),
     "_control_snapshot": ("ControlSnapshot",),
-    "_manual": ("AxisMotion", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
+    "_manual": ("AxisMotion", "Handwheel", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
     "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
     "_program_edit": ("ProgramEdit",),
     "_program_memory": ("Found", "MemoryData", "ProgramEntry", "ProgramMemory", "first_comment"),
     "_refusal": ("ControlError", "Refusal"),
     "_spindle": ("Spindle", "SpindleMotion", "SpindleState"),
-    "_status": ("AxisStatus", "ChannelStatus", "Emergency", "Feed", "Motion", "Status"),
-    "_status_reading": ("AxisFigures",),
+    "_status": (
+        "AxisStatus",
+        "ChannelStatus",
+        "Emergency",
+        "Feed",
+        "Motion",
+        "Status",
+        "ToolInUse",
+        "WorkOffset",
+    ),
     "_tables": ("OffsetTable", "Tool", "ToolTable"),
     "_timers": ("PartCounter", "Parts", "Timer", "Timers", "TimersState"),
 }
@@ -99,7 +115,6 @@ __all__ = [
     "AlarmRow",
     "AlarmTable",
     "Answer",
-    "AxisFigures",
     "AxisMotion",
     "AxisStatus",
     "Breakpoint",
@@ -116,6 +131,7 @@ __all__ = [
     "Feed",
     "Found",
     "Function",
+    "Handwheel",
     "ManualData",
     "ManualKind",
     "ManualMotion",
@@ -155,8 +171,10 @@ __all__ = [
     "Timers",
     "TimersState",
     "Tool",
+    "ToolInUse",
     "ToolTable",
     "ToolTime",
+    "WorkOffset",
     "first_comment",
 ]
 

@@ -131,12 +131,17 @@ class AlarmList:
         self._keep = keep
         self._history = store.history(_ALARMS)
         self.owners = dict(owners or {})
+        self.active: tuple[Alarm, ...] = ()
+        """The alarms that are on, oldest first."""
+        past = self._history.last(1)
+        self.last_time: str | None = past[-1].content["time"] if past else None
+        """When the last alarm of the history came, by the machine's date and time (ISO), even if it is gone."""
         self._active: dict[tuple[str, str | None, int | None], Alarm] = {}
 
-    @property
-    def active(self) -> tuple[Alarm, ...]:
-        """The alarms that are on, oldest first."""
-        return tuple(self._active.values())
+    def _change(self, active: dict[tuple[str, str | None, int | None], Alarm]) -> None:
+        self._active = active
+        self.active = tuple(active.values())
+        self._clock.changes += 1
 
     def __bool__(self) -> bool:
         return bool(self._active)
@@ -181,32 +186,36 @@ class AlarmList:
         row = self._table[name]
         text = row.text.format(axis=axis, detail=detail)
         alarm = Alarm(name, row.number, row.kind, text, axis, self._clock.cycles, row.cleared_by, channel)
+        self.last_time = self._clock.now.isoformat()
         self._history.append(
             {
                 "number": row.number,
                 "kind": row.kind.value,
                 "text": text,
                 "axis": axis,
-                "time": self._clock.now.isoformat(),
+                "time": self.last_time,
             }
         )
         self._history.trim(self._keep)
-        self._active[alarm.key] = alarm
+        self._change({**self._active, alarm.key: alarm})
         return alarm
 
     def reset(self, channel: int | None = None) -> None:
         """Take away the alarms that a reset clears: of one channel alone, or all."""
-        self._active = {
-            key: alarm
-            for key, alarm in self._active.items()
-            if alarm.cleared_by is not ClearedBy.RESET or (channel is not None and alarm.channel != channel)
-        }
+        self._change(
+            {
+                key: alarm
+                for key, alarm in self._active.items()
+                if alarm.cleared_by is not ClearedBy.RESET
+                or (channel is not None and alarm.channel != channel)
+            }
+        )
 
     def cause_gone(self, name: str, axis: str | None = None) -> None:
         """Take an alarm away whose cause has gone, if that is what clears it."""
         alarm = self._active.get((name, axis, self._channel(axis, None)))
         if alarm is not None and alarm.cleared_by is ClearedBy.CAUSE:
-            del self._active[alarm.key]
+            self._change({key: each for key, each in self._active.items() if each is not alarm})
 
     def history(self) -> tuple[PastAlarm, ...]:
         """Return the history, oldest first."""
@@ -224,6 +233,8 @@ class AlarmList:
     def clear_history(self) -> None:
         """Forget the history; the alarms that are on stay."""
         self._history.trim(0)
+        self.last_time = None
+        self._clock.changes += 1
 
     def snapshot(self) -> tuple[Alarm, ...]:
         """Return the alarms that are on, to go back to; the history is durable and stays."""
@@ -231,7 +242,7 @@ class AlarmList:
 
     def restore(self, alarms: tuple[Alarm, ...]) -> None:
         """Go back to a snapshot."""
-        self._active = {alarm.key: alarm for alarm in alarms}
+        self._change({alarm.key: alarm for alarm in alarms})
 
 
 class OperatorMessages:
@@ -241,12 +252,12 @@ class OperatorMessages:
         self._clock = clock
         self._keep = keep
         self._history = store.history(_MESSAGES)
-        self._shown: dict[int, OperatorMessage] = {}
-
-    @property
-    def shown(self) -> tuple[OperatorMessage, ...]:
+        self.shown: tuple[OperatorMessage, ...] = ()
         """The messages that are shown, oldest first."""
-        return tuple(self._shown.values())
+
+    def _change(self, *shown: OperatorMessage) -> None:
+        self.shown = shown
+        self._clock.changes += 1
 
     def show(self, number: int, text: str) -> OperatorMessage:
         """Show a message, in place of one with the same number.
@@ -263,16 +274,12 @@ class OperatorMessages:
         message = OperatorMessage(number, text, self._clock.cycles)
         self._history.append({"number": number, "text": text, "time": self._clock.now.isoformat()})
         self._history.trim(self._keep)
-        self._shown.pop(number, None)
-        self._shown[number] = message
+        self._change(*(each for each in self.shown if each.number != number), message)
         return message
 
     def withdraw(self, number: int | None = None) -> None:
         """Take a message away, or all; one that is not shown needs no taking away."""
-        if number is None:
-            self._shown.clear()
-        else:
-            self._shown.pop(number, None)
+        self._change(*(each for each in self.shown if number is not None and each.number != number))
 
     def history(self) -> tuple[tuple[int, str, str], ...]:
         """Return number, text and time (ISO) of the past messages, oldest first."""
@@ -287,4 +294,4 @@ class OperatorMessages:
 
     def restore(self, messages: tuple[OperatorMessage, ...]) -> None:
         """Go back to a snapshot."""
-        self._shown = {message.number: message for message in messages}
+        self._change(*messages)

@@ -32,7 +32,8 @@ class AuxiliaryFunctions:
         self._spindle = spindle
         self._plc = plc
         self._end_stops = end_stops
-        self._waiting: dict[int, list[int]] = {}  # requests to the PLC by channel
+        self.requests: dict[int, list[int]] = {}
+        """The serial numbers of what each channel waits for at the PLC."""
 
     def meet(self, channel: ControlChannel, event: Event, dialect: Dialect) -> bool:
         """Hand the functions of a block over; return whether the path has to wait for their answers."""
@@ -53,7 +54,8 @@ class AuxiliaryFunctions:
         ]
         waiting = [serial for serial in serials if not self._plc.finished(serial)]
         if waiting:
-            self._waiting.setdefault(channel.path, []).extend(waiting)
+            self.requests.setdefault(channel.path, []).extend(waiting)
+            self._clock.changes += 1
         return bool(waiting)
 
     def _default_s(self, channel: ControlChannel, letter: str, number: int, dialect: Dialect) -> float:
@@ -67,15 +69,18 @@ class AuxiliaryFunctions:
 
     def waiting(self, path: int) -> tuple[str, ...]:
         """Return the functions, like "M8", that a channel waits for."""
-        serials = self._waiting.get(path, [])
+        serials = self.requests.get(path)
+        if not serials:
+            return ()
         return tuple(str(each) for each in self._plc.pending if each.serial in serials)
 
     def take_answers(self, channel: ControlChannel) -> bool:
         """Let a channel go on whose functions have all been answered; tell whether it does."""
-        serials = self._waiting.get(channel.path)
+        serials = self.requests.get(channel.path)
         if not serials or not all(self._plc.finished(serial) for serial in serials):
             return False
-        del self._waiting[channel.path]
+        del self.requests[channel.path]
+        self._clock.changes += 1
         if channel.run is not None:
             channel.run.answered()
         return True
@@ -85,21 +90,22 @@ class AuxiliaryFunctions:
         for request in self._plc.take_failed():
             name = "function_not_answered" if request.timed_out else "function_failed"
             detail = str(request) if request.timed_out else f"{request}: {request.alarm}"
-            paths = (path for path, serials in self._waiting.items() if request.serial in serials)
+            paths = (path for path, serials in self.requests.items() if request.serial in serials)
             alarms.put(name, detail=detail, channel=next(paths, None))
 
     def withdraw(self, channels: Iterable[ControlChannel]) -> None:
         """Wait no longer for the functions of these channels."""
         for channel in channels:
-            self._plc.cancel(self._waiting.pop(channel.path, ()))
+            self._plc.cancel(self.requests.pop(channel.path, ()))
 
     def serials(self, path: int) -> tuple[int, ...]:
         """Return the requests that a channel waits for, to go back to."""
-        return tuple(self._waiting.get(path, ()))
+        return tuple(self.requests.get(path, ()))
 
     def restore(self, waiting: Iterable[tuple[int, tuple[int, ...]]]) -> None:
         """Go back to what each channel waited for."""
-        self._waiting = {path: list(serials) for path, serials in waiting if serials}
+        self._clock.changes += 1
+        self.requests = {path: list(serials) for path, serials in waiting if serials}
 
 
 def _direction(event: Event, block: BlockRecord, dialect: Dialect, *, end_stops: bool) -> int | None:

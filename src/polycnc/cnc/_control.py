@@ -6,7 +6,7 @@ Every command is carried out or refused whole: a refused one raises `ControlErro
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -44,8 +44,8 @@ from polycnc.cnc._program_memory import ProgramMemory
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_snapshot import file_text
 from polycnc.cnc._spindle import Spindle
-from polycnc.cnc._status import AxisStatus, Emergency, Status
-from polycnc.cnc._status_reading import AxisFigures, read_axes, read_figures, read_status
+from polycnc.cnc._status import AxisStatus, ChannelStatus, Emergency, Status
+from polycnc.cnc._status_reading import StatusReader
 from polycnc.cnc._stops import Step
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
@@ -56,9 +56,11 @@ from polycnc.machine import (
     Snapshot,
     SnapshotError,
     Store,
+    described,
     load_machine,
 )
 from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
+from polycnc.nc.macro import language_for
 
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MDI_NAME = "MDI"
@@ -74,7 +76,7 @@ class Control:
     them where they set or stop something, if it is not given.
     `memory` is the durable memory, a file or an open store: programs, tools, offsets, timers, parts, histories.
     `script` tells how the PLC answers auxiliary functions. `servo` simulates the position loops of the machine file.
-    `languages` are those of the channels' programs, one for each channel.
+    `languages` are those of the channels' programs, one for each channel; without any, the language of the dialect.
     """
 
     def __init__(
@@ -127,18 +129,18 @@ class Control:
                 library=self._sub_program,
                 dry_run_mm_min=data.dry_run_mm_min,
                 on_event=self._meet,
-                language=languages[path] if path < len(languages) else None,
+                language=languages[path] if path < len(languages) else language_for(self.dialect),
             )
             for path, share in enumerate(shares)
         )
         self.clock = clock
         self._parts = ControlParts(
-            self.machine, clock, self.channels, data, self.programs, self.alarms, self.messages, self.timers,
-            self.parts, self.spindle, self.plc, self.functions, self.manual,
+            self.machine, clock, self.channels, data, self.dialect, self.programs, self.tools, self.offsets,
+            self.alarms, self.messages, self.timers, self.parts, self.spindle, self.plc, self.functions, self.manual,
+            relative_zero=[0.0] * len(machine_file.axes),
         )  # fmt: skip
         self._time = ControlTime(self._parts, self._fail)
-        self._emergency = Emergency.OFF
-        self._relative_zero = [0.0] * len(machine_file.axes)
+        self._reader = StatusReader(self._parts)
         self._edits = ProgramEdits(self.programs)
         self.manual.check_limit_switches()
 
@@ -188,9 +190,12 @@ class Control:
         """
         for channel in self.channels:
             check_over(channel)
-        self.dialect = dialect
+        other = dialect.language != self.dialect.language
+        self.dialect = self._parts.dialect = dialect
         for channel in self.channels:
             channel.change_config(self._live, dialect)
+            if other:
+                channel.language = language_for(dialect)
 
     @property
     def mode(self) -> Mode:
@@ -210,7 +215,7 @@ class Control:
     @property
     def emergency(self) -> Emergency:
         """The state of the emergency stop."""
-        return self._emergency
+        return self._parts.emergency
 
     def select_mode(
         self, mode: Mode, *, channel: int | None = None, going: Collection[str] = frozenset()
@@ -244,6 +249,7 @@ class Control:
             if each.mode is Mode.EDIT:
                 self._edits.close_foreground()
             each.mode = mode
+        self.clock.changes += 1
 
     def set_overrides(
         self,
@@ -284,8 +290,8 @@ class Control:
         """Switch single block and its like on or off; what is None stays.
 
         Raises:
-            ControlError: A skip mark that is not from 1 to 9, or the machine lock while a program is executed or
-                interrupted, or axes still brake.
+            ControlError: A skip mark that is not from 1 to 9, a dry run without a feed, or the machine lock while a
+                program is executed or interrupted, or axes still brake.
         """
         given: dict[str, Any] = {
             "single_block": single_block,
@@ -297,6 +303,10 @@ class Control:
         if block_delete is not None and not block_delete <= frozenset(range(1, 10)):
             raise ControlError(
                 Refusal.DATA, f"{sorted(block_delete)} are not skip marks", hint="Give numbers from 1 to 9."
+            )
+        if dry_run and not self.data.dry_run_mm_min > 0.0:
+            raise ControlError(
+                Refusal.DATA, "there is no feed for a dry run", hint="Set one (dry_run_mm_min)."
             )
         chosen = self._chosen(channel)
         changes = {name: each for name, each in given.items() if each is not None}
@@ -321,6 +331,7 @@ class Control:
         text = self.programs.text(program) if isinstance(program, str) else program
         chosen.program = text
         chosen.search = None
+        self.clock.changes += 1
 
     def set_mdi(self, text: str, *, channel: int = 0) -> None:
         """Put in the text that a start in MDI executes.
@@ -354,7 +365,7 @@ class Control:
             raise wrong_mode(chosen.mode, "a block can be searched", Mode.AUTO)
         check_over(chosen)
         check_hands_off(chosen, self.manual)
-        check_ready(self._emergency, self.alarms.of(channel))
+        check_ready(self._parts.emergency, self.alarms.of(channel))
         text = text_to_begin(chosen, self.programs, is_mdi=False)
         return chosen.seek(text, Search(line, sequence, calculate))
 
@@ -368,7 +379,7 @@ class Control:
                 move or are not referenced, or a program is being executed.
         """
         chosen = self._channel(channel)
-        check_ready(self._emergency, self.alarms.of(channel))
+        check_ready(self._parts.emergency, self.alarms.of(channel))
         if chosen.mode not in _PROGRAM_MODES:
             raise wrong_mode(chosen.mode, "a program can start", *sorted(_PROGRAM_MODES))
         if chosen.active:
@@ -396,10 +407,8 @@ class Control:
                 )
             search = Search(line) if line > 1 else None if is_mdi else chosen.search
             chosen.begin(text, mdi=is_mdi, step=step, search=search)
-            self._time.note_end(chosen)  # of a program that is over or wrong before anything moves
             self.timers.start_cycle()
-        self._time.note_running()
-        self._time.raised |= ControlEvent.RUN_STATE
+        self._time.note_start(chosen)
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.
@@ -427,8 +436,8 @@ class Control:
         self._break_off(chosen)
         if self.data.reset_stops_spindle and any(each.data.spindle for each in chosen):
             self.spindle.stop()
-        if self._emergency is Emergency.RESET_NEEDED and channel is None:
-            self._emergency = Emergency.OFF
+        if self._parts.emergency is Emergency.RESET_NEEDED and channel is None:
+            self._parts.emergency = Emergency.OFF
         self.alarms.reset(channel)
         names = self.machine.config.axis_names
         for axis in (axis for each in chosen for axis in each.axes):
@@ -439,17 +448,18 @@ class Control:
 
     def emergency_stop(self, on: bool = True) -> None:
         """Press or release the emergency stop: everything brakes and is broken off; the spindle stops."""
-        if on and self._emergency is not Emergency.ON:
-            self._emergency = Emergency.ON
+        if on and self._parts.emergency is not Emergency.ON:
+            self._parts.emergency = Emergency.ON
             self.alarms.put("emergency_stop")
             self._time.raised |= ControlEvent.ALARM
             self._break_off(self.channels)
             self.spindle.stop()
             self._time.note_running()
-        elif not on and self._emergency is Emergency.ON:
+        elif not on and self._parts.emergency is Emergency.ON:
             self.alarms.cause_gone("emergency_stop")
+            self.clock.changes += 1
             needed = self.data.emergency_needs_reset
-            self._emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
+            self._parts.emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
 
     def put_alarm(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
         """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is.
@@ -553,12 +563,13 @@ class Control:
                 Refusal.DATA, f"axis {axis} cannot be at {position}", hint=f"The axes are {', '.join(names)}."
             )
         index = names.index(axis)
-        self._relative_zero[index] = float(self.machine.state.servo.actual[index]) - position
+        self._parts.relative_zero[index] = float(self.machine.state.servo.actual[index]) - position
+        self.clock.changes += 1
 
     @property
     def relative_zero(self) -> tuple[float, ...]:
         """Where the relative positions count from (machine coordinates)."""
-        return tuple(self._relative_zero)
+        return tuple(self._parts.relative_zero)
 
     # ------------------------------------------------------------------ time
 
@@ -601,16 +612,20 @@ class Control:
     # ------------------------------------------------------------------ state
 
     def status(self) -> Status:
-        """Return what the control is and does in the present cycle."""
-        return read_status(self)
+        """Return what the control is and does in the present cycle; the same object until something changes."""
+        return self._reader.status()
 
-    def axes(self) -> dict[str, AxisStatus]:
-        """Return the axes in the present cycle, as the status has them, for those who read them often."""
-        return read_axes(self)
+    def axes(self) -> Mapping[str, AxisStatus]:
+        """Return the axes of the status, without the rest of it."""
+        return self._reader.axes()
 
-    def figures(self) -> AxisFigures:
-        """Return positions and speeds of the axes in the present cycle, by their places; quicker than `axes`."""
-        return read_figures(self)
+    def channel_status(self, channel: int = 0) -> ChannelStatus:
+        """Return a channel of the status, without the rest of it.
+
+        Raises:
+            ControlError: There is no such channel.
+        """
+        return self._reader.channel(self._channel(channel).path)
 
     def snapshot(self) -> ControlSnapshot:
         """Return the whole state, to go back to with `restore`; what is durable (programs, tables, parts) is not in it.
@@ -622,7 +637,7 @@ class Control:
             None if channel.run is None else channel.run.snapshot(find=self._text)
             for channel in self.channels
         )
-        moment = moment_of(self._parts, self._emergency, self.relative_zero, int(self._time.raised))
+        moment = moment_of(self._parts, int(self._time.raised))
         return ControlSnapshot.of(self._made_from, self.machine.snapshot(), moment, runs)
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -645,16 +660,14 @@ class Control:
         back = [channel.way_back(run, self._text) for channel, run in zip(self.channels, runs, strict=True)]
         self.machine.restore(snapshot.machine)
         self._edits.close_all()
-        self._emergency = moment.emergency
-        self._relative_zero = list(moment.relative_zero)
         self._time.raised = ControlEvent(moment.raised)
         put_back(self._parts, moment, tuple(each() for each in back))
-        self._time.note_running()
+        self._time.forget()
 
     @property
     def _made_from(self) -> str:
         shares = tuple(channel.data for channel in self.channels)
-        return f"{self.machine.config.model_dump_json()} {self.dialect!r} {shares!r} {self.data!r}"
+        return described((self.machine.config, self.dialect, shares, self.data))
 
     def _text(self, name: str) -> ProgramText | None:
         """Return the present text of a program, of the memory or of a file."""
@@ -684,6 +697,6 @@ class Control:
             raise wrong_mode(owner.mode, f"axes can be moved in {mode}", mode)
         alarms = self.alarms.of(owner.path)
         serious = [alarm for alarm in alarms if alarm.kind is not AlarmKind.TRAVEL]
-        if self._emergency is not Emergency.OFF or serious:
-            check_ready(self._emergency, alarms)
+        if self._parts.emergency is not Emergency.OFF or serious:
+            check_ready(self._parts.emergency, alarms)
         owner.lend()

@@ -60,6 +60,9 @@ class ControlChannel:
         self.skip_signal = False
         self.on_skip: Callable[[], None] | None = None
         self.data = data
+        names = machine.config.axis_names
+        self.axes = tuple(name for name in names if name in data.axes)
+        """The names of its axes, in the order of the machine."""
         self.mode = Mode.AUTO
         self.overrides = Overrides()
         self.switches = Switches()
@@ -72,14 +75,13 @@ class ControlChannel:
         self.broken = False  # an alarm has stopped the program: only a reset helps
         self.returning = False  # axes go back to where the program was interrupted
         self._machine = machine
+        self._clock = machine.clock
         self._dialect = dialect
         self._manual = manual
         self._file = config
         self.config = self._own(config)
         self.names: Sequence[str] | None = None
         """Names of the machine's axes for programs, see `of_another_channel`; None: as the machine has them."""
-        self.asks_often = False
-        """Whether a language that waits is asked in every cycle."""
         self._library = library
         self._dry_run_mm_s = dry_run_mm_min / 60.0
         self._on_event = on_event
@@ -100,11 +102,6 @@ class ControlChannel:
         return config.model_copy(update={"axes": axes})
 
     # ------------------------------------------------------------------ what it does
-
-    @property
-    def axes(self) -> tuple[str, ...]:
-        """The names of its axes, in the order of the machine."""
-        return tuple(name for name in self._machine.config.axis_names if name in self.data.axes)
 
     @property
     def run_state(self) -> RunState:
@@ -171,6 +168,7 @@ class ControlChannel:
             self.set_switches(self.switches)  # statements may ask for them
             line = self._find(search)
         self.search = search
+        self._clock.changes += 1
         return line
 
     @contextmanager
@@ -245,7 +243,7 @@ class ControlChannel:
             text,
             self._dialect,
             path=self.path,
-            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s, asks_often=self.asks_often),
+            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
             config=self.config,
             library=self._library,
             language=self.language,
@@ -261,6 +259,7 @@ class ControlChannel:
             ControlError: Axes are still braking, are moved by hand, or are not where the program was interrupted.
         """
         self.check_rest()
+        self._clock.changes += 1
         displaced = self._displaced()
         if not displaced:
             self._take_back(step)
@@ -284,6 +283,7 @@ class ControlChannel:
 
     def hold(self, *, at_once: bool = False) -> None:
         """Hold the program, or the return of axes; `at_once` even where the program suppresses it."""
+        self._clock.changes += 1
         if self.returning:
             self.returning = False
             self._manual.stop_all(self.axes)
@@ -292,6 +292,7 @@ class ControlChannel:
 
     def reset(self) -> None:
         """Break off whatever is being executed; the axes brake on the path."""
+        self._clock.changes += 1
         self.returning = False
         self.broken = False
         self.search = None
@@ -346,11 +347,13 @@ class ControlChannel:
         self._file, self._dialect = config, dialect
         self.config = self._own(config)
         self._changed = True
+        self._clock.changes += 1
 
     def share(self, axes: tuple[str, ...]) -> None:
         """Have these axes from now on; no program is being executed."""
-        self.data = replace(self.data, axes=axes)
         state, names = self._machine.state, self._machine.config.axis_names
+        self.data = replace(self.data, axes=axes)
+        self.axes = tuple(name for name in names if name in axes)
         for index, name in enumerate(names):
             if name not in axes and state.owner[index] == self.path:
                 give_to_point_to_point(state, index)
@@ -362,6 +365,7 @@ class ControlChannel:
     def set_switches(self, switches: Switches) -> None:
         """Take over what the operator has switched on."""
         self.switches = switches
+        self._clock.changes += 1
         if self.run is not None:
             self.run.single_block = switches.single_block
             self.run.optional_stop = switches.optional_stop
@@ -372,6 +376,7 @@ class ControlChannel:
     def set_overrides(self, overrides: Overrides) -> None:
         """Take over the overrides."""
         self.overrides = overrides
+        self._clock.changes += 1
         if self.run is not None:
             self.run.feed_override = overrides.feed
             self.run.rapid_override = overrides.rapid
@@ -413,6 +418,7 @@ class ControlChannel:
 
     def put_back(self, moment: ChannelMoment, run: ProgramRun | None) -> None:
         """Go back to a moment, with a run that nobody else has."""
+        self._clock.changes += 1
         self.mode = moment.mode
         self.overrides = moment.overrides
         self.switches = moment.switches
@@ -460,14 +466,23 @@ class ControlChannel:
         self._go(step)
 
     def _go(self, step: Step) -> None:
-        """Begin or go on, as far as `step` says; a single block goes no farther than one block."""
+        """Begin or go on, as far as `step` says; a single block goes no farther than one block.
+
+        Raises:
+            ControlError: The run cannot.
+        """
         assert self.run is not None
-        {
+        self._clock.changes += 1
+        go = {
             Step.RUN: self.run.start,
             Step.INTO: self.run.step_into,
             Step.OVER: self.run.step_over,
             Step.OUT: self.run.step_out,
-        }[step]()
+        }[step]
+        try:
+            go()
+        except UsageError as error:
+            raise ControlError(Refusal.RUNNING, error.what, hint=error.hint) from error
 
 
 def _kept(text: ProgramText | None) -> KeptText | None:

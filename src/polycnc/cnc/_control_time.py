@@ -15,7 +15,6 @@ from polycnc.kernel import FEED_S
 from polycnc.machine import Reason
 
 Condition: TypeAlias = Callable[[], bool]
-_MOST_STANDSTILLS = 10_000
 
 
 class ControlEvent(IntFlag):
@@ -50,22 +49,19 @@ class ControlTime:
         self._fail = fail
         self.raised = ControlEvent.NONE
         self.watch: CycleWatch | None = None
+        self._noted = [channel.run_state for channel in of.channels]
 
     def advance(self, cycles: int, *, until: int | Condition | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did (see `Control.advance`)."""
         condition = until if callable(until) else None
         events = 0 if until is None or callable(until) else int(until)
         done = 0
-        standstills = 0
         while done < cycles:
             self.raised = ControlEvent.NONE
             passed = self._stretch(1 if condition is not None else cycles - done)
             done += passed
-            standstills = 0 if passed else standstills + 1
             if self.raised & events or (condition is not None and condition()):
                 break
-            if standstills > _MOST_STANDSTILLS:
-                break  # a program that loops without motion, as fast as time can pass
         return done
 
     def _stretch(self, cycles: int) -> int:
@@ -78,6 +74,8 @@ class ControlTime:
             self._take_answers(channel)  # somebody may have answered since
             if channel.run is not None and not channel.returning:
                 cycles = min(cycles, channel.run.before_cycles(cycles) or cycles)
+        if [channel.run_state for channel in self._of.channels] != states:
+            cycles = min(cycles, 1)  # a program has ended, or failed, while it was prepared
         due = self._of.plc.due_cycle()
         if due is not None:
             cycles = min(cycles, max(1, due - self._of.clock.cycles))
@@ -85,46 +83,68 @@ class ControlTime:
         watch = self.watch
         if watch is not None and watch.is_awake:
             cycles = min(cycles, 1)
-        cutting_s = self._cutting_s()
         reasons = int(ManualMotion.REASONS | Reason.FOLLOWING_ERROR)
         passed = self._of.machine.advance(cycles, until=int(row["mask"]) | reasons)
         self._of.timers.count(
             passed,
             operating=RunState.ACTIVE in states,
-            cutting_s=self._cutting_s() - cutting_s,
+            cut_s=self._cut_s(),
             tool=self._tool(),
         )
-        self._look(passed, states)
+        self._look(passed, alarms)
+        self._of.clock.changes += 1  # where no cycle has passed as well
         if watch is not None and watch.is_awake:
             watch.look()
         if [channel.run_state for channel in self._of.channels] != states:
             self.raised |= ControlEvent.RUN_STATE
-        if any(alarm not in alarms for alarm in self._of.alarms.active):
-            self.raised |= ControlEvent.ALARM
         if manual and not self._of.manual.active:
             self.raised |= ControlEvent.MANUAL
         return passed
 
-    def _look(self, passed: int, states: list[RunState]) -> None:
-        """Look at what the last cycles have brought since the channels had these states."""
-        alarms = self._of.alarms.active
+    def _look(self, passed: int, alarms: tuple[Alarm, ...]) -> None:
+        """Look at what the last cycles have brought since these alarms were on."""
         self._of.manual.after()
-        for number, channel in enumerate(self._of.channels):
+        for channel in self._of.channels:
             if channel.run is not None and not channel.returning:
                 channel.run.after_cycles(passed)
-            if channel.run_state is not states[number]:
-                self.note_end(channel)
             channel.look()
+            self._note_state(channel)
             self._take_answers(channel)
         self._of.functions.note_failures(self._of.alarms)
         for index, axis in enumerate(self._of.machine.config.axes):
             if self._of.machine.state.servo.error_tripped[index]:
                 self._of.alarms.put("following_error", axis=axis.name)
-        self._fail(alarm for alarm in self._of.alarms.active if alarm not in alarms)
+        self._fail_for(alarms)
         self.note_running()
 
-    def note_end(self, channel: ControlChannel) -> None:
-        """Count the part of a program that has ended, or put its error among the alarms."""
+    def _fail_for(self, before: tuple[Alarm, ...]) -> None:
+        """Stop what the alarms stop that have come since these."""
+        if new := [alarm for alarm in self._of.alarms.active if alarm not in before]:
+            self.raised |= ControlEvent.ALARM
+            self._fail(new)
+
+    def note_start(self, channel: ControlChannel) -> None:
+        """Take note that a program was started, or went on; it may be over, or wrong, before anything moves."""
+        alarms = self._of.alarms.active
+        self._noted[channel.path] = RunState.ACTIVE
+        self._note_state(channel)
+        self._fail_for(alarms)
+        self.note_running()
+        self.raised |= ControlEvent.RUN_STATE
+
+    def forget(self) -> None:
+        """Take what channels do now as known."""
+        self._noted = [channel.run_state for channel in self._of.channels]
+        self.note_running()
+
+    def _note_state(self, channel: ControlChannel) -> None:
+        """Count the part of a program that has ended since this was asked last, or put its error among the alarms.
+
+        Every way into an end or an alarm comes by here, whether a cycle or a command has led to it.
+        """
+        if channel.run_state is self._noted[channel.path]:
+            return
+        self._noted[channel.path] = channel.run_state
         run = channel.run
         counts = self._of.data.count_parts and channel.path == 0 and not channel.is_mdi
         if channel.run_state is RunState.COMPLETED and counts:
@@ -143,7 +163,7 @@ class ControlTime:
         if self._of.functions.take_answers(channel):
             self.raised |= ControlEvent.FUNCTION
 
-    def _cutting_s(self) -> float:
+    def _cut_s(self) -> float:
         return float(self._of.machine.state.paths.totals[:, FEED_S].sum())
 
     def _tool(self) -> int:

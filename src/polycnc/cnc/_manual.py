@@ -99,6 +99,14 @@ _REST = AxisMotion()
 
 
 @dataclass(frozen=True, slots=True)
+class Handwheel:
+    """The axis that the handwheel was turned for last, and the size of its pulses (mm or degree); "" before that."""
+
+    axis: str = ""
+    size: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class ManualState:
     """Everything that manual motion holds beside the kernel's arrays, to go back to."""
 
@@ -106,6 +114,7 @@ class ManualState:
     referenced: tuple[bool, ...]
     feed_overrides: tuple[float, ...]
     rapid_overrides: tuple[float, ...]
+    wheel: Handwheel = Handwheel()
 
 
 class ManualMotion:
@@ -119,40 +128,69 @@ class ManualMotion:
     def __init__(
         self, machine: Machine, alarms: AlarmList, data: ManualData | None = None, *, referenced: bool = True
     ) -> None:
-        self.data = data or ManualData()
+        self._data = data or ManualData()
+        self._clock = machine.clock
         self._machine = machine
         self._alarms = alarms
         self._axes: tuple[AxisConfig, ...] = machine.config.axes
-        self._motions = [_REST] * len(self._axes)
-        self._referenced = [referenced] * len(self._axes)
+        self._names = machine.config.axis_names
+        self.motions = [_REST] * len(self._axes)
+        """What each axis is doing by hand, by its place."""
+        self.references = [referenced] * len(self._axes)
+        """Whether each axis is referenced, by its place."""
         self._feed_overrides = [1.0] * len(self._axes)
         self._rapid_overrides = [1.0] * len(self._axes)
+        self.wheel = Handwheel()
+        self.jog_speeds: list[float] = []
+        """How fast a jog key moves each axis with its override (mm/s or deg/s), by its place."""
+        self._note_speeds()
+
+    @property
+    def data(self) -> ManualData:
+        """How axes are moved by hand."""
+        return self._data
+
+    @data.setter
+    def data(self, data: ManualData) -> None:
+        self._data = data
+        self._note_speeds()
 
     # ------------------------------------------------------------------ what is known
+
+    def _note_speeds(self) -> None:
+        self._speeds = [self._jog_speed(i) for i in range(len(self._axes))]
+        self._note_overrides()
+
+    def _note_overrides(self) -> None:
+        self.jog_speeds = [
+            speed * share for speed, share in zip(self._speeds, self._feed_overrides, strict=True)
+        ]
+        self._clock.changes += 1
 
     @property
     def referenced(self) -> dict[str, bool]:
         """Which axes are referenced."""
-        return dict(zip(self._machine.config.axis_names, self._referenced, strict=True))
+        return dict(zip(self._names, self.references, strict=True))
 
     def motion(self, axis: str) -> AxisMotion:
         """Return what an axis is doing by hand."""
-        return self._motions[self._index(axis)]
+        return self.motions[self._index(axis)]
 
     @property
     def active(self) -> bool:
         """Whether an axis is moved by hand, or waits with its override at 0."""
-        return any(motion is not _REST for motion in self._motions)
+        return any(motion is not _REST for motion in self.motions)
 
     def moves(self, axes: Iterable[str]) -> bool:
         """Tell whether one of these axes is moved by hand, or waits with its override at 0."""
-        return any(self._motions[self._index(axis)] is not _REST for axis in axes)
+        return any(self.motions[self._index(axis)] is not _REST for axis in axes)
 
     # ------------------------------------------------------------------ commands
 
     def change_axes(self, axes: tuple[AxisConfig, ...]) -> None:
         """Move axes with other speeds and limits from now on; nothing may be moving by hand."""
         self._axes = axes
+        self._note_speeds()
 
     def set_overrides(
         self, *, feed: float | None = None, rapid: float | None = None, axes: Iterable[str] | None = None
@@ -165,9 +203,10 @@ class ManualMotion:
             before = self._feed_overrides[i], self._rapid_overrides[i]
             now = before[0] if feed is None else feed, before[1] if rapid is None else rapid
             self._feed_overrides[i], self._rapid_overrides[i] = now
-            motion = self._motions[i]
+            motion = self.motions[i]
             if now != before and motion is not _REST and not motion.stopping and not motion.braking:
                 self._plan(i)
+        self._note_overrides()
 
     def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:
         """Press the key of a direction (1 or -1), or let it go (0 or None); the axis then brakes to rest.
@@ -177,7 +216,7 @@ class ManualMotion:
         """
         i = self._index(axis)
         if not direction:
-            if self._motions[i].kind is ManualKind.JOG:
+            if self.motions[i].kind is ManualKind.JOG:
                 self._stop(i)
             return
         self._check_direction(direction)
@@ -227,12 +266,13 @@ class ManualMotion:
         self._check_free(i, ManualKind.HANDLE)
         if pulses == 0:
             return
-        moving = self._motions[i]
+        moving = self.motions[i]
         start = self._position(i) if moving.target is None or moving.stopping else moving.target
         target = start + pulses * size
         if not math.isfinite(target):
             raise ControlError(Refusal.DATA, f"{pulses} pulses are too many", hint="Turn the handwheel less.")
         self._check_way(i, _UP if pulses > 0 else _DOWN)
+        self.wheel = Handwheel(axis, size)
         self._begin(i, self._towards(i, ManualKind.HANDLE, target, self._axes[i].vmax, rapid=False))
 
     def go_to(self, axis: str, target: float, *, rapid: bool = False) -> None:
@@ -267,10 +307,11 @@ class ManualMotion:
         self._check_free(i)
         config = self._axes[i]
         steps: tuple[Step, ...] = ()
-        if not self._referenced[i] or self.data.search_again:
+        if not self.references[i] or self.data.search_again:
             steps = reference_steps(config, self._position(i), self._on(i, REFERENCE))
-            self._referenced[i] = False
-        self._motions[i] = AxisMotion(ManualKind.REFERENCE, steps=steps)
+            self.references[i] = False
+        self.motions[i] = AxisMotion(ManualKind.REFERENCE, steps=steps)
+        self._clock.changes += 1
         if steps:
             self._begin_step(i, 0)
         else:
@@ -286,14 +327,14 @@ class ManualMotion:
 
     def stop_all(self, axes: Iterable[str] | None = None) -> None:
         """Brake these axes (None: all) to rest and end what they were doing by hand."""
-        for i in range(len(self._motions)) if axes is None else map(self._index, axes):
+        for i in range(len(self.motions)) if axes is None else map(self._index, axes):
             self._stop(i)
 
     # ------------------------------------------------------------------ time
 
     def horizon(self) -> int:
         """Return how many cycles may pass at most until `after` has to look: one while an index pulse is searched."""
-        for motion in self._motions:
+        for motion in self.motions:
             searching = motion.kind is ManualKind.REFERENCE and not (
                 motion.home or motion.braking or motion.stopping
             )
@@ -311,13 +352,13 @@ class ManualMotion:
             for i, owner in enumerate(owners):
                 if owner in stopped:
                     self._stop(i)
-        for i, motion in enumerate(self._motions):
+        for i, motion in enumerate(self.motions):
             if motion is _REST:
                 continue
             at_rest = not self._machine.state.ptp.row[MAIN, i]["active"]
             if motion.stopping:
                 if at_rest:
-                    self._motions[i] = _REST
+                    self.motions[i] = _REST
             elif motion.waiting:
                 if at_rest:
                     self._plan(i)
@@ -329,28 +370,30 @@ class ManualMotion:
     def snapshot(self) -> ManualState:
         """Return everything beside the kernel's arrays, to go back to."""
         return ManualState(
-            tuple(self._motions),
-            tuple(self._referenced),
+            tuple(self.motions),
+            tuple(self.references),
             tuple(self._feed_overrides),
             tuple(self._rapid_overrides),
+            self.wheel,
         )
 
     def restore(self, state: ManualState) -> None:
         """Go back to a snapshot; the kernel's arrays are the machine's to restore."""
-        self._motions = [_REST if motion == _REST else motion for motion in state.motions]
-        self._referenced = list(state.referenced)
+        self.motions = [_REST if motion == _REST else motion for motion in state.motions]
+        self.references = list(state.referenced)
         self._feed_overrides = list(state.feed_overrides)
         self._rapid_overrides = list(state.rapid_overrides)
+        self.wheel = state.wheel
+        self._note_speeds()
 
     # ------------------------------------------------------------------ planning
 
     def _index(self, axis: str) -> int:
-        names = self._machine.config.axis_names
-        if axis not in names:
+        if axis not in self._names:
             raise ControlError(
-                Refusal.DATA, f"there is no axis '{axis}'", hint=f"The axes are {', '.join(names)}."
+                Refusal.DATA, f"there is no axis '{axis}'", hint=f"The axes are {', '.join(self._names)}."
             )
-        return names.index(axis)
+        return self._names.index(axis)
 
     def _position(self, i: int) -> float:
         return float(self._machine.state.base[i])
@@ -361,7 +404,7 @@ class ManualMotion:
 
     def _soft(self, i: int, direction: int) -> float:
         """Return the software limit of a side, infinite where none holds."""
-        if not (self._referenced[i] or self.data.soft_limits_unreferenced):
+        if not (self.references[i] or self.data.soft_limits_unreferenced):
             return direction * math.inf
         low, high = self._axes[i].soft_limits
         return low if direction == _DOWN else high
@@ -383,19 +426,20 @@ class ManualMotion:
         return motion.speed * (self._rapid_overrides[i] if motion.rapid else self._feed_overrides[i])
 
     def _begin(self, i: int, motion: AxisMotion) -> None:
-        self._motions[i] = motion
+        self.motions[i] = motion
+        self._clock.changes += 1
         self._plan(i)
 
     def _plan(self, i: int) -> None:
         """Plan the profile of an axis from where and how fast it is now."""
-        motion, axis, state = self._motions[i], self._axes[i], self._machine.state
+        motion, axis, state = self.motions[i], self._axes[i], self._machine.state
         speed = min(self._speed(i, motion), axis.vmax)
         if speed <= 0.0:
             self._brake(i)
             return
         waiting = self._is_late(i)
         if waiting is not motion.waiting:
-            self._motions[i] = replace(motion, waiting=waiting)
+            self.motions[i] = replace(motion, waiting=waiting)
         if waiting:
             return
         jerkrel = self._machine.config.path.jerkrel
@@ -428,20 +472,22 @@ class ManualMotion:
         stop_axis(self._machine.state.ptp, MAIN, i, rate, jerkrel)
 
     def _stop(self, i: int) -> None:
-        motion = self._motions[i]
+        motion = self.motions[i]
         if motion is _REST or motion.stopping:
             return
         self._machine.state.switches.marks[i]["index_armed"] = 0
-        self._motions[i] = replace(motion, stopping=True, beyond=False)
+        self._clock.changes += 1
+        self.motions[i] = replace(motion, stopping=True, beyond=False)
         if not motion.braking:
             self._brake(i)
 
     # ------------------------------------------------------------------ ends and limits
 
     def _arrive(self, i: int, motion: AxisMotion) -> None:
-        self._motions[i] = _REST
+        self.motions[i] = _REST
+        self._clock.changes += 1
         if motion.kind is ManualKind.REFERENCE:
-            self._referenced[i] = True
+            self.references[i] = True
         elif motion.beyond and self.data.soft_limit_alarm:
             self._alarms.put(f"soft_limit_{_SIDE[motion.direction]}", axis=self._axes[i].name)
 
@@ -487,7 +533,7 @@ class ManualMotion:
             raise ControlError(
                 Refusal.RUNNING, f"a program moves axis {axis}", hint="Wait for its end, or reset it."
             )
-        kind = self._motions[i].kind
+        kind = self.motions[i].kind
         if kind is not ManualKind.NONE and kind is not same:
             raise ControlError(
                 Refusal.RUNNING, f"axis {axis} is moving ({kind})", hint="Wait until it stands."
@@ -506,7 +552,7 @@ class ManualMotion:
     # ------------------------------------------------------------------ reference search
 
     def _begin_step(self, i: int, step: int) -> None:
-        motion, axis = self._motions[i], self._axes[i]
+        motion, axis = self.motions[i], self._axes[i]
         what = motion.steps[step]
         marks = self._machine.state.switches.marks[i]
         marks["index_latched"] = 0
@@ -544,7 +590,7 @@ class ManualMotion:
             else:
                 self._go_home(i)
         elif self._found(i, motion.steps[motion.step].until):
-            self._motions[i] = replace(motion, braking=True)
+            self.motions[i] = replace(motion, braking=True)
             self._brake(i)
         elif at_rest and self._speed(i, motion) > 0.0:
             self._stop(i)
@@ -562,7 +608,7 @@ class ManualMotion:
         self._begin(
             i,
             replace(
-                self._motions[i],
+                self.motions[i],
                 home=True,
                 braking=False,
                 target=axis.home,

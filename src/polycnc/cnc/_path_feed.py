@@ -41,6 +41,7 @@ class FeedSnapshot(NamedTuple):
     high: Floats
     left: int = _NEVER
     box: tuple[Floats, Floats] | None = None
+    due: bool = True
 
 
 class PathFeed:
@@ -62,6 +63,7 @@ class PathFeed:
         self._seen = 0  # boundaries before this count have been looked at
         self._left = _NEVER  # the count at which the path stood when it went on
         self._met_at: int | None = None  # the count at which a condition has become true
+        self._due = True  # whatever the queue holds
         state = machine.state
         self.row = state.paths.row[channel.path]
         self._low_water = _LOW_WATER + int(self.row["depth"])
@@ -69,8 +71,19 @@ class PathFeed:
         self.low = state.setpoint.copy()
         self.high = state.setpoint.copy()
 
+    @property
+    def is_due(self) -> bool:
+        """Whether there is anything to prepare now; the state of the path decides, not who asks how often."""
+        row = self.row
+        return self._due or self.channel.paused or bool(row["planned"] - row["head"] <= row["low_water"])
+
+    def wake(self) -> None:
+        """Take note that what preparation has waited for has come."""
+        self._due = True
+
     def feed(self) -> None:
         """Prepare what may be prepared, and set when the path has to be looked at again."""
+        self._due = False
         self._forget_marks()
         self._fill()
         self._find_stop()
@@ -236,6 +249,7 @@ class PathFeed:
         """Look for stops anew: the stopper has changed."""
         row = self.row
         self._seen = 0
+        self._due = True
         if row["limit"] != NO_LIMIT:
             row["limit"] = NO_LIMIT
             self.prepare()
@@ -288,13 +302,21 @@ class PathFeed:
         """Return what is known of the path besides its queue, to go back to."""
         box = None if self._box is None else (self._box[0].copy(), self._box[1].copy())
         return FeedSnapshot(
-            tuple(self._ends), self._seen, self._met_at, self.low.copy(), self.high.copy(), self._left, box
+            tuple(self._ends),
+            self._seen,
+            self._met_at,
+            self.low.copy(),
+            self.high.copy(),
+            self._left,
+            box,
+            self._due,
         )
 
     def restore(self, saved: FeedSnapshot) -> None:
         """Go back to a snapshot."""
         self._ends = deque(saved.ends)
         self._seen, self._met_at, self._left = saved.seen, saved.met_at, saved.left
+        self._due = saved.due
         self.low[:], self.high[:] = saved.low, saved.high
         self._box = None if saved.box is None else (saved.box[0].copy(), saved.box[1].copy())
 
@@ -304,3 +326,4 @@ class PathFeed:
         self._left = _NEVER
         self._seen = 0
         self._met_at = None
+        self._due = True

@@ -119,6 +119,7 @@ class PlcModel:
         due = None if answer.after_s is None else now + self._clock.cycles_for(answer.after_s)
         latest = None if self._limit_s is None else now + self._clock.cycles_for(self._limit_s)
         late = latest is not None and (due is None or due > latest)
+        self._clock.changes += 1
         self._serial += 1
         self._pending[self._serial] = Request(
             self._serial, function, number, now, latest if late else due, answer.alarm, late
@@ -153,6 +154,7 @@ class PlcModel:
                 else f"request {serial} does not wait",
                 hint="`pending` lists the functions that wait.",
             )
+        self._clock.changes += 1
         self._pending[chosen] = replace(
             self._pending[chosen], due_cycle=self._clock.cycles, alarm=alarm, timed_out=False
         )
@@ -167,6 +169,7 @@ class PlcModel:
 
     def cancel(self, serials: Iterable[int] | None = None) -> None:
         """Withdraw what waits, as a reset does: these requests, or all."""
+        self._clock.changes += 1
         if serials is None:
             self._pending.clear()
             self._failed.clear()
@@ -181,6 +184,7 @@ class PlcModel:
 
     def restore(self, state: PlcState) -> None:
         """Go back to a snapshot."""
+        self._clock.changes += 1
         self._pending = {each.serial: each for each in state.pending}
         self._failed = list(state.failed)
         self._serial = state.serial

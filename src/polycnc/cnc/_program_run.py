@@ -19,7 +19,7 @@ from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
 from polycnc.cnc._tool_times import ToolTime
 from polycnc.errors import ProgramError, UsageError
-from polycnc.machine import Machine, MachineConfig, Snapshot, SnapshotError
+from polycnc.machine import Machine, MachineConfig, Snapshot, SnapshotError, described
 from polycnc.nc import (
     BlockRecord,
     Call,
@@ -483,13 +483,14 @@ class ProgramRun:
 
     # ------------------------------------------------------------------ time
 
-    def advance(self, cycles: int, *, until: Until | None = None) -> int:
+    def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
         It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
-        `until` when one of those reasons was met or the condition holds after a cycle.
+        `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
+        is not asked meanwhile, since nothing can have come.
         """
-        return self._conduct.advance(cycles, until=until)
+        return self._conduct.advance(cycles, until=until, asleep=asleep)
 
     def skip(self) -> int:
         """Go along what is planned in closed form, to the next thing to be done; return the cycles.
@@ -572,10 +573,7 @@ class ProgramRun:
 
     @property
     def _made_from(self) -> str:
-        axes = None if self._axes is None else tuple(self._axes)
-        return (
-            f"{self.machine.config.model_dump_json()} {self.path} {self.dialect!r} {self._options!r} {axes!r}"
-        )
+        return described((self.machine.config, self.path, self.dialect, self._options, self._axes))
 
     # ------------------------------------------------------------------ within
 

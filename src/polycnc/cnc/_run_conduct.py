@@ -39,6 +39,8 @@ _MASK = (
 _GOING = (RunState.ACTIVE, RunState.HOLD)
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 _MOST_MARKS = 1000
+RESTS_PER_CYCLE = 16
+"""Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
 
 
 class Conduct:
@@ -61,6 +63,7 @@ class Conduct:
         self.stopper = Stopper(channel.records, Step.INTO if moment.single_block else Step.RUN)
         self.feed = PathFeed(machine, channel, ahead, self.stopper)
         self.row = self.feed.row
+        self._head = 0  # the segment count before the last cycles
         self.overrides = PathOverrides(
             self.row,
             self.feed.replan,
@@ -113,11 +116,12 @@ class Conduct:
 
     # ------------------------------------------------------------------ time
 
-    def advance(self, cycles: int, *, until: Until | None = None) -> int:
+    def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
         It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
-        `until` when one of those reasons was met or the condition holds after a cycle.
+        `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
+        is not asked meanwhile, since nothing can have come.
         """
         clock = self.machine.state.clock[0]
         condition = until if callable(until) and not isinstance(until, Reason) else None
@@ -126,7 +130,7 @@ class Conduct:
         while done < cycles:
             moving = self.moment.state in _GOING
             clock["mask"] = reasons
-            most = self.before_cycles(cycles - done) or cycles - done
+            most = self.before_cycles(cycles - done, asleep=asleep) or cycles - done
             if moving and self.moment.state not in _GOING:
                 break
             ran = self.machine.advance(1 if condition is not None else most, until=int(clock["mask"]))
@@ -144,6 +148,7 @@ class Conduct:
         For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
         """
         self._tidy()
+        self._meet_more()
         self.feed.feed()
         self.take_suppressed()
         target = self.feed.target()
@@ -155,30 +160,35 @@ class Conduct:
             done += cycles
             if self.row["event"] >= 0:
                 self._meet_event()
+                if cycles == 0:
+                    self._count_rest()
             elif cycles == 0:
                 break
-        if done == 0 and self.row["head"] >= self.row["tail"] and not self.channel.done:
-            done = self.advance(1)  # the program itself waits for something
+        waits = self.row["head"] >= self.row["tail"] and not self.channel.done
+        if done == 0 and (waits or self.channel.paused or self._has_met_enough):
+            done = self.advance(1)  # the program itself waits for something, or for the next cycle
         self.look()
         return done
 
-    def before_cycles(self, cycles: int) -> int:
+    def before_cycles(self, cycles: int, *, asleep: bool = False) -> int:
         """Make ready for up to `cycles` cycles; return how many may pass before `after_cycles`, 0 for any number.
 
-        What must end `machine.advance` early is put into the clock's mask, beside what is there.
+        What must end `machine.advance` early is put into the clock's mask, beside what is there; `asleep` as `advance`.
         """
         if self.moment.dropping or (self.moment.state is RunState.HOLD and self.at_rest):
             return 0 if self.at_rest else cycles
         if self.moment.state not in _GOING:
             return 0
         self._tidy()
-        self.feed.feed()
+        self._meet_more()
+        if self.feed.is_due:
+            self.feed.feed()
         self.take_suppressed()
         self.look()
         self.machine.state.clock[0]["mask"] |= _MASK
-        often = self.moment.probing is not None or (
-            self.options.asks_often and self.at_rest and not self.channel.done
-        )
+        self._head = int(self.row["head"])
+        paused = self.channel.paused and not asleep
+        often = paused or self.moment.probing is not None or self._has_met_enough
         return min(cycles, 1) if often else cycles
 
     def after_cycles(self, cycles: int) -> None:
@@ -188,6 +198,8 @@ class Conduct:
             self._probe(self.moment.probing)
         if raised & kernel.PATH_EVENT and self.row["event"] >= 0:
             self._meet_event()
+        if cycles == 0 and self.row["head"] != self._head:
+            self._count_rest()
         if raised & kernel.RECORDER_FULL:
             self.drain()
         if (found := axis_alarm(self.machine, raised, self.path)) is not None:
@@ -259,7 +271,8 @@ class Conduct:
             self.moment.state is RunState.STOPPED_AT_BLOCK
         )  # before a segment that is in the look-ahead already
         met = self.moment.probing is not None and self.moment.probing.met and self.moment.probing.deletes
-        hold = self.moment.hold or stands or met or self.moment.stop is not None or self.moment.unanswered
+        stops = stands or met or self.moment.stop is not None or self._has_met_enough
+        hold = self.moment.hold or stops or self.moment.unanswered
         if bool(self.row["hold"]) != hold:
             self.row["hold"] = hold
             if self.row["state"] == kernel.RUNNING:
@@ -280,6 +293,26 @@ class Conduct:
                 return True
         return False
 
+    @property
+    def _has_met_enough(self) -> bool:
+        """Whether the path has left all the points of rest that it leaves in this cycle."""
+        return self.moment.enough_at == self.machine.clock.cycles
+
+    def _meet_more(self) -> None:
+        """Let points of rest pass again once a cycle is over that had enough of them."""
+        if self.moment.enough_at is not None and not self._has_met_enough:
+            self.moment.enough_at = None
+            self.set_hold()
+
+    def _count_rest(self) -> None:
+        """Let time pass once enough points of rest have been left in a cycle, however long the queue of them is."""
+        cycle, count = self.moment.rests
+        count = count + 1 if cycle == self.machine.clock.cycles else 1
+        self.moment.rests = self.machine.clock.cycles, count
+        if count >= RESTS_PER_CYCLE:
+            self.moment.enough_at = self.machine.clock.cycles
+            self.set_hold()
+
     def _meet_event(self) -> None:
         number = int(self.row["event"])
         event = self.channel.writer.events.pop(number)
@@ -297,13 +330,18 @@ class Conduct:
                 self.moment.probing = None
                 self.feed.keep_box()
                 self.set_hold()
-            self.channel.go_on()
+            self._go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self.moment.stop = event
             self.moment.state = _STOP_STATES[event.stop]
             self.set_hold()
         elif event.stop is not None and self.options.stands_at_stops:
-            self.channel.go_on()
+            self._go_on()
+
+    def _go_on(self) -> None:
+        """Let preparation go on behind what has been met."""
+        self.channel.go_on()
+        self.feed.wake()
 
     def _probe(self, probing: Probing) -> None:
         """Look for the contact of a probing move; what is left of the move is dropped once the axes stand."""
@@ -320,7 +358,7 @@ class Conduct:
     def _pass_stop(self) -> None:
         if self.moment.stop is not None:
             self.moment.stop = None
-            self.channel.go_on()
+            self._go_on()
 
     def take_suppressed(self) -> None:
         """Let what the program suppresses act no more, and what it did until now act again."""

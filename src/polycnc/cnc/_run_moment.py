@@ -18,6 +18,7 @@ class RunMoment:
     `stop` is the stop at which the program stands, `met` the segment count and the tag of the event at which the path
     rests, `unanswered` an auxiliary function at which it stands. `approach` is where a searched block begins, and its
     line, `searched` where a calculated search has come to. `suppressed` is what the program keeps from acting now.
+    `rests` is the last cycle in which points of rest were left at once and how many, `enough_at` one that has no more.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -38,6 +39,8 @@ class RunMoment:
     approach: tuple[tuple[float, ...], int] | None = None
     probing: Probing | None = None
     searched: tuple[float, ...] | None = None
+    rests: tuple[int, int] = (-1, 0)
+    enough_at: int | None = None
 
     def copy(self) -> RunMoment:
         """Return a moment that changes no more with this one."""

@@ -29,7 +29,7 @@ class RunOptions:
     move nor wait. `blocks_ahead` is how many blocks are prepared beyond the executed one, None as the dialect says.
     `single_block` stops at the end of every block. With `answers` the path waits at an auxiliary function only for the
     answer of `on_event`, not for the machine file's times. `rapid_f0_mm_s` is the path speed of a rapid override of 0
-    (0: it stands), `dry_run_mm_s` that of a dry run. With `asks_often` a language that waits is asked in every cycle.
+    (0: it stands), `dry_run_mm_s` that of a dry run.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -41,7 +41,6 @@ class RunOptions:
     rapid_f0_mm_s: float = 0.0
     dry_run_mm_s: float = 0.0
     collect_errors: bool = False
-    asks_often: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
+from polycnc.cnc._frozen import row
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.machine import Clock, MachineConfig
 
@@ -45,8 +47,8 @@ class SpindleMotion:
     end_angle_deg: float | None = None  # where the ramps end, if it was brought there
 
 
-@dataclass(frozen=True, slots=True)
-class SpindleState:
+@row
+class SpindleState(NamedTuple):
     """The spindle at one cycle; rpm signed, positive clockwise, `commanded_rpm` with override and within its limit."""
 
     programmed_rpm: float
@@ -67,6 +69,7 @@ class Spindle:
         self._config = config.spindle
         self._start_s = config.times.spindle_start_s
         self._motion = SpindleMotion()
+        self._rest: tuple[SpindleMotion, SpindleState] | None = None  # what a motion has come to rest at
 
     def turn(self, *, rpm: float | None = None, direction: int | None = None) -> None:
         """Take over an S word and the direction of M3 (1), M4 (-1) or M5 (0); what is None stays.
@@ -121,6 +124,7 @@ class Spindle:
             raise ControlError(
                 Refusal.DATA, f"the spindle cannot stop at {target} degree", hint="Give an angle in degree."
             )
+        self._clock.changes += 1
         now = self._now()
         speed = now.actual_rpm * _DEG_S_PER_RPM
         sign = math.copysign(1.0, speed) if speed != 0.0 else 1.0
@@ -153,7 +157,12 @@ class Spindle:
 
     def state(self) -> SpindleState:
         """Return the spindle at the present cycle."""
-        return self._now()
+        if self._rest is not None and self._rest[0] is self._motion:
+            return self._rest[1]
+        now = self._now()
+        if now.reached and now.actual_rpm == self._motion.then_deg_s == 0.0:
+            self._rest = self._motion, now
+        return now
 
     def reached_cycle(self) -> int:
         """Return the first cycle in which the commanded speed, or the angle, is reached."""
@@ -173,7 +182,8 @@ class Spindle:
 
     def restore(self, motion: SpindleMotion) -> None:
         """Go back to a snapshot."""
-        self._motion = motion
+        self._motion, self._rest = motion, None
+        self._clock.changes += 1
 
     def _commanded_rpm(self, motion: SpindleMotion) -> float:
         return motion.direction * min(motion.rpm * motion.override, self._config.max_rpm)
@@ -184,6 +194,7 @@ class Spindle:
         Without an acceleration in the machine file a ramp takes its starting time, or `in_proportion` as much of
         that as the change is of the highest speed.
         """
+        self._clock.changes += 1
         target = self._commanded_rpm(wanted) * _DEG_S_PER_RPM
         if wanted.orienting or (target == wanted.then_deg_s and not self._motion.orienting):
             self._motion = wanted

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from typing import NamedTuple
 
 from polycnc.cnc._alarms import Alarm, OperatorMessage
 from polycnc.cnc._control_data import Mode, Overrides, Switches
+from polycnc.cnc._frozen import row
+from polycnc.cnc._manual import Handwheel
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import SpindleState
 from polycnc.cnc._timers import Parts, Timer
@@ -31,12 +33,13 @@ class Emergency(StrEnum):
     RESET_NEEDED = "reset needed"  # released, and a reset comes first
 
 
-@dataclass(frozen=True, slots=True)
-class AxisStatus:
+@row
+class AxisStatus(NamedTuple):
     """One axis; positions in `unit` (mm or deg), the velocity per second.
 
     `machine` is the actual position in machine coordinates, `work` from the program zero of the executed block,
     `relative` from where it was last set, `to_go` what is left of the executed block or of the manual motion.
+    `load_percent` follows the speed, 100 at the axis' highest. `jog_speed` is that of a jog key, with the override.
     """
 
     name: str
@@ -52,10 +55,12 @@ class AxisStatus:
     referenced: bool
     moving: bool
     manual: str
+    load_percent: float
+    jog_speed: float
 
 
-@dataclass(frozen=True, slots=True)
-class Feed:
+@row
+class Feed(NamedTuple):
     """Feeds along the path (mm/min, of rotary axes alone deg/min); `programmed` is the F word as it is written."""
 
     programmed: float = 0.0
@@ -64,11 +69,33 @@ class Feed:
     rapid: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class ChannelStatus:
+@row
+class WorkOffset(NamedTuple):
+    """A work offset in force: its name, and what its table holds for each axis (mm or deg)."""
+
+    name: str
+    values: Mapping[str, float]
+
+
+@row
+class ToolInUse(NamedTuple):
+    """The tool in the spindle (0: none) with length and radius of its table, wear added.
+
+    `compensation_mm` is the length compensation in force, with its sign.
+    """
+
+    number: int = 0
+    length_mm: float = 0.0
+    radius_mm: float = 0.0
+    compensation_mm: float = 0.0
+
+
+@row
+class ChannelStatus(NamedTuple):
     """One channel: the selected program, the executed block with its calls and modal words, and what it waits for.
 
-    `axes` are its own, in the order of the machine.
+    `stack` are the names of the programs that led to the block, the outermost first, its own the last. `axes` are those
+    of the channel, in the order of the machine.
     """
 
     run_state: RunState
@@ -76,6 +103,9 @@ class ChannelStatus:
     program: str | None
     block: BlockRecord | None
     modal: ModalWords | None
+    stack: tuple[str, ...]
+    offsets: tuple[WorkOffset, ...]
+    tool: ToolInUse
     feed: Feed
     functions: tuple[str, ...]
     returning: bool
@@ -85,9 +115,12 @@ class ChannelStatus:
     axes: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Status:
-    """A control at one cycle; mode, overrides and switches are those of the first channel."""
+@row
+class Status(NamedTuple):
+    """A control at one cycle; mode, overrides and switches are those of the first channel.
+
+    `last_alarm` is the machine's date and time (ISO) when the newest alarm of the history came; it may be gone.
+    """
 
     cycle: int
     time_s: float
@@ -100,7 +133,9 @@ class Status:
     overrides: Overrides
     switches: Switches
     alarms: tuple[Alarm, ...]
+    last_alarm: str | None
     messages: tuple[OperatorMessage, ...]
+    wheel: Handwheel
     timers_s: Mapping[Timer, float]
     parts: Parts
 

@@ -1,137 +1,253 @@
-"""Read a control's status: one pass over the kernel's arrays and what the parts of the control know."""
+"""Read a control's status once in a cycle, in parts: axes, channels, and what they share.
+
+Whoever looks often at one part asks for that; a part that was read stays until time passes or something changes, so all
+who ask between two changes get the same objects.
+"""
 
 from __future__ import annotations
 
-from types import MappingProxyType
-from typing import TYPE_CHECKING, NamedTuple
+from collections.abc import Mapping
 
-from polycnc.cnc._manual import ManualKind
-from polycnc.cnc._status import AxisStatus, ChannelStatus, Feed, Motion, Status
-from polycnc.cnc._timers import Timer
+import numpy as np
+
+from polycnc.cnc._control_channel import ControlChannel
+from polycnc.cnc._control_parts import ControlParts
+from polycnc.cnc._frozen import FrozenDict
+from polycnc.cnc._manual import AxisMotion, ManualKind
+from polycnc.cnc._run_state import RunState
+from polycnc.cnc._status import (
+    AxisStatus,
+    ChannelStatus,
+    Feed,
+    Motion,
+    Status,
+    ToolInUse,
+    WorkOffset,
+)
 from polycnc.kernel import RAPID, RUNNING, WAIT
-
-if TYPE_CHECKING:
-    from polycnc.cnc._control import Control
-    from polycnc.cnc._control_channel import ControlChannel
+from polycnc.machine import MachineConfig
+from polycnc.nc import BlockRecord, Group
 
 _MM_MIN = 60.0
+_SIGNS = {"length_plus": 1.0, "length_minus": -1.0}
+_AT_REST = Feed()
 
 
-def read_status(control: Control) -> Status:
-    """Return the status of a control at the present cycle."""
-    clock = control.clock
-    return Status(
-        cycle=clock.cycles,
-        time_s=clock.now_s,
-        now=clock.now,
-        mode=control.mode,
-        emergency=control.emergency,
-        channels=tuple(_channel(control, channel) for channel in control.channels),
-        axes=MappingProxyType(read_axes(control)),
-        spindle=control.spindle.state(),
-        overrides=control.overrides,
-        switches=control.switches,
-        alarms=control.alarms.active,
-        messages=control.messages.shown,
-        timers_s=MappingProxyType({timer: control.timers.seconds(timer) for timer in Timer}),
-        parts=control.parts.parts,
-    )
+class StatusReader:
+    """Read the status of the control that is made of these parts, and keep it for as long as it holds."""
 
+    def __init__(self, of: ControlParts) -> None:
+        self._of = of
+        config = of.machine.config
+        self._names: tuple[str, ...] = config.axis_names
+        self._units = tuple(axis.unit for axis in config.axes)
+        self._limit(config)
+        self._blocks = [_BlockPart(of, channel) for channel in of.channels]
+        self._moment: tuple[object, ...] = ()
+        self._status: Status | None = None
+        self._axes: Mapping[str, AxisStatus] | None = None
+        self._channels: list[ChannelStatus | None] = []
 
-def _channel(control: Control, channel: ControlChannel) -> ChannelStatus:
-    state = control.machine.state
-    row = state.paths.row[channel.path]
-    block = channel.executed
-    running = row["state"] == RUNNING
-    segment = state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
-    dwells = running and segment["kind"] == WAIT
-    feed = Feed(programmed=0.0 if block is None else block.modal.feed)
-    if running and not dwells:
-        feed = Feed(
-            programmed=feed.programmed,
-            commanded=float(segment["cap"]) * _MM_MIN,
-            actual=float(row["speed"]) * _MM_MIN,
-            rapid=bool(segment["flags"] & RAPID),
+    def _limit(self, config: MachineConfig) -> None:
+        self._config = config
+        self._most = [axis.vmax for axis in config.axes]
+
+    def _look(self) -> None:
+        """Forget what was read, if anything has changed since."""
+        of, clock = self._of, self._of.clock
+        moment = (clock.cycles, clock.changes, of.tools.revision, of.offsets.revision, of.parts.parts)
+        if moment != self._moment:
+            self._moment = moment
+            self._status = self._axes = None
+            self._channels = [None] * len(of.channels)
+            for block in self._blocks:
+                block.fresh = False
+
+    def status(self) -> Status:
+        """Return the status at the present cycle."""
+        self._look()
+        if self._status is None:
+            of, first, clock = self._of, self._of.channels[0], self._of.clock
+            self._status = Status(
+                clock.cycles,
+                clock.cycles * clock.cycle_s,
+                clock.now,
+                first.mode,
+                of.emergency,
+                tuple(map(self._channel, range(len(of.channels)))),
+                self._axes or self._read_axes(),
+                of.spindle.state(),
+                first.overrides,
+                first.switches,
+                of.alarms.active,
+                of.alarms.last_time,
+                of.messages.shown,
+                of.manual.wheel,
+                FrozenDict(of.timers.shown_s()),
+                of.parts.parts,
+            )
+        return self._status
+
+    def axes(self) -> Mapping[str, AxisStatus]:
+        """Return the axes of the status."""
+        self._look()
+        return self._axes or self._read_axes()
+
+    def channel(self, number: int) -> ChannelStatus:
+        """Return a channel of the status."""
+        self._look()
+        return self._channel(number)
+
+    # ------------------------------------------------------------------ axes
+
+    def _read_axes(self) -> Mapping[str, AxisStatus]:
+        of = self._of
+        if of.machine.config is not self._config:
+            self._limit(of.machine.config)
+        state, manual, count = of.machine.state, of.manual, len(self._names)
+        actual = state.servo.actual[:count].tolist()
+        velocity = state.velocity[:count].tolist()
+        zero, to_go = self._of_blocks()
+        kinds: list[str] = ["none"] * count
+        for index, motion in enumerate(manual.motions):
+            if motion.kind is not ManualKind.NONE:
+                kinds[index] = motion.kind.value
+                to_go[index] = _left(motion, float(state.base[index]))
+        rows = map(
+            AxisStatus,
+            self._names,
+            self._units,
+            actual,
+            [a - z for a, z in zip(actual, zero, strict=True)],
+            [a - z for a, z in zip(actual, of.relative_zero, strict=True)],
+            to_go,
+            state.setpoint[:count].tolist(),
+            actual,
+            state.servo.row["following_error"][:count].tolist(),
+            velocity,
+            manual.references,
+            [v != 0.0 for v in velocity],
+            kinds,
+            [min(100.0, 100.0 * abs(v) / most) for v, most in zip(velocity, self._most, strict=True)],
+            manual.jog_speeds,
+        )  # fmt: skip
+        self._axes = FrozenDict(zip(self._names, rows, strict=True))
+        return self._axes
+
+    def _of_blocks(self) -> tuple[list[float], list[float]]:
+        """Return where program zero is, and what is left of the executed block, for each axis in its channel."""
+        count = len(self._names)
+        zero, to_go = [0.0] * count, [0.0] * count
+        for channel in self._of.channels:
+            run = channel.run
+            if run is None:
+                continue
+            block = self._blocks[channel.path].read()
+            own_zero = zero if block is None else block.modal.zero
+            left: list[float] = run.to_go.tolist()
+            if len(self._of.channels) == 1:
+                return list(own_zero), left[:count]
+            for index, name in enumerate(self._names):
+                if name in channel.axes:
+                    zero[index], to_go[index] = own_zero[index], left[index]
+        return zero, to_go
+
+    # ------------------------------------------------------------------ channels
+
+    def _channel(self, number: int) -> ChannelStatus:
+        if (known := self._channels[number]) is not None:
+            return known
+        of, channel, part = self._of, self._of.channels[number], self._blocks[number]
+        block = part.read()
+        state = of.machine.state
+        row: np.void = state.paths.row[number]
+        dwells = moves = False
+        feed = part.feed
+        if row["state"] == RUNNING:
+            segment: np.void = state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
+            dwells = bool(segment["kind"] == WAIT)
+            moves = not dwells
+            if moves:
+                cap, speed = float(segment["cap"]) * _MM_MIN, float(row["speed"]) * _MM_MIN
+                feed = Feed(feed.programmed, cap, speed, bool(segment["flags"] & RAPID))
+        by_hand = any(
+            motion.kind is not ManualKind.NONE and name in channel.axes
+            for motion, name in zip(of.manual.motions, self._names, strict=True)
         )
-    by_hand = control.manual.moves(channel.axes)
-    moving = bool(running and not dwells) or by_hand
-    return ChannelStatus(
-        run_state=channel.run_state,
-        motion=Motion.DWELL if dwells else Motion.MOVING if moving else Motion.NONE,
-        program=None if channel.program is None else channel.program.name,
-        block=block,
-        modal=None if block is None else block.modal,
-        feed=feed,
-        functions=control.waiting_functions(channel.path),
-        returning=channel.returning,
-        mode=channel.mode,
-        overrides=channel.overrides,
-        switches=channel.switches,
-        axes=channel.axes,
-    )
-
-
-class AxisFigures(NamedTuple):
-    """What an axis has at one cycle, as `AxisStatus` tells it, by the place of the axis (mm, degree, per second)."""
-
-    actual: list[float]
-    zero: list[float]
-    to_go: list[float]
-    following_error: list[float]
-    velocity: list[float]
-
-
-def read_figures(control: Control) -> AxisFigures:
-    """Return the figures of all axes at the present cycle, for those who read them often."""
-    machine = control.machine
-    state, count = machine.state, len(machine.config.axes)
-    zero, to_go = [0.0] * count, [0.0] * count
-    for channel in control.channels:
-        block = channel.executed
-        program_zero = zero if block is None else block.modal.zero
-        left = to_go if channel.run is None else channel.run.to_go.tolist()
-        if len(control.channels) == 1:
-            zero, to_go = list(program_zero), left
-            break
-        own = channel.axes
-        for index, name in enumerate(machine.config.axis_names):
-            if name in own:
-                zero[index], to_go[index] = program_zero[index], left[index]
-    if control.manual.active:
-        for index, axis in enumerate(machine.config.axes):
-            manual = control.manual.motion(axis.name)
-            if manual.kind is not ManualKind.NONE:
-                to_go[index] = 0.0 if manual.target is None else manual.target - float(state.base[index])
-    return AxisFigures(
-        state.servo.actual[:count].tolist(),
-        zero,
-        to_go,
-        state.servo.row["following_error"][:count].tolist(),
-        state.velocity[:count].tolist(),
-    )
-
-
-def read_axes(control: Control) -> dict[str, AxisStatus]:
-    """Return the axes of a control at the present cycle."""
-    state, config = control.machine.state, control.machine.config
-    figures = read_figures(control)
-    referenced = control.manual.referenced
-    found = {}
-    for index, axis in enumerate(config.axes):
-        actual, velocity = figures.actual[index], figures.velocity[index]
-        found[axis.name] = AxisStatus(
-            name=axis.name,
-            unit=axis.unit,
-            machine=actual,
-            work=actual - figures.zero[index],
-            relative=actual - control.relative_zero[index],
-            to_go=figures.to_go[index],
-            setpoint=float(state.setpoint[index]),
-            actual=actual,
-            following_error=figures.following_error[index],
-            velocity=velocity,
-            referenced=referenced[axis.name],
-            moving=velocity != 0.0,
-            manual=control.manual.motion(axis.name).kind.value,
+        run = channel.run
+        read = ChannelStatus(
+            RunState.ALARM if channel.broken else RunState.READY if run is None else run.state,
+            Motion.DWELL if dwells else Motion.MOVING if moves or by_hand else Motion.NONE,
+            None if channel.program is None else channel.program.name,
+            block,
+            None if block is None else block.modal,
+            part.stack,
+            part.offsets,
+            part.tool,
+            feed,
+            of.functions.waiting(number) if number in of.functions.requests else (),
+            channel.returning,
+            channel.mode,
+            channel.overrides,
+            channel.switches,
+            channel.axes,
         )
-    return found
+        self._channels[number] = read
+        return read
+
+
+class _BlockPart:
+    """What of a channel's status changes with the executed block and the tables alone."""
+
+    def __init__(self, of: ControlParts, channel: ControlChannel) -> None:
+        self._of = of
+        self._of_channel = channel
+        self.fresh = False
+        """Whether it was read since something has changed."""
+        self._block: BlockRecord | None = None
+        self._tables: tuple[object, ...] = ()
+        self.stack: tuple[str, ...] = ()
+        self.offsets: tuple[WorkOffset, ...] = ()
+        self.tool = ToolInUse()
+        self.feed = _AT_REST
+
+    def read(self) -> BlockRecord | None:
+        """Return the executed block, with the rest made to fit."""
+        if self.fresh:
+            return self._block
+        self.fresh = True
+        run, of = self._of_channel.run, self._of
+        block = None if run is None else run.executed
+        tables = of.tools.revision, of.offsets.revision, of.dialect
+        if block is not self._block or tables != self._tables:
+            self._block, self._tables = block, tables
+            self._make(block)
+        return block
+
+    def _make(self, block: BlockRecord | None) -> None:
+        if block is None:
+            self.stack, self.offsets, self.tool, self.feed = (), (), ToolInUse(), _AT_REST
+            return
+        of, modal = self._of, block.modal
+        self.stack = (*(call.program for call in block.stack), block.program)
+        self.feed = Feed(modal.feed)
+        self.offsets = tuple(
+            WorkOffset(name, FrozenDict(of.offsets.get(name, {}))) for name in modal.work if name
+        )
+        word = modal.g.get(Group.LENGTH_COMPENSATION, "").removeprefix("G")
+        sign = _SIGNS.get(of.dialect.g.get(word, ""))
+        compensating = None if sign is None else of.tools.get(modal.h)
+        used = of.tools.get(modal.tool) if modal.tool else None
+        self.tool = ToolInUse(
+            modal.tool,
+            0.0 if used is None else used.length_mm + used.wear_length_mm,
+            0.0 if used is None else used.radius_mm + used.wear_radius_mm,
+            0.0
+            if compensating is None or sign is None
+            else sign * (compensating.length_mm + compensating.wear_length_mm),
+        )
+
+
+def _left(motion: AxisMotion, at: float) -> float:
+    """Return what is left to where an axis that is moved by hand goes, 0 where it has no end."""
+    return 0.0 if motion.target is None else motion.target - at

@@ -80,7 +80,7 @@ def move_to(
     A refused profile leaves the running one alone. See `plan_profile` for the numbers.
     """
     row = ptp.row[layer, i]
-    planned = np.empty((PROFILE_PHASES, PROFILE_COLUMNS))
+    planned = np.zeros((PROFILE_PHASES, PROFILE_COLUMNS))  # all of it becomes state
     count = plan_profile(
         planned,
         row["position"],
@@ -103,7 +103,7 @@ def move_to(
 def stop_axis(ptp: PointToPoint, layer: int, i: int, deceleration: float, jerkrel: float) -> int:
     """Brake axis `i` to rest from its present velocity; a deceleration of 0 stops it at once."""
     row = ptp.row[layer, i]
-    planned = np.empty((PROFILE_PHASES, PROFILE_COLUMNS))
+    planned = np.zeros((PROFILE_PHASES, PROFILE_COLUMNS))  # all of it becomes state
     count = stop_profile(planned, row["position"], row["velocity"], deceleration, jerkrel)
     _begin(ptp, layer, i, planned, count)
     return count

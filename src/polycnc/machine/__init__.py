@@ -26,6 +26,7 @@ from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
+from polycnc.machine._state_walk import copied, described, is_same, put_back
 from polycnc.machine._toml import (
     MOST_NESTING,
     StrictModel,
@@ -126,9 +127,12 @@ __all__ = [
     "Way",
     "arrays_of",
     "axis_rows",
+    "copied",
     "describe_machine",
+    "described",
     "first_contact",
     "is_nested_beyond",
+    "is_same",
     "load_machine",
     "load_toml",
     "machine_file_reference",
@@ -137,6 +141,7 @@ __all__ = [
     "parse_toml",
     "preset_text",
     "problem",
+    "put_back",
     "scan_edges",
     "validate",
     "wait",

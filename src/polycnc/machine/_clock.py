@@ -15,14 +15,16 @@ MOST_CYCLES = 1 << 62
 class Clock:
     """Count control cycles and tell the time from them, never from the computer.
 
-    `cycles` is the whole truth; seconds and dates are computed from it and so never drift.
+    `cycles` is the whole truth; seconds and dates are computed from it and so never drift. `changes` counts what
+    commands change between two cycles: whoever keeps what was read at one cycle compares both.
     """
 
-    __slots__ = ("_epoch", "cycle_s", "cycles")
+    __slots__ = ("_epoch", "changes", "cycle_s", "cycles")
 
     def __init__(self, cycle_s: float, epoch: datetime = EPOCH) -> None:
         self.cycle_s = cycle_s
         self.cycles = 0
+        self.changes = 0
         self._epoch = epoch
 
     def tick(self, cycles: int) -> None:
@@ -59,6 +61,7 @@ class Clock:
                 "the machine's date and time have no time zone", hint="give a datetime without tzinfo"
             )
         self._epoch += now - self.now
+        self.changes += 1
 
     @property
     def epoch(self) -> datetime:
@@ -68,6 +71,7 @@ class Clock:
     def go_back(self, cycles: int, epoch: datetime) -> None:
         """Stand where a snapshot was taken."""
         self.cycles, self._epoch = cycles, epoch
+        self.changes += 1
 
     def cycles_for(self, duration_s: float) -> int:
         """Return the least number of cycles that last `duration_s`, at most `MOST_CYCLES`; 1e-9 cycles are forgiven."""

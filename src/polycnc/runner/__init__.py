@@ -6,6 +6,7 @@ What posting and debugging need is loaded when it is first used.
 from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
+from polycnc.runner._check import CheckReport, check, inspect
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._operations import Operation
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
@@ -20,7 +21,8 @@ from polycnc.runner._result import (
     counted,
     time_text,
 )
-from polycnc.runner._run import CheckReport, check, inspect, program_text, run
+from polycnc.runner._run import run, run_program
+from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
 from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner._wall import WallClock
@@ -71,6 +73,7 @@ __all__ = [
     "RunEvent",
     "RunMessage",
     "RunResult",
+    "RunSettings",
     "Trace",
     "TraceWriter",
     "TracedResult",
@@ -95,6 +98,7 @@ __all__ = [
     "read_keys",
     "read_trace",
     "run",
+    "run_program",
     "time_text",
     "trace_columns",
     "verify_post",

@@ -102,7 +102,7 @@ def _run_with(
             raise error
         else:
             cycles = idle // _GROWTH
-        idle += max(run.advance(max(cycles, 1)), 1)
+        idle += max(run.advance(max(cycles, 1), asleep=True), 1)
     run.drain()
 
 

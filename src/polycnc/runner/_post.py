@@ -89,48 +89,17 @@ def post_file(
         check_output(output, (), "a program")
         keep_inputs(output, files, "a program")
     chosen = control if isinstance(control, ControlFile) else load_control(control)
-    if arc_axis is not None and (
-        isinstance(tool_path, ToolPath) or Path(tool_path).suffix.lower() == ".json"
-    ):
-        raise UsageError(
-            "a sense of rotation for the axes of arcs is for a file in APT words",
-            hint="Arcs in JSON are by the right-hand rule: turn 'normal' round there.",
-        )
-    path = (
-        tool_path
-        if isinstance(tool_path, ToolPath)
-        else open_tool_path(tool_path, arc_axis or chosen.parameters.arc_axis)
-    )
-    if chosen.parameters.turning_plane == "xy":
-        path = path.turned_from_xy()
+    path = _path_of(tool_path, chosen, arc_axis)
     block_map = BlockMap() if verify else None
-    text = io.StringIO()
-    with ExitStack() as stack:
-        file = text if output is None else stack.enter_context(program_file(output, chosen.parameters))
-        keeps = verify and output is not None and is_special(Path(output))  # what a pipe took is gone
-
-        def write(piece: str) -> None:
-            file.write(piece)
-            if keeps:
-                text.write(piece)
-
-        try:
-            summary = post_program(
-                path, chosen, write if keeps else file.write, progress=progress, block_map=block_map
-            )
-        except UnicodeEncodeError as error:
-            raise ProgramError(
-                f"the character '{error.object[error.start]}' cannot be written in {error.encoding}",
-                hint="Use other characters in the tool path, or another 'encoding' in the control file.",
-            ) from None
+    summary, text = _write(path, chosen, output, block_map, progress)
     proof = None
     if block_map is not None:
-        written = (
-            ProgramText.from_text(text.getvalue(), f"{path.name} posted")
-            if output is None or keeps
-            else ProgramText.from_path(output)
-        )
         parameters = chosen.parameters
+        written = (
+            ProgramText.from_path(output)
+            if output is not None and text is None
+            else ProgramText.from_text(text or "", f"{path.name} posted")
+        )
         proof = verify_post(
             written,
             path,
@@ -146,6 +115,49 @@ def post_file(
         control=chosen.parameters.name or chosen.file,
         summary=summary,
         output=None if output is None else Path(output),
-        text=text.getvalue() if output is None else None,
+        text=text if output is None else None,
         verification=proof,
     )
+
+
+def _path_of(tool_path: str | Path | ToolPath, control: ControlFile, arc_axis: ArcAxis | None) -> ToolPath:
+    """Return the tool path, as the control file wants its plane and the axes of its arcs."""
+    is_apt = not isinstance(tool_path, ToolPath) and Path(tool_path).suffix.lower() != ".json"
+    if arc_axis is not None and not is_apt:
+        raise UsageError(
+            "a sense of rotation for the axes of arcs is for a file in APT words",
+            hint="Arcs in JSON are by the right-hand rule: turn 'normal' round there.",
+        )
+    arcs = arc_axis or control.parameters.arc_axis
+    path = tool_path if isinstance(tool_path, ToolPath) else open_tool_path(tool_path, arcs)
+    return path.turned_from_xy() if control.parameters.turning_plane == "xy" else path
+
+
+def _write(
+    path: ToolPath,
+    control: ControlFile,
+    output: str | Path | None,
+    block_map: BlockMap | None,
+    progress: Progress | None,
+) -> tuple[PostSummary, str | None]:
+    """Write the program; return its text where it cannot be read again: without a file, and for proof of a pipe."""
+    text = io.StringIO()
+    with ExitStack() as stack:
+        file = text if output is None else stack.enter_context(program_file(output, control.parameters))
+        keeps = block_map is not None and output is not None and is_special(Path(output))
+
+        def write(piece: str) -> None:
+            file.write(piece)
+            if keeps:
+                text.write(piece)
+
+        try:
+            summary = post_program(
+                path, control, write if keeps else file.write, progress=progress, block_map=block_map
+            )
+        except UnicodeEncodeError as error:
+            raise ProgramError(
+                f"the character '{error.object[error.start]}' cannot be written in {error.encoding}",
+                hint="Use other characters in the tool path, or another 'encoding' in the control file.",
+            ) from None
+    return summary, text.getvalue() if output is None or keeps else None

@@ -8,14 +8,21 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from polycnc.cnc import ProgramRun
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Dialect, Language, ProgramText
+from polycnc.nc import Dialect, Event, Language, ProgramText
+from polycnc.nc.macro import language_for
 from polycnc.outputs import check_output
 
 if TYPE_CHECKING:
     from polycnc.cnc import Control
+
+RowsWithTags = Callable[[npt.NDArray[np.float64], npt.NDArray[np.int64]], None]
+OnEvent = Callable[[Event], bool | None]
 
 
 class Screen(Protocol):
@@ -80,6 +87,32 @@ def control_for(
     """Return the control that executes a program's language, None if it holds NC blocks only."""
     make = _CONTROLS.get(dialect.language)
     return None if make is None else make(program, machine, surroundings)
+
+
+def run_under(
+    control: ProgramControl | None,
+    machine: Machine,
+    program: ProgramText,
+    dialect: Dialect,
+    options: RunOptions,
+    *,
+    rows: RowsWithTags | None = None,
+    on_event: OnEvent | None = None,
+) -> ProgramRun:
+    """Return the run of a program under the control that executes its language, None for NC blocks and macros."""
+    run = ProgramRun(
+        machine,
+        program,
+        dialect,
+        language=language_for(dialect) if control is None else control.language,
+        config=None if control is None else control.config,
+        options=options,
+        rows=rows,
+        on_event=on_event,
+    )
+    if control is not None:
+        control.attach(run)
+    return run
 
 
 def needs_root(dialect: Dialect) -> bool:

@@ -12,12 +12,12 @@ from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
-from polycnc.cnc import ProgramRun, RunOptions
+from polycnc.cnc import RunOptions
 from polycnc.errors import PolycncError, ProgramError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._execution import run_to_end
-from polycnc.runner._program_control import Surroundings, control_for
+from polycnc.runner._program_control import Surroundings, control_for, run_under
 from polycnc.runner._remarks import MachiningWatch, Remark
 
 MOST_FILES = 500
@@ -49,15 +49,8 @@ def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, roo
         machine = Machine(config)
         control = control_for(dialect, program, machine, Surroundings(folder))
         assert control is not None
-        run = ProgramRun(
-            machine,
-            program,
-            dialect,
-            options=RunOptions(stands_at_stops=False, collect_errors=True),
-            language=control.language,
-            config=control.config,
-        )
-        control.attach(run)
+        options = RunOptions(stands_at_stops=False, collect_errors=True)
+        run = run_under(control, machine, program, dialect, options)
         watch = MachiningWatch(run.channel)
         errors = run.channel.errors
 

@@ -1,48 +1,23 @@
-"""Run or check part programs: from a file or a text to a typed result."""
+"""Run part programs: from a file or a text to a typed result."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, overload
 
-import numpy as np
-import numpy.typing as npt
-
 from polycnc.cnc import ProgramRun, RunOptions
-from polycnc.errors import ProgramError, UsageError
-from polycnc.kernel import BLOCK
+from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig, load_machine
-from polycnc.nc import Dialect, Event, MAction, ProgramText, Stop, dialect_for, line_of
-from polycnc.nc.macro import language_for
-from polycnc.outputs import keep_inputs
-from polycnc.runner._execution import (
-    LOOP_LIMIT_S,
-    Floats,
-    Progress,
-    Rows,
-    TaggedRows,
-    run_to_end,
-    totals,
-)
-from polycnc.runner._operations import OperationCollector
-from polycnc.runner._program_control import Surroundings, check_screen_file, control_for, root_of
-from polycnc.runner._rehearsal import rehearsed
-from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark, times_remark
+from polycnc.nc import Dialect, ProgramText, line_of
+from polycnc.runner._event_log import EventLog
+from polycnc.runner._execution import LOOP_LIMIT_S, Progress, Rows, TaggedRows, run_to_end, totals
+from polycnc.runner._program_control import ProgramControl, control_for, run_under
+from polycnc.runner._record import Record
+from polycnc.runner._remarks import empty_remark, times_remark
 from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, TracedResult
+from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceCollector
-
-
-@dataclass(frozen=True, slots=True)
-class CheckReport:
-    """What is wrong with a part program, and what is no error but seldom meant."""
-
-    errors: list[ProgramError]
-    remarks: list[Remark]
-
-
-_RECORD_CYCLES = 1 << 14
 
 
 @overload
@@ -133,71 +108,75 @@ def run(
         AlarmError: with `check`, the machine stopped.
         UsageError: no such file, machine or dialect.
     """
-    if not loop_limit_s > 0.0:
-        raise UsageError(f"a limit of {loop_limit_s:g} s for loops", hint="Give seconds above 0.")
-    if not feed_override > 0.0:
-        raise UsageError(f"a feed override of {feed_override:g}", hint="Give more than 0, up to 2.")
+    settings = RunSettings(
+        machine,
+        dialect,
+        servo=servo,
+        skip_levels=frozenset(skip_levels),
+        stop_at_m0=stop_at_m0,
+        feed_override=feed_override,
+        root=root,
+        keys=tuple(keys),
+        screen=screen,
+        ignore=tuple(ignore),
+        loop_limit_s=loop_limit_s,
+    )
+    return run_program(
+        program,
+        settings,
+        trace=trace,
+        check=check,
+        rows=rows,
+        tagged_rows=tagged_rows,
+        progress=progress,
+    )
+
+
+def run_program(
+    program: str | Path | ProgramText,
+    settings: RunSettings,
+    *,
+    trace: bool = False,
+    check: bool = True,
+    rows: Rows | None = None,
+    tagged_rows: TaggedRows | None = None,
+    progress: Progress | None = None,
+) -> RunResult:
+    """Run a part program as `run` does, with settings that serve many programs.
+
+    Raises:
+        ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
+        AlarmError: with `check`, the machine stopped.
+        UsageError: no such file, machine or dialect.
+    """
     text = program_text(program)
-    config = load_machine(machine)
-    collector = TraceCollector(config, servo) if trace else None
-    sinks: list[Rows] = [] if rows is None else [rows]
+    config = load_machine(settings.machine)
+    collector = TraceCollector(config, settings.servo) if trace else None
     tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
-    every_cycle = bool(sinks or tagged) or servo or _has_limit_switches(config)
-    if every_cycle and progress is not None:
-        sinks.append(_progress_by_line(text, progress))
-    recorded = bool(sinks or tagged)
-    simulated = Machine(config, servo=servo, record_cycles=_RECORD_CYCLES if recorded else 0)
-    events: list[RunEvent] = []
-    operations = OperationCollector(text)
-
-    def to_all(piece: Floats, tags: npt.NDArray[np.int64]) -> None:
-        for sink in sinks:
-            sink(piece)
-        for tagged_sink in tagged:
-            tagged_sink(piece, tags, execution.channel.records)
-
-    chosen = _dialect_of(text, dialect, ignore)
-    levels = frozenset(skip_levels)
-    surroundings = Surroundings(root_of(program, root), tuple(keys), levels)
-    control = control_for(chosen, text, simulated, surroundings)
-    if screen is not None:
-        keep_inputs(
-            screen, (each for each in (program, machine, dialect) if isinstance(each, str | Path)), "a screen"
-        )
-        check_screen_file(screen, text, control)
-    execution = ProgramRun(
+    record = Record(text, config, servo=settings.servo, rows=rows, tagged=tagged, progress=progress)
+    simulated = Machine(config, servo=settings.servo, record_cycles=record.cycles)
+    dialect = settings.dialect_of(text)
+    control = control_for(dialect, text, simulated, settings.surroundings_of(program))
+    settings.check_screen(program, text, control)
+    log = EventLog(text)
+    options = RunOptions(block_delete=settings.skip_levels, stands_at_stops=settings.stop_at_m0)
+    execution = run_under(
+        control,
         simulated,
         text,
-        chosen,
-        language=language_for(chosen) if control is None else control.language,
-        config=None if control is None else control.config,
-        options=RunOptions(block_delete=levels, stands_at_stops=stop_at_m0),
-        rows=to_all if recorded else None,
-        on_event=lambda event: _note(event, events, operations, execution),
+        dialect,
+        options,
+        rows=(lambda piece, tags: record.take(piece, tags, execution.channel.records))
+        if record.is_wanted
+        else None,
+        on_event=lambda event: log.note(event, execution),
     )
-    if feed_override != 1.0:
-        execution.feed_override = feed_override
-    stuck: ProgramError | None = None
-    if control is None:
-        run_to_end(execution, every_cycle=every_cycle, progress=None if every_cycle else progress)
-    else:
-        control.attach(execution)
-        try:
-            told = None if every_cycle else progress
-            run_to_end(
-                execution, every_cycle=every_cycle, control=control, progress=told, loop_limit_s=loop_limit_s
-            )
-        except ProgramError as error:
-            stuck = error
-        finally:
-            control.finish()
-        if screen is not None:
-            control.screen.save(Path(screen))
+    stuck = _to_end(execution, control, settings, record)
     if (empty := empty_remark(text)) is not None:
         execution.channel.messages.note(empty.text, 0)
-    if remark := times_remark(config, chosen, [event.word for event in events]):
+    if remark := times_remark(config, dialect, [event.word for _, event in log.found]):
         execution.channel.messages.note(remark, 0)
-    result = _result(execution, events, operations, collector, stuck)
+    result = _result(execution, log, collector, stuck)
     if control is not None:
         result.variables.update(control.variables())
     if check:
@@ -205,134 +184,31 @@ def run(
     return result
 
 
-def check(
-    program: str | Path | ProgramText,
-    machine: str | Path | MachineConfig | None = None,
-    dialect: str | Dialect | None = None,
-    *,
-    root: str | Path | None = None,
-    ignore: Iterable[str] = (),
-    strict: bool = False,
-) -> list[ProgramError]:
-    """Return every error of a part program, not only the first; an empty list if there is none.
-
-    `ignore` names G and M codes that count as if they were not there. With `strict` the remarks of `inspect` are errors
-    too.
-
-    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run; with `strict`
-    in a copy of that folder, which finds what is wrong with the blocks that it gives.
-
-    Raises:
-        UsageError: no such file, machine or dialect.
-    """
-    report = inspect(program, machine, dialect, root=root, ignore=ignore, rehearse=strict)
-    if not strict:
-        return report.errors
-    return [*report.errors, *map(_as_error, report.remarks)]
-
-
-def _as_error(remark: Remark) -> ProgramError:
-    return ProgramError(
-        remark.text,
-        code=remark.key,
-        position=remark.position,
-        hint="Strict checking makes this remark an error.",
-    )
-
-
-def inspect(
-    program: str | Path | ProgramText,
-    machine: str | Path | MachineConfig | None = None,
-    dialect: str | Dialect | None = None,
-    *,
-    root: str | Path | None = None,
-    ignore: Iterable[str] = (),
-    rehearse: bool = True,
-) -> CheckReport:
-    """Return the errors of a part program as `check` does, and what a machinist would remark on it.
-
-    Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut,
-    program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
-    without an error is run in a copy of `root` for that, and for errors of the blocks that it gives, unless `rehearse`
-    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged.
-
-    Raises:
-        UsageError: no such file, machine or dialect.
-    """
-    text = program_text(program)
-    simulated = Machine(load_machine(machine))
-    chosen = _dialect_of(text, dialect, ignore)
-    control = control_for(chosen, text, simulated, Surroundings(root_of(program, root)))
-    if control is not None and control.has_statements(text):
-        errors = control.check(text)
-        if errors or not rehearse:
-            return CheckReport(errors, [])
-        return CheckReport(*rehearsed(text, simulated.config, chosen, root_of(program, root)))
-    options = RunOptions(stands_at_stops=False, collect_errors=True)
-    language = language_for(chosen) if control is None else control.language
-    config = None if control is None else control.config
-    execution = ProgramRun(simulated, text, chosen, options=options, language=language, config=config)
-    if control is not None:
-        control.attach(execution)
-    watch = MachiningWatch(execution.channel)
-    execution.channel.on_filled = watch.look
-    run_to_end(execution, every_cycle=False)
-    empty = empty_remark(text)
-    return CheckReport(execution.channel.errors, watch.remarks if empty is None else [empty])
-
-
-def _dialect_of(text: ProgramText, dialect: str | Dialect | None, ignore: Iterable[str]) -> Dialect:
-    chosen = dialect_for(text.name, dialect)
-    codes = tuple(ignore)
-    return chosen.leaving_out(codes) if codes else chosen
-
-
-def program_text(program: str | Path | ProgramText) -> ProgramText:
-    """Return a program from a path, or from a text of several lines."""
-    if isinstance(program, ProgramText):
-        return program
-    if isinstance(program, str) and ("\n" in program or "\r" in program):
-        return ProgramText.from_text(program)
+def _to_end(
+    execution: ProgramRun, control: ProgramControl | None, settings: RunSettings, record: Record
+) -> ProgramError | None:
+    """Run a program to its end; return the error of one that waits or loops without end."""
+    if settings.feed_override != 1.0:
+        execution.feed_override = settings.feed_override
+    if control is None:
+        run_to_end(execution, every_cycle=record.every_cycle, progress=record.asked)
+        return None
+    stuck: ProgramError | None = None
     try:
-        return ProgramText.from_path(program)
-    except UsageError as error:
-        if isinstance(program, str) and " " in program:
-            error.hint = "Check the name and the folder; a program text needs a newline at its end."
-        raise
-
-
-def _note(
-    event: Event, events: list[RunEvent], operations: OperationCollector, execution: ProgramRun
-) -> None:
-    """Keep an event of the run; say what becomes of program stops."""
-    events.append(RunEvent(execution.machine.time_s, event.line, event.word))
-    records = execution.channel.records
-    record = records.block(event.tag)
-    if record is not None and not record.stack and record.program == execution.program.name:
-        code = event.word[1:].partition(" ")[0]
-        action = execution.dialect.m_action(int(code)) if event.word[:1] == "M" and code.isdigit() else None
-        tool = records.tool(event.tag)
-        changes = action is MAction.TOOL_CHANGE or event.word[:1] == "T"
-        operations.function(event.line, tool, changes, execution.machine.time_s, execution.path_times)
-    if event.stop in (Stop.PROGRAM, Stop.OPTIONAL):
-        what = "the run stops here" if execution.stands_at(event.stop) else "passed without stopping"
-        execution.channel.messages.note(f"{event.word}: {event.stop.value}, {what}", event.line)
-
-
-def _progress_by_line(text: ProgramText, progress: Progress) -> Rows:
-    """Return a sink that tells how far the line of the last row is into the program."""
-    lines = max(text.content.count(b"\n"), text.content.count(b"\r"), 1)
-
-    def tell(rows: npt.NDArray[np.float64]) -> None:
-        progress(min(float(rows[-1, BLOCK]) / lines, 1.0))
-
-    return tell
-
-
-def _has_limit_switches(config: MachineConfig) -> bool:
-    return any(
-        limit not in (float("inf"), float("-inf")) for axis in config.axes for limit in axis.limit_switches
-    )
+        run_to_end(
+            execution,
+            every_cycle=record.every_cycle,
+            control=control,
+            progress=record.asked,
+            loop_limit_s=settings.loop_limit_s,
+        )
+    except ProgramError as error:
+        stuck = error
+    finally:
+        control.finish()
+    if settings.screen is not None:
+        control.screen.save(Path(settings.screen))
+    return stuck
 
 
 def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
@@ -342,10 +218,9 @@ def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
 
 def _result(
     execution: ProgramRun,
-    events: list[RunEvent],
-    operations: OperationCollector,
+    log: EventLog,
     collector: TraceCollector | None,
-    stuck: ProgramError | None = None,
+    stuck: ProgramError | None,
 ) -> RunResult:
     machine, channel = execution.machine, execution.channel
     config, state = machine.config, machine.state
@@ -378,8 +253,8 @@ def _result(
         alarms=alarms,
         messages=[RunMessage(m.text, m.line, m.count) for m in channel.messages.all()],
         tool_times=execution.tool_times,
-        operations=operations.operations(machine.time_s, execution.path_times),
-        events=events,
+        operations=log.operations(execution),
+        events=[RunEvent(time_s, event.line, event.word) for time_s, event in log.found],
         source=execution.program,
         config=config,
         trace=collector.trace() if collector else None,

@@ -21,14 +21,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.kernel import BLOCK, IS_RAPID, LEADING
 from polycnc.machine import (
-    Machine,
     MachineConfig,
-    PathConfig,
-    RotaryAxis,
-    TimesConfig,
     ToolConfig,
     load_machine,
 )
@@ -43,19 +38,18 @@ from polycnc.post import (
     sweep_in_runs,
     sweep_tool_path,
 )
-from polycnc.runner._execution import Progress, run_to_end
+from polycnc.runner._close_run import run_closely
+from polycnc.runner._execution import Progress
 from polycnc.runner._post_geometry import Floats, Indices, Moves, to_segments
 from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
-from polycnc.runner._program_control import Surroundings, control_for
 from polycnc.runner._result import RunResult
-from polycnc.runner._run import run
+from polycnc.runner._run import run_program
+from polycnc.runner._settings import RunSettings
 
 DEFAULT_TOLERANCE_MM = 1e-3
 TOOL_AXIS_TOLERANCE_DEG = 0.01
 _SAMPLING = 0.1  # part of the tolerance that the distance of the machine's positions may cost
 _AXES = "XYZ"
-_LEVER_MM = 300.0  # no point of a part is much further from the rotary axes that swing it
-_RECORD_CYCLES = 1 << 13
 _CONTEXT_SHIFT = 32
 _MANY_BLOCKS = 20_000  # of a program whose machine takes so much memory that looking for it is worth the time
 
@@ -172,12 +166,12 @@ def verify_post(
     )
     path_feed_mm, path_rapid_mm = moves.length_mm()
     with tempfile.TemporaryDirectory(prefix="polycnc-") as root:  # nothing is left beside the program
-        result = run(program, config, read, check=False, root=root)
+        result = run_program(program, RunSettings(config, read, root=root), check=False)
         if len(block_map.line) > _MANY_BLOCKS:
             gc.collect()  # the machine of that run, before there is another one
         comparison = _Comparison(moves, block_map, carried, config, read, frame)
         if result.ok:
-            _run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison, progress, root)
+            run_closely(program, config, read, tolerance_mm * _SAMPLING, comparison.add, progress, Path(root))
     tool_axis_deg, tool_axis_line = comparison.tool_axis() if result.ok else (0.0, 0)
     return PostVerification(
         tolerance_mm=tolerance_mm,
@@ -227,68 +221,6 @@ def _judged(sweeps: Iterator[Sweep | Ways], tangency: Tangency) -> Iterator[Swee
             tangency.straight(sweep.start, sweep.end, not sweep.rapid)
         yield sweep
     tangency.settle()
-
-
-def _run_closely(
-    program: ProgramText,
-    config: MachineConfig,
-    dialect: Dialect,
-    distance_mm: float,
-    comparison: _Comparison,
-    progress: Progress | None,
-    root: str,
-) -> None:
-    """Run a program with close positions, and compare each; `root` is the folder of its control."""
-    machine = Machine(_with_close_positions(config, distance_mm), record_cycles=_RECORD_CYCLES)
-    lines = max(program.content.count(b"\n"), 1)
-
-    def compare(rows: Floats, tags: Indices) -> None:
-        comparison.add(rows, tags, execution.channel.records)
-        if progress is not None:
-            progress(min(float(rows[-1, BLOCK]) / lines, 1.0))
-
-    options = RunOptions(stands_at_stops=False)
-    control = control_for(dialect, program, machine, Surroundings(Path(root)))
-    if control is None or not control.has_statements(program):
-        execution = ProgramRun(machine, program, dialect, options=options, rows=compare)
-        run_to_end(execution, every_cycle=True)
-        return
-    execution = ProgramRun(
-        machine,
-        program,
-        dialect,
-        options=options,
-        rows=compare,
-        language=control.language,
-        config=control.config,
-    )
-    control.attach(execution)
-    run_to_end(execution, every_cycle=True)
-    control.finish()
-
-
-def _with_close_positions(config: MachineConfig, distance_mm: float) -> MachineConfig:
-    """Return a machine whose positions, cycle by cycle, miss no corner by more than `distance_mm`.
-
-    A speed v that turns by the angle w within one cycle costs an acceleration v w / dt, and the chord across it
-    lies v dt w / 4 off the corner: acceleration times dt squared by 4, in each axis.
-    """
-    highest = 4.0 * distance_mm / (config.cycle_s**2 * len(_AXES) ** 0.5)
-    turning = float(np.degrees(highest / _LEVER_MM))
-    axes = tuple(
-        axis.model_copy(update={"amax_mm_s2": min(axis.amax, highest), "jump_mm_s": None})
-        if axis.name in _AXES
-        else axis.model_copy(update={"amax_deg_s2": min(axis.amax, turning), "jump_deg_s": None})
-        if isinstance(axis, RotaryAxis)
-        else axis
-        for axis in config.axes
-    )
-    tools = {
-        number: tool.model_copy(update={"radius_mm": 0.0, "wear_radius_mm": 0.0})
-        for number, tool in config.tools.items()
-    }
-    changed = {"axes": axes, "path": PathConfig(), "times": TimesConfig(), "tools": tools}
-    return config.model_copy(update=changed)
 
 
 class _TipFrame:

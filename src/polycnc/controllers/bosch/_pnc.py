@@ -120,7 +120,6 @@ class Pnc:
             channel.language = host.language
             channel.change_config(self.system.live_config(), dialect)
             channel.names = axes.names_in(number)
-            channel.asks_often = True
         self.hosts = tuple(hosts)
         self.system.links.start_up()
         places = ((area, first_of(self.system.directory, name)) for area, name in AREAS.items())

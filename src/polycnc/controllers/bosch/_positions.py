@@ -87,8 +87,8 @@ class Positions:
     def _ppos(self, axis: object, kind: object = OMITTED) -> float:
         index, physical = self._own(axis, kind)
         state = self._run.channel.state
-        coordinates, placement = state.coordinates, state.placement
-        shifts = coordinates.zero_offset + coordinates.tool_offset
+        placement = state.placement
+        shifts = state.zero_offset + state.tool_offset
         for vector in (placement.program, placement.additive):
             shifts = shifts + np.array(vector or (0.0,) * len(shifts))
         return float(self._measured(index)[index] - shifts[index]) / self._scale(physical)
@@ -126,8 +126,9 @@ def workpiece(run: ProgramRun | None, machine: Floats) -> list[float]:
     """Return the workpiece coordinates of a machine position, in the channel of a run."""
     if run is None:
         return list(map(float, machine))
-    coordinates = run.channel.state.coordinates
-    found = (machine - coordinates.zero_offset - coordinates.tool_offset - coordinates.outer).tolist()
+    state = run.channel.state
+    coordinates = state.coordinates
+    found = (machine - state.zero_offset - state.tool_offset - coordinates.outer).tolist()
     if (turn := coordinates.turn) is not None:
         found[turn.p], found[turn.q] = turn.turned(found[turn.p], found[turn.q], -1.0)
     return [float(each) for each in found]

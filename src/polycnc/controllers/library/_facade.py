@@ -178,7 +178,10 @@ class Facade(Generic[S]):
 
         def call(session: S, /, *given: Any, **named: Any) -> Any:
             if named or len(given) != count:
-                bound = signature.bind(*given, **named)
+                try:
+                    bound = signature.bind(*given, **named)
+                except TypeError as error:
+                    raise UsageError(f"{name}: {error}", hint=function.prototype) from None
                 bound.apply_defaults()
                 given = bound.args
             values = list(given)

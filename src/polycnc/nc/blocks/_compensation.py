@@ -147,14 +147,12 @@ class RadiusCompensation:
         self._hold: list[Move | Wait] = []
         self.reset()
 
-    @property
-    def active(self) -> bool:
-        """Tell whether items must go through this stage: from `start` to the end of the lead-out."""
-        return self._mode is not _Mode.OFF
-
     def reset(self) -> None:
         """Drop everything held back and switch off, as a reset or the end of a program does."""
         self._mode = _Mode.OFF
+        self.active = (
+            False  # whether items must go through this stage: from `start` to the end of the lead-out
+        )
         self._hold.clear()
         self._move: Move | None = None  # the last plane move, programmed
         self._leg: Leg | None = None
@@ -187,6 +185,7 @@ class RadiusCompensation:
         """Return a stage that does and holds back what one did."""
         made = cls()
         made._mode = _Mode(saved.mode)
+        made.active = made._mode is not _Mode.OFF
         made._plane, made._offset = saved.plane, saved.offset
         made._hold = list(saved.hold)
         made._move, made._leg = saved.move, saved.leg
@@ -209,6 +208,7 @@ class RadiusCompensation:
             self._plane = plane
             self._offset = offset
             self._mode = _Mode.ENTERING
+            self.active = True
             return
         if plane != self._plane:
             raise _refusal("plane_change", line)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -12,18 +13,6 @@ from polycnc.nc.modal._frame import Rotation
 from polycnc.nc.modal._modal import Modal
 
 Floats: TypeAlias = npt.NDArray[np.float64]
-SavedCoordinates: TypeAlias = tuple[
-    tuple[str, ...],
-    Floats,
-    Floats,
-    Floats,
-    int,
-    Floats,
-    Floats,
-    Rotation | None,
-    tuple[str, ...],
-    tuple[int, ...],
-]
 
 MACHINE_ZERO = ""
 WORK_GROUPS = 3
@@ -35,125 +24,82 @@ def work_group(code: float) -> int:
     return int(code) // 100
 
 
+@dataclass(frozen=True, slots=True, eq=False)
 class Coordinates:
-    """Hold the zero shifts of one channel; every vector has one value per axis, mm or degree.
+    """Hold the zero shifts of one channel; every vector has one value per axis, mm or degree, and is never changed.
 
-    `work` names the active work offset of each group, MACHINE_ZERO for none. `length_sign` is 1 or -1 while
-    tool length compensation is active, else 0. `inner` are shifts of programmed positions besides, `outer` those of a
-    workpiece that `turn` turns; `external` names further offsets in force, `compensations` codes of further tool data.
-    The vectors are replaced, never changed in place.
+    `work` names the active work offset of each group, MACHINE_ZERO for none. `shift` is that of G92, `local` that of
+    G52. `length_sign` is 1 or -1 while tool length compensation is active, else 0. `inner` are shifts of programmed
+    positions besides, `outer` those of a workpiece that `turn` turns; `external` names further offsets in force,
+    `compensations` codes of further tool data.
     """
 
-    def __init__(self, tables: ProgramTables, modal: Modal) -> None:
-        self._tables = tables
-        self._modal = modal
-        axes = len(modal.position)
-        self.work = (MACHINE_ZERO,) * WORK_GROUPS
-        self.shift: Floats = np.zeros(axes)  # G92
-        self.local: Floats = np.zeros(axes)  # G52
-        self.length: Floats = np.zeros(axes)
-        self.length_sign = 0
-        self.inner: Floats = np.zeros(axes)
-        self.outer: Floats = np.zeros(axes)
-        self.turn: Rotation | None = None
-        self.external: tuple[str, ...] = ()
-        self.compensations: tuple[int, ...] = ()
-        self._revision = tables.revision
+    shift: Floats
+    local: Floats
+    length: Floats
+    inner: Floats
+    outer: Floats
+    work: tuple[str, ...] = (MACHINE_ZERO,) * WORK_GROUPS
+    length_sign: int = 0
+    turn: Rotation | None = None
+    external: tuple[str, ...] = ()
+    compensations: tuple[int, ...] = ()
 
-    def save(self) -> SavedCoordinates:
-        """Return what to go back to; the sum in `modal.offset` is the modal state's business."""
-        return (
-            self.work, self.shift, self.local, self.length, self.length_sign,
-            self.inner, self.outer, self.turn, self.external, self.compensations,
-        )  # fmt: skip
+    @classmethod
+    def none(cls, axes: int) -> Coordinates:
+        """Return those of a channel in which nothing is shifted."""
+        zero = np.zeros(axes)
+        return cls(zero, zero, zero, zero, zero)
 
-    def restore(self, saved: SavedCoordinates) -> None:
-        """Go back to a saved state."""
-        (
-            self.work, self.shift, self.local, self.length, self.length_sign,
-            self.inner, self.outer, self.turn, self.external, self.compensations,
-        ) = saved  # fmt: skip
+    def with_work_offset(self, group: int, name: str) -> Coordinates:
+        """Return the same with work offset `name` (G54, ...) of a group; MACHINE_ZERO for none."""
+        return replace(self, work=(*self.work[:group], name, *self.work[group + 1 :]))
 
-    def select_work_offset(self, group: int, name: str) -> None:
-        """Take work offset `name` (G54, ...) of a group; MACHINE_ZERO for none."""
-        self.work = (*self.work[:group], name, *self.work[group + 1 :])
-        self._renew()
+    def with_shift(self, ways: dict[int, float]) -> Coordinates:
+        """Return the same with program zero shifted further along some axes."""
+        return replace(self, shift=_changed(self.shift, ways, add=True))
 
-    def set_position(self, axis: int, value: float) -> None:
-        """Shift program zero so that the present position of `axis` reads `value` (mm or degree)."""
-        self.shift = self.shift.copy()
-        self.shift[axis] += self._modal.position[axis] - self._modal.offset[axis] - value
-        self._renew()
+    def without_shift(self) -> Coordinates:
+        """Return the same without that shift."""
+        return replace(self, shift=np.zeros_like(self.shift))
 
-    def set_local(self, values: dict[int, float], *, add: bool = False) -> None:
-        """Put the zero of a local coordinate system into every work coordinate system (mm or degree)."""
-        self.local = self.local.copy()
-        for axis, value in values.items():
-            self.local[axis] = value + (self.local[axis] if add else 0.0)
-        self._renew()
+    def with_local(self, values: dict[int, float], *, add: bool = False) -> Coordinates:
+        """Return the same with the zero of a local coordinate system in every work coordinate system."""
+        return replace(self, local=_changed(self.local, values, add=add))
 
-    def clear_shift(self) -> None:
-        """Take the G92 shift back."""
-        self.shift = np.zeros_like(self.shift)
-        self._renew()
+    def with_length(self, values: dict[int, float], sign: int) -> Coordinates:
+        """Return the same with what the tool shifts some axes by; sign 0 is no tool length compensation."""
+        return replace(self, length=_changed(np.zeros_like(self.length), values), length_sign=sign)
 
-    def set_length(self, axis: int, sign: int, length_mm: float = 0.0) -> None:
-        """Compensate the tool length along `axis` by `sign` times `length_mm`; sign 0 cancels."""
-        self.length_sign = sign
-        self.length = np.zeros_like(self.length)
-        self.length[axis] = sign * length_mm
-        self._renew()
+    def tool_offset(self, tables: ProgramTables, modal: Modal) -> Floats:
+        """Return what tools shift every axis by (mm)."""
+        if not self.compensations:
+            return self.length
+        further: Floats = np.array(tables.tool_shift(self.compensations, modal))
+        return self.length + further
 
-    def set_tool(self, values: dict[int, float], *, active: bool) -> None:
-        """Compensate where the tip of a tool lies, along several axes (mm)."""
-        self.length_sign = int(active)
-        self.length = np.zeros_like(self.length)
-        for axis, value in values.items():
-            if axis >= 0:
-                self.length[axis] = value
-        self._renew()
+    def zero_offset(self, tables: ProgramTables) -> Floats:
+        """Return what zero offsets, without those of the program, shift every axis by."""
+        return self._with_offsets(np.zeros_like(self.length), tables)
 
-    def place(self, inner: list[float], outer: list[float], turn: Rotation | None) -> None:
-        """Shift programmed positions by `inner`, and put the workpiece where `outer` and `turn` say."""
-        self.inner, self.outer, self.turn = np.array(inner), np.array(outer), turn
-        self._renew()
-
-    def set_external(self, offsets: tuple[str, ...], compensations: tuple[int, ...]) -> None:
-        """Take further offsets by name, and further tool data by code."""
-        self.external, self.compensations = offsets, compensations
-        self._renew()
-
-    def take_changes(self) -> None:
-        """Take over work offsets that have been changed in the table since."""
-        if self._tables.revision != self._revision:
-            self._renew()
-
-    @property
-    def tool_offset(self) -> Floats:
-        """What tools shift every axis by (mm)."""
-        found = self.length
-        if self.compensations:
-            found = found + np.array(self._tables.tool_shift(self.compensations, self._modal))
-        return found
-
-    @property
-    def zero_offset(self) -> Floats:
-        """What zero offsets, without those of the program, shift every axis by (mm or degree)."""
-        found = np.zeros_like(self.length)
-        names = (COMMON_OFFSET, *self.work) if self._tables.has_offset(COMMON_OFFSET) else self.work
-        for name in (*names, *self.external):
-            if name != MACHINE_ZERO:
-                found = found + self._tables.work_offset(name)
-        return found
-
-    def _renew(self) -> None:
-        self._revision = self._tables.revision
+    def total(self, tables: ProgramTables, modal: Modal) -> Floats:
+        """Return the sum of all shifts."""
         within = self.shift + self.local + self.inner
         if (turn := self.turn) is not None:
             within[turn.p], within[turn.q] = turn.turned(float(within[turn.p]), float(within[turn.q]))
-        total = within + self.tool_offset + self.outer
-        names = (COMMON_OFFSET, *self.work) if self._tables.has_offset(COMMON_OFFSET) else self.work
+        return self._with_offsets(within + self.tool_offset(tables, modal) + self.outer, tables)
+
+    def _with_offsets(self, found: Floats, tables: ProgramTables) -> Floats:
+        names = (COMMON_OFFSET, *self.work) if tables.has_offset(COMMON_OFFSET) else self.work
         for name in (*names, *self.external):
             if name != MACHINE_ZERO:
-                total = total + self._tables.work_offset(name)
-        self._modal.offset[:] = total
+                found = found + tables.work_offset(name)
+        return found
+
+
+def _changed(vector: Floats, values: dict[int, float], *, add: bool = False) -> Floats:
+    found = vector.copy()
+    for axis, value in values.items():
+        if axis >= 0:
+            found[axis] = value + (found[axis] if add else 0.0)
+    return found

@@ -18,29 +18,18 @@ class Message:
 
 @dataclass
 class Messages:
-    """Collect messages; a text that comes again is only counted. `latest` is what the program has shown last."""
+    """Collect messages about the present `line`, each text once with a count. `latest` is what was shown last."""
 
     line: int = 0
     latest: str = ""
     _found: dict[str, Message] = field(default_factory=dict)
-    _undo: list[tuple[str, Message | None]] = field(default_factory=list)
-
-    def begin(self, line: int) -> None:
-        """Begin a block: messages are about its line, and can be taken back together."""
-        self.line = line
-        self._undo.clear()
 
     def add(self, text: str) -> None:
         """Add a message about the present line."""
-        old = self._found.get(text)
-        self._undo.append((text, old))
-        self._show(text)
-        self._found[text] = (
-            Message(text, self.line) if old is None else Message(text, old.line, old.count + 1)
-        )
+        self.note(text, self.line)
 
     def note(self, text: str, line: int) -> None:
-        """Add a message about any line, outside of a block; it cannot be taken back."""
+        """Add a message about any line."""
         old = self._found.get(text)
         self._found[text] = Message(text, line) if old is None else Message(text, old.line, old.count + 1)
         self._show(text)
@@ -48,15 +37,6 @@ class Messages:
     def _show(self, text: str) -> None:
         if text.startswith(_SHOWN):
             self.latest = text.removeprefix(_SHOWN)
-
-    def take_back(self) -> None:
-        """Take back what the present block has added, because it is refused."""
-        for text, old in reversed(self._undo):
-            if old is None:
-                del self._found[text]
-            else:
-                self._found[text] = old
-        self._undo.clear()
 
     def snapshot(self) -> tuple[dict[str, Message], str]:
         """Return all messages and the one shown last, to go back to."""
@@ -66,7 +46,6 @@ class Messages:
         """Go back to a snapshot."""
         found, self.latest = saved
         self._found = dict(found)
-        self._undo.clear()
 
     def all(self) -> list[Message]:
         """Return all messages in the order in which they first came up."""

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
-from polycnc.nc.blocks._auxiliary import whole_number
-from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._motion import MotionBuilder
-from polycnc.nc.blocks._words import BlockWords, Fail, GWord, code_text
+import numpy as np
+
+from polycnc.nc.blocks import _motion as motion
+from polycnc.nc.blocks._block import BlockContext
+from polycnc.nc.blocks._handlers import carries_out
+from polycnc.nc.blocks._words import GWord, code_text, whole_number
 from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._frame import Rotation
 from polycnc.nc.modal._modal import (
@@ -41,166 +43,168 @@ _OFF: dict[Action, dict[str, Any]] = {
 _TABLES = "KV"
 
 
-@dataclass
-class Placing:
-    """Carry out these functions; none of them moves an axis."""
+@carries_out(*_SHIFTS)
+def shift(block: BlockContext, g: GWord) -> None:
+    """Shift the contour or program zero."""
+    name, placement = _SHIFTS[g.action], block.after.placement
+    changed: dict[str, Any] = {name: _vector(block, g, getattr(placement, name))}
+    _put(block, replace(placement, **changed))
 
-    state: ChannelState
-    motion: MotionBuilder
-    fail: Fail
 
-    def carry_out(self, g: GWord, words: BlockWords) -> None:
-        """Change where programmed positions lie.
+@carries_out(*_OFF)
+def leave(block: BlockContext, g: GWord) -> None:
+    """Leave what one of the other codes has put in force."""
+    _put(block, replace(block.after.placement, **_OFF[g.action]))
 
-        Raises:
-            ProgramError: Radius compensation is active, or a word is missing or has no meaning here.
-        """
-        state, placement = self.state, self.state.placement
-        if state.side or state.compensation.active:
-            raise self.fail(
-                f"G{g.code} while radius compensation is active", "Cancel it with G40 first.", g.word
+
+@carries_out(Action.WORKPIECE_POSITION)
+def place_workpiece(block: BlockContext, g: GWord) -> None:
+    """Say where the workpiece lies, and how it is turned."""
+    placement, angle = block.after.placement, _angle(block)
+    values = motion.axis_words(block)
+    vector = _vector(block, g, placement.position, values) if values else placement.position
+    kept = placement.position_deg if angle is None else angle
+    _put(block, replace(placement, position=vector, position_deg=kept))
+
+
+@carries_out(Action.POLE)
+def set_pole(block: BlockContext, g: GWord) -> None:
+    """Set the pole of scaling and rotation."""
+    placement = block.after.placement
+    _put(block, replace(placement, poles={**placement.poles, **motion.named_axes(block, g)}))
+
+
+@carries_out(Action.EXTERNAL_OFFSET)
+def add_offset(block: BlockContext, g: GWord) -> None:
+    """Add an external work offset."""
+    placement = block.after.placement
+    kept = (name for name in placement.offsets if name != f"G{g.code}")
+    _put(block, replace(placement, offsets=(*kept, f"G{g.code}")))
+
+
+@carries_out(Action.EXTERNAL_TOOL, Action.EXTERNAL_TOOL_OFF, Action.GENERAL_TOOL, Action.GENERAL_TOOL_OFF)
+def set_tool_data(block: BlockContext, g: GWord) -> None:
+    """Add or leave external or general tool data."""
+    placement = block.after.placement
+    external = g.action in (Action.EXTERNAL_TOOL, Action.EXTERNAL_TOOL_OFF)
+    others = tuple(each for each in placement.compensations if (each % 100 == 45) != external)
+    on = g.action in (Action.EXTERNAL_TOOL, Action.GENERAL_TOOL)
+    _put(block, replace(placement, compensations=(*others, int(g.word.value)) if on else others))
+
+
+def _put(block: BlockContext, placement: Placement) -> None:
+    """Take a placement over; the axes stay where they are."""
+    state = block.after
+    axes = len(state.axis_names)
+    whole = state.modal.whole
+    plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
+    turn = placement.turn(plane)
+    rotation = None
+    if placement.angle_deg:
+        poles = placement.poles.get(plane[0], 0.0), placement.poles.get(plane[1], 0.0)
+        rotation = Rotation(*plane, *poles, placement.angle_deg)
+    scales = {axis: (placement.poles.get(axis, 0.0), each) for axis, each in placement.factors.items()}
+    state.placement = placement
+    state.frame = replace(state.frame, scales=scales, rotation=rotation, outer=turn)
+    inner = total(axes, placement.contour, placement.program, placement.additive)
+    state.place_zero(
+        replace(
+            state.coordinates,
+            inner=np.array(inner),
+            outer=np.array(total(axes, placement.position)),
+            turn=turn,
+            external=placement.offsets,
+            compensations=placement.compensations,
+        )
+    )
+
+
+@carries_out(Action.POLE_SCALING)
+def scale(block: BlockContext, g: GWord) -> None:
+    """Scale axes about the pole, and turn the plane."""
+    placement = block.after.placement
+    angle = _angle(block)
+    factors: dict[int, float] = {}
+    for index, name in enumerate(block.after.axis_names):
+        word = block.words.take(name)
+        if word is None:
+            continue
+        if word.value == 0.0 or abs(word.value) > LARGEST_FACTOR:
+            raise block.problem(
+                f"the factor {name}{code_text(word.value)} is no scale",
+                f"Write a number up to {LARGEST_FACTOR:g}; a negative one mirrors.",
+                word,
             )
-        if g.action in _SHIFTS:
-            name = _SHIFTS[g.action]
-            changed: dict[str, Any] = {name: self._vector(g, getattr(placement, name))}
-            self._put(replace(placement, **changed))
-        elif g.action in _OFF:
-            self._put(replace(placement, **_OFF[g.action]))
-        elif g.action is Action.PLANE_BY_AXES:
-            self._select_plane(g)
-        elif g.action is Action.SELECT_TABLES:
-            self._select_tables(g, words)
-        else:
-            self._put(self._changed(g, words, placement))
+        factors[index] = word.value
+    if angle is None and not factors:
+        raise block.problem(f"G{g.code} without a factor or an angle", "Name axes, or add R.", g.word)
+    kept = placement.angle_deg if angle is None else angle
+    _put(block, replace(placement, factors={**placement.factors, **factors}, angle_deg=kept))
 
-    def _changed(self, g: GWord, words: BlockWords, placement: Placement) -> Placement:
-        code = int(g.word.value)
-        match g.action:
-            case Action.WORKPIECE_POSITION:
-                angle = self._angle(words)
-                values = self.motion.axis_words()
-                vector = self._vector(g, placement.position, values) if values else placement.position
-                kept = placement.position_deg if angle is None else angle
-                return replace(placement, position=vector, position_deg=kept)
-            case Action.POLE:
-                return replace(placement, poles={**placement.poles, **self._axes(g)})
-            case Action.POLE_SCALING:
-                return self._scaled(g, words, placement)
-            case Action.EXTERNAL_OFFSET:
-                kept_names = (name for name in placement.offsets if name != f"G{g.code}")
-                return replace(placement, offsets=(*kept_names, f"G{g.code}"))
-            case (
-                Action.EXTERNAL_TOOL
-                | Action.EXTERNAL_TOOL_OFF
-                | Action.GENERAL_TOOL
-                | Action.GENERAL_TOOL_OFF
-            ):
-                external = g.action in (Action.EXTERNAL_TOOL, Action.EXTERNAL_TOOL_OFF)
-                others = tuple(each for each in placement.compensations if (each % 100 == 45) != external)
-                on = g.action in (Action.EXTERNAL_TOOL, Action.GENERAL_TOOL)
-                return replace(placement, compensations=(*others, code) if on else others)
-            case _:
-                raise self.fail(f"G{g.code} cannot be carried out", "Take it out.", g.word)
 
-    def _put(self, placement: Placement) -> None:
-        """Take a placement over; the axes stay where they are."""
-        state = self.state
-        axes = len(state.axis_names)
-        whole = state.modal.whole
-        plane = int(whole[AXIS_P]), int(whole[AXIS_Q])
-        turn = placement.turn(plane)
-        rotation = None
-        if placement.angle_deg:
-            poles = placement.poles.get(plane[0], 0.0), placement.poles.get(plane[1], 0.0)
-            rotation = Rotation(*plane, *poles, placement.angle_deg)
-        scales = {axis: (placement.poles.get(axis, 0.0), each) for axis, each in placement.factors.items()}
-        state.placement = placement
-        state.frame = replace(state.frame, scales=scales, rotation=rotation, outer=turn)
-        inner = total(axes, placement.contour, placement.program, placement.additive)
-        state.coordinates.place(inner, total(axes, placement.position), turn)
-        state.coordinates.set_external(placement.offsets, placement.compensations)
+def _angle(block: BlockContext) -> float | None:
+    angle = None if "R" in block.after.axis_names else block.words.value("R")
+    if angle is None:
+        return None
+    if not math.isfinite(angle) or abs(angle) > 360_000.0:
+        raise block.problem(
+            f"the angle R{code_text(angle)} is too large", "Write up to a turn.", block.words.first("R")
+        )
+    whole = block.after.modal.whole
+    if NO_AXIS in (whole[AXIS_P], whole[AXIS_Q]):
+        letters = PLANE_LETTERS[int(whole[PLANE])][:2]
+        raise block.problem(
+            f"the machine has no plane {letters} to turn", "Take R out.", block.words.first("R")
+        )
+    return angle
 
-    def _scaled(self, g: GWord, words: BlockWords, placement: Placement) -> Placement:
-        angle = self._angle(words)
-        factors: dict[int, float] = {}
-        for index, name in enumerate(self.state.axis_names):
-            word = words.take(name)
-            if word is None:
-                continue
-            if word.value == 0.0 or abs(word.value) > LARGEST_FACTOR:
-                raise self.fail(
-                    f"the factor {name}{code_text(word.value)} is no scale",
-                    f"Write a number up to {LARGEST_FACTOR:g}; a negative one mirrors.",
-                    word,
-                )
-            factors[index] = word.value
-        if angle is None and not factors:
-            raise self.fail(f"G{g.code} without a factor or an angle", "Name axes, or add R.", g.word)
-        kept = placement.angle_deg if angle is None else angle
-        return replace(placement, factors={**placement.factors, **factors}, angle_deg=kept)
 
-    def _angle(self, words: BlockWords) -> float | None:
-        angle = None if "R" in self.state.axis_names else words.value("R")
-        if angle is None:
-            return None
-        if not math.isfinite(angle) or abs(angle) > 360_000.0:
-            raise self.fail(
-                f"the angle R{code_text(angle)} is too large", "Write up to a turn.", words.first("R")
-            )
-        whole = self.state.modal.whole
-        if NO_AXIS in (whole[AXIS_P], whole[AXIS_Q]):
-            letters = PLANE_LETTERS[int(whole[PLANE])][:2]
-            raise self.fail(f"the machine has no plane {letters} to turn", "Take R out.", words.first("R"))
-        return angle
+def _vector(block: BlockContext, g: GWord, old: Vector, values: dict[int, float] | None = None) -> Vector:
+    """Return a vector with the axes that the block names changed."""
+    found = total(len(block.after.axis_names), old)
+    for axis, value in (values or motion.named_axes(block, g)).items():
+        found[axis] = value
+    return tuple(found)
 
-    def _axes(self, g: GWord) -> dict[int, float]:
-        values = self.motion.axis_words()
-        if not values:
-            raise self.fail(f"G{g.code} without an axis", "Name the axes.", g.word)
-        return values
 
-    def _vector(self, g: GWord, old: Vector, values: dict[int, float] | None = None) -> Vector:
-        """Return a vector with the axes that the block names changed."""
-        found = total(len(self.state.axis_names), old)
-        for axis, value in (values or self._axes(g)).items():
-            found[axis] = value
-        return tuple(found)
+@carries_out(Action.PLANE_BY_AXES)
+def select_plane(block: BlockContext, g: GWord) -> None:
+    """Take the two axes that the block names as the plane; their values are its pole."""
+    names = block.after.axis_names
+    place = {word.place: name for name, word in block.words.unused() if name in names}
+    order = [names.index(place[at]) for at in sorted(place)]
+    values = motion.named_axes(block, g)
+    letters = "".join(names[axis] for axis in order)
+    plane = next((n for n, each in enumerate(PLANE_LETTERS) if set(each[:2]) == set(letters)), None)
+    if len(order) != 2 or plane is None:
+        raise block.problem(
+            f"G{g.code} takes two axes of X, Y and Z", "Name the main axis first, then the other.", g.word
+        )
+    if block.after.cycle.action:
+        raise block.problem("the plane changes while a drilling cycle is active", "Cancel it first.", g.word)
+    modal = block.after.modal
+    set_plane(modal, plane)
+    if PLANE_LETTERS[plane][:2] != letters:
+        whole = modal.whole
+        whole[AXIS_P], whole[AXIS_Q] = order
+        third = ({0, 1, 2} if plane == PLANE_XY else {whole[AXIS_R]}) - set(order)
+        whole[AXIS_R] = next(iter(third), NO_AXIS)
+    state = block.after
+    state.placement = replace(state.placement, plane=(order[0], order[1]))
+    poles = {axis: value for axis, value in values.items() if value or axis in state.placement.poles}
+    if poles:
+        _put(block, replace(state.placement, poles={**state.placement.poles, **poles}))
 
-    def _select_plane(self, g: GWord) -> None:
-        """Take the two axes that the block names as the plane; their values are its pole."""
-        names = self.state.axis_names
-        place = {word.place: name for name, word in self.motion.words.unused() if name in names}
-        order = [names.index(place[at]) for at in sorted(place)]
-        values = self._axes(g)
-        letters = "".join(names[axis] for axis in order)
-        plane = next((n for n, each in enumerate(PLANE_LETTERS) if set(each[:2]) == set(letters)), None)
-        if len(order) != 2 or plane is None:
-            raise self.fail(
-                f"G{g.code} takes two axes of X, Y and Z", "Name the main axis first, then the other.", g.word
-            )
-        if self.state.cycle.action:
-            raise self.fail("the plane changes while a drilling cycle is active", "Cancel it first.", g.word)
-        modal = self.state.modal
-        set_plane(modal, plane)
-        if PLANE_LETTERS[plane][:2] != letters:
-            whole = modal.whole
-            whole[AXIS_P], whole[AXIS_Q] = order
-            third = ({0, 1, 2} if plane == PLANE_XY else {whole[AXIS_R]}) - set(order)
-            whole[AXIS_R] = next(iter(third), NO_AXIS)
-        state = self.state
-        state.placement = replace(state.placement, plane=(order[0], order[1]))
-        poles = {axis: value for axis, value in values.items() if value or axis in state.placement.poles}
-        if poles:
-            self._put(replace(state.placement, poles={**state.placement.poles, **poles}))
 
-    def _select_tables(self, g: GWord, words: BlockWords) -> None:
-        chosen = [letter for letter in _TABLES if letter in words.by_letter]
-        if not chosen:
-            raise self.fail(f"G{g.code} without a table", "Add K or V and its number.", g.word)
-        for letter in chosen:
-            word = words.take(letter)
-            assert word is not None
-            number = whole_number(word, "the number of a table", self.fail)
-            if not self.state.tables.select(letter, number):
-                raise self.fail(f"there is no table {letter}{number}", "See the tables of the control.", word)
-        self.state.coordinates.take_changes()
+@carries_out(Action.SELECT_TABLES)
+def select_tables(block: BlockContext, g: GWord) -> None:
+    chosen = [letter for letter in _TABLES if letter in block.words.by_letter]
+    if not chosen:
+        raise block.problem(f"G{g.code} without a table", "Add K or V and its number.", g.word)
+    for letter in chosen:
+        word = block.words.take(letter)
+        assert word is not None
+        number = whole_number(word, "the number of a table", block.problem)
+        if not block.after.tables.select(letter, number):
+            raise block.problem(f"there is no table {letter}{number}", "See the tables of the control.", word)
+    block.after.take_changes()

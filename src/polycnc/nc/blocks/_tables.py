@@ -31,24 +31,18 @@ class SavedTables(NamedTuple):
 
 
 class ProgramTables:
-    """Hold what has been set of tools and work offsets (mm, degree); `revision` grows with every change."""
+    """Hold what has been set of tools and work offsets (mm, degree); `changes` counts the work offsets set."""
 
     def __init__(self, machine: MachineConfig) -> None:
         self._machine = machine
         self._tools: dict[int, ToolConfig] = {}
         self._offsets: dict[str, tuple[float, ...]] = {}
-        self._changes = 0
-
-    @property
-    def revision(self) -> int:
-        """How often the tables of work offsets have been changed."""
-        tables = self._machine.offsets, self._machine.tools
-        return self._changes + sum(int(getattr(table, "revision", 0)) for table in tables)
+        self.changes = 0
 
     def save(self) -> SavedTables:
         """Return what the program has set; what it has set in the machine's tables is there."""
         tools = {number: dict(tool.__dict__) for number, tool in self._tools.items()}
-        return SavedTables(tools, dict(self._offsets), self._changes)
+        return SavedTables(tools, dict(self._offsets), self.changes)
 
     def restore(self, saved: SavedTables) -> None:
         """Go back to what the program had set."""
@@ -56,7 +50,7 @@ class ProgramTables:
             number: ToolConfig.model_construct(**dict[str, Any](each)) for number, each in saved.tools.items()
         }
         self._offsets = dict(saved.offsets)
-        self._changes = saved.changes
+        self.changes = saved.changes
 
     def has_tool(self, number: int) -> bool:
         """Tell whether there is a tool."""
@@ -117,4 +111,4 @@ class ProgramTables:
             for axis, value in values.items():
                 row[axis] = value
             self._offsets[name] = tuple(row)
-            self._changes += 1
+            self.changes += 1

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
-from polycnc.nc.blocks._messages import Messages
-from polycnc.nc.blocks._words import BlockWords, Fail, code_text
-from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.blocks._block import BlockContext
+from polycnc.nc.blocks._channel_state import of_another_channel
+from polycnc.nc.blocks._words import GWord, code_text
 from polycnc.nc.modal._actions import Action, Family, Group
 from polycnc.nc.text._scan_plain import Word
 
@@ -27,88 +26,90 @@ _BELONGS_TO = {
 _WORDS_OF_THEIR_OWN = (Group.MOTION, Group.NON_MODAL, Group.DWELL, Group.ROTATION)
 
 
-class WordChecks:
-    """Check the words of each block."""
+def leave_out(block: BlockContext) -> None:
+    """Say which codes are left out, and leave out the words that belong to them.
 
-    def __init__(self, state: ChannelState, dialect: Dialect, messages: Messages, fail: Fail) -> None:
-        self._state = state
-        self._dialect = dialect
-        self._messages = messages
-        self._fail = fail
+    Axis words belong to the block's own motion word, if it has one.
+    """
+    for code in block.words.left_out:
+        block.note(f"{code} is left out, as told")
+    if block.words.takes_words and block.words.g.keys().isdisjoint(_WORDS_OF_THEIR_OWN):
+        block.words.take_all()
 
-    def leave_out(self, words: BlockWords) -> None:
-        """Say which codes are left out, and leave out the words that belong to them.
 
-        Axis words belong to the block's own motion word, if it has one.
-        """
-        for code in words.left_out:
-            self._messages.add(f"{code} is left out, as told")
-        if words.takes_words and words.g.keys().isdisjoint(_WORDS_OF_THEIR_OWN):
-            words.take_all()
+def refuse_contradictions(block: BlockContext) -> None:
+    """Refuse functions of different groups that cannot share a block."""
+    g = block.words.g
+    if len(g) < 2:
+        return
+    non_modal, dwell, motion = g.get(Group.NON_MODAL), g.get(Group.DWELL), g.get(Group.MOTION)
+    if dwell and non_modal:
+        _exclude(block, f"G{dwell.code}", f"G{non_modal.code}", "both need their own block", non_modal.word)
+    if motion is None:
+        return
+    is_straight = motion.action in (Action.RAPID, Action.LINEAR)
+    if non_modal and (
+        non_modal.action is Action.SET_POSITION
+        or motion.action.family in _CURVED
+        or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
+    ):
+        _exclude(block, f"G{non_modal.code}", f"G{motion.code}", "both use the axis words", motion.word)
+    cancel = g.get(Group.CYCLE_CANCEL)
+    if cancel and motion.action.sets is None:
+        _exclude(block, f"G{cancel.code}", f"G{motion.code}", "one ends what the other begins", motion.word)
 
-    def refuse_contradictions(self, words: BlockWords) -> None:
-        """Refuse functions of different groups that cannot share a block."""
-        g = words.g
-        if len(g) < 2:
-            return
-        non_modal, dwell, motion = g.get(Group.NON_MODAL), g.get(Group.DWELL), g.get(Group.MOTION)
-        if dwell and non_modal:
-            self._exclude(f"G{dwell.code}", f"G{non_modal.code}", "both need their own block", non_modal.word)
-        if motion is None:
-            return
-        is_straight = motion.action in (Action.RAPID, Action.LINEAR)
-        if non_modal and (
-            non_modal.action is Action.SET_POSITION
-            or motion.action.family in _CURVED
-            or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
-        ):
-            self._exclude(f"G{non_modal.code}", f"G{motion.code}", "both use the axis words", motion.word)
-        cancel = g.get(Group.CYCLE_CANCEL)
-        if cancel and motion.action.sets is None:
-            self._exclude(f"G{cancel.code}", f"G{motion.code}", "one ends what the other begins", motion.word)
 
-    def _exclude(self, first: str, second: str, why: str, word: Word) -> None:
-        raise self._fail(f"{first} and {second} exclude each other: {why}", "Write them in two blocks.", word)
+def _exclude(block: BlockContext, first: str, second: str, why: str, word: Word) -> None:
+    raise block.problem(f"{first} and {second} exclude each other: {why}", "Write them in two blocks.", word)
 
-    def take_parameters(self, words: BlockWords) -> None:
-        """Take what is left of words that are no axes: it belonged to codes that are left out."""
-        for letter, word in list(words.unused()):
-            if letter not in self._state.axis_names and word.letter not in _AXIS_LETTERS:
-                words.take(letter)
 
-    def refuse_unused(self, words: BlockWords) -> None:
-        """Refuse words that nothing in the block has used."""
-        for name, word in words.unused():
-            if name in self._dialect.ignored_addresses:
-                self._messages.add(f"'{name}' has no effect here and is ignored")
-            elif name in self._state.axis_names:
-                raise self._fail(
-                    f"'{name}' cannot stand beside this function",
-                    "Write the move in a block of its own.",
-                    word,
-                )
-            elif of_another_channel(name) in self._state.axis_names:
-                raise self._fail(
-                    f"axis '{name}' belongs to another channel",
-                    "Take the word out, or execute the program in that channel.",
-                    word,
-                )
-            elif word.letter in _AXIS_LETTERS:
-                names = ", ".join(self._state.axis_names)
-                raise self._fail(
-                    f"there is no axis '{name}' on machine '{self._state.machine.name}'",
-                    f"Its axes are {names}; take the word out, or choose another machine.",
-                    word,
-                )
-            elif name in _BELONGS_TO:
-                raise self._fail(
-                    f"'{name}' has no meaning in this block", f"It belongs to {_BELONGS_TO[name]}.", word
-                )
-            else:
-                value = code_text(word.value)
-                raise self._fail(
-                    f"the address '{name}' is not known in dialect '{self._dialect.name}'",
-                    f"Take {name}{'=' if word.index is not None else ''}{value} out, or list '{name}' in the "
-                    "dialect's ignored_addresses.",
-                    word,
-                )
+def take_parameters(block: BlockContext) -> None:
+    """Take what is left of words that are no axes: it belonged to codes that are left out."""
+    for letter, word in list(block.words.unused()):
+        if letter not in block.after.axis_names and word.letter not in _AXIS_LETTERS:
+            block.words.take(letter)
+
+
+def refuse_unused(block: BlockContext) -> None:
+    """Refuse words that nothing in the block has used."""
+    for name, word in block.words.unused():
+        if name in block.dialect.ignored_addresses:
+            block.note(f"'{name}' has no effect here and is ignored")
+        elif name in block.after.axis_names:
+            raise block.problem(
+                f"'{name}' cannot stand beside this function",
+                "Write the move in a block of its own.",
+                word,
+            )
+        elif of_another_channel(name) in block.after.axis_names:
+            raise block.problem(
+                f"axis '{name}' belongs to another channel",
+                "Take the word out, or execute the program in that channel.",
+                word,
+            )
+        elif word.letter in _AXIS_LETTERS:
+            names = ", ".join(block.after.axis_names)
+            raise block.problem(
+                f"there is no axis '{name}' on machine '{block.after.machine.name}'",
+                f"Its axes are {names}; take the word out, or choose another machine.",
+                word,
+            )
+        elif name in _BELONGS_TO:
+            raise block.problem(
+                f"'{name}' has no meaning in this block", f"It belongs to {_BELONGS_TO[name]}.", word
+            )
+        else:
+            value = code_text(word.value)
+            raise block.problem(
+                f"the address '{name}' is not known in dialect '{block.dialect.name}'",
+                f"Take {name}{'=' if word.index is not None else ''}{value} out, or list '{name}' in the "
+                "dialect's ignored_addresses.",
+                word,
+            )
+
+
+def refuse_rest(block: BlockContext, g: GWord) -> None:
+    """Refuse what is left in the block before anything is written that cannot be taken back."""
+    for name, word in block.words.unused():
+        if name not in block.dialect.ignored_addresses:
+            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Take it out.", word)

@@ -2,38 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import partial
 
 from polycnc.errors import ProgramError
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Action, Group, MAction
+from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Block, Word
 
 Fail = Callable[[str, str, Word | None], ProgramError]
 
 LARGEST_M = 99999
+LARGEST_NUMBER = 99_999_999
+NUMBERS = "NO:"
+"""The letters of block and program numbers."""
 MOST_WORDS = 1000
 """Words of a block: far more than any control reads. A file of one line would take hours otherwise."""
 _OF_MOVES = range(40, 50)  # offsets, behind which axis words are still a move
 _NOT_YET = "What it does would be left out: take it out, or post the program without it."
 _OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
+_REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 
 
 @dataclass(frozen=True, slots=True)
 class GWord:
-    """A G word and what it does in this dialect."""
+    """A G word and what it does in this dialect; `value` is that of its group, 0 where no number tells it."""
 
     word: Word
     code: str
     action: Action
-
-    @property
-    def value(self) -> int:
-        """The value of its group in the modal state."""
-        assert self.action.sets is not None
-        return self.action.sets
+    value: int
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,14 +63,26 @@ class BlockWords:
     by_letter: dict[str, Word] = field(default_factory=dict)
     increment: float = 0.0
     takes_words: bool = False
-    _used: set[str] = field(default_factory=set)
+    used: set[str] = field(default_factory=partial(set, NUMBERS))
+
+    def lengths(self, letters: Iterable[str]) -> list[tuple[str, float]]:
+        """Return letter and number of those of `letters` that are there, which are lengths or angles; take them."""
+        found = []
+        for letter in letters:
+            word = self.by_letter.get(letter)
+            if word is not None and letter not in self.used:
+                self.used.add(letter)
+                found.append(
+                    (letter, word.value if word.point or not self.increment else word.value * self.increment)
+                )
+        return found
 
     def take(self, letter: str) -> Word | None:
         """Return the word of `letter`, if there is one that nothing has taken, and take it."""
         word = self.by_letter.get(letter)
-        if word is None or letter in self._used:
+        if word is None or letter in self.used:
             return None
-        self._used.add(letter)
+        self.used.add(letter)
         return word
 
     def value(self, letter: str) -> float | None:
@@ -81,11 +95,11 @@ class BlockWords:
         word = self.take(letter)
         if word is None:
             return None
-        return word.value * self.increment if self.increment and not word.point else word.value
+        return word.value if word.point or not self.increment else word.value * self.increment
 
     def take_all(self) -> None:
         """Take every word that nothing has taken."""
-        self._used.update(self.by_letter)
+        self.used.update(self.by_letter)
 
     def first(self, *letters: str) -> Word | None:
         """Return the word of the first of `letters` that stands in the block, taken or not."""
@@ -102,7 +116,7 @@ class BlockWords:
     def unused(self) -> Iterator[tuple[str, Word]]:
         """Yield address and word of all that nothing has taken."""
         for letter, word in self.by_letter.items():
-            if letter not in self._used:
+            if letter not in self.used:
                 yield letter, word
 
 
@@ -111,72 +125,82 @@ def code_text(value: float) -> str:
     return f"{value:.0f}" if value.is_integer() and abs(value) < 1e16 else f"{value:.10g}"
 
 
-def sort_words(block: Block, dialect: Dialect, fail: Fail, count: Callable[[str], int]) -> BlockWords:
-    """Sort the words of `block`; `count` tells in how many blocks of the program a G code stands.
+class WordSorter:
+    """Sort the words of blocks by what they ask for in a dialect."""
 
-    Raises:
-        ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
-    """
-    words = BlockWords()
-    if len(block.words) > MOST_WORDS:
-        raise fail(
-            f"a block with {len(block.words)} words",
-            f"No block has more than {MOST_WORDS}: check the line ends.",
-            block.words[MOST_WORDS],
-        )
-    for word in block.words:
-        if word.letter == "G" and word.index is None:
-            _add_g(word, words, dialect, fail, count)
-        elif word.letter == "M" and word.index is None:
-            _add_m(word, words, dialect, fail)
-        else:
-            _add_value(word, words, fail)
-    return words
+    def __init__(self, dialect: Dialect) -> None:
+        self._dialect = dialect
+        self._codes = dialect.g_codes()
 
+    def sort(self, words: BlockWords, block: Block, text: ProgramText, fail: Fail) -> None:
+        """Sort the words of a block of `text` into `words`.
 
-def _add_g(word: Word, words: BlockWords, dialect: Dialect, fail: Fail, count: Callable[[str], int]) -> None:
-    action = dialect.g_action(word.value)
-    code = code_text(word.value)
-    if action is None:
-        raise fail(f"G{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
-    group = action.group
-    entry = GWord(word, code, action)
-    if group is Group.IGNORED:
-        if action is Action.UNSUPPORTED:
-            blocks = count(code)
-            where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
-            raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
-        if action is Action.LEFT_OUT:
-            words.left_out.append(f"G{code}")
-            words.takes_words = words.takes_words or int(word.value) not in _OF_MOVES
+        Raises:
+            ProgramError: an unknown G or M code, two words of one group, an address that stands twice.
+        """
+        if len(block.words) > MOST_WORDS:
+            raise fail(
+                f"a block with {len(block.words)} words",
+                f"No block has more than {MOST_WORDS}: check the line ends.",
+                block.words[MOST_WORDS],
+            )
+        for word in block.words:
+            if word.letter == "G" and word.index is None:
+                self._add_g(word, words, text, fail)
+            elif word.letter == "M" and word.index is None:
+                self._add_m(word, words, fail)
+            else:
+                _add_value(word, words, fail)
+
+    def _add_g(self, word: Word, words: BlockWords, text: ProgramText, fail: Fail) -> None:
+        action = self._codes.get(word.value) or self._dialect.g_action(word.value)
+        code = code_text(word.value)
+        if action is None:
+            raise fail(f"G{code} is not known in dialect '{self._dialect.name}'", _OTHER_DIALECT, word)
+        group = action.group
+        entry = GWord(word, code, action, action.sets or 0)
+        if group is Group.IGNORED:
+            if action is Action.UNSUPPORTED:
+                blocks = _blocks_with(code, text)
+                where = "1 block has it" if blocks == 1 else f"{blocks} blocks have it"
+                raise fail(f"G{code} is not supported yet ({where})", _NOT_YET, word)
+            if action is Action.LEFT_OUT:
+                words.left_out.append(f"G{code}")
+                words.takes_words = words.takes_words or int(word.value) not in _OF_MOVES
+                return
+            words.ignored.append(entry)
             return
-        words.ignored.append(entry)
-        return
-    if group in words.g:
-        raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
-    words.g[group] = entry
+        if group in words.g:
+            raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
+        words.g[group] = entry
+
+    def _add_m(self, word: Word, words: BlockWords, fail: Fail) -> None:
+        if not word.value.is_integer() or not 0 <= word.value <= LARGEST_M:
+            raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
+        code = int(word.value)
+        action = self._dialect.m_action(code)
+        if action is None:
+            raise fail(f"M{code} is not known in dialect '{self._dialect.name}'", _OTHER_DIALECT, word)
+        if action is MAction.UNSUPPORTED:
+            raise fail(f"M{code} is not supported yet", _NOT_YET, word)
+        if action is MAction.LEFT_OUT:
+            words.left_out.append(f"M{code}")
+            return
+        for other in words.m:
+            if other.code == code or (action.group and other.action.group == action.group):
+                raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)
+            if MAction.COOLANT_OFF in (action, other.action) and (
+                action in _COOLANT_ON or other.action in _COOLANT_ON
+            ):
+                raise _exclude(f"M{other.code}", f"M{code}", "coolant", word, fail)
+        words.m.append(MWord(word, code, action))
 
 
-def _add_m(word: Word, words: BlockWords, dialect: Dialect, fail: Fail) -> None:
-    if not word.value.is_integer() or not 0 <= word.value <= LARGEST_M:
-        raise fail(f"there is no M{code_text(word.value)}", f"M codes are M0 to M{LARGEST_M}.", word)
-    code = int(word.value)
-    action = dialect.m_action(code)
-    if action is None:
-        raise fail(f"M{code} is not known in dialect '{dialect.name}'", _OTHER_DIALECT, word)
-    if action is MAction.UNSUPPORTED:
-        raise fail(f"M{code} is not supported yet", _NOT_YET, word)
-    if action is MAction.LEFT_OUT:
-        words.left_out.append(f"M{code}")
-        return
-    for other in words.m:
-        if other.code == code or (action.group and other.action.group == action.group):
-            raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)
-        if MAction.COOLANT_OFF in (action, other.action) and (
-            action in _COOLANT_ON or other.action in _COOLANT_ON
-        ):
-            raise _exclude(f"M{other.code}", f"M{code}", "coolant", word, fail)
-    words.m.append(MWord(word, code, action))
+def _blocks_with(code: str, text: ProgramText) -> int:
+    """Return in how many blocks of a text a G code stands."""
+    pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
+    content = _REMARKS.sub(lambda found: b" " * len(found[0]), text.content)
+    return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
 
 
 def _exclude(first: str, second: str, group: str, word: Word, fail: Fail) -> ProgramError:
@@ -198,3 +222,15 @@ def dwell_seconds(word: Word, unit: str) -> float:
     if unit == "ms" or (unit == "s_or_ms" and not word.point):
         return word.value / 1000.0
     return word.value
+
+
+def whole_number(word: Word, what: str, fail: Fail, largest: int = LARGEST_NUMBER) -> int:
+    """Return the number of a word that counts or names something.
+
+    Raises:
+        ProgramError: it is negative, too large or not whole.
+    """
+    if not word.value.is_integer() or not 0 <= word.value <= largest:
+        text = f"{word.letter}{code_text(word.value)}"
+        raise fail(f"{text} is not {what}", f"Write a whole number from 0 to {largest}.", word)
+    return int(word.value)

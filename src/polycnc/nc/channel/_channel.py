@@ -23,7 +23,9 @@ from polycnc.nc.channel._prepared import Prepared
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._search import Search
 from polycnc.nc.channel._sub_programs import Library, SubPrograms
+from polycnc.nc.channel._turns import Turns
 from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._suppressed import Suppressed
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.sources._block_source import (
@@ -31,8 +33,6 @@ from polycnc.nc.sources._block_source import (
 )
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import scan_rules
-
-_MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
 
 
 class Channel:
@@ -64,9 +64,7 @@ class Channel:
         attaches: bool = True,
     ) -> None:
         options = options or ChannelOptions()
-        self.dialect = dialect
-        self.machine = machine
-        self.path = path
+        self.dialect, self.machine, self.path = dialect, machine, path
         self.on_filled: Callable[[], None] | None = None  # looks at the queue before it is executed
         self.messages = Messages()
         self.suppressed = Suppressed()
@@ -85,34 +83,29 @@ class Channel:
         )
         self._prepared: Prepared = prepared
         self.writer, self.records, self.state = prepared.writer, prepared.records, prepared.state
-        self._errors = Errors(self.messages, collects=options.collect_errors)
-        self.errors = self._errors.all
-        self._reader = Reader(program, text_rules, rules, skip_levels)
-        self._calls = Calls(
-            program,
-            dialect,
-            SubPrograms(program, dialect, library),
-            language,
-            self._reader,
-            self._errors,
-        )
-        self._search = Search(self._calls, self._reader, language)
+        self._errors = errors = Errors(self.messages, collects=options.collect_errors)
+        self.errors = errors.all
+        self._reader = reader = Reader(program, text_rules, rules, skip_levels)
+        sub_programs = SubPrograms(program, dialect, library)
+        self._calls = calls = Calls(program, dialect, sub_programs, language, reader, errors)
+        self._search = search = Search(calls, reader, language)
         self.interpreter = Interpreter(
-            dialect, self.state, self.messages, self.writer, self._calls.trouble, self._reference
+            dialect, self.state, self.messages, self.writer, calls.trouble, self._reference
         )
         self._preparation = Preparation(
-            self._reader,
-            self._calls,
-            self._prepared,
-            self._search,
+            reader,
+            calls,
+            prepared,
+            search,
             self.interpreter,
-            self._errors,
+            errors,
+            Turns(machine.clock),
             ordinary_blocks=options.ordinary_blocks,
             end_returns=dialect.sub_program.end_returns,
         )
         if attaches:
-            self._prepared.take_tolerance()
-            self._calls.attach(self)
+            prepared.take_tolerance()
+            calls.attach(self)
 
     # ------------------------------------------------------------------ how far it is
 
@@ -133,7 +126,7 @@ class Channel:
     @property
     def seeking(self) -> bool:
         """Whether a block is sought by carrying out what stands before it."""
-        return self._search.place is not None
+        return self._search.active
 
     @property
     def holds_searched(self) -> bool:
@@ -172,6 +165,11 @@ class Channel:
         """Whether preparation waits until the path has come to a stop, and `go_on`."""
         return self.writer.stops > 0
 
+    @property
+    def paused(self) -> bool:
+        """Whether preparation has done what it may in one control cycle, and goes on in the next."""
+        return self._preparation.turns.paused and not self._preparation.over
+
     def sub_program(self, number: int) -> ProgramText | None:
         """Return the text that a sub-program stands in, None if there is none."""
         return self._calls.text_of(number)
@@ -195,10 +193,10 @@ class Channel:
         """Give up the program: what a language holds for it ends."""
         self._preparation.close()
 
-    def _reference(self, line: int) -> int:
-        """Return the reference of the block on `line` of the present program, as it leaves the modal state."""
+    def _reference(self, line: int, modal: ModalSnapshot) -> int:
+        """Return the reference of the block on `line` of the present program, which leaves this in force."""
         text = self._reader.place.text
-        return self.records.reference(text, self._calls.stack, self.state.snapshot(), line)
+        return self.records.reference(text, self._calls.stack, modal, line)
 
     # ------------------------------------------------------------------ beginning elsewhere
 
@@ -229,6 +227,7 @@ class Channel:
             self._calls.begin()
             search.begin()
             while not self._preparation.over and not search.found:
+                self._preparation.turns.forget()  # no time passes here
                 self.fill()
                 drop()
                 self.writer.clear()
@@ -246,7 +245,7 @@ class Channel:
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:
         """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""
-        self._prepared.go_straight(position, line, self._reference(line))
+        self._prepared.go_straight(position, line, self._reference(line, self.state.snapshot()))
 
     # ------------------------------------------------------------------ going back
 
@@ -270,7 +269,7 @@ class Channel:
             tuple(self.errors),
             self.messages.snapshot(),
             (self._preparation.over, self._preparation.begun),
-            self._preparation.turns,
+            self._preparation.turns.snapshot(),
             self.suppressed,
             self.writer.snapshot(),
             self.records.snapshot(),
@@ -299,7 +298,8 @@ class Channel:
         self.messages.restore(saved.messages)
         preparation = self._preparation
         preparation.ended, preparation.begun = saved.flags
-        preparation.turns, self.suppressed = saved.turns, saved.suppressed
+        preparation.turns.restore(saved.turns)
+        self.suppressed = saved.suppressed
         self.writer.restore(saved.writer)
         self.records.restore(saved.records)
         self.interpreter.restore(saved.interpreter)

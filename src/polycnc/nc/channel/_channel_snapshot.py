@@ -9,6 +9,7 @@ from polycnc.errors import ProgramError, SourcePosition
 from polycnc.machine import Form
 from polycnc.nc.blocks._channel_state import Cycle, Plain, SavedState
 from polycnc.nc.blocks._compensation import RadiusCompensation, SavedCompensation
+from polycnc.nc.blocks._coordinates import Coordinates
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
 from polycnc.nc.blocks._messages import Message
@@ -21,6 +22,8 @@ from polycnc.nc.blocks._tables import SavedTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.channel._running import Back, SavedCall
+from polycnc.nc.channel._turns import SavedTurns
+from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement
@@ -43,7 +46,7 @@ class ChannelSnapshot(NamedTuple):
     errors: tuple[ProgramError, ...]
     messages: tuple[dict[str, Message], str]
     flags: tuple[bool, bool]
-    turns: int
+    turns: SavedTurns
     suppressed: Suppressed
     writer: WriterSnapshot
     records: SavedRecords
@@ -52,10 +55,10 @@ class ChannelSnapshot(NamedTuple):
 
 
 CHANNEL_CLASSES: Sequence[type] = (
-    Arc, Back, Call, ChannelSnapshot, Corner, Cycle, CycleWords, Event, Feed, Frame, Leg, Line, Message, ModalSnapshot,
-    Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, RunBegin, SavedCall, SavedCompensation, SavedRecords,
-    SavedState, SavedTables, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift, Turning, Wait,
-    WriterSnapshot,
+    Arc, Back, Call, ChannelSnapshot, Coordinates, Corner, Cycle, CycleWords, Event, Family, Feed, Frame, Leg, Line,
+    Message, ModalSnapshot, Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, RunBegin, SavedCall,
+    SavedCompensation, SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop,
+    Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
 

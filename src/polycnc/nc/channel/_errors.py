@@ -30,8 +30,7 @@ class Errors:
             self._known.add(text)
             self.all.append(error)
         if len(self.all) >= _MOST_ERRORS:
-            self._messages.begin(0)
-            self._messages.add(f"the program was checked up to its error number {_MOST_ERRORS}")
+            self._messages.note(f"the program was checked up to its error number {_MOST_ERRORS}", 0)
             self.over = True
         self.over = self.over or not self.collects
 

@@ -36,5 +36,5 @@ def first_state(config: MachineConfig, dialect: Dialect, names: tuple[str, ...])
     given = getattr(config.offsets, "at_start", None)
     begins = _START_OFFSET in config.offsets if given is None else given
     if begins or dialect.sets_work_offsets:
-        state.coordinates.select_work_offset(0, _START_OFFSET)
+        state.place_zero(state.coordinates.with_work_offset(0, _START_OFFSET))
     return state

@@ -10,6 +10,7 @@ from polycnc.nc.channel._errors import Errors
 from polycnc.nc.channel._prepared import Prepared
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._search import Search
+from polycnc.nc.channel._turns import BARREN_TURNS, PLAIN_PER_TURN, Turns
 from polycnc.nc.fast._plain_blocks import NOT_PLAIN, QUEUE_FULL
 from polycnc.nc.sources._block_source import (
     CallProgram,
@@ -26,14 +27,13 @@ from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import MESSAGE, PLAIN
 from polycnc.nc.text._scan_plain import Block
 
-_MOST_TURNS = 20_000  # of a language without a block, until whoever runs the channel has a turn
-
 
 class Preparation:
     """Execute the blocks that `reader` and the languages of `calls` give, and go on where they say.
 
-    `begun` and `ended` tell how far the program is. The compiled kernel takes over after the first `ordinary_blocks`.
-    With `end_returns` the end of a program returns from a sub-program.
+    `begun` and `ended` tell how far the program is, `turns` how much of it may be prepared in this cycle. The compiled
+    kernel takes over after the first `ordinary_blocks`. With `end_returns` the end of a program returns from a
+    sub-program.
     """
 
     def __init__(
@@ -44,6 +44,7 @@ class Preparation:
         search: Search,
         interpreter: Interpreter,
         errors: Errors,
+        turns: Turns,
         *,
         ordinary_blocks: float,
         end_returns: bool,
@@ -58,29 +59,35 @@ class Preparation:
         self._end_returns = end_returns
         self.begun = False
         self.ended = False
-        self.turns = 0  # of a language, since it gave a block
+        self.turns = turns
 
     def fill(self, blocks: int | None, *, compiled: bool) -> None:
         """Prepare blocks until there is no room, the program has ended or waits; `blocks` more at the most."""
-        reader, prepared = self._reader, self._prepared
+        reader, prepared, turns = self._reader, self._prepared, self.turns
+        if not turns.begin():
+            return
         if not self.begun:
             self.begun = True
             self._calls.begin()
-        if not prepared.catch_up():
+        if prepared.writer.backlog and not prepared.writer.catch_up():
             return
         most = None if blocks is None else reader.blocks + blocks
         while not self.over and (most is None or reader.blocks < most) and prepared.has_room():
+            if turns.paused:
+                return
             if reader.at_end:
                 if not self._next_piece():
                     return
                 continue
-            reason = NOT_PLAIN
+            reason, first, tail = NOT_PLAIN, reader.blocks, prepared.row["tail"]
             if compiled and reader.blocks >= self._ordinary_blocks and prepared.is_plain:
                 reason = reader.take_plain(self._calls.running, self._calls.stack, most, prepared)
             if reason == QUEUE_FULL:
                 return
             if reason == NOT_PLAIN:
                 self._ordinary_block()
+            least = 1 if prepared.row["tail"] != tail else BARREN_TURNS
+            turns.take(max(least, (reader.blocks - first) // PLAIN_PER_TURN))
 
     def _next_piece(self) -> bool:
         """Get more blocks, where the text ends from the language; False if there are none for now."""
@@ -111,12 +118,14 @@ class Preparation:
         try:
             item = self._search.next_item()
             if item is Pause.PAUSE:
+                self.turns.pause()
                 return False
+            tail = self._prepared.row["tail"]
             self._source_item(item)
-            self.turns = 0 if isinstance(item, WordsBlock | TextSpan | Drain) else self.turns + 1
-            if self.turns >= _MOST_TURNS:
-                self.turns = 0
-                return False
+            barren = not isinstance(item, TextSpan) and self._prepared.row["tail"] == tail
+            self.turns.take(BARREN_TURNS if barren else 1)
+            if isinstance(item, Drain) and not self._search.active:
+                self.turns.look(self._reader.text.name, item.line)
         except ProgramError as error:
             self._note(error)
         return True

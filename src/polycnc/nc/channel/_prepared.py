@@ -26,7 +26,7 @@ class Prepared:
     """Keep the queue, the records and the modal state of a path, as far as preparation has come.
 
     `before` is what has been prepared for the path until now: queue and records go on, and with `keeps_modal` the modal
-    state. `axes` are the names of the machine's axes in programs.
+    state. `row` is the path in the kernel. `axes` are the names of the machine's axes in programs.
     """
 
     def __init__(
@@ -44,6 +44,7 @@ class Prepared:
     ) -> None:
         kernel = machine.state
         self._kernel = kernel
+        self.row = kernel.paths.row[path]
         self._path = path
         self._tables = dialect.tables()
         if before is None:
@@ -65,10 +66,6 @@ class Prepared:
         self.writer.stands_at_stops = options.stands_at_stops
         self.writer.answers = options.answers
         self.writer.marks = deque() if options.marks else None
-
-    def catch_up(self) -> bool:
-        """Put what waits for room into the queue; return whether nothing waits any more."""
-        return not self.writer.backlog or self.writer.catch_up()
 
     def has_room(self) -> bool:
         """Tell whether blocks may be prepared: nothing waits for room, and no stop for its execution."""
@@ -97,7 +94,7 @@ class Prepared:
 
         `feeds` are the numbers of F words that have a variable for theirs; None where no words have.
         """
-        self.state.coordinates.take_changes()
+        self.state.take_changes()
         begin = RunBegin(int(words.offset[first]), int(words.line[first]), feeds)
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel

@@ -59,6 +59,11 @@ class Search:
             self._reader.end = self.place.offset
 
     @property
+    def active(self) -> bool:
+        """Whether a block is sought."""
+        return self.place is not None
+
+    @property
     def in_main_program(self) -> bool:
         """Whether a block is sought and blocks of the main program are read."""
         return self.place is not None and self._calls.depth == 0

@@ -311,6 +311,8 @@ class CplSource:
                             CodeWord(each.address, each.extension, each.value) for each in block.words
                         )
                         return self._words(block)
+                case SubProgram() | Waiting() as skipped if self._language.skips(skipped.skip):
+                    pass
                 case SubProgram() as call:
                     modal = f"{call.address}{call.name}" in self._language.codes.modal
                     if modal and not self._in_modal:

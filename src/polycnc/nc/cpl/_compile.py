@@ -258,7 +258,10 @@ class Compiler:
             self._close_boxes(boxes)
             arguments = values
         line, address, name = statement.line, statement.address, statement.name
-        self._out.put(f"yield SubProgram({line}, {address!r}, {name!r}, {arguments}, {statement.unlinked})")
+        skip = f", {statement.skip}" * (statement.skip != 0)
+        self._out.put(
+            f"yield SubProgram({line}, {address!r}, {name!r}, {arguments}, {statement.unlinked}{skip})"
+        )
 
     def _lines(self, statement: NcLine) -> None:
         if self._stepping:
@@ -386,7 +389,8 @@ class Compiler:
 
     def _wait(self, statement: Wait) -> None:
         if statement.condition is None and statement.duration_ms is None:
-            self._out.put(f"yield Waiting({statement.line}, None, None)")
+            skip = f", {statement.skip}" * (statement.skip != 0)
+            self._out.put(f"yield Waiting({statement.line}, None, None{skip})")
             return
         boxes = self._new_boxes()
         condition = "None"

@@ -77,13 +77,14 @@ class NcValues(NamedTuple):
 
 
 class SubProgram(NamedTuple):
-    """A sub-program call: address "" for CALL, else G, M or P; `unlinked` by the word DIN."""
+    """A sub-program call: address "" for CALL, else G, M or P; `unlinked` by the word DIN; `skip` as of `NcValues`."""
 
     line: int
     address: str
     name: str
     arguments: tuple[object, ...]
     unlinked: bool
+    skip: int = 0
 
 
 class Waiting(NamedTuple):
@@ -92,6 +93,7 @@ class Waiting(NamedTuple):
     line: int
     condition: Callable[[], bool] | None
     duration_ms: int | None
+    skip: int = 0
 
 
 class Step(NamedTuple):

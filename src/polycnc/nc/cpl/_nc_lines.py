@@ -3,25 +3,29 @@
 from __future__ import annotations
 
 import re
+from operator import attrgetter
 
+from polycnc.errors import ProgramError
 from polycnc.language import Flaw
 from polycnc.nc.cpl._reader import Reader
 from polycnc.nc.cpl._syntax import Expression, NcBlock, NcLine, NcWord, SubCall, Wait
+from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan_plain import scan_words
 from polycnc.units import whole
 
 _HEAD = re.compile(r"[ \t]*(?:/[ \t]*([1-9]?)[ \t]*)?(?:[Nn][ \t]*([0-9]+)[ \t]*)?")
 _WAIT = re.compile(r"WAIT[ \t]*(\()?", re.IGNORECASE)
 _REMARK = re.compile(r"\([^)]*\)?")
-_MESSAGE = re.compile(r"\([ \t]*MSG[ \t]*,(.*)\)[ \t]*\Z", re.IGNORECASE)
 _CALL_NAME = re.compile(r"[Pp][ \t]*([A-Za-z_][^\s\[\](),:;]*)[ \t]*")
-_CALL_NUMBER = re.compile(r"([GgMmPp])[ \t]*([0-9]+)(?=\[)")
+_CALL_NUMBER = re.compile(r"([GgMm])[ \t]*([0-9]+)(?=\[)|([Pp])[ \t]*([0-9]+)[ \t]*(?=\[)")
 _CALL_ALONE = re.compile(r"([GgMmPp])[ \t]*([0-9]+)[ \t]*(?:\([^)\n]*\)[ \t]*)*\r?\Z")
-_ADDRESS = re.compile(r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*(?=\[)")
-_WORD = re.compile(
-    r"([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*([+-]?)[ \t]*([0-9]++\.?[0-9]*+|\.[0-9]++)(?![0-9]*+\])"
-)
-_BRACKET = re.compile(r'\[(?:[^\]"]|"[^"]*")*\]')
+_BRACKET = re.compile(r'\[(?:[^\]"]|"[^"]*")*\]?')
+_ADDRESS = r"(?<![A-Za-z])([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*"
+_HOLES = re.compile(rf"{_REMARK.pattern}|(?:{_ADDRESS}|([+-])[ \t]*)?({_BRACKET.pattern})")
+_HOLES_WITH_SEMICOLONS = re.compile(rf";.*|{_HOLES.pattern}", re.DOTALL)
+_AFTER = re.compile(r"[ \t]*[0-9.]")
 _CALLING = frozenset("GMP")
+PLAIN_RULES = TextRules()
 _DIN = re.compile(r"[ \t]*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*DIN[ \t]*\)", re.IGNORECASE)
 _TYP2 = re.compile(r"\s*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*TYP2[ \t]*\)", re.IGNORECASE)
 
@@ -43,35 +47,45 @@ def sequence_number(text: str) -> str:
 
 
 def read_nc_line(
-    text: str, begin: int, end: int, line: int, alone: frozenset[str] = frozenset()
-) -> NcLine | NcBlock | SubCall | Wait:
+    text: str,
+    begin: int,
+    end: int,
+    line: int,
+    alone: frozenset[str] = frozenset(),
+    rules: TextRules = PLAIN_RULES,
+) -> list[NcLine | NcBlock | SubCall | Wait]:
     """Return the NC block at `text[begin:end]`; the codes of `alone` call programs without brackets.
+
+    A message beside a call is a block before it.
 
     Raises:
         Flaw: The CPL in it is wrong.
     """
     head = _HEAD.match(text, begin, end)
     at = head.end() if head else begin
+    level = int(head[1] or 1) if head and "/" in head[0] else 0
     letter = text[at : min(at + 1, end)].upper()
     if letter == "W" and (wait := _WAIT.match(text, at, end)):
         if wait[1] is not None or text[wait.end() : end].strip(" \t\r"):
             raise Flaw(
                 at, "WAIT in an NC block stands alone", "parameters of WAIT need a CPL block: 20 WAIT(,1000)"
             )
-        return Wait(at, line)
-    calls = letter in _CALLING
-    if calls:
+        return [Wait(at, line, skip=level)]
+    call: SubCall | None = None
+    remarks = end
+    if letter in _CALLING:
         named, numbered = _CALL_NAME.match(text, at, end), _CALL_NUMBER.match(text, at, end)
         if named or numbered:
-            return _sub_call(text, at, end, line, named, numbered)
+            call, remarks = _sub_call(text, at, end, line, named, numbered)
+        elif (code := _CALL_ALONE.match(text[at:end])) and _is_call(code, alone):
+            call, remarks = SubCall(at, line, code[1].upper(), code[2].lstrip("0") or "0"), at + code.end(2)
+    if call is not None:
+        call.skip = level
+        told = _read_words(text, remarks, end, line, rules) if text[remarks:end].strip() else None
+        return [NcBlock(at, line, None, level, (), told.message), call] if told and told.message else [call]
     if not has_bracket(text[at:end]):
-        if calls and (code := _CALL_ALONE.match(text[at:end])) and _is_call(code, alone):
-            return SubCall(at, line, code[1].upper(), code[2].lstrip("0") or "0")
-        return NcLine(begin, line, line)
-    words, message = _Words(text, at, end).read()
-    level = int(head[1] or 1) if head and "/" in head[0] else 0
-    number = int(head[2][-9:]) if head and head[2] else None
-    return NcBlock(at, line, number, level, tuple(words), message)
+        return [NcLine(begin, line, line)]
+    return [_read_words(text, begin, end, line, rules)]
 
 
 def _is_call(code: re.Match[str], alone: frozenset[str]) -> bool:
@@ -86,78 +100,92 @@ def has_bracket(text: str) -> bool:
 
 def _sub_call(
     text: str, at: int, end: int, line: int, named: re.Match[str] | None, numbered: re.Match[str] | None
-) -> SubCall:
+) -> tuple[SubCall, int]:
+    """Return a call, and where its remarks begin."""
     found = numbered or named
     assert found is not None
-    address, name = (found[1].upper(), found[2]) if numbered else ("P", found[1])
-    behind = found.end()
+    address, name = ((found[1] or found[3]).upper(), found[2] or found[4]) if numbered else ("P", found[1])
+    after = found.end()
     arguments: tuple[Expression | None, ...] = ()
-    if text[behind:end].startswith("["):
-        reader = _inside(text, behind, end)
+    if text[after:end].startswith("["):
+        reader = _inside(text, after, end)
         arguments, open_end = reader.arguments("]")
         if open_end or None in arguments:
-            raise Flaw(behind, "an argument of a sub-program is missing")
-        behind = reader.tokens.behind
-    rest = _REMARK.sub("", text[behind:end]).strip(" \t\r")
+            raise Flaw(after, "an argument of a sub-program is missing")
+        after = reader.tokens.behind
+    rest = _REMARK.sub("", text[after:end]).strip(" \t\r")
     if rest:
         raise Flaw(
-            behind, "a sub-program call stands alone in its block", "put the other words into the next block"
+            after, "a sub-program call stands alone in its block", "put the other words into the next block"
         )
-    return SubCall(at, line, address, name, tuple(each for each in arguments if each is not None))
+    given = tuple(each for each in arguments if each is not None)
+    return SubCall(at, line, address, name, given), after
 
 
 def _inside(text: str, at: int, end: int) -> Reader:
     """Return a reader of what stands in brackets; it does not look at what follows them."""
     found = _BRACKET.match(text, at, end)
-    return Reader(text, at + 1, found.end() if found else end)
+    closed = found is not None and found[0].endswith("]")
+    return Reader(text, at + 1, found.end() if found and closed else end)
 
 
-class _Words:
-    """Read the words of a block with brackets."""
+def _read_words(text: str, begin: int, end: int, line: int, rules: TextRules) -> NcBlock:
+    """Read a block as the control does, with a number in the place of each pair of brackets.
 
-    def __init__(self, text: str, at: int, end: int) -> None:
-        self._text = text
-        self._at = at
-        self._end = end
+    So words, remarks, messages and marks are those of blocks without brackets.
+    """
+    holes: dict[int, NcWord] = {}  # by the place of the letter, for AXP() and texts that of the bracket
+    pieces: list[str] = []
+    after = begin
+    for found in (_HOLES_WITH_SEMICOLONS if rules.semicolon_comments else _HOLES).finditer(text, begin, end):
+        if found[4] is None:
+            continue
+        word = _hole(text, end, found)
+        holes[word.at] = word
+        opening = found.start(4)
+        pieces += text[after:opening], ("0" if word.address else " ") * (found.end() - opening)
+        after = found.end()
+    shown = "".join((*pieces, text[after:end]))
+    content = shown.encode("utf-8")
+    try:
+        block = scan_words(ProgramText("", content), 0, 1, rules)
+    except ProgramError as error:
+        column = error.position.column if error.position is not None else 1
+        raise Flaw(begin + column - 1, error.what, error.hint) from None
+    words = [hole for hole in holes.values() if not hole.address]
+    number = None
+    for each in block.words:
+        if each.letter == "N" and each is block.words[0]:
+            number = int(each.value)
+            continue
+        at = each.place if shown.isascii() else len(content[: each.place].decode("utf-8"))
+        words.append(holes.get(begin + at) or NcWord(begin + at, each.letter, each.value, each.index))
+    words.sort(key=_place)
+    head = _HEAD.match(text, begin, end)
+    first = head.end() if head else begin
+    return NcBlock(first, line, number, block.skip_level, tuple(words), block.message)
 
-    def read(self) -> tuple[list[NcWord], str]:
-        """Return the words, and the text of a message."""
-        words: list[NcWord] = []
-        while True:
-            while self._at < self._end and self._text[self._at] in " \t":
-                self._at += 1
-            if self._at >= self._end or self._text[self._at] == "\r":
-                return words, ""
-            if self._text[self._at] == "(":
-                if message := _MESSAGE.match(self._text, self._at, self._end):
-                    return words, message[1]
-                remark = _REMARK.match(self._text, self._at, self._end)
-                self._at = remark.end() if remark else self._end
-                continue
-            words.append(self._word())
 
-    def _word(self) -> NcWord:
-        text, at = self._text, self._at
-        if text[at] == "[":
-            return NcWord(at, "", self._bracket(at))
-        if found := _ADDRESS.match(text, at, self._end):
-            address = found[1].upper()
-            if address in "NP":
-                hint = "block numbers and sub-programs are checked before the program starts"
-                raise Flaw(at, f"the address {address} takes no expression", hint)
-            return NcWord(at, address, self._bracket(found.end()), whole(found[2]) if found[2] else None)
-        found = _WORD.match(text, at, self._end)
-        if found is None:
-            raise Flaw(at, f"'{text[at]}' begins no word", "a word is a letter with a number or [expression]")
-        self._at = found.end()
-        value = float(f"{found[3]}{found[4]}")
-        if value - value:
-            raise Flaw(at, "the number is too large")
-        return NcWord(at, found[1].upper(), value, whole(found[2]) if found[2] else None)
+_place = attrgetter("at")
 
-    def _bracket(self, at: int) -> Expression:
-        reader = _inside(self._text, at, self._end)
-        tree = reader.expression()
-        reader.tokens.expect("]", "close the bracket")
-        self._at = reader.tokens.behind
-        return tree
+
+def _hole(text: str, end: int, found: re.Match[str]) -> NcWord:
+    """Return the word whose value stands in brackets."""
+    at = found.start()
+    if found[3]:
+        raise Flaw(at, "a sign stands inside of the brackets", "write X[-A], not X-[A]")
+    letter = (found[1] or "").upper()
+    if letter and letter in "NP":
+        hint = "block numbers and sub-programs are checked before the program starts"
+        raise Flaw(at, f"the address {letter} takes no expression", hint)
+    opening = found.start(4)
+    reader = Reader(text, opening + 1, found.end() if found[4].endswith("]") else end)
+    tree = reader.expression()
+    reader.tokens.expect("]", "close the bracket")
+    if after := _AFTER.match(text, reader.tokens.behind, end):
+        raise Flaw(
+            after.end() - 1,
+            f"'{after[0][-1]}' begins no word",
+            "a word is a letter with a number or [expression]",
+        )
+    return NcWord(at, letter, tree, whole(found[2]) if found[2] else None)

@@ -11,11 +11,12 @@ from polycnc.language import Flaw, Source, Traced, clipped, without_collection
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, pattern_of
 from polycnc.nc.cpl._compile import Compiler
 from polycnc.nc.cpl._link_table import LinkedCall, LinkTable, LinkTables, NoTables, text_digest
-from polycnc.nc.cpl._nc_lines import is_marked_din
+from polycnc.nc.cpl._nc_lines import PLAIN_RULES, is_marked_din
 from polycnc.nc.cpl._program_reader import read_program
 from polycnc.nc.cpl._shape import every, target_flaws
 from polycnc.nc.cpl._syntax import NcLine, SubCall
 from polycnc.nc.cpl._variables import Variable
+from polycnc.nc.text._program import TextRules
 
 NESTING = 7
 """How deep sub-programs may be nested (Manual 003, 2.1)."""
@@ -50,20 +51,25 @@ def holds_cpl(content: bytes, alone: frozenset[str] = frozenset()) -> bool:
 
 
 def compile_program(
-    text: str, file: str, *, stepping: bool = False, alone: frozenset[str] = frozenset()
+    text: str,
+    file: str,
+    *,
+    stepping: bool = False,
+    alone: frozenset[str] = frozenset(),
+    rules: TextRules = PLAIN_RULES,
 ) -> tuple[Program | None, list[ProgramError]]:
     """Return one program compiled, without looking at its sub-programs, and all that is wrong with it.
 
-    The codes of `alone` ("G322") call programs where they stand alone in a block.
+    The codes of `alone` ("G322") call programs where they stand alone in a block; `rules` say how blocks are read.
     """
     with without_collection():
-        return _compiled(_source(text, file), text, stepping, alone)
+        return _compiled(_source(text, file), text, stepping, alone, rules)
 
 
 def _compiled(
-    source: Source, text: str, stepping: bool, alone: frozenset[str]
+    source: Source, text: str, stepping: bool, alone: frozenset[str], rules: TextRules
 ) -> tuple[Program | None, list[ProgramError]]:
-    statements, flaws = read_program(source, alone)
+    statements, flaws = read_program(source, alone, rules)
     whole = list(every(statements))
     flaws += target_flaws(whole)
     compiler = Compiler(source, stepping=stepping)
@@ -171,7 +177,9 @@ class Linker:
             return None
         known = self._programs.get(file)
         if known is None or known.text != text:
-            program, found = compile_program(text, file, stepping=self._stepping, alone=self.alone)
+            program, found = compile_program(
+                text, file, stepping=self._stepping, alone=self.alone, rules=self._codes.rules
+            )
             errors += found
             if program is None:
                 self._faulty.add(file)

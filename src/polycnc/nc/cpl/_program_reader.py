@@ -11,7 +11,7 @@ from polycnc.nc.cpl._faults import NESTING_TOO_DEEP, Fault
 from polycnc.nc.cpl._fields import check_sizes
 from polycnc.nc.cpl._functions import FUNCTIONS
 from polycnc.nc.cpl._lexicon import RESERVED
-from polycnc.nc.cpl._nc_lines import read_nc_line, sequence_number
+from polycnc.nc.cpl._nc_lines import PLAIN_RULES, read_nc_line, sequence_number
 from polycnc.nc.cpl._reader import Reader, assignment_missing
 from polycnc.nc.cpl._syntax import (
     Assign,
@@ -32,6 +32,7 @@ from polycnc.nc.cpl._syntax import (
     While,
 )
 from polycnc.nc.cpl._variables import variable
+from polycnc.nc.text._program import TextRules
 
 CASES = 10
 """How deep CASE may be nested (Manual 003, 2.5.7)."""
@@ -46,12 +47,14 @@ _LARGEST = (1 << 31) - 1
 Structure = If | For | While | Repeat | Case
 
 
-def read_program(source: Source, alone: frozenset[str] = frozenset()) -> tuple[list[Statement], list[Flaw]]:
+def read_program(
+    source: Source, alone: frozenset[str] = frozenset(), rules: TextRules = PLAIN_RULES
+) -> tuple[list[Statement], list[Flaw]]:
     """Return the statements of a program, and all that is wrong with its lines.
 
-    The codes of `alone` call programs where they stand alone in a block.
+    The codes of `alone` call programs where they stand alone in a block; `rules` say how blocks are read.
     """
-    reader = _ProgramReader(source, alone)
+    reader = _ProgramReader(source, alone, rules)
     for line in range(1, source.line_count + 1):
         reader.line(line, source.begin(line), source.end(line))
     for opened in (
@@ -63,7 +66,8 @@ def read_program(source: Source, alone: frozenset[str] = frozenset()) -> tuple[l
 
 
 class _ProgramReader:
-    def __init__(self, source: Source, alone: frozenset[str]) -> None:
+    def __init__(self, source: Source, alone: frozenset[str], rules: TextRules) -> None:
+        self._rules = rules
         self._alone = alone
         self.top: list[Statement] = []
         self.open: list[Structure] = []
@@ -111,12 +115,12 @@ class _ProgramReader:
             self._body.append(Target(at, name))
 
     def _nc(self, begin: int, end: int, number: int) -> None:
-        statement = read_nc_line(self._text, begin, end, number, self._alone)
-        before = self._body[-1] if self._body else None
-        if isinstance(statement, NcLine) and isinstance(before, NcLine) and before.last == number - 1:
-            self._body[-1] = replace(before, last=number)
-        else:
-            self._body.append(statement)
+        for statement in read_nc_line(self._text, begin, end, number, self._alone, self._rules):
+            before = self._body[-1] if self._body else None
+            if isinstance(statement, NcLine) and isinstance(before, NcLine) and before.last == number - 1:
+                self._body[-1] = replace(before, last=number)
+            else:
+                self._body.append(statement)
 
     def _cpl(self, begin: int, end: int) -> None:
         reader = Reader(self._text, begin, end)

@@ -121,6 +121,7 @@ class SubCall:
     name: str
     arguments: tuple[Expression, ...] = ()
     unlinked: bool = False
+    skip: int = 0
 
 
 @dataclass(slots=True)
@@ -134,6 +135,7 @@ class Wait:
     negated: bool = False
     duration_ms: Expression | None = None
     result: Name | None = None
+    skip: int = 0
 
 
 @dataclass(slots=True)

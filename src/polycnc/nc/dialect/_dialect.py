@@ -294,6 +294,10 @@ class Dialect(StrictModel):
         tenths = round(code * 10)
         return self._by_code.get(tenths) if abs(code * 10 - tenths) < 1e-6 else None
 
+    def g_codes(self) -> dict[float, Action]:
+        """Return what all G codes do, by their number as programs write it."""
+        return {float(code): _ACTIONS[action] for code, action in self.g.items()}
+
     def m_action(self, code: int) -> MAction | None:
         """Return what an M code does, None if the dialect refuses it."""
         other = MAction.AUXILIARY if self.other_m == "auxiliary" else None

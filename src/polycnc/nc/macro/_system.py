@@ -166,7 +166,7 @@ class SystemVariables:
         elif (offset := self._offset(number)) is not None:
             state = self.channel.state
             state.tables.set_offset(offset[0], {offset[1]: new * self._scale(offset[1])})
-            state.coordinates.take_changes()
+            state.take_changes()
         elif self.has(number):
             raise MacroError(f"#{number} can only be read", "Write another variable.", "PS0116")
         else:

@@ -34,24 +34,27 @@ class Group(StrEnum):
     IGNORED = "ignored"
 
 
-class Family(Enum):
+class Family(StrEnum):
     """Codes of one group that are carried out in one way: the modes of motion, and functions of their own block."""
 
-    MOVE = ("move", Group.MOTION)
-    SPLINE = ("spline", Group.MOTION)
-    CURVE = ("curve", Group.MOTION)
-    DRILLING = ("drilling", Group.MOTION)
-    TURNING = ("turning", Group.MOTION)
-    TURNING_CYCLE = ("turning cycle", Group.NON_MODAL)
-    CONTOUR_CYCLE = ("contour cycle", Group.NON_MODAL)
-    FRAME = ("frame", Group.NON_MODAL)
-    PLACING = ("placing", Group.NON_MODAL)
-    PATH = ("path", Group.NON_MODAL)
+    MOVE = "move"
+    SPLINE = "spline"
+    CURVE = "curve"
+    DRILLING = "drilling"
+    TURNING = "turning"
+    TURNING_CYCLE = "turning cycle"
+    CONTOUR_CYCLE = "contour cycle"
+    FRAME = "frame"
+    PLACING = "placing"
+    PATH = "path"
 
     @property
     def group(self) -> Group:
         """The modal group of its codes."""
-        return self.value[1]
+        return Group.MOTION if self in _MODES_OF_MOTION else Group.NON_MODAL
+
+
+_MODES_OF_MOTION = (Family.MOVE, Family.SPLINE, Family.CURVE, Family.DRILLING, Family.TURNING)
 
 
 class Action(IntEnum):

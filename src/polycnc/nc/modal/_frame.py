@@ -119,3 +119,7 @@ class Frame:
     def turns_over(self, p: int, q: int) -> bool:
         """Tell whether arcs in the plane change their direction."""
         return self.factor(p) * self.factor(q) < 0.0
+
+
+UNTURNED = Frame()
+"""Positions are meant as they are programmed."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -102,16 +102,13 @@ def make_modal(
             letter_axis[ord(name) - ord("A")] = index
     n = len(names)
     modal = Modal(
-        whole=np.zeros(WHOLE_COLUMNS, np.int64),
-        real=np.zeros(REAL_COLUMNS),
-        position=np.zeros(n),
-        offset=np.zeros(n),
-        scale=np.ones(n),
+        *_columns(n),
         rotary=np.array(rotary, np.uint8),
         low=np.maximum(np.array(low, np.float64), -LARGEST),
         high=np.minimum(np.array(high, np.float64), LARGEST),
         letter_axis=letter_axis,
     )
+    modal.scale[:] = 1.0
     modal.whole[ABSOLUTE] = 1
     modal.real[SLOWEST_AXIS] = slowest_axis
     set_plane(modal, PLANE_XY)
@@ -158,18 +155,27 @@ def short_way(wanted_deg: float, position_deg: float) -> float:
     return wanted_deg - TURN_DEG * math.ceil((wanted_deg - position_deg - 0.5 * TURN_DEG) / TURN_DEG)
 
 
-def save_modal(modal: Modal) -> tuple[npt.NDArray[Any], ...]:
-    """Return a copy of what blocks may change, for `restore_modal`."""
-    return (
-        modal.whole.copy(),
-        modal.real.copy(),
-        modal.position.copy(),
-        modal.offset.copy(),
-        modal.scale.copy(),
-    )
+CHANGING = slice(0, 5)
+"""The columns of `Modal` that blocks may change: up to `scale`."""
 
 
-def restore_modal(modal: Modal, saved: tuple[npt.NDArray[Any], ...]) -> None:
-    """Put a saved state back in place."""
-    for column, old in zip(modal[: len(saved)], saved, strict=True):
-        column[...] = old
+def _columns(axes: int) -> tuple[Ints, Floats, Floats, Floats, Floats]:
+    """Return the columns that blocks may change, as parts of one array: so all are copied at once."""
+    memory = np.zeros(WHOLE_COLUMNS + REAL_COLUMNS + 3 * axes)
+    whole, real, *vectors = np.split(memory, np.cumsum([WHOLE_COLUMNS, REAL_COLUMNS, axes, axes]))
+    return whole.view(np.int64), real, vectors[0], vectors[1], vectors[2]
+
+
+def changing(modal: Modal) -> Floats:
+    """Return the columns that blocks may change, as one array to be copied: the numbers in it mean nothing."""
+    memory: Floats | None = modal.whole.base
+    assert memory is not None
+    return memory
+
+
+def copy_modal(modal: Modal) -> Modal:
+    """Return the same state with columns of its own for what blocks may change."""
+    whole, real, position, offset, scale = _columns(len(modal.position))
+    made = modal._replace(whole=whole, real=real, position=position, offset=offset, scale=scale)
+    changing(made)[:] = changing(modal)
+    return made

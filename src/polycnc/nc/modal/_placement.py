@@ -23,8 +23,8 @@ class Placement:
     contour: Vector = ()
     program: Vector = ()
     additive: Vector = ()
-    poles: dict[int, float] = field(default_factory=dict)
-    factors: dict[int, float] = field(default_factory=dict)
+    poles: dict[int, float] = field(default_factory=dict, hash=False)
+    factors: dict[int, float] = field(default_factory=dict, hash=False)
     angle_deg: float = 0.0
     position: Vector = ()
     position_deg: float = 0.0
@@ -33,9 +33,6 @@ class Placement:
     codes: tuple[int, ...] = ()
     once: int = 0
     plane: tuple[int, int] | None = None
-
-    def __hash__(self) -> int:
-        return hash((self.contour, self.program, self.additive, self.position, self.codes))
 
     def turn(self, plane: tuple[int, int]) -> Rotation | None:
         """Return how the workpiece is turned on the machine, about its zero."""

@@ -92,8 +92,8 @@ class ModalWords:
 class BlockRecord:
     """A block of a program as it is executed: where it stands, what it says, and what holds with it.
 
-    `line` counts from 1, `offset` is the byte where it begins, `sequence` its N word. `stack` holds the calls that led
-    to it, the outermost first; it is empty in the main program.
+    `line` counts from 1, of the `lines` that its program has, `offset` is the byte where it begins, `sequence` its N
+    word. `stack` holds the calls that led to it, the outermost first; it is empty in the main program.
     """
 
     program: str
@@ -103,6 +103,7 @@ class BlockRecord:
     text: str
     stack: tuple[Call, ...]
     modal: ModalWords
+    lines: int = 0
 
 
 class _Replay(NamedTuple):
@@ -200,6 +201,7 @@ class BlockRecords:
             text=text,
             stack=context.stack,
             modal=self._words(context, line),
+            lines=context.text.lines,
         )
         return record
 

@@ -78,6 +78,12 @@ class ProgramText:
         """The bytes as a read-only array, without a byte-order mark."""
         return np.frombuffer(self.content, dtype=np.uint8)
 
+    @property
+    def lines(self) -> int:
+        """How many lines the program has; what comes after the last newline counts if there is anything."""
+        starts = self._line_starts
+        return len(starts) - int(int(starts[-1]) >= len(self.content))
+
     def line(self, offset: int) -> str:
         """Return the line that holds the byte at `offset`, without its newline."""
         start, end = self._bounds(offset)

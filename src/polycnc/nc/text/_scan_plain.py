@@ -87,6 +87,19 @@ def scan_block(text: ProgramText, offset: int, line: int, rules: TextRules) -> B
     return _LineReader(text, offset, line, rules).read()
 
 
+def scan_words(text: ProgramText, offset: int, line: int, rules: TextRules) -> Block:
+    """Read a block that can only be words, remarks and marks.
+
+    Raises:
+        ProgramError: as `scan_block`, and where a statement of a language stands.
+    """
+    reader = _LineReader(text, offset, line, rules)
+    block = reader.read()
+    if block.flags & (STATEMENT | PERCENT | LABEL):
+        raise reader.no_word()
+    return block
+
+
 def scan_blocks(text: ProgramText, rules: TextRules, offset: int = 0, line: int = 1) -> Iterator[Block]:
     """Read all blocks from byte `offset` on, leaving out blank lines.
 
@@ -149,6 +162,14 @@ class _LineReader:
             statement=_utf8(self.line).strip() if is_statement else "",
             message=self.message,
             comments=tuple(self.comments),
+        )
+
+    def no_word(self) -> ProgramError:
+        """Return the error of what stands where reading ended."""
+        place = min(self.place, len(self.line.rstrip()) - 1)
+        self.place = place if self.flags & STATEMENT else len(self.line) - len(self.line.lstrip())
+        return self._error(
+            f"'{_utf8(self.line[self.place :])[:1]}' begins no word", "A word is a letter with a number."
         )
 
     def _read_item(self, char: str) -> None:

@@ -18,8 +18,10 @@ from polycnc.errors import PolycncError
 from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ProgramText
 from polycnc.runner._blocks import Execution
+from polycnc.runner._check import check
 from polycnc.runner._result import RunResult
-from polycnc.runner._run import check, run
+from polycnc.runner._run import run_program
+from polycnc.runner._settings import RunSettings
 from polycnc.runner.batches._thumbnail import thumbnail
 from polycnc.runner.view import TrackCollector
 
@@ -170,14 +172,10 @@ def _report(job: Job, setup: Setup, root: Path | None) -> ProgramReport:
     if setup.detail:
         units = tuple(axis.unit for axis in setup.machine.axes)
         collector = TrackCollector(units, most=_THUMBNAIL_POINTS)
-    result = run(
-        text,
-        setup.machine,
-        setup.dialect,
-        check=False,
-        feed_override=setup.override_percent / 100.0,
-        tagged_rows=None if collector is None else collector.add,
-        root=root,
+    override = setup.override_percent / 100.0
+    settings = RunSettings(setup.machine, setup.dialect, feed_override=override, root=root)
+    result = run_program(
+        text, settings, check=False, tagged_rows=None if collector is None else collector.add
     )
     _fill(report, result)
     if collector is not None:

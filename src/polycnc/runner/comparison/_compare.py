@@ -14,7 +14,8 @@ from polycnc.nc import BlockRecords, Dialect, ProgramText, dialect_for
 from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner._execution import Progress
 from polycnc.runner._result import RunResult, Trace
-from polycnc.runner._run import program_text, run
+from polycnc.runner._run import run_program
+from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import read_trace
 from polycnc.runner._trace_formats import TRACE_FORMATS
 from polycnc.runner.comparison._distance import PRECISION_MM, Boxes, greatest_distance, in_one_order
@@ -288,7 +289,7 @@ def _taken(
         tracks.add(piece, tags, records)
 
     read = dialect_for(text.name, dialect)
-    result = run(text, config, read, check=False, tagged_rows=rows, progress=progress)
+    result = run_program(text, RunSettings(config, read), check=False, tagged_rows=rows, progress=progress)
     seen = Compared(
         text.name,
         result.machine,

@@ -30,29 +30,7 @@ def read(text: str, file: str) -> Facts:
     if kinematics is not None and kinematics.text == "none":
         raise kinematics.error("the printer has no kinematics, so it has no axes", "Name its kinematics.")
     straight = kinematics is None or kinematics.text in CARTESIAN
-    axes = []
-    for name in "XYZ":
-        low = settings.number(f"stepper_{name.lower()}.position_min", 0.0)
-        high = settings.get(f"stepper_{name.lower()}.position_max")
-        limits = (low, high.number) if straight and high is not None else None
-        if limits is not None and high is not None and limits[0] >= limits[1]:
-            raise high.error(
-                f"axis {name} has no travel: {limits[0]:g} to {limits[1]:g}",
-                "Write position_max above position_min.",
-            )
-        home = settings.number(f"stepper_{name.lower()}.position_endstop", 0.0) if limits else 0.0
-        tall = name == "Z"
-        axes.append(
-            AxisFacts(
-                name,
-                min(settings.positive("printer.max_z_velocity", speed), speed) if tall else speed,
-                min(settings.positive("printer.max_z_accel", acceleration), acceleration)
-                if tall
-                else acceleration,
-                limits=limits,
-                home=home,
-            )
-        )
+    axes = tuple(_axis(settings, name, speed, acceleration, straight=straight) for name in "XYZ")
     corner = settings.number("printer.square_corner_velocity", SQUARE_CORNER_MM_S)
     if corner <= 0.0:
         raise ConfigurationError(
@@ -74,7 +52,7 @@ def read(text: str, file: str) -> Facts:
         )
     return Facts(
         control=CONTROL,
-        axes=tuple(axes),
+        axes=axes,
         left_out=left,
         path={
             "speed_limit_mm_s": speed,
@@ -83,6 +61,24 @@ def read(text: str, file: str) -> Facts:
             "minimum_cruise_share": cruise,
         },
     )
+
+
+def _axis(settings: Settings, name: str, speed: float, acceleration: float, *, straight: bool) -> AxisFacts:
+    """Return an axis; its stepper says how far it goes where it moves that axis alone."""
+    stepper = f"stepper_{name.lower()}"
+    low = settings.number(f"{stepper}.position_min", 0.0)
+    high = settings.get(f"{stepper}.position_max")
+    limits = (low, high.number) if straight and high is not None else None
+    if limits is not None and high is not None and limits[0] >= limits[1]:
+        raise high.error(
+            f"axis {name} has no travel: {limits[0]:g} to {limits[1]:g}",
+            "Write position_max above position_min.",
+        )
+    home = settings.number(f"{stepper}.position_endstop", 0.0) if limits else 0.0
+    if name == "Z":
+        speed = min(settings.positive("printer.max_z_velocity", speed), speed)
+        acceleration = min(settings.positive("printer.max_z_accel", acceleration), acceleration)
+    return AxisFacts(name, speed, acceleration, limits=limits, home=home)
 
 
 def _cruise_ratio(settings: Settings, acceleration: float) -> float:

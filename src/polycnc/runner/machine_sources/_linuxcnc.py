@@ -57,6 +57,24 @@ def read(text: str, file: str) -> Facts:
     )
     if not axes:
         raise coordinates.error("no axis is named", "Write them like COORDINATES = X Y Z.")
+    kinematics = settings.get("KINS.KINEMATICS")
+    period = settings.get("EMCMOT.SERVO_PERIOD")
+    top = settings.get("SPINDLE_0.MAX_FORWARD_VELOCITY")
+    left = others(settings, LEFT_OUT)
+    if kinematics is not None and not kinematics.text.startswith("trivkins"):
+        left = (LeftOut(f"kinematics {kinematics.text}", "axes and joints count as the same"), *left)
+    return Facts(
+        control=CONTROL,
+        axes=axes,
+        left_out=left,
+        path=_path(settings, to_mm),
+        spindle={} if top is None else {"max_rpm": top.positive},
+        cycle_s=None if period is None else period.positive * 1e-9,
+    )
+
+
+def _path(settings: Settings, to_mm: float) -> dict[str, float | str]:
+    """Return limits of the path, how it goes through corners, and how it rounds and merges moves."""
     path: dict[str, float | str] = {}
     for key, name in (
         ("speed_limit_mm_s", "TRAJ.MAX_LINEAR_VELOCITY"),
@@ -77,20 +95,7 @@ def read(text: str, file: str) -> Facts:
         unit_mm = MM_PER_INCH if in_inch else 1.0
         path["path_tolerance_mm"] = float(tolerance[1]) * unit_mm
         path["merge_mm"] = float(tolerance[2] or tolerance[1]) * unit_mm
-    kinematics = settings.get("KINS.KINEMATICS")
-    period = settings.get("EMCMOT.SERVO_PERIOD")
-    top = settings.get("SPINDLE_0.MAX_FORWARD_VELOCITY")
-    left = others(settings, LEFT_OUT)
-    if kinematics is not None and not kinematics.text.startswith("trivkins"):
-        left = (LeftOut(f"kinematics {kinematics.text}", "axes and joints count as the same"), *left)
-    return Facts(
-        control=CONTROL,
-        axes=axes,
-        left_out=left,
-        path=path,
-        spindle={} if top is None else {"max_rpm": top.positive},
-        cycle_s=None if period is None else period.positive * 1e-9,
-    )
+    return path
 
 
 def _corners(settings: Settings, period_s: float) -> dict[str, float | str]:

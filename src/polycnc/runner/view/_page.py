@@ -67,8 +67,23 @@ def page(
     framed = machine is not None and [axis.name for axis in machine.axes] == [name for name, _ in axes]
     if machine is not None and framed and beside is None and turning_axes(machine):
         track = with_part_frame(track, machine)
-    on_part = track.position.shape[1] - len(axes)
     listing = _Listing(result, track, texts)
+    blob, places = _packed(_columns(track, listing, len(axes), beside))
+    about = _about(result, axes, track, listing, places, beside)
+    return _filled(
+        TITLE=html.escape(result.program.encode("utf-8", "replace").decode()),
+        STYLE=_asset("page.css"),
+        LIBRARY=library,
+        ABOUT=_compressed(json.dumps(about, allow_nan=False).encode()),
+        DATA=_compressed(blob),
+        SCRIPT=_asset("page.js"),
+    )
+
+
+def _columns(
+    track: Track, listing: _Listing, axes: int, beside: Beside | None
+) -> dict[str, npt.NDArray[Any]]:
+    """Return what the page shows, as arrays."""
     columns: dict[str, npt.NDArray[Any]] = {
         "t_s": track.t_s,
         "position": np.ascontiguousarray(track.position.T, dtype=np.float32),
@@ -82,14 +97,26 @@ def page(
         "line": listing.lines.astype(np.int32),
     }
     motion = track.motion
-    if motion.low.shape[2] == len(axes):
+    if motion.low.shape[2] == axes:
         columns["motion_low"] = np.ascontiguousarray(motion.low.transpose(1, 2, 0), dtype=np.float32)
         columns["motion_high"] = np.ascontiguousarray(motion.high.transpose(1, 2, 0), dtype=np.float32)
     if beside is not None:
         columns["other_t_s"] = beside.track.t_s
         columns["other_position"] = np.ascontiguousarray(beside.track.position.T, dtype=np.float32)
-    blob, places = _packed(columns)
-    about = {
+    return columns
+
+
+def _about(
+    result: RunResult,
+    axes: tuple[tuple[str, str], ...],
+    track: Track,
+    listing: _Listing,
+    places: dict[str, dict[str, Any]],
+    beside: Beside | None,
+) -> dict[str, Any]:
+    """Return what the page says of the run, and what its arrays mean."""
+    on_part = track.position.shape[1] - len(axes)
+    about: dict[str, Any] = {
         "program": result.program,
         "machine": result.machine,
         "dialect": result.dialect,
@@ -111,7 +138,7 @@ def page(
             for each in result.operations
         ],
         "derivatives": DERIVATIVES,
-        "stretch_s": motion.stretch_s,
+        "stretch_s": track.motion.stretch_s,
         "kinds": KINDS,
         "tools": [
             {"tool": tool, "cutting_s": each.cutting_s, "rapid_s": each.rapid_s}
@@ -130,14 +157,7 @@ def page(
                 {"text": mark.text, "position": mark.position, "time_s": mark.time_s} for mark in beside.marks
             ],
         }
-    return _filled(
-        TITLE=html.escape(result.program.encode("utf-8", "replace").decode()),
-        STYLE=_asset("page.css"),
-        LIBRARY=library,
-        ABOUT=_compressed(json.dumps(about, allow_nan=False).encode()),
-        DATA=_compressed(blob),
-        SCRIPT=_asset("page.js"),
-    )
+    return about
 
 
 def plotly_source() -> str:

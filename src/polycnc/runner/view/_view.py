@@ -15,7 +15,8 @@ from polycnc.outputs import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._blocks import Execution
 from polycnc.runner._execution import Progress
 from polycnc.runner._result import RunResult, Trace
-from polycnc.runner._run import program_text, run
+from polycnc.runner._run import run_program
+from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner.view._page import page, plotly_source
 from polycnc.runner.view._track import TrackCollector
 
@@ -109,15 +110,8 @@ def view_program(
     text = program_text(program)
     config = load_machine(machine)
     collector = TrackCollector(tuple(axis.unit for axis in config.axes))
-    result = run(
-        text,
-        config,
-        dialect,
-        check=False,
-        skip_levels=skip_levels,
-        tagged_rows=collector.add,
-        progress=progress,
-    )
+    settings = RunSettings(config, dialect, skip_levels=frozenset(skip_levels))
+    result = run_program(text, settings, check=False, tagged_rows=collector.add, progress=progress)
     execution = collector.execution()
     axes = tuple((axis.name, axis.unit) for axis in config.axes)
     shown = page(result, axes, collector.track(execution), execution.texts)

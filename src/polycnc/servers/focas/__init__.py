@@ -2,11 +2,13 @@
 
 from polycnc.controllers.fanuc.wire import (
     CNC,
+    LAYOUTS,
     PMC,
     VACANT,
     Frame,
     FrameReader,
     FrameType,
+    Layout,
     Reply,
     Request,
     Value8,
@@ -23,7 +25,6 @@ from polycnc.servers.focas._commands import COMMANDS, WRITING, known
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._dissect import Dissector, Field, dissect
 from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
-from polycnc.servers.focas._layouts import LAYOUTS, Layout
 from polycnc.servers.focas._owner import HostOwner, Keeper, Owner
 from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
 from polycnc.servers.focas._served import ServedControl

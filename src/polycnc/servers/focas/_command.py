@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from datetime import datetime
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from polycnc.controllers.fanuc import AxisPositions, PowerMate
-from polycnc.controllers.fanuc.wire import VALUE8_SIZE, Request, Value8
+from polycnc.controllers.fanuc.wire import Content, Request, Value8, layout_of, record
 from polycnc.servers.focas._profile import Profile
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED, REJECTED = 1, 
 """Codes that clients get, by the names of the function library."""
 ALL = -1
 MOST_NUMBERS = 200
-_LONG = (-(1 << 31), (1 << 31) - 1)
 
 
 class RefusedError(Exception):
@@ -44,7 +43,7 @@ class View:
     @cached_property
     def positions(self) -> tuple[AxisPositions, ...]:
         """Where its axes are, in increments."""
-        return self.control.positions.read(self.status)
+        return self.control.positions.read()
 
     def forget(self) -> None:
         """Read anew: something has been changed."""
@@ -52,18 +51,8 @@ class View:
         self.__dict__.pop("positions", None)
 
 
-Command: TypeAlias = Callable[[View, Request], bytes]
-"""Carries out a request and returns the payload; it refuses by raising `RefusedError`."""
-
-
-def shorts(*values: int) -> bytes:
-    """Return numbers of 16 bits, of either sign."""
-    return struct.pack(f">{len(values)}H", *(value & 0xFFFF for value in values))
-
-
-def longs(*values: int) -> bytes:
-    """Return numbers of 32 bits; what does not fit is the nearest that does."""
-    return struct.pack(f">{len(values)}i", *(max(_LONG[0], min(_LONG[1], value)) for value in values))
+Command: TypeAlias = Callable[[View, Request], Content]
+"""Carries out a request and returns what the reply holds; it refuses by raising `RefusedError`."""
 
 
 def numbers(request: Request) -> range:
@@ -92,13 +81,12 @@ def axes_of(view: View, axis: int) -> range:
     return range(axis, axis + 1)
 
 
-def padded(values: list[Value8], view: View, axis: int = ALL) -> bytes:
+def padded(values: Sequence[Value8 | int], view: View, axis: int = ALL) -> list[Value8 | int]:
     """Return the value of one axis, or of all with room for as many as the series can have.
 
     Unused places hold 0 with the base that the others have, as seen on a 31i.
     """
-    body = b"".join(map(bytes, values))
-    return body + bytes(Value8(0)) * (view.profile.most_axes - len(values)) if axis == ALL else body
+    return [*values, *[0] * (view.profile.most_axes - len(values))] if axis == ALL else [*values]
 
 
 def data_of(request: Request, size: int) -> bytes:
@@ -108,9 +96,29 @@ def data_of(request: Request, size: int) -> bytes:
     return request.data
 
 
-def pieces(data: bytes, size: int = VALUE8_SIZE) -> list[bytes]:
-    """Cut data into pieces of one size."""
-    return [data[at : at + size] for at in range(0, len(data), size)]
+def given(request: Request) -> dict[str, Any]:
+    """Return what the data of a request say, by name."""
+    layout = layout_of(request)
+    data_of(request, record(layout.data).size or 0)
+    return layout.unpack_data(request.data)[0]
+
+
+def given_each(request: Request, count: int) -> list[dict[str, Any]]:
+    """Return what the data of a request say of each of so many things, by name."""
+    layout = layout_of(request)
+    data_of(request, count * (record(layout.data_each).size or 0))
+    return layout.unpack_data(request.data)[1]
+
+
+def named(request: Request, source: object) -> dict[str, Any]:
+    """Return the attributes of `source` that the record of a reply names."""
+    return {each.name: getattr(source, each.name) for each in record(layout_of(request).head).parts}
+
+
+def moment(when: datetime) -> dict[str, int]:
+    """Return date and time by the names that records have for them."""
+    names = ("year", "month", "day", "hour", "minute", "second")
+    return {name: getattr(when, name) for name in names}
 
 
 _EXTERNAL, _FIRST_EXTRA, _MOST_EXTRA = "EXT", 7, 300

@@ -1,6 +1,6 @@
 """What each command reads or does, by its code; what a series does not know is answered with code 1.
 
-What stands in requests and replies is in `_layouts`; commands of which no layout is known are not answered.
+What stands in requests and replies is in `wire.LAYOUTS`; commands of which no layout is known are not answered.
 """
 
 from __future__ import annotations

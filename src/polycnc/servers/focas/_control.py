@@ -8,7 +8,7 @@ from collections.abc import Sequence
 
 from polycnc.cnc import ControlError
 from polycnc.controllers.fanuc import Fault, PowerMate, PowerMateMode, Transfer, TransferError
-from polycnc.controllers.fanuc.wire import REPLY_SIZE, Reply, Request
+from polycnc.controllers.fanuc.wire import REPLY_SIZE, Reply, Request, layout_of
 from polycnc.errors import ProtocolError
 from polycnc.servers.focas._command import (
     DATA,
@@ -124,7 +124,7 @@ class FocasControl:
         if missing is not None and (not missing or (request.target, request.command) in missing):
             return Reply(status=NO_OPTION)
         try:
-            return Reply(command(view, request))
+            return Reply(layout_of(request).pack(command(view, request)))
         except RefusedError as refusal:
             return Reply(status=refusal.code, detail=refusal.detail)
         except ProtocolError:

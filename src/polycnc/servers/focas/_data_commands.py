@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-import struct
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from polycnc.controllers.fanuc import DIAGNOSIS, Attribute, ParameterRow, pmc
-from polycnc.controllers.fanuc.wire import VALUE8_SIZE, Request, Value8
+from polycnc.controllers.fanuc.wire import PMC_WIDTHS, Content, Request, Value8, swapped
 from polycnc.servers.focas._command import (
     ATTRIBUTE,
     DATA,
@@ -21,13 +20,12 @@ from polycnc.servers.focas._command import (
     View,
     axes_of,
     data_of,
-    longs,
+    given,
+    given_each,
     numbers,
     offset_name,
     one_number,
     padded,
-    pieces,
-    shorts,
 )
 from polycnc.servers.focas._system_variables import system_variable
 
@@ -64,12 +62,12 @@ def _value(number: float | None) -> Value8:
     return Value8(mantissa, exponent, made.base)
 
 
-def read_macros(view: View, request: Request) -> bytes:
+def read_macros(view: View, request: Request) -> Content:
     """Return macro variables; a vacant one is marked."""
-    return b"".join(bytes(_value(_readable_macro(view, number))) for number in numbers(request))
+    return [_value(_readable_macro(view, number)) for number in numbers(request)]
 
 
-def _set_macros(view: View, values: dict[int, float | None]) -> bytes:
+def _set_macros(view: View, values: dict[int, float | None]) -> None:
     """Set variables, all or none."""
     for number, value in values.items():
         if number in _LOCALS:
@@ -80,59 +78,54 @@ def _set_macros(view: View, values: dict[int, float | None]) -> bytes:
     with view.control.store.transaction():
         for number, value in values.items():
             view.control.macros.set(number, value)
-    return b""
 
 
-def write_macros(view: View, request: Request) -> bytes:
+def write_macros(view: View, request: Request) -> Content:
     """Set macro variables."""
     found = numbers(request)
-    data = pieces(data_of(request, len(found) * VALUE8_SIZE))
-    return _set_macros(view, dict(zip(found, (Value8.from_wire(each).number for each in data), strict=True)))
+    values = [each["value"].number for each in given_each(request, len(found))]
+    _set_macros(view, dict(zip(found, values, strict=True)))
+    return None
 
 
-def read_doubles(view: View, request: Request) -> bytes:
+def read_doubles(view: View, request: Request) -> Content:
     """Return macro variables as floating-point numbers; a vacant one is no number."""
     first, count = request.arguments[:2]
     if not 0 < count <= MOST_NUMBERS:
         raise RefusedError(NUMBER)
     values = [_readable_macro(view, number) for number in range(first, first + count)]
-    return struct.pack(f">{count}d", *(math.nan if value is None else value for value in values))
+    return [math.nan if value is None else value for value in values]
 
 
-def write_double(view: View, request: Request) -> bytes:
+def write_double(view: View, request: Request) -> Content:
     """Set a macro variable; what is no number makes it vacant."""
-    (value,) = struct.unpack(">d", data_of(request, 8))
+    value = given_each(request, 1)[0]["value"]
     if math.isinf(value):
         raise RefusedError(DATA)
-    return _set_macros(view, {request.arguments[0]: None if math.isnan(value) else value})
+    _set_macros(view, {request.arguments[0]: None if math.isnan(value) else value})
+    return None
 
 
-def macro_range(view: View, request: Request) -> bytes:
+def macro_range(view: View, request: Request) -> Content:
     """Return how many local and how many common variables there are."""
     commons = (last - first + 1 for first, last in view.control.macros.variables.ranges)
-    return longs(len(_LOCALS), sum(commons))
+    return {"locals": len(_LOCALS), "commons": sum(commons)}
 
 
 # ---------------------------------------------------------------------- parameters, settings, diagnosis
 
 
-def _records(view: View, rows: list[tuple[int, int, bool, Callable[[int], int]]], asked: int) -> bytes:
+def _records(view: View, rows: list[tuple[int, int, bool, Callable[[int], int]]], asked: int) -> Content:
     """Return one record for each number: number, axis, type, and room for the values of all axes."""
-    made = b""
+    made = []
     for number, kind, per_axis, value in rows:
         if per_axis and asked == 0:
             raise RefusedError(ATTRIBUTE)
         values = [value(axis) for axis in (axes_of(view, asked) if per_axis else range(1))]
-        slots = view.profile.most_axes
-        if view.profile.wide_values:
-            body = padded([Value8(each) for each in values], view)
-        else:
-            body = longs(*values, *[0] * (slots - len(values)))
-        made += struct.pack(">Ihh", number, asked if per_axis else 0, kind) + body
+        axis = asked if per_axis else 0
+        made.append({"number": number, "axis": axis, "type": kind, "values": padded(values, view)})
     if not rows:
         raise RefusedError(NUMBER)
-    if len(made) > view.profile.most_body - 32:
-        raise RefusedError(LENGTH)
     return made
 
 
@@ -142,7 +135,7 @@ def _readable(view: View, request: Request) -> list[ParameterRow]:
     return [row for row in found if Attribute.NOT_READABLE not in row.attributes]
 
 
-def _of_parameters(view: View, rows: list[ParameterRow], asked: int) -> bytes:
+def _of_parameters(view: View, rows: list[ParameterRow], asked: int) -> Content:
     value = view.control.parameters.value
     return _records(
         view,
@@ -154,18 +147,18 @@ def _of_parameters(view: View, rows: list[ParameterRow], asked: int) -> bytes:
     )
 
 
-def parameters(view: View, request: Request) -> bytes:
+def parameters(view: View, request: Request) -> Content:
     """Return parameters, of one axis or all; numbers without one are left out."""
     return _of_parameters(view, _readable(view, request), request.arguments[2])
 
 
-def settings(view: View, request: Request) -> bytes:
+def settings(view: View, request: Request) -> Content:
     """Return the parameters that stand on the setting screen."""
     rows = [row for row in _readable(view, request) if Attribute.SETTING in row.attributes]
     return _of_parameters(view, rows, request.arguments[2])
 
 
-def parameter_types(view: View, request: Request) -> bytes:
+def parameter_types(view: View, request: Request) -> Content:
     """Return numbers and type words of so many parameters from one on, and the numbers before and behind."""
     first, count = request.arguments[:2]
     if not 0 < count <= MOST_NUMBERS:
@@ -178,17 +171,15 @@ def parameter_types(view: View, request: Request) -> bytes:
         raise RefusedError(NUMBER)
     before = max((row.number for row in known if row.number < found[0].number), default=0)
     behind = min((row.number for row in known if row.number > found[-1].number), default=0)
-    made = longs(before, behind) + b"".join(longs(row.number, row.type_word) for row in found)
-    if len(made) > view.profile.most_body - 32:
-        raise RefusedError(LENGTH)
-    return made
+    each = [{"number": row.number, "type": row.type_word} for row in found]
+    return {"before": before, "behind": behind}, each
 
 
 _OLD_DIAGNOSIS = {0: 3, 1: 0, 2: 1, 3: 2}
 """Type numbers of diagnosis data on old series, by those of parameters: bits, byte, word, two words."""
 
 
-def diagnosis(view: View, request: Request) -> bytes:
+def diagnosis(view: View, request: Request) -> Content:
     """Return diagnosis data, of one axis or all; numbers without any are left out."""
     control = view.control
     rows = [(number, DIAGNOSIS[number]) for number in numbers(request) if number in DIAGNOSIS]
@@ -213,7 +204,7 @@ def diagnosis(view: View, request: Request) -> bytes:
 _OFFICIAL = 1000
 _LENGTHS = (0, 3)
 """Types of tool offsets: none (one value for each tool), and the geometry of its length, which that value is."""
-_AS_IT_IS = struct.pack(">Hh", 0, -1)
+_AS_IT_IS = 0, -1
 
 
 def _check_type(kind: int) -> None:
@@ -221,11 +212,11 @@ def _check_type(kind: int) -> None:
         raise RefusedError(ATTRIBUTE)
 
 
-def _increments(data: bytes, decimals: int) -> int:
+def _increments(asked: Mapping[str, int], decimals: int) -> int:
     """Return a value that comes in increments, or with decimals of its own."""
-    if data[4:] == _AS_IT_IS:
-        return int.from_bytes(data[:4], "big", signed=True)
-    number = Value8.from_wire(data).number
+    if (asked["base"], asked["exponent"]) == _AS_IT_IS:
+        return asked["increments"]
+    number = Value8.checked(asked["increments"], asked["base"], asked["exponent"]).number
     if number is None or not abs(number) < 1e9:
         raise RefusedError(DATA)
     counted: float = number * 10.0**decimals
@@ -238,36 +229,36 @@ def _offset_decimals(view: View) -> int:
     return view.control.increment.decimals + int(view.control.inch_input)
 
 
-def read_tool_offsets(view: View, request: Request) -> bytes:
+def read_tool_offsets(view: View, request: Request) -> Content:
     """Return tool offsets."""
     _check_type(request.arguments[2])
     try:
         found = [view.control.tool_offsets.get(number) for number in numbers(request)]
     except KeyError:
         raise RefusedError(NUMBER) from None
-    return b"".join(bytes(Value8(value, _offset_decimals(view))) for value in found)
+    return [Value8(value, _offset_decimals(view)) for value in found]
 
 
-def write_tool_offset(view: View, request: Request) -> bytes:
+def write_tool_offset(view: View, request: Request) -> Content:
     """Set a tool offset."""
     number = one_number(request)
     _check_type(request.arguments[2])
-    value = _increments(data_of(request, VALUE8_SIZE), _offset_decimals(view))
+    value = _increments(given(request), _offset_decimals(view))
     try:
         view.control.tool_offsets.set_all({number: value})
     except KeyError:
         raise RefusedError(NUMBER) from None
     except ValueError:
         raise RefusedError(DATA) from None
-    return b""
+    return None
 
 
-def tool_offset_range(view: View, request: Request) -> bytes:
+def tool_offset_range(view: View, request: Request) -> Content:
     """Return how many tool offsets there are, and the type of their memory: one value each."""
-    return shorts(0, view.control.tool_offsets.count, 0, 0)
+    return {"offsets": view.control.tool_offsets.count, "memory": 0}
 
 
-def read_work_offset(view: View, request: Request) -> bytes:
+def read_work_offset(view: View, request: Request) -> Content:
     """Return a work offset of one axis or all."""
     control, name, asked = view.control, offset_name(one_number(request)), request.arguments[2]
     values = control.control.offsets.get(name, {})
@@ -278,20 +269,19 @@ def read_work_offset(view: View, request: Request) -> bytes:
     return padded(made, view, asked)
 
 
-def write_work_offset(view: View, request: Request) -> bytes:
+def write_work_offset(view: View, request: Request) -> Content:
     """Set a work offset of one axis, or of all."""
     control, name, asked = view.control, offset_name(one_number(request)), request.arguments[2]
     axes = axes_of(view, asked)
-    data = pieces(data_of(request, VALUE8_SIZE * len(axes)))
     values = {}
-    for axis, each in zip(axes, data, strict=True):
+    for axis, each in zip(axes, given_each(request, len(axes)), strict=True):
         units = control.input_scale(axis)
         count = _increments(each, units.decimals)
         if abs(count) > control.increment.offset_limit:
             raise RefusedError(DATA)
         values[control.axis_name(axis)] = units.value(count)
     control.control.offsets.set(name, values)
-    return b""
+    return None
 
 
 # ---------------------------------------------------------------------- timers
@@ -301,16 +291,16 @@ _TIMERS = {0: (None, 6750), 1: (6751, 6752), 2: (6753, 6754), 3: (6757, 6758)}
 """Parameters of each timer: milliseconds and minutes."""
 
 
-def timer(view: View, request: Request) -> bytes:
+def timer(view: View, request: Request) -> Content:
     """Return a timer: minutes and milliseconds."""
     found = _TIMERS.get(request.arguments[0])
     if found is None:
         raise RefusedError(NUMBER)
     ms, minutes = (0 if number is None else view.control.parameters.value(number) for number in found)
-    return struct.pack("<ii", minutes, ms)  # little-endian, unlike all else: seen on two series
+    return {"minutes": minutes, "milliseconds": ms}
 
 
-def no_tool_life(view: View, request: Request) -> bytes:
+def no_tool_life(view: View, request: Request) -> Content:
     """Refuse: this control manages no tool life, which is an option."""
     raise RefusedError(NO_OPTION)
 
@@ -318,39 +308,32 @@ def no_tool_life(view: View, request: Request) -> bytes:
 # ---------------------------------------------------------------------- PMC
 
 
-_WIDTHS = {0: 1, 1: 2, 2: 4}
-
-
 def _pmc_place(view: View, request: Request) -> tuple[str, int, int]:
     first, last, area, kind = request.arguments
     if not view.control.has_option("pmc"):
         raise RefusedError(NOT_THERE)
-    if kind not in _WIDTHS or not 0 <= area < len(pmc.LETTERS):
+    if not 0 <= kind < len(PMC_WIDTHS) or not 0 <= area < len(pmc.LETTERS):
         raise RefusedError(ATTRIBUTE)
     letter = pmc.LETTERS[area]
     if last - first >= view.profile.most_body - 32 or not pmc.exists(letter, first, last):
         raise RefusedError(NUMBER)
-    if (last - first + 1) % _WIDTHS[kind]:
+    if (last - first + 1) % PMC_WIDTHS[kind]:
         raise RefusedError(LENGTH)
     return letter, first, last
 
 
-def _swapped(data: bytes, width: int) -> bytes:
-    """Turn values of the PMC, the low byte first, into those of the wire, and back."""
-    return b"".join(each[::-1] for each in pieces(data, width))
-
-
-def read_pmc(view: View, request: Request) -> bytes:
+def read_pmc(view: View, request: Request) -> Content:
     """Return bytes, words or double words of an area."""
     letter, first, last = _pmc_place(view, request)
-    return _swapped(view.control.pmc.read(letter, first, last), _WIDTHS[request.arguments[3]])
+    values = swapped(view.control.pmc.read(letter, first, last), PMC_WIDTHS[request.arguments[3]])
+    return {"values": values}
 
 
-def write_pmc(view: View, request: Request) -> bytes:
+def write_pmc(view: View, request: Request) -> Content:
     """Set bytes, words or double words of an area that is not protected."""
     letter, first, last = _pmc_place(view, request)
     data = data_of(request, last - first + 1)
     if not pmc.writable(letter, first, last):
         raise RefusedError(PROTECTED)
-    view.control.pmc.write(letter, first, _swapped(data, _WIDTHS[request.arguments[3]]))
-    return b""
+    view.control.pmc.write(letter, first, swapped(data, PMC_WIDTHS[request.arguments[3]]))
+    return None

@@ -2,37 +2,39 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from polycnc.controllers.fanuc import fwlib
 from polycnc.controllers.fanuc.wire import (
+    AREAS,
     CNC,
+    LAYOUTS,
     PMC,
+    PMC_WIDTHS,
+    VALUE8_SIZE,
     Frame,
     FrameReader,
     FrameType,
+    Layout,
+    Part,
     Request,
-    Value8,
     read_replies,
     read_requests,
     read_status,
+    record,
 )
 from polycnc.errors import ProtocolError
-from polycnc.servers.focas._layouts import AREAS, LAYOUTS, Layout
 
 HEADER = 10
 SYNC = b"\xa0" * 4
 _WIDTH = 16
 _TARGETS = {CNC: "CNC", PMC: "PMC"}
 _CHANNELS = {1: "programs", 2: "commands"}
-_STRUCT = {"B": "B", "H": ">H", "h": ">h", "I": ">I", "i": ">i", "d": ">d", "<i": "<i"}
 _VERSIONS = {
     1: "client", 2: "16i/18i/21i family", 3: "30i family or 0i", 4: "30i family or 0i", 5: "30i family or 0i-F"
 }  # fmt: skip
 _ALARM_SIZE_AT = 3
-_WIDTHS = {0: 1, 1: 2, 2: 4}
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,34 +236,28 @@ def _payload(fields: _Fields, layout: Layout, asked: Request, end: int, axes: in
 
 
 def _read(
-    fields: _Fields, spec: str, end: int, asked: Request | None = None, axes: int = 32, suffix: str = ""
+    fields: _Fields, declared: str, end: int, asked: Request | None = None, axes: int = 32, suffix: str = ""
 ) -> None:
-    """Take the fields that a layout describes, as far as there are bytes."""
-    for each in spec.split():
-        name, _, code = each.partition(":")
-        left = end - fields.at
-        if left <= 0:
-            return
-        if code in ("4*", "8*"):
-            width = int(code[0])
-            for axis in range(1, min(axes, left // width) + 1):
-                data = fields.data[:width]
-                fields.take(width, f"axis {axis}{suffix}: {_shown(data, '8' if width == 8 else 'i')}")
-        elif code == "*":
-            _bytes(fields, name, left, asked)
+    """Take the fields of a record, as far as there are bytes."""
+    text_size = asked.arguments[_ALARM_SIZE_AT] if asked is not None and any(asked.arguments) else None
+    for part, data in record(declared).cut(fields.data[: end - fields.at], text_size=text_size):
+        if part.slot:
+            each = Part(part.name, "8" if part.slot == VALUE8_SIZE else "i")
+            for axis in range(1, min(axes, len(data) // part.slot) + 1):
+                slot = fields.data[: part.slot]
+                fields.take(part.slot, f"axis {axis}{suffix}: {each.shown(slot)}")
+        elif part.code == "*":
+            _bytes(fields, part.name, len(data), asked)
         else:
-            size = _size(code, left, asked)
-            if size is None or size > left:
-                return
-            data = fields.data[:size]
-            shown = "unknown" if name == "unknown" else f"{name}{suffix} {_shown(data, code)}"
-            fields.take(size, shown)
+            fields.take(
+                len(data), "unknown" if part.name == "unknown" else f"{part.name}{suffix} {part.shown(data)}"
+            )
 
 
 def _bytes(fields: _Fields, name: str, left: int, asked: Request | None) -> None:
     width = None
     if asked is not None and asked.target == PMC and any(asked.arguments):
-        width = _WIDTHS.get(asked.arguments[3])
+        width = dict(enumerate(PMC_WIDTHS)).get(asked.arguments[3])
     if asked is None or width is None or name == "unknown":
         fields.take(left, name)
         return
@@ -269,33 +265,6 @@ def _bytes(fields: _Fields, name: str, left: int, asked: Request | None) -> None
     for k in range(left // width):
         data = fields.data[:width]
         fields.take(width, f"{letter}{asked.arguments[0] + k * width} = {int.from_bytes(data, 'big')}")
-
-
-def _size(code: str, left: int, asked: Request | None) -> int | None:
-    """Return the bytes of a field, None where they are not known."""
-    if code == "8":
-        return 8
-    if code == "s*":
-        return left
-    if code == "s-":  # the text of an alarm is as long as was asked for
-        return None if asked is None or not any(asked.arguments) else asked.arguments[_ALARM_SIZE_AT]
-    if code[0] in "s?":
-        return int(code[1:])
-    return struct.calcsize(_STRUCT[code])
-
-
-def _shown(data: bytes, code: str) -> str:
-    if code == "8":
-        try:
-            value = Value8.from_wire(data)
-        except ProtocolError:
-            return "no number"
-        return "vacant" if value.number is None else f"{value.number:.{max(value.exponent, 0)}f}"
-    if code[0] == "s":
-        return repr(data.split(b"\0")[0].decode("latin-1"))
-    if code[0] == "?":
-        return "unknown"
-    return str(struct.unpack(_STRUCT[code], data)[0])
 
 
 _NAMES = {int(code): code.name for code in fwlib.EW}

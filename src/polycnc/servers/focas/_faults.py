@@ -15,9 +15,9 @@ from typing import Self
 from pydantic import Field, model_validator
 
 from polycnc.controllers.fanuc import PowerMate
+from polycnc.controllers.fanuc.wire import LAYOUTS
 from polycnc.errors import UsageError
 from polycnc.machine import StrictModel, parse_toml, validate
-from polycnc.servers.focas._layouts import LAYOUTS
 
 
 class FaultKind(StrEnum):

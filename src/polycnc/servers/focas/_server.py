@@ -162,7 +162,7 @@ class _Line(asyncio.Protocol):
             self._transport.close()
         elif session.more:
             self._hold(True)
-            asyncio.get_running_loop().call_soon(self._go_on)
+            asyncio.get_running_loop().call_later(session.pause_s, self._go_on)
         else:
             self._hold(False)
 

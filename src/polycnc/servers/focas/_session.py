@@ -6,7 +6,8 @@ that the table does not have in the present state resets the connection, as cont
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from typing import NamedTuple, Protocol
@@ -33,6 +34,8 @@ _START_BODY = 516
 _NAME_AT = 4
 _UPLOAD_PIECE = 0x500
 _MOST_AT_ONCE = 1 << 15
+_REPLY_LEAD_S, _TURN_S = 0.02, 0.005
+"""Ruling: a control answers first and sends a program in its later turns. Clients take the reply by one `recv`."""
 
 
 class Status(NamedTuple):
@@ -134,8 +137,8 @@ class Session:
     """Turn received bytes into bytes to send.
 
     After `receive`, `ending` tells whether the connection shall be closed, `delay_s` how long what is to be sent shall
-    wait, and `more` whether there is more to be taken by `receive(b"")`: what is sent at once is bounded. `lost` is
-    called when the peer is gone.
+    wait, and `more` whether there is more to be taken by `receive(b"")`, not before `pause_s` has passed: what is sent
+    at once is bounded, and a program goes out frame by frame. `lost` is called when the peer is gone.
     """
 
     control: Answerer
@@ -144,25 +147,40 @@ class Session:
     channel: int = 0
     delay_s: float = 0.0
     more: bool = False
+    pause_s: float = 0.0
     reader: FrameReader = field(default_factory=FrameReader)
     _out: list[bytes] = field(default_factory=list)
+    _later: deque[bytes] = field(default_factory=deque)
 
     def receive(self, data: bytes) -> bytes:
         """Take bytes from the peer; return what to send, in one piece."""
-        self.more = False
+        self.more, self.pause_s = False, 0.0
+        frames = self.reader.feed(b"" if self.ending else data)
+        if self._later:
+            self._out.append(self._later.popleft())
+            self.pause_s = _TURN_S
+        else:
+            self._answer_all(frames)
+        if self._later:
+            self.more, self.pause_s = True, self.pause_s or _REPLY_LEAD_S
+        elif self.pause_s:
+            self.more, self.pause_s = bool(self.reader.pending), 0.0
+        sent = b"".join(self._out)
+        self._out.clear()
+        return sent
+
+    def _answer_all(self, frames: Iterator[Frame]) -> None:
+        """Answer what has come, until enough is to be sent at once."""
         try:
-            for frame in self.reader.feed(b"" if self.ending else data):
+            for frame in frames:
                 self._take(frame)
                 if self.ending:
                     break
-                if self.delay_s or sum(map(len, self._out)) >= _MOST_AT_ONCE:
+                if self._later or self.delay_s or sum(map(len, self._out)) >= _MOST_AT_ONCE:
                     self.more = bool(self.reader.pending)
                     break
         except ProtocolError:
             self._end(Ending.RESET)
-        sent = b"".join(self._out)
-        self._out.clear()
-        return sent
 
     def lost(self) -> None:
         """Give back what the session holds: the peer has gone, or the connection was ended."""
@@ -177,7 +195,10 @@ class Session:
         self.state = action(frame, row.next)
 
     def _send(self, kind: FrameType, body: bytes = b"") -> None:
-        self._out.append(bytes(Frame(kind, body, self.control.version)))
+        self._out.append(self._frame(kind, body))
+
+    def _frame(self, kind: FrameType, body: bytes = b"") -> bytes:
+        return bytes(Frame(kind, body, self.control.version))
 
     def _end(self, how: Ending) -> None:
         if self.state is State.DOWNLOADING:
@@ -186,6 +207,7 @@ class Session:
             self.control.close_session(self.channel)
         self.state = State.ENDED
         self.ending = self.ending or how
+        self._later.clear()
 
     # ------------------------------------------------------------------ actions: what each frame does
 
@@ -269,8 +291,8 @@ class Session:
             return State.TRANSFER
         self._send(FrameType.UPLOAD_STARTED, bytes(_OLD_STARTED if old else _STARTED))
         for at in range(0, len(text) or 1, _UPLOAD_PIECE):
-            self._send(FrameType.UPLOAD_DATA, text[at : at + _UPLOAD_PIECE])
-        self._send(FrameType.UPLOAD_FINISHED)
+            self._later.append(self._frame(FrameType.UPLOAD_DATA, text[at : at + _UPLOAD_PIECE]))
+        self._later.append(self._frame(FrameType.UPLOAD_FINISHED))
         return following
 
     def _upload_end(self, frame: Frame, following: State) -> State:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from datetime import datetime
 
 from polycnc.cnc import PROGRAM_MESSAGE, Alarm
@@ -16,7 +15,7 @@ from polycnc.controllers.fanuc import (
     read_state,
     shown,
 )
-from polycnc.controllers.fanuc.wire import Request, Value8, text
+from polycnc.controllers.fanuc.wire import POSITION_KINDS, Content, Request, Value8, text
 from polycnc.nc import Group
 from polycnc.servers.focas._command import (
     ALL,
@@ -30,43 +29,47 @@ from polycnc.servers.focas._command import (
     RefusedError,
     View,
     axes_of,
-    data_of,
-    longs,
+    given,
+    named,
     padded,
-    shorts,
 )
 
 
-def system(view: View, request: Request) -> bytes:
+def system(view: View, request: Request) -> Content:
     """Return the 18 bytes that say which control this is."""
     profile = view.profile
-    names = (profile.cnc_type, 2), (profile.machine_type, 2), (profile.series, 4), (profile.software, 4)
-    return shorts(profile.additional_info, profile.most_axes) + b"".join(
-        text(value, size) for value, size in (*names, (f"{view.control.axes:02d}", 2))
-    )
+    return {
+        "addinfo": profile.additional_info,
+        "max_axis": profile.most_axes,
+        "cnc_type": profile.cnc_type,
+        "mt_type": profile.machine_type,
+        "series": profile.series,
+        "version": profile.software,
+        "axes": f"{view.control.axes:02d}",
+    }
 
 
 _LATER_RUN = {4: 3}
 _LATER_MOTION = {3: 2}
 
 
-def state(view: View, request: Request) -> bytes:
+def state(view: View, request: Request) -> Content:
     """Return mode, run state, motion, functions, emergency stop, alarm and editing."""
-    found = read_state(view.control, view.status)
-    run, motion = found.run, found.motion
+    found = named(request, read_state(view.control, view.status))
     if not view.profile.old_states:
-        run, motion = _LATER_RUN.get(run, run), _LATER_MOTION.get(motion, motion)
-    return shorts(found.aut, run, motion, found.mstb, found.emergency, found.alarm, found.edit)
+        found["run"] = _LATER_RUN.get(found["run"], found["run"])
+        found["motion"] = _LATER_MOTION.get(found["motion"], found["motion"])
+    return found
 
 
-def handle_retrace(view: View, request: Request) -> bytes:
+def handle_retrace(view: View, request: Request) -> Content:
     """Return the state of manual handle retrace: 0, since this control never retraces by the handle."""
-    return longs(0)
+    return {"hdck": bytes(4)}
 
 
-def machining_type(view: View, request: Request) -> bytes:
+def machining_type(view: View, request: Request) -> Content:
     """Return the side of a compound machine that is chosen: 0, as it is on every other one."""
-    return shorts(0)
+    return {"tmmode": 0}
 
 
 _TYPES = (  # alarm groups by the type numbers of later series
@@ -89,20 +92,20 @@ def _type_of(view: View, alarm: Alarm) -> int:
     return next(number for group, number in _TYPES if bits & group)
 
 
-def alarm_bits(view: View, request: Request) -> bytes:
+def alarm_bits(view: View, request: Request) -> Content:
     """Return the groups of the alarms that are on."""
     if view.profile.old_states:
-        return struct.pack(">I", int(view.control.alarm_bits))
+        return {"alarms": int(view.control.alarm_bits)}
     later = 0
     for alarm in shown(view.status.alarms):
         later |= 1 << _type_of(view, alarm)
-    return struct.pack(">I", later)
+    return {"alarms": later}
 
 
 _ALARM_HEAD = 16
 
 
-def alarms(view: View, request: Request) -> bytes:
+def alarms(view: View, request: Request) -> Content:
     """Return the alarms that are on, of one type or all, as many as are asked for and fit a frame."""
     kind, most, mode, size = request.arguments
     if not (0 <= most <= MOST_NUMBERS and 0 <= size <= 64):
@@ -114,16 +117,19 @@ def alarms(view: View, request: Request) -> bytes:
         if kind in (ALL, number):
             axis = names.index(alarm.axis) + 1 if alarm.axis in names else 0
             words = text(alarm.text, size if mode else 0)
-            rows.append(longs(alarm.number, number, axis, len(words.rstrip(b"\0"))) + words)
+            length = len(words.rstrip(b"\0"))
+            rows.append(
+                {"number": alarm.number, "type": number, "axis": axis, "length": length, "text": words}
+            )
     room = view.profile.most_body // (_ALARM_HEAD + size)
-    return b"".join(rows[: min(most, room)])
+    return rows[: min(most, room)]
 
 
 _MESSAGE_SIZE = 268
 _OPERATOR, _MACRO_STOP = 0, 4
 
 
-def messages(view: View, request: Request) -> bytes:
+def messages(view: View, request: Request) -> Content:
     """Return messages: those from outside (0), those of stops in macros (4); there are no others, so they are empty."""
     kind = request.arguments[0]
     if not 0 <= kind <= _MACRO_STOP:
@@ -131,70 +137,70 @@ def messages(view: View, request: Request) -> bytes:
     if not view.control.has_option("external_message"):
         raise RefusedError(NO_OPTION)
     made = [
-        longs(each.number, kind, len(text(each.text, 256).rstrip(b"\0"))) + text(each.text, 256)
+        {"number": each.number, "type": kind, "length": len(words.rstrip(b"\0")), "text": words}
         for each in view.status.messages
         if kind == (_MACRO_STOP if each.number == PROGRAM_MESSAGE else _OPERATOR)
+        for words in [text(each.text, 256)]
     ]
-    return b"".join(made[: view.profile.most_body // _MESSAGE_SIZE])
+    return made[: view.profile.most_body // _MESSAGE_SIZE]
 
 
 # ---------------------------------------------------------------------- axes and spindle
 
 
-_KINDS = {
-    0: "absolute", 1: "machine", 2: "relative", 3: "distance", 4: "absolute", 6: "relative", 7: "distance",
-    9: "servo_delay", 10: "acceleration_delay",
-}  # fmt: skip
-_SKIP = 8
+_SKIP = "skip"
 
 
-def positions(view: View, request: Request) -> bytes:
+def positions(view: View, request: Request) -> Content:
     """Return positions of a kind, of one axis or all."""
     kind, asked = request.arguments[:2]
-    name = _KINDS.get(kind)
-    if name is None and kind != _SKIP:
+    name = POSITION_KINDS.get(kind)
+    if name is None:
         raise RefusedError(NUMBER)
     control = view.control
     made = []
     for axis in axes_of(view, asked):
         units = control.output_scale(axis) if name == "machine" else control.input_scale(axis)
-        counts = control.skip_positions[axis - 1] if name is None else getattr(view.positions[axis - 1], name)
+        counts = (
+            control.skip_positions[axis - 1] if name == _SKIP else getattr(view.positions[axis - 1], name)
+        )
         made.append(Value8(counts, units.decimals))
     return padded(made, view, asked)
 
 
-def feed(view: View, request: Request) -> bytes:
+def feed(view: View, request: Request) -> Content:
     """Return the actual feed: mm/min, with inch input 0.01 inch/min."""
-    return bytes(Value8(view.control.positions.feed(view.status), 2 if view.control.inch_input else 0))
+    return {"feed": Value8(view.control.positions.feed(), 2 if view.control.inch_input else 0)}
 
 
-def spindle_speed(view: View, request: Request) -> bytes:
+def spindle_speed(view: View, request: Request) -> Content:
     """Return the actual spindle speed."""
-    return bytes(Value8.of(abs(view.status.spindle.actual_rpm), 0))
+    return {"rpm": Value8.of(abs(view.status.spindle.actual_rpm), 0)}
 
 
-def axis_names(view: View, request: Request) -> bytes:
+def axis_names(view: View, request: Request) -> Content:
     """Return the names of the axes."""
-    return b"".join(text(view.control.axis_name(axis), 4) for axis in range(1, view.control.axes + 1))
+    names = (view.control.axis_name(axis) for axis in range(1, view.control.axes + 1))
+    return [{"name": each[:1], "suffix": each[1:]} for each in names]
 
 
-def spindle_names(view: View, request: Request) -> bytes:
+def spindle_names(view: View, request: Request) -> Content:
     """Return the name of the spindle."""
-    return text("S1", 4)
+    return [{"name": "S", "suffix": "1"}]
 
 
 _SPINDLES = 1
 
 
-def counts(view: View, request: Request) -> bytes:
+def counts(view: View, request: Request) -> Content:
     """Return how many spindles (1) or axes there are."""
-    return shorts(1 if request.arguments[0] == _SPINDLES else view.control.axes)
+    return {"count": 1 if request.arguments[0] == _SPINDLES else view.control.axes}
 
 
 _LOAD_PERCENT = 1
 
 
-def servo_meter(view: View, request: Request) -> bytes:
+def servo_meter(view: View, request: Request) -> Content:
     """Return the load of the servo motors in percent.
 
     It follows the speed, as the current of `cnc_rdcurrent` does: 100 at the highest speed of the axis, no more than
@@ -214,7 +220,7 @@ def servo_meter(view: View, request: Request) -> bytes:
 _RAW_LOAD, _MOST_RPM, _LOAD_METER, _MOTOR_RPM = 0, 1, 4, 5
 
 
-def spindle(view: View, request: Request) -> bytes:
+def spindle(view: View, request: Request) -> Content:
     """Return the load of the spindle in percent, its highest speed, or its speed now.
 
     The load follows the speed, as that of the servo motors does. An old series answers the load meter with the code
@@ -231,14 +237,14 @@ def spindle(view: View, request: Request) -> bytes:
         value = most if kind == _MOST_RPM else rpm
     else:
         raise RefusedError(ATTRIBUTE if kind == _LOAD_METER else NOT_THERE)
-    one = bytes(Value8.of(value, 0))
-    return one + bytes(Value8(0)) * (view.profile.most_spindles - 1) if asked == ALL else one
+    others = view.profile.most_spindles - 1 if asked == ALL else 0
+    return [Value8.of(value, 0), *[0] * others]
 
 
 _AXES, _OFFSET, _MACRO, _ZERO, _CUT = range(5)
 
 
-def figures(view: View, request: Request) -> bytes:
+def figures(view: View, request: Request) -> Content:
     """Return the decimals of positions, tool offsets, macro variables, work zero offsets or the cutting feed."""
     control = view.control
     least = control.increment.decimals + control.inch_input
@@ -253,7 +259,8 @@ def figures(view: View, request: Request) -> bytes:
         pairs = [(2 if control.inch_input else 0,) * 2]
     else:
         raise RefusedError(ATTRIBUTE)
-    return longs(len(pairs)) + b"".join(shorts(*pair) for pair in pairs)
+    decimals = [{"input_decimals": given, "output_decimals": shown} for given, shown in pairs]
+    return {"count": len(pairs)}, decimals
 
 
 # ---------------------------------------------------------------------- modal words
@@ -269,7 +276,7 @@ _LAST_GROUP = 23
 _WITH_DECIMAL = 1
 
 
-def modal_code(view: View, request: Request) -> bytes:
+def modal_code(view: View, request: Request) -> Content:
     """Return the G code of a group that holds with the executed block or one of the next two.
 
     Of the blocks that come next only the groups of `cnc_modal` are known; what is not known is refused.
@@ -284,7 +291,7 @@ def modal_code(view: View, request: Request) -> bytes:
         raise RefusedError(NOT_THERE)
     whole, _, tenth = code.partition(".")
     number = int(whole + tenth)
-    return shorts(group, 0, 0, number, 0, _WITH_DECIMAL if tenth else 0)
+    return [{"group": group, "code": number, "tenths": _WITH_DECIMAL if tenth else 0}]
 
 
 def code_of(view: View, group: int, block: int = 0) -> str | None:
@@ -304,7 +311,7 @@ _FIRST_ADDRESS = 100
 _HERE, _POINT, _NEGATIVE, _DIGITS = 0x80, 0x40, 0x20, 0x1F
 
 
-def commanded(view: View, request: Request) -> bytes:
+def commanded(view: View, request: Request) -> Content:
     """Return the last word of an address, or of ten of them, as it is written."""
     asked, block = request.arguments[:2]
     if block not in _BLOCKS:
@@ -315,7 +322,7 @@ def commanded(view: View, request: Request) -> bytes:
     if not names:
         raise RefusedError(NUMBER)
     words = view.control.modal_data.block(block).words
-    made = b""
+    made = []
     for name in names:
         word = words.get(name)
         written = "" if word is None else word.text
@@ -323,26 +330,28 @@ def commanded(view: View, request: Request) -> bytes:
         value = int(digits or 0) * (-1 if written.startswith("-") else 1)
         flag = (_HERE if word is not None and word.here else 0) | (_POINT if "." in written else 0)
         flag |= (_NEGATIVE if value < 0 else 0) | len(digits) & _DIGITS
-        which = int(name[1:] or 1)
-        made += bytes((ord(name[0]), which)) + shorts(flag) + longs(value, len(written.partition(".")[2]))
+        which, decimals = int(name[1:] or 1), len(written.partition(".")[2])
+        made.append({"letter": name[0], "which": which, "flag": flag, "value": value, "decimals": decimals})
     return made
 
 
-_PANEL = (
-    "mode", "hndl_ax", "hndl_mv", "rpd_ovrd", "jog_ovrd", "feed_ovrd", "spdl_ovrd", "blck_del", "sngl_blck",
-    "machn_lock", "dry_run", "mem_prtct", "feed_hold",
-)  # fmt: skip
+_PANEL = {  # by the names of the record: those of the panel
+    "mode": "mode", "handle_axis": "hndl_ax", "handle_step": "hndl_mv", "rapid_override": "rpd_ovrd",
+    "jog_override": "jog_ovrd", "feed_override": "feed_ovrd", "spindle_override": "spdl_ovrd",
+    "block_delete": "blck_del", "single_block": "sngl_blck", "machine_lock": "machn_lock", "dry_run": "dry_run",
+    "protect": "mem_prtct", "feed_hold": "feed_hold",
+}  # fmt: skip
 _PANEL_BITS = {name: bit for bit, (name, _) in PANEL_SIGNALS.items()}
 
 
-def panel(view: View, request: Request) -> bytes:
+def panel(view: View, request: Request) -> Content:
     """Return the signals of the software operator's panel that the mask names; the others are 0."""
     mask = request.arguments[0]
-    made = []
-    for name in _PANEL:
+    made = {}
+    for field, name in _PANEL.items():
         bit = _PANEL_BITS.get(name)
-        made.append(view.control.panel.value(name) if bit is not None and mask >> bit & 1 else 0)
-    return shorts(*made)
+        made[field] = view.control.panel.value(name) if bit is not None and mask >> bit & 1 else 0
+    return made
 
 
 # ---------------------------------------------------------------------- date and time
@@ -351,15 +360,14 @@ def panel(view: View, request: Request) -> bytes:
 _DATE, _TIME = 0, 1
 
 
-def clock(view: View, request: Request) -> bytes:
+def clock(view: View, request: Request) -> Content:
     """Return date and time, whichever was asked for: clients take the half that they want."""
-    now = view.control.clock.now
-    return shorts(now.year, now.month, now.day, now.hour, now.minute, now.second)
+    return named(request, view.control.clock.now)
 
 
-def set_clock(view: View, request: Request) -> bytes:
+def set_clock(view: View, request: Request) -> Content:
     """Set the date or the time of the control."""
-    year, month, day, *time = struct.unpack(">6H", data_of(request, 12))
+    year, month, day, *time = given(request).values()
     now = view.control.clock.now
     try:
         if request.arguments[0] == _DATE:
@@ -373,4 +381,4 @@ def set_clock(view: View, request: Request) -> bytes:
     except ValueError:
         raise RefusedError(DATA) from None
     view.control.clock.set_now(wanted)
-    return b""
+    return None

@@ -76,7 +76,7 @@ DIAGNOSIS: dict[int, Diagnosis] = {
     202: Diagnosis(
         "torque override (0.1 %)", Kind.WORD, lambda it, axis: round(10 * it.signals.torque_override(axis)), True
     ),
-    203: Diagnosis("torque mode", Kind.BYTE, lambda it, axis: it.signals.torque_mode >> axis - 1 & 1, True),
+    203: Diagnosis("torque mode", Kind.BYTE, lambda it, axis: it.signals.state.torque_mode >> axis - 1 & 1, True),
     300: Diagnosis(
         "position error (increments)", Kind.TWO_WORD, lambda it, axis: it.positions.read()[axis - 1].servo_delay, True
     ),

@@ -49,7 +49,7 @@ class Block:
 
 
 @dataclass(slots=True)
-class _Path:
+class PathBuffers:
     """The buffers of a path: blocks with the number of the buffer that they are in, the first is executed."""
 
     blocks: deque[tuple[int, Block]]
@@ -57,85 +57,74 @@ class _Path:
     until: int = 0  # the cycle at which a dwell ends
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class AxisMotionState:
-    """Buffers, flags and coordinates, to go back to."""
+    """Buffers, flags and coordinates."""
 
-    shift: tuple[int, ...]
-    paths: tuple[tuple[tuple[tuple[int, Block], ...], bool, int], ...]
-    finished: tuple[bool, ...]
+    shift: list[int]
+    paths: list[PathBuffers]
+    finished: list[bool]
+
+    @classmethod
+    def of(cls, axes: int) -> AxisMotionState:
+        """Return what there is when the power comes on."""
+        return cls([0] * axes, [PathBuffers(deque()) for _ in range(PATHS)], [False] * PATHS)
 
 
 class AxisMotion:
     """Execute direct commands on the machine of a Power Mate."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
+    def __init__(self, power_mate: PowerMate, state: AxisMotionState) -> None:
         self._power_mate = power_mate
-        self._shift = [0] * power_mate.max_axis
-        self._paths = [_Path(deque()) for _ in range(PATHS)]
-        self.finished = [False] * PATHS
+        self.state = state
 
     def clear(self) -> None:
         """Forget everything, as when the power comes on."""
         self.drop()
-        self._shift = [0] * len(self._shift)
-        self.finished = [False] * PATHS
+        self.state.shift = [0] * len(self.state.shift)
+        self.state.finished = [False] * PATHS
 
     def drop(self) -> None:
         """Empty all buffers; axes that were moving brake."""
-        for path in self._paths:
+        for path in self.state.paths:
             if path.begun:
                 for axis in path.blocks[0][1].axes:
                     self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
             path.blocks.clear()
             path.begun = False
 
-    def snapshot(self) -> AxisMotionState:
-        """Return everything, to go back to."""
-        return AxisMotionState(
-            tuple(self._shift),
-            tuple((tuple(path.blocks), path.begun, path.until) for path in self._paths),
-            tuple(self.finished),
-        )
-
-    def restore(self, state: AxisMotionState) -> None:
-        """Go back to a snapshot; the control behind has gone back by itself."""
-        self._shift = list(state.shift)
-        self._paths = [_Path(deque(blocks), begun, until) for blocks, begun, until in state.paths]
-        self.finished = list(state.finished)
-
     # ------------------------------------------------------------------ what is known
 
     @property
     def busy(self) -> bool:
         """Whether a buffer holds a block."""
-        return any(path.blocks for path in self._paths)
+        return any(path.blocks for path in self.state.paths)
 
     @property
     def moving(self) -> frozenset[str]:
         """The names of the axes that move by a command."""
-        moves = (path.blocks[0][1] for path in self._paths if path.begun)
+        moves = (path.blocks[0][1] for path in self.state.paths if path.begun)
         return frozenset(self._power_mate.axis_name(axis) for block in moves for axis in block.axes)
 
     def buffers(self, path: int) -> tuple[bool, bool]:
         """Return which execution buffers of a path (from 1) hold a block."""
-        used = {buffer for buffer, _ in self._paths[path - 1].blocks}
+        used = {buffer for buffer, _ in self.state.paths[path - 1].blocks}
         return 0 in used, 1 in used
 
     def has_room(self, path: int) -> bool:
         """Whether a path (from 1) takes a block now: a buffer is free, and no program has the axes."""
         programs = any(channel.active for channel in self._power_mate.control.channels)
-        return len(self._paths[path - 1].blocks) < BUFFERS and not programs
+        return len(self.state.paths[path - 1].blocks) < BUFFERS and not programs
 
     def shift(self, axis: int) -> int:
         """Return by how much the coordinate of an axis (from 1) was shifted by setting it, in increments."""
-        return self._shift[axis - 1]
+        return self.state.shift[axis - 1]
 
     # ------------------------------------------------------------------ commands
 
     def put(self, path: int, block: Block) -> None:
         """Put a block into a free buffer of a path (from 1); it begins when the one before it is over."""
-        blocks = self._paths[path - 1].blocks
+        blocks = self.state.paths[path - 1].blocks
         buffer = 1 - blocks[0][0] if blocks else 0
         blocks.append((buffer, block))
 
@@ -146,8 +135,8 @@ class AxisMotion:
         if not self.busy:
             return _FOR_EVER
         now = self._power_mate.clock.cycles
-        dwells = [path.until - now for path in self._paths if path.begun and path.until > now]
-        waits = any(path.blocks and not path.begun for path in self._paths)
+        dwells = [path.until - now for path in self.state.paths if path.begun and path.until > now]
+        waits = any(path.blocks and not path.begun for path in self.state.paths)
         return 1 if waits else min(dwells, default=_FOR_EVER)
 
     EVENTS = ControlEvent.MANUAL | ControlEvent.ALARM | ControlEvent.RUN_STATE
@@ -157,7 +146,7 @@ class AxisMotion:
         control = self._power_mate.control
         if self.busy and (control.emergency is not Emergency.OFF or shown(control.alarms.active)):
             self.drop()
-        for number, path in enumerate(self._paths):
+        for number, path in enumerate(self.state.paths):
             while path.blocks:
                 if not path.begun and not self._begin(path):
                     break
@@ -166,16 +155,16 @@ class AxisMotion:
                 _, block = path.blocks.popleft()
                 path.begun, path.until = False, 0
                 if block.flag:
-                    self.finished[number] = True
+                    self.state.finished[number] = True
 
-    def _is_over(self, path: _Path) -> bool:
+    def _is_over(self, path: PathBuffers) -> bool:
         control, block = self._power_mate.control, path.blocks[0][1]
         if block.order is Order.DWELL:
             return control.clock.cycles >= path.until
         names = map(self._power_mate.axis_name, block.axes)
         return all(control.manual.motion(name).kind.value == "none" for name in names)
 
-    def _begin(self, path: _Path) -> bool:
+    def _begin(self, path: PathBuffers) -> bool:
         """Begin the first block; tell whether it could."""
         power_mate, block = self._power_mate, path.blocks[0][1]
         signals = power_mate.signals
@@ -183,7 +172,7 @@ class AxisMotion:
             return False
         taken = {
             axis
-            for other in self._paths
+            for other in self.state.paths
             if other is not path and other.begun
             for axis in other.blocks[0][1].axes
         }
@@ -194,7 +183,7 @@ class AxisMotion:
             path.until = power_mate.clock.cycles + power_mate.clock.cycles_for(longest_s)
         elif block.order is Order.SET:
             for axis, value in block.values:
-                self._shift[axis - 1] += value - power_mate.positions.read()[axis - 1].absolute
+                self.state.shift[axis - 1] += value - power_mate.positions.read()[axis - 1].absolute
         else:
             try:
                 for channel in power_mate.control.channels:

@@ -85,7 +85,7 @@ class Execution:
     def _lines(self, number: int) -> list[bytes]:
         power_mate = self._power_mate
         if number == 0:
-            return [block.encode() for block in power_mate.mdi.blocks]
+            return [block.encode() for block in power_mate.mdi.state.blocks]
         return power_mate.programs.read(number).split(b"\n") if number in power_mate.programs else []
 
     # ------------------------------------------------------------------ texts
@@ -118,7 +118,7 @@ class Execution:
             lines = self._lines(number_of(block.program))
             return b"\n".join(lines[block.line - 1 :])[:most]
         if power_mate.mode is PowerMateMode.MDI:
-            return b"\n".join(self._lines(0)[power_mate.mdi.start :])[:most]
+            return b"\n".join(self._lines(0)[power_mate.mdi.state.start :])[:most]
         if not power_mate.selected:
             return b""
         return b"\n".join(self._lines(power_mate.selected)[power_mate.cursor :])[:most]
@@ -127,7 +127,7 @@ class Execution:
     def mdi_pointers(self) -> MdiPointers:
         """The pointers of MDI operation."""
         block, ahead = self._going_on, self.prepared
-        start = self._power_mate.mdi.start
+        start = self._power_mate.mdi.state.start
         if block is None or ahead is None:
             return MdiPointers(0, start, 0, start)
         return MdiPointers(number_of(block.program), block.line - 1, number_of(ahead.program), ahead.line - 1)

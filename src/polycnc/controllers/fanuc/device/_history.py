@@ -39,10 +39,17 @@ class Monitored:
     mask: int = 0
 
 
+@dataclass(slots=True)
+class SamplingState:
+    """Whether sampling has been stopped."""
+
+    stopped: bool = False
+
+
 class Histories:
     """Sample and read both histories of a Power Mate; both are durable."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
+    def __init__(self, power_mate: PowerMate, state: SamplingState) -> None:
         self._power_mate = power_mate
         store = power_mate.store
         self._operations = store.history("fanuc.operation_history")
@@ -52,14 +59,14 @@ class Histories:
         self._signals = store.area("fanuc.history_signals", dict)
         self._monitored = {int(entry): Monitored(**each) for entry, each in self._signals.load().items()}
         self._shown: dict[tuple[str, int], int] = {}
-        self.stopped = False
+        self.state = state
         self._active: tuple[Alarm, ...] = ()
 
     # ------------------------------------------------------------------ sampling
 
     def switched_on(self) -> None:
         """Note date and time at which the power came on; sampling goes on."""
-        self.stopped = False
+        self.state.stopped = False
         now = self._power_mate.control.clock.now
         self._note({"kind": Kind.DATE, "date": [now.year % 100, now.month, now.day], "power": 1})
         self._note({"kind": Kind.TIME, "time": [now.hour, now.minute, now.second], "power": 1})
@@ -67,12 +74,12 @@ class Histories:
     def stop(self) -> None:
         """Stop sampling: the records and their numbers stay until it begins again."""
         self.sample()
-        self.stopped = True
+        self.state.stopped = True
 
     def start(self) -> None:
         """Go on with sampling; what happened in between was not noted."""
         self.sample()
-        self.stopped = False
+        self.state.stopped = False
 
     def press_key(self, code: int) -> None:
         """Note that a key of the MDI panel was pressed, by its code (0 to 255)."""
@@ -98,7 +105,7 @@ class Histories:
         seen = self._state.get("seen", 0)
         for entry in self._source.read(after=seen):
             self._state["seen"] = entry.number
-            if entry.content["number"] >= 0 and not self.stopped:
+            if entry.content["number"] >= 0 and not self.state.stopped:
                 self._note_alarm(entry.content)
         for each in self._monitored.values():
             if each.letter == "F":
@@ -120,7 +127,7 @@ class Histories:
         self._alarms.trim(_KEEP_ALARMS)
 
     def _note(self, content: dict[str, Any]) -> None:
-        if not self.stopped:
+        if not self.state.stopped:
             self._operations.append({**content, "kind": int(content["kind"])})
             self._operations.trim(_KEEP_OPERATIONS)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from polycnc.cnc import Timer
@@ -28,14 +29,21 @@ _OFFSET_BASES = (2000, 10_000)
 _FIRST_FEW = 200
 
 
+@dataclass(slots=True)
+class MacroState:
+    """What macros have that is neither a variable nor theirs while they run."""
+
+    user_outputs: int = 0
+
+
 class Macros:
     """The macro language of a Power Mate, whose variables are those that programs on a PC read and write."""
 
-    def __init__(self, power_mate: PowerMate, shared: SharedMacros) -> None:
+    def __init__(self, power_mate: PowerMate, shared: SharedMacros, state: MacroState) -> None:
         self._power_mate = power_mate
+        self.state = state
         self._variables = shared.variables
         self._turns = 0
-        self.user_outputs = 0
         self.printed = bytearray()
         """The last that programs have put out (DPRNT, BPRNT)."""
         self.language = self._new_language()
@@ -88,7 +96,7 @@ class Macros:
         """Begin with the power: what does not outlast it is vacant, timers count from 0."""
         self._variables.clear_common()
         self._variables.clear_locals()
-        self.user_outputs = 0
+        self.state.user_outputs = 0
         self.language = self._new_language()
 
     def reset(self) -> None:
@@ -150,12 +158,12 @@ class PowerMateVariables(SystemVariables):
         if number in _INPUTS:
             return float(self._inputs() >> number - _INPUTS.start & 1)
         if number in _OUTPUTS:
-            return float(self._macros.user_outputs >> number - _OUTPUTS.start & 1)
+            return float(self._macros.state.user_outputs >> number - _OUTPUTS.start & 1)
         match number:
             case 1032:
                 return float(self._inputs())
             case 1132:
-                return float(self._macros.user_outputs)
+                return float(self._macros.state.user_outputs)
             case 3002:
                 return power_mate.control.timers.seconds(Timer.OPERATING) / 3600.0
             case 3005:
@@ -180,7 +188,7 @@ class PowerMateVariables(SystemVariables):
             if new not in (0.0, 1.0):
                 raise _wrong(number, new, "0 or 1")
             bit = 1 << number - _OUTPUTS.start
-            self._give(self._macros.user_outputs & ~bit | (bit if new else 0))
+            self._give(self._macros.state.user_outputs & ~bit | (bit if new else 0))
         elif number == _OUTPUT_WORD:
             self._give(_whole(number, new, _ALL_BITS))
         elif number == _HOURS:
@@ -214,7 +222,7 @@ class PowerMateVariables(SystemVariables):
         return low | high << 8
 
     def _give(self, outputs: int) -> None:
-        old, self._macros.user_outputs = self._macros.user_outputs, outputs
+        old, self._macros.state.user_outputs = self._macros.state.user_outputs, outputs
         for place, address in enumerate(OUTPUT_BYTES):
             before, after = old >> 8 * place & 0xFF, outputs >> 8 * place & 0xFF
             if before != after:

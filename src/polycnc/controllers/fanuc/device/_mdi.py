@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from polycnc.controllers.fanuc.device._transfer import Fault, ProgramStream, TransferError
@@ -14,20 +15,27 @@ def _anything(_: object) -> None:
     """Refuse nothing: MDI programs are not registered."""
 
 
+@dataclass(slots=True)
+class MdiState:
+    """The blocks that were put in, and the one that execution begins at."""
+
+    blocks: tuple[str, ...] = ()
+    start: int = 0
+
+
 class MdiProgram:
     """The program of MDI operation; its blocks count from 0, without the O word."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
+    def __init__(self, power_mate: PowerMate, state: MdiState) -> None:
         self._power_mate = power_mate
-        self.blocks: tuple[str, ...] = ()
-        self.start = 0
+        self.state = state
 
     def __bool__(self) -> bool:
-        return bool(self.blocks)
+        return bool(self.state.blocks)
 
     def clear(self) -> None:
         """Forget the program."""
-        self.blocks, self.start = (), 0
+        self.state.blocks, self.state.start = (), 0
 
     def put(self, data: bytes) -> None:
         """Put a program in, as a stream like that of a download.
@@ -49,7 +57,7 @@ class MdiProgram:
             raise TransferError(Fault.NUMBER)
         blocks = tuple(block.decode("ascii") for block in stream.programs[0][1][1:])
         self._hand_over(blocks)
-        self.blocks, self.start = blocks, 0
+        self.state.blocks, self.state.start = blocks, 0
 
     def set_start(self, block: int) -> None:
         """Let execution begin at a block; KeyError if there is none of this number.
@@ -57,10 +65,10 @@ class MdiProgram:
         Raises:
             ControlError: Not in MDI, or a program is being executed or interrupted.
         """
-        if not 0 <= block < len(self.blocks):
+        if not 0 <= block < len(self.state.blocks):
             raise KeyError(block)
-        self._hand_over(self.blocks)
-        self.start = block
+        self._hand_over(self.state.blocks)
+        self.state.start = block
 
     def _hand_over(self, blocks: tuple[str, ...]) -> None:
         self._power_mate.control.set_mdi("\n".join(blocks) + "\n")

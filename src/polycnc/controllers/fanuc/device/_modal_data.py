@@ -96,7 +96,7 @@ class ModalData:
         power_mate = self._power_mate
         number = number_of(program)
         if number == 0:
-            return list(power_mate.mdi.blocks)
+            return list(power_mate.mdi.state.blocks)
         return power_mate.programs.read(number).decode("latin-1").split("\n")
 
     def _at_start(self) -> dict[int, tuple[int, bool]]:

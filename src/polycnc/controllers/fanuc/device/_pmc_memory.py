@@ -61,13 +61,13 @@ def writable(letter: str, first: int, last: int) -> bool:
 class PmcMemory:
     """Read and write the memory; timers, keep relays, counters and the data table outlast switching off."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
+    def __init__(self, power_mate: PowerMate, volatile: dict[tuple[str, int], int]) -> None:
         self._power_mate = power_mate
+        self._volatile = volatile
         self._areas = {
             letter: power_mate.store.area(f"fanuc.pmc_{letter.lower()}", int) for letter in _DURABLE
         }
         self._kept = {letter: area.load() for letter, area in self._areas.items()}
-        self._volatile: dict[tuple[str, int], int] = {}
 
     def read(self, letter: str, first: int, last: int) -> bytes:
         """Return the bytes of addresses that exist."""
@@ -95,14 +95,6 @@ class PmcMemory:
     def clear(self) -> None:
         """Forget what does not outlast switching off."""
         self._volatile.clear()
-
-    def snapshot(self) -> dict[tuple[str, int], int]:
-        """Return what does not outlast switching off, to go back to."""
-        return dict(self._volatile)
-
-    def restore(self, state: dict[tuple[str, int], int]) -> None:
-        """Go back to a snapshot."""
-        self._volatile = dict(state)
 
     def _put(self, letter: str, address: int, value: int) -> None:
         old = self._volatile.get((letter, address), 0)

@@ -34,7 +34,8 @@ from polycnc.controllers.fanuc.device._alarms import (
     AlarmBit,
     alarm_bits,
 )
-from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotion, AxisMotionState
+from polycnc.controllers.fanuc.device._device_state import DeviceState
 from polycnc.controllers.fanuc.device._execution import Execution
 from polycnc.controllers.fanuc.device._history import Histories
 from polycnc.controllers.fanuc.device._machine_file import (
@@ -53,11 +54,11 @@ from polycnc.controllers.fanuc.device._panel import Panel
 from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
-from polycnc.controllers.fanuc.device._signals import Signals
+from polycnc.controllers.fanuc.device._signals import Signals, SignalState
 from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
-from polycnc.machine import AnyAxis, Clock, Machine, Snapshot, SnapshotError, Store
+from polycnc.machine import AnyAxis, Clock, Machine, Snapshot, SnapshotError, Store, copied, put_back
 from polycnc.nc import Dialect, load_dialect
 
 MOST_AXES = {"H": 6, "D": 2}
@@ -113,8 +114,6 @@ class PowerMate:
             )
         self.options = options if isinstance(options, bool) else frozenset(options)
         self.store = memory if isinstance(memory, Store) else Store(memory)
-        self.protection_keys: frozenset[int] = frozenset()
-        self.parameters_writable = True
         self.transfer: Transfer | None = None
         self.power_ups = 0
         """How often it was switched off and on."""
@@ -122,32 +121,31 @@ class PowerMate:
         self._servo = servo
         self._sizes = characters, most_programs
         self._state = self.store.area(_STATE, int)
-        self._mode = PowerMateMode.MEM
-        self._cursor = 0
-        self._skip = False
         self._stale = False  # parameters have changed that the control could not take over yet
-        self._skip_positions: tuple[int, ...] = ()
         names = default_names(self.axes, rotary)
         self.parameters = Parameters(
             self.store, self.axes, _defaults(names, Increment(increment), inch_input, inch_output)
         )
-        self._inch = self.parameters.bit(0, 2)
+        self.state = DeviceState(
+            SignalState([255] * self.max_axis), AxisMotionState.of(self.max_axis), self.parameters.bit(0, 2)
+        )
+        """What does not outlast switching off."""
         self.macros = SharedMacros(self.store, self._common_range())
         self.programs = Programs(self)
-        self.mdi = MdiProgram(self)
+        self.mdi = MdiProgram(self, self.state.mdi)
         self.execution = Execution(self)
         self.positions = Positions(self)
         self.tool_offsets = ToolOffsets(self, offsets)
-        self.signals = Signals(self)
+        self.signals = Signals(self, self.state.signals)
         self.panel = Panel(self)
-        self.pmc = PmcMemory(self)
-        self.history = Histories(self)
-        self.axis_motion = AxisMotion(self)
+        self.pmc = PmcMemory(self, self.state.pmc)
+        self.history = Histories(self, self.state.sampling)
+        self.axis_motion = AxisMotion(self, self.state.axis_motion)
         self.modal_data = ModalData(self)
         self.configuration = Configuration()
         bind(self)
         self.parameters.on_change = self._parameters_changed
-        self.custom_macros = Macros(self, self.macros)
+        self.custom_macros = Macros(self, self.macros, self.state.macros)
         self.control = self._switched_on(None)
         if self.selected not in self.programs:
             self.unselect()
@@ -182,7 +180,7 @@ class PowerMate:
     @property
     def inch_input(self) -> bool:
         """Whether programs and positions are in inch now: G20 and G21 say so, and 0000#2 until one does."""
-        return self._inch
+        return self.state.inch
 
     @property
     def inch_output(self) -> bool:
@@ -206,7 +204,7 @@ class PowerMate:
     @property
     def mode(self) -> PowerMateMode:
         """The mode."""
-        return self._mode
+        return self.state.mode
 
     def select_mode(self, mode: PowerMateMode | str) -> None:
         """Change the mode, by name: MDI MEM EDIT HND JOG T-JOG T-HND INC REF RMT; a running program is held.
@@ -216,7 +214,7 @@ class PowerMate:
         """
         wanted = mode_of(mode)
         self.control.select_mode(CONTROL_MODES[wanted], going=self.axis_motion.moving)
-        self._mode = wanted
+        self.state.mode = wanted
         self.signals.mode_changed()
 
     def select_program(self, number: int) -> None:
@@ -227,7 +225,7 @@ class PowerMate:
         """
         self.control.select_program(name_of(number))
         self._state["selected"] = number
-        self._cursor = 0
+        self.state.cursor = 0
 
     @property
     def selected(self) -> int:
@@ -237,17 +235,17 @@ class PowerMate:
     def unselect(self) -> None:
         """Have no program selected."""
         self._state["selected"] = 0
-        self._cursor = 0
+        self.state.cursor = 0
         self.control.channels[0].program = None
 
     @property
     def cursor(self) -> int:
         """The line of the selected program at which a start begins, from 0."""
-        return self._cursor
+        return self.state.cursor
 
     def set_cursor(self, line: int) -> None:
         """Let the next start in MEM begin at a line of the selected program, from 0."""
-        self._cursor = line
+        self.state.cursor = line
 
     def cycle_start(self) -> None:
         """Start the selected program in MEM, the MDI program in MDI, or go on where one is interrupted.
@@ -257,14 +255,14 @@ class PowerMate:
         """
         self._take_over()
         channel = self.control.channels[0]
-        if self._mode is PowerMateMode.RMT and not channel.interrupted:
+        if self.state.mode is PowerMateMode.RMT and not channel.interrupted:
             raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
         if not channel.interrupted:
             self.custom_macros.begin()
             self.signals.apply_lock()
-        start = self.mdi.start if self._mode is PowerMateMode.MDI else self._cursor
+        start = self.mdi.state.start if self.state.mode is PowerMateMode.MDI else self.state.cursor
         self.control.cycle_start(line=start + 1)
-        self._cursor = 0
+        self.state.cursor = 0
 
     def feed_hold(self) -> None:
         """Press the stop button: what moves brakes and stands, an open download is stopped."""
@@ -282,7 +280,7 @@ class PowerMate:
             self.transfer.stop()
         self.axis_motion.drop()
         self.control.reset()
-        self._cursor = 0
+        self.state.cursor = 0
         self.custom_macros.reset()
 
     def emergency_stop(self, on: bool = True) -> None:
@@ -300,23 +298,23 @@ class PowerMate:
 
         While it is on it ends skip moves (G31): the axes brake, and the next block goes on from there.
         """
-        if on and not self._skip:
+        if on and not self.state.skip:
             self._note_skip()
-        self._skip = on
+        self.state.skip = on
         self.control.channels[0].set_skip_signal(on)
 
     def _note_skip(self) -> None:
-        self._skip_positions = tuple(each.absolute for each in self.positions.read())
+        self.state.skip_positions = tuple(each.absolute for each in self.positions.read())
 
     @property
     def skip_is_on(self) -> bool:
         """Whether the skip signal is on."""
-        return self._skip
+        return self.state.skip
 
     @property
     def skip_positions(self) -> tuple[int, ...]:
         """Where the axes were at the last rising edge of the skip signal, in increments; zeros before the first."""
-        return self._skip_positions or (0,) * self.axes
+        return self.state.skip_positions or (0,) * self.axes
 
     def operator_message(self, number: int, text: str) -> None:
         """Show a message to the operator.
@@ -335,7 +333,9 @@ class PowerMate:
         if key is not None and key not in _ALL_KEYS:
             raise UsageError(f"there is no key {key}", hint="Keys are 1 to 4.")
         keys = _ALL_KEYS if key is None else frozenset({key})
-        self.protection_keys = self.protection_keys | keys if on else self.protection_keys - keys
+        self.state.protection_keys = (
+            self.state.protection_keys | keys if on else self.state.protection_keys - keys
+        )
 
     def local_variable(self, number: int) -> float | None:
         """Return local variable #1 to #33 of the macro that is being executed; None is vacant, as without a macro."""
@@ -380,13 +380,13 @@ class PowerMate:
         old.timers.save()
         self.power_ups += 1
         self.transfer = None
-        self._skip, self._skip_positions, self._cursor = False, (), 0
+        self.state.skip, self.state.skip_positions, self.state.cursor = False, (), 0
         self.mdi.clear()
-        self._inch = self.parameters.bit(0, 2)
+        self.state.inch = self.parameters.bit(0, 2)
         self.custom_macros.switched_on()
         self.control = self._switched_on(old.machine)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
-        self._mode = PowerMateMode.MEM
+        self.state.mode = PowerMateMode.MEM
         if self.selected:
             self.control.select_program(name_of(self.selected))
         self._begin_signals()
@@ -402,7 +402,7 @@ class PowerMate:
         done = self._pass(cycles, until)
         self.custom_macros.keep()
         block = channel.executed if active else None
-        if block is not None and block.modal.inch is not self._inch:
+        if block is not None and block.modal.inch is not self.state.inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
         if self._stale:
             self._take_over()
@@ -440,20 +440,7 @@ class PowerMate:
             blocks=(),
             beside="",
             control=control,
-            mode=self._mode,
-            cursor=self._cursor,
-            mdi=self.mdi.blocks,
-            mdi_start=self.mdi.start,
-            skip=self._skip,
-            skip_positions=self._skip_positions,
-            protection_keys=self.protection_keys,
-            parameters_writable=self.parameters_writable,
-            inch=self._inch,
-            user_outputs=self.custom_macros.user_outputs,
-            signals=self.signals.snapshot(),
-            axis_motion=self.axis_motion.snapshot(),
-            pmc=self.pmc.snapshot(),
-            sampling_stopped=self.history.stopped,
+            state=copied(self.state),
         )
 
     def restore(self, snapshot: Snapshot) -> None:
@@ -469,18 +456,9 @@ class PowerMate:
                 hint="restore it where it was taken",
             )
         self.control.restore(snapshot.control)
-        self._mode, self._cursor = snapshot.mode, snapshot.cursor
-        self.control.channels[0].set_skip_signal(snapshot.skip)
-        self.mdi.blocks, self.mdi.start = snapshot.mdi, snapshot.mdi_start
-        self._skip, self._skip_positions = snapshot.skip, snapshot.skip_positions
-        self.protection_keys = snapshot.protection_keys
-        self.parameters_writable = snapshot.parameters_writable
-        self._inch = snapshot.inch
-        self.custom_macros.user_outputs = snapshot.user_outputs
-        self.signals.restore(snapshot.signals)
-        self.axis_motion.restore(snapshot.axis_motion)
-        self.pmc.restore(snapshot.pmc)
-        self.history.stopped = snapshot.sampling_stopped
+        put_back(self.state, snapshot.state)
+        self.control.channels[0].set_skip_signal(self.state.skip)
+        self.signals.restored()
 
     def close(self) -> None:
         """Switch off: save the timers and close the memory."""
@@ -552,7 +530,7 @@ class PowerMate:
             "decimal_point": "calculator" if self.parameters.bit(3401, 0) else "least_input",
             "least_input": 10.0**-self.increment.decimals,
         }
-        data["initial"]["units"] = "inch" if self._inch else "metric"
+        data["initial"]["units"] = "inch" if self.state.inch else "metric"
         return Dialect.model_validate(data)
 
     def _axes(self) -> tuple[AnyAxis, ...]:
@@ -600,7 +578,7 @@ class PowerMate:
         if any(Attribute.POWER_OFF in row.attributes for row in rows):
             self.raise_alarm(0)
         if any(row.number == 0 for row in rows):
-            self._inch = self.parameters.bit(0, 2)
+            self.state.inch = self.parameters.bit(0, 2)
         if any(row.number in _ACT_ON_MOTION for row in rows):
             self._stale = True
             self._take_over()

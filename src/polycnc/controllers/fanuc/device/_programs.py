@@ -123,7 +123,7 @@ class Programs:
     def key_protects(self) -> bool:
         """Whether the key that protects programs is on (3290#7 says which one it is)."""
         key = 1 if self._power_mate.parameters.bit(3290, 7) else 3
-        return key in self._power_mate.protection_keys
+        return key in self._power_mate.state.protection_keys
 
     def delete(self, number: int) -> None:
         """Delete a program.

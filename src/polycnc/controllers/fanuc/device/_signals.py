@@ -7,7 +7,7 @@ state only: reading an address shows what holds, whoever has set it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from polycnc.cnc import ControlError, Emergency, Mode, Motion, Overrides, RunState
@@ -58,27 +58,28 @@ _MLK = 2
 _UINT = 8
 
 
-@dataclass(frozen=True, slots=True)
-class SignalState:
-    """The signals that are given, to go back to."""
+_AT_POWER_ON = {4: 0, 7: 0, 8: _SP | _ESP, 126: 0}
 
-    given: dict[int, int]
-    feed: int
-    rapid: int
-    jog: float
-    battery_low: bool
-    torque_mode: int
-    torque_override: tuple[int, ...]
+
+@dataclass(slots=True)
+class SignalState:
+    """The signals that are given."""
+
+    torque_override: list[int]
+    given: dict[int, int] = field(default_factory=_AT_POWER_ON.copy)
+    feed: int = 100
+    rapid: int = 0
+    jog: float = 100.0
+    battery_low: bool = False
+    torque_mode: int = 0
 
 
 class Signals:
-    """Read and give the operation signals of a Power Mate; `battery_low` is a condition that a test can set."""
+    """Read and give the operation signals of a Power Mate; `state.battery_low` is a condition that a test can set."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
+    def __init__(self, power_mate: PowerMate, state: SignalState) -> None:
         self._power_mate = power_mate
-        self.battery_low = False
-        self.torque_mode = 0
-        self._torque_override = [255] * power_mate.max_axis
+        self.state = state
         self.clear()
         self._handlers: dict[int, Callable[[int, int], None]] = {
             4: self._finish,
@@ -99,28 +100,13 @@ class Signals:
 
     def clear(self) -> None:
         """Let all signals be as they are when the power comes on."""
-        self._given: dict[int, int] = {4: 0, 7: 0, 8: _SP | _ESP, 126: 0}
-        self._feed, self._rapid, self._jog = 100, 0, 100.0
+        state = self.state
+        state.given = _AT_POWER_ON.copy()
+        state.feed, state.rapid, state.jog = 100, 0, 100.0
         self._applied = Overrides()
 
-    def snapshot(self) -> SignalState:
-        """Return what is given, to go back to."""
-        return SignalState(
-            dict(self._given),
-            self._feed,
-            self._rapid,
-            self._jog,
-            self.battery_low,
-            self.torque_mode,
-            tuple(self._torque_override),
-        )
-
-    def restore(self, state: SignalState) -> None:
-        """Go back to a snapshot; the control behind has gone back by itself."""
-        self._given = dict(state.given)
-        self._feed, self._rapid, self._jog = state.feed, state.rapid, state.jog
-        self.battery_low, self.torque_mode = state.battery_low, state.torque_mode
-        self._torque_override = list(state.torque_override)
+    def restored(self) -> None:
+        """Take note that the state and the control behind it have gone back."""
         self._applied = self._power_mate.control.overrides
 
     # ------------------------------------------------------------------ G addresses
@@ -129,7 +115,7 @@ class Signals:
         """Return the byte of a G address, with the switches as they are."""
         power_mate = self._power_mate
         switches = power_mate.control.switches
-        given = self._given.get(address, 0)
+        given = self.state.given.get(address, 0)
         match address:
             case 8:
                 on = power_mate.control.emergency is Emergency.ON
@@ -145,7 +131,7 @@ class Signals:
             case 44:
                 return given & ~1 | (1 in switches.block_delete)
             case 46:
-                keys = sum(1 << 2 + key for key in range(1, 5) if key not in power_mate.protection_keys)
+                keys = sum(1 << 2 + key for key in range(1, 5) if key not in power_mate.state.protection_keys)
                 return given & 0x05 | switches.single_block << 1 | keys | switches.dry_run << 7
             case _:
                 return given
@@ -153,7 +139,7 @@ class Signals:
     def give(self, address: int, value: int) -> None:
         """Give the control a byte of signals; what it does not let happen now does not happen."""
         old = self.g(address)
-        self._given[address] = value
+        self.state.given[address] = value
         handler = self._handlers.get(address)
         if handler is not None and (old != value or address in (10, 11)):
             handler(old, value)
@@ -171,49 +157,49 @@ class Signals:
     def feed_override(self) -> int:
         """The feed override that is given (%); the control feeds at most at 200 %."""
         self._adopt()
-        return self._feed
+        return self.state.feed
 
     def set_feed_override(self, percent: int) -> None:
         """Give a feed override, 0 to 254 %; 255 is all signals off: 0 %."""
         self._adopt()
-        self._feed = 0 if percent == 255 else percent
+        self.state.feed = 0 if percent == 255 else percent
         self.apply_overrides()
 
     @property
     def rapid_override(self) -> int:
         """The rapid override: 0 100 %, 1 50 %, 2 25 %, 3 F0 (parameter 1421)."""
         self._adopt()
-        return self._rapid
+        return self.state.rapid
 
     def set_rapid_override(self, code: int) -> None:
         """Give a rapid override by its code."""
         self._adopt()
-        self._rapid = code
+        self.state.rapid = code
         self.apply_overrides()
 
     @property
     def jog_override(self) -> float:
         """The override of jogging (%)."""
-        return self._jog
+        return self.state.jog
 
     def set_jog_override(self, percent: float) -> None:
         """Give an override of jogging (%), in steps of 0.01 %."""
         self._adopt()
-        self._jog = percent
+        self.state.jog = percent
         self.apply_overrides()
 
     @property
     def _jog_complement(self) -> int:
-        return 0xFFFF - round(self._jog * 100.0)
+        return 0xFFFF - round(self.state.jog * 100.0)
 
     def apply_overrides(self) -> None:
         """Let the control have the overrides; with a servo off nothing is fed."""
         power_mate, control = self._power_mate, self._power_mate.control
         f0 = min(1.0, power_mate.parameters.value(1421, 1) / power_mate.parameters.value(1420, 1))
-        rapid = RAPID_STEPS.get(self._rapid, f0)
+        rapid = RAPID_STEPS.get(self.state.rapid, f0)
         control.data = replace(control.data, rapid_overrides=(0.0, *RAPID_STEPS.values(), f0))
-        feed = min(self._feed, _MOST_FEED) / 100.0
-        interlock = bool(self._given.get(126))
+        feed = min(self.state.feed, _MOST_FEED) / 100.0
+        interlock = bool(self.state.given.get(126))
         control.set_overrides(feed=0.0 if interlock else feed, rapid=0.0 if interlock else rapid)
         self._applied = control.overrides
         self.mode_changed()
@@ -221,8 +207,8 @@ class Signals:
     def mode_changed(self) -> None:
         """Let manual motion have the override of its mode: that of jogging, or the feed override."""
         power_mate, control = self._power_mate, self._power_mate.control
-        by_hand = power_mate.mode in _JOGS and not self._given.get(126)
-        control.manual.set_overrides(feed=self._jog / 100.0 if by_hand else control.overrides.feed)
+        by_hand = power_mate.mode in _JOGS and not self.state.given.get(126)
+        control.manual.set_overrides(feed=self.state.jog / 100.0 if by_hand else control.overrides.feed)
 
     def _adopt(self) -> None:
         """Take over overrides that were set at the control itself."""
@@ -230,23 +216,23 @@ class Signals:
         if there == self._applied:
             return
         if there.feed != self._applied.feed:
-            self._feed = round(100.0 * there.feed)
+            self.state.feed = round(100.0 * there.feed)
         if there.rapid != self._applied.rapid:
-            self._rapid = next((code for code, share in RAPID_STEPS.items() if share == there.rapid), F0)
+            self.state.rapid = next((code for code, share in RAPID_STEPS.items() if share == there.rapid), F0)
         self._applied = there
 
     def torque_override(self, axis: int) -> float:
         """Return how much of its torque an axis (from 1) may give (%)."""
-        return self._torque_override[axis - 1] / 255.0 * 100.0
+        return self.state.torque_override[axis - 1] / 255.0 * 100.0
 
     def set_torque_override(self, axis: int, value: int) -> None:
         """Let an axis (from 1, 0: all) give value/255 of its torque."""
-        for k in range(len(self._torque_override)) if axis == 0 else (axis - 1,):
-            self._torque_override[k] = value
+        for k in range(len(self.state.torque_override)) if axis == 0 else (axis - 1,):
+            self.state.torque_override[k] = value
 
     def servo_is_off(self, axis: int) -> bool:
         """Whether the servo of an axis (from 1) is switched off by its signal."""
-        return bool(self._given.get(126, 0) >> axis - 1 & 1)
+        return bool(self.state.given.get(126, 0) >> axis - 1 & 1)
 
     # ------------------------------------------------------------------ what signals do
 
@@ -268,12 +254,12 @@ class Signals:
     @property
     def hold_is_on(self) -> bool:
         """Whether the signal of feed hold is given, so that nothing can start."""
-        return not self._given[8] & _SP
+        return not self.state.given[8] & _SP
 
     @property
     def reset_is_on(self) -> bool:
         """Whether the signal of external reset is given."""
-        return bool(self._given[8] & _ERS)
+        return bool(self.state.given[8] & _ERS)
 
     def _stops(self, old: int, new: int) -> None:
         power_mate = self._power_mate
@@ -285,8 +271,8 @@ class Signals:
             power_mate.reset()
 
     def _jog_override_changed(self, old: int, new: int) -> None:
-        low = self._given.get(10, self._jog_complement & 0xFF)
-        high = self._given.get(11, self._jog_complement >> 8)
+        low = self.state.given.get(10, self._jog_complement & 0xFF)
+        high = self.state.given.get(11, self._jog_complement >> 8)
         counts = 0xFFFF - (high << 8 | low)
         self.set_jog_override(0.0 if counts == 0xFFFF else counts / 100.0)
 
@@ -313,7 +299,7 @@ class Signals:
 
     def apply_lock(self) -> None:
         """Let the machine lock be as its signal is, within a program not before the next start."""
-        lock = bool(self._given.get(44, 0) & _MLK)
+        lock = bool(self.state.given.get(44, 0) & _MLK)
         if lock is not self._power_mate.control.switches.machine_lock:
             self._press(lambda: self._power_mate.control.set_switches(machine_lock=lock))
 
@@ -334,13 +320,13 @@ class Signals:
     def _jog_key(self, axis: int, direction: int, on: bool) -> None:
         power_mate = self._power_mate
         control, name = power_mate.control, power_mate.axis_name(axis)
-        rapid = bool(self._given.get(19, 0) & _RT)
+        rapid = bool(self.state.given.get(19, 0) & _RT)
         if on and self.servo_is_off(axis):
             return
         if control.mode is Mode.REF and on:
             self._press(lambda: control.reference(name))
         elif control.mode is Mode.INC and on:
-            size = power_mate.output_scale(axis).value(_INCREMENTS[self._given.get(19, 0) >> 4 & 3])
+            size = power_mate.output_scale(axis).value(_INCREMENTS[self.state.given.get(19, 0) >> 4 & 3])
             self._press(lambda: control.increment(name, direction, size, rapid=rapid))
         else:
             self._press(lambda: control.jog(name, direction if on else None, rapid=rapid))
@@ -348,8 +334,8 @@ class Signals:
     def _hold_keys(self) -> None:
         """Let keys that are held down act in the mode that has come."""
         if self._power_mate.control.mode is Mode.JOG:
-            self._jog_keys(0, self._given.get(100, 0), 1)
-            self._jog_keys(0, self._given.get(102, 0), -1)
+            self._jog_keys(0, self.state.given.get(100, 0), 1)
+            self._jog_keys(0, self.state.given.get(102, 0), -1)
 
     def _servo_off(self, new: int) -> None:
         for axis in range(1, self._power_mate.axes + 1):
@@ -377,7 +363,7 @@ class Signals:
                     {4: held, 5: active, 6: ready, 7: active or held or channel.run_state in _INTERRUPTED}
                 )
             case 1:
-                alarm, low = bool(shown(status.alarms)), self.battery_low
+                alarm, low = bool(shown(status.alarms)), self.state.battery_low
                 return _bits({0: alarm, 1: self.reset_is_on, 2: low, 7: True})
             case 2:
                 rapid = moving and channel.feed.rapid
@@ -394,9 +380,9 @@ class Signals:
             case 7:
                 return _bits({_FUNCTION_BITS[each[0]]: True for each in channel.functions})
             case 54 | 55:
-                return power_mate.custom_macros.user_outputs >> 8 * (address - 54) & 0xFF
+                return power_mate.custom_macros.state.user_outputs >> 8 * (address - 54) & 0xFF
             case 94:
-                at = [power_mate.positions.read(status)[k].machine == 0 for k in range(power_mate.axes)]
+                at = [power_mate.positions.read()[k].machine == 0 for k in range(power_mate.axes)]
                 return _bits(dict(enumerate(at)))
             case 102:
                 return _bits({k: axis.velocity != 0.0 for k, axis in enumerate(status.axes.values())})

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 from typing import Self
 
 from polycnc.cnc import ControlSnapshot
-from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState, Block, Order
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState, Block, Order, PathBuffers
+from polycnc.controllers.fanuc.device._device_state import DeviceState
+from polycnc.controllers.fanuc.device._history import SamplingState
+from polycnc.controllers.fanuc.device._macros import MacroState
+from polycnc.controllers.fanuc.device._mdi import MdiState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._signals import SignalState
 from polycnc.machine import Form, Snapshot, SnapshotError, Values
@@ -19,20 +24,7 @@ class PowerMateSnapshot(Snapshot):
     """Everything but programs, parameters, offsets and other durable data, and open transfers."""
 
     control: ControlSnapshot
-    mode: PowerMateMode
-    cursor: int
-    mdi: tuple[str, ...]
-    mdi_start: int
-    skip: bool
-    skip_positions: tuple[int, ...]
-    protection_keys: frozenset[int]
-    parameters_writable: bool
-    inch: bool
-    user_outputs: int
-    signals: SignalState
-    axis_motion: AxisMotionState
-    pmc: dict[tuple[str, int], int]
-    sampling_stopped: bool
+    state: DeviceState
 
     def to_bytes(self) -> bytes:
         """Return the snapshot as the contents of a file; what the memory file keeps is not in it.
@@ -61,6 +53,12 @@ class PowerMateSnapshot(Snapshot):
 
 
 _VALUES = Values(
-    (AxisMotionState, Block, Order, PowerMateMode, PowerMateSnapshot, SignalState),
-    {ControlSnapshot: Form(lambda control: (control.to_bytes(),), ControlSnapshot.from_bytes)},
+    (
+        *(AxisMotionState, Block, DeviceState, MacroState, MdiState, Order, PathBuffers),
+        *(PowerMateMode, PowerMateSnapshot, SamplingState, SignalState),
+    ),
+    {
+        ControlSnapshot: Form(lambda control: (control.to_bytes(),), ControlSnapshot.from_bytes),
+        deque: Form(tuple, lambda *parts: deque(parts)),
+    },
 )

@@ -44,7 +44,7 @@ def read_state(power_mate: PowerMate, status: Status | None = None, *, uploading
     channel = status.channel
     reset = power_mate.signals.reset_is_on or status.emergency is Emergency.RESET_NEEDED
     stopped = status.emergency is Emergency.ON
-    battery = _BATTERY if power_mate.signals.battery_low else 0
+    battery = _BATTERY if power_mate.signals.state.battery_low else 0
     return State(
         aut=int(power_mate.mode),
         run=_RUN.get(channel.run_state, 0),

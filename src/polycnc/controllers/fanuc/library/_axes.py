@@ -121,9 +121,8 @@ def cnc_rddynamic(
     data.alarm = int(device.alarm_bits)
     data.prgnum, data.prgmnum = device.execution.numbers
     data.seqnum = device.execution.sequence
-    figures = device.control.figures()
-    data.actf = device.positions.feed(figures)
-    places = device.positions.read(figures)
+    data.actf = device.positions.feed()
+    places = device.positions.read()
     if axis == ALL_AXES:
         every, count = data.pos.faxis, len(places)
         every.absolute[:count] = [each.absolute for each in places]

@@ -39,7 +39,7 @@ def cnc_startophis(link: Link) -> EW:
 
 
 def _check_stopped(link: Link) -> None:
-    if not link.device.history.stopped:
+    if not link.device.history.state.stopped:
         raise Refused(EW.EW_FUNC)
 
 

@@ -145,7 +145,7 @@ def cnc_exebufstat(link: Link) -> Answer:
 def cnc_finstate(link: Link) -> tuple[EW, Annotated[ODBFIN, Out("odb")]]:
     """Read the completion flags (Manual 000, cnc_finstate); path x has bit x-1 of byte x-1."""
     _check_enabled(_check_model(link))
-    flags = link.read("cnc_finstate").axis_motion.finished
+    flags = link.read("cnc_finstate").axis_motion.state.finished
     return EW.EW_OK, ODBFIN(cdata=[int(flag) << k for k, flag in enumerate(flags)])
 
 
@@ -153,7 +153,7 @@ def cnc_finstate(link: Link) -> tuple[EW, Annotated[ODBFIN, Out("odb")]]:
 def cnc_setfin(link: Link, idb: Annotated[ODBFIN, IN]) -> EW:
     """Take back the completion flags whose bits are 1 (Manual 000, cnc_setfin)."""
     _check_enabled(_check_model(link))
-    flags = link.command().axis_motion.finished
+    flags = link.command().axis_motion.state.finished
     for k in range(PATHS):
         if idb.cdata[k] >> k & 1:
             flags[k] = False
@@ -189,7 +189,7 @@ def _jog(device: PowerMate, axis: int, value: int) -> None:
 
 
 def _torque_mode(device: PowerMate, axis: int, value: int) -> None:
-    device.signals.torque_mode = value
+    device.signals.state.torque_mode = value
 
 
 _SIGNALS: dict[int, tuple[Callable[[int], bool], Callable[[PowerMate, int, int], None]]] = {

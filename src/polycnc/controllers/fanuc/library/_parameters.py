@@ -88,7 +88,7 @@ def _check_changes(device: PowerMate, changes: Sequence[Change], *, settings: bo
         raise Refused(EW.EW_NOOPT)
     if any(Attribute.WRITE_PROTECTED in each.row.attributes for each in changes):
         raise Refused(EW.EW_PROT)
-    if not settings and not device.parameters_writable:
+    if not settings and not device.state.parameters_writable:
         raise Refused(EW.EW_PROT)
 
 

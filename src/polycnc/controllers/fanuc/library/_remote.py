@@ -1,14 +1,15 @@
 """Functions of a handle that stands for a control on the network: each is a request to its server.
 
+One that reads a record into a structure is a row of `READINGS`; the record is that of the wire's table.
 What is not here answers `EW_FUNC`, as do functions that the control does not know.
 """
 
 from __future__ import annotations
 
 import struct
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any, TypeAlias, TypeVar
 
 from polycnc.controllers.fanuc.data._macro_variables import (
     VACANT,
@@ -38,31 +39,36 @@ from polycnc.controllers.fanuc.library._structs import (
 )
 from polycnc.controllers.fanuc.wire import (
     PMC,
-    VALUE8_SIZE,
+    PMC_WIDTHS,
+    POSITION_KINDS,
     Client,
     Reply,
     Request,
+    Rows,
     Value8,
     WireRefusedError,
+    layout_of,
+    swapped,
 )
-from polycnc.controllers.library import Refused, variant
+from polycnc.controllers.library import Refused, layout, variant
 from polycnc.errors import ProtocolError
 
-_KINDS = {
-    "absolute": 4,
-    "machine": 1,
-    "relative": 6,
-    "distance": 7,
-    "skip": 8,
-    "srvdelay": 9,
-    "accdecdly": 10,
+_KINDS = {name: kind for kind, name in POSITION_KINDS.items()}
+_POSITIONS = {
+    "cnc_absolute": "absolute",
+    "cnc_machine": "machine",
+    "cnc_relative": "relative",
+    "cnc_distance": "distance",
+    "cnc_skip": "skip",
+    "cnc_srvdelay": "servo_delay",
+    "cnc_accdecdly": "acceleration_delay",
 }
 _DYNAMIC = ("absolute", "machine", "relative", "distance")
 _FIELDS = {0: ("cdata", 0x80), 1: ("cdata", 0x80), 2: ("idata", 0), 3: ("ldata", 0)}
-_SIZES = (1, 2, 4)
-_MOST_AXES = 32
 _DECIMAL = 0
 _AXIS_HEADER, _SINGLE, _DYNAMIC_HEADER, _PMC_HEADER = 4, 10, 22, 8
+
+Reading: TypeAlias = tuple[dict[str, Any], list[dict[str, Any]]]
 
 
 @dataclass(eq=False)
@@ -75,8 +81,8 @@ class RemoteLink:
     download: bytearray | None = None
     wide: bool = field(default=True)  # parameters in eight bytes, until the control knows only four
 
-    def ask(self, *requests: Request) -> list[bytes]:
-        """Return the payloads of the answers.
+    def ask(self, *requests: Request) -> list[Reading]:
+        """Return what the answers hold: the head of each, and what repeats.
 
         Raises:
             Refused: The control, or the way to it, refuses one.
@@ -85,12 +91,24 @@ class RemoteLink:
         for reply in replies:
             if reply.status:
                 raise Refused(_code(reply.status))
-        return [reply.payload for reply in replies]
+        try:
+            return [
+                layout_of(request).unpack(reply.payload)
+                for request, reply in zip(requests, replies, strict=True)
+            ]
+        except ProtocolError:
+            raise Refused(EW.EW_PROTOCOL) from None
 
     def values(self, request: Request) -> list[Value8]:
-        """Return the numbers of one answer."""
-        (payload,) = self.ask(request)
-        return _values(payload)
+        """Return the numbers of one answer that has nothing but numbers."""
+        ((_, rows),) = self.ask(request)
+        return [value for row in rows for value in row.values()]
+
+    def write(self, request: Request, *, each: Rows = (), **values: Any) -> EW:
+        """Send what a record or several of them say; the request has no data yet."""
+        data = layout_of(request).pack_data(list(each) if each else values)
+        self.ask(replace(request, data=data))
+        return EW.EW_OK
 
 
 T = TypeVar("T")
@@ -116,21 +134,6 @@ def _code(number: int) -> EW:
     return EW(number) if number in {each.value for each in EW} else EW.EW_UNEXP
 
 
-def _values(payload: bytes) -> list[Value8]:
-    try:
-        return [
-            Value8.from_wire(payload[at : at + VALUE8_SIZE]) for at in range(0, len(payload), VALUE8_SIZE)
-        ]
-    except ProtocolError:
-        raise Refused(EW.EW_PROTOCOL) from None
-
-
-def _unpacked(form: str, payload: bytes) -> tuple[Any, ...]:
-    if len(payload) < struct.calcsize(form):
-        raise Refused(EW.EW_PROTOCOL)
-    return struct.unpack_from(form, payload)
-
-
 def _check(holds: bool, code: EW) -> None:
     if not holds:
         raise Refused(code)
@@ -139,56 +142,48 @@ def _check(holds: bool, code: EW) -> None:
 # ---------------------------------------------------------------------- what it is and does
 
 
-def cnc_sysinfo(link: RemoteLink) -> tuple[EW, ODBSYS]:
-    (payload,) = link.ask(Request(0x18))
-    _, most, kind, machine, series, version, axes = _unpacked(">HH2s2s4s4s2s", payload)
-    made = ODBSYS(max_axis=most, cnc_type=kind, mt_type=machine, series=series, version=version, axes=axes)
-    return EW.EW_OK, made
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A function that reads a record into a structure: the requests, of which the first is the record's.
+
+    Elements have the names of the record's fields, those of `names` excepted.
+    """
+
+    structure: Any
+    commands: tuple[int, ...]
+    names: Mapping[str, str] = field(default_factory=dict)
+
+    def read(self, link: RemoteLink) -> tuple[EW, Any]:
+        """Ask, and fill the structure."""
+        head, _ = link.ask(*map(Request, self.commands))[0]
+        fields = {each.name: self.names.get(each.name, each.name) for each in layout(self.structure).fields}
+        filled = {name: _whole(head[at]) for name, at in fields.items() if at in head}
+        return EW.EW_OK, self.structure(**filled)
 
 
-def cnc_statinfo(link: RemoteLink) -> tuple[EW, ODBST]:
-    payload = link.ask(Request(0x19), Request(0xE1), Request(0x98))[0]
-    aut, run, motion, mstb, emergency, alarm, edit = _unpacked(">7H", payload)
-    made = ODBST(aut=aut, run=run, motion=motion, mstb=mstb, emergency=emergency, alarm=alarm, edit=edit)
-    return EW.EW_OK, made
+def _whole(value: Any) -> Any:
+    return value.mantissa if isinstance(value, Value8) else value
 
 
-def cnc_alarm(link: RemoteLink) -> tuple[EW, ODBALM]:
-    (bits,) = _unpacked(">I", link.ask(Request(0x1A))[0])
-    return EW.EW_OK, ODBALM(data=_short(bits))
+READINGS = {
+    "cnc_sysinfo": Row(ODBSYS, (0x18,)),
+    "cnc_statinfo": Row(ODBST, (0x19, 0xE1, 0x98)),
+    "cnc_alarm": Row(ODBALM, (0x1A,), {"data": "alarms"}),
+    "cnc_rdprgnum": Row(ODBPRO, (0x1C,), {"data": "running", "mdata": "main"}),
+    "cnc_rdseqnum": Row(ODBSEQ, (0x1D,), {"data": "sequence"}),
+    "cnc_actf": Row(ODBACT, (0x24,), {"data": "feed"}),
+}
+"""The functions that read one record, by name."""
 
 
-def _short(bits: int) -> int:
-    return (bits & 0xFFFF) - (0x10000 if bits & 0x8000 else 0)
-
-
-def cnc_rdprgnum(link: RemoteLink) -> tuple[EW, ODBPRO]:
-    current, main = _unpacked(">ii", link.ask(Request(0x1C))[0])
-    return EW.EW_OK, ODBPRO(data=current, mdata=main)
-
-
-def cnc_rdseqnum(link: RemoteLink) -> tuple[EW, ODBSEQ]:
-    (number,) = _unpacked(">i", link.ask(Request(0x1D))[0])
-    return EW.EW_OK, ODBSEQ(data=number)
-
-
-def cnc_actf(link: RemoteLink) -> tuple[EW, ODBACT]:
-    return EW.EW_OK, ODBACT(data=_first(link.values(Request(0x24))))
-
-
-def _first(values: Sequence[Value8]) -> int:
-    _check(bool(values), EW.EW_PROTOCOL)
-    return values[0].mantissa
-
-
-def _positions(name: str) -> Callable[..., tuple[EW, ODBAXIS]]:
+def _read_positions(name: str) -> Callable[..., tuple[EW, ODBAXIS]]:
     def read(link: RemoteLink, axis: int, length: int) -> tuple[EW, ODBAXIS]:
         _check(axis == ALL_AXES or axis >= 1, EW.EW_ATTRIB)
         _check(length >= _AXIS_HEADER + 4, EW.EW_LENGTH)
         values = link.values(Request(0x26, (_KINDS[name], axis, 0, 0)))
         count = min(
             len(values), (length - _AXIS_HEADER) // 4
-        )  # of more axes than the control has nothing is known
+        )  # nothing is known of more than the control has
         made = variant(ODBAXIS, data=max(count, MAX_AXIS))(type=axis)
         made.data[:count] = [each.mantissa for each in values[:count]]
         return EW.EW_OK, made
@@ -201,19 +196,19 @@ def cnc_rddynamic(link: RemoteLink, axis: int, length: int) -> tuple[EW, ODBDY]:
     _check(length >= _DYNAMIC_HEADER + 16, EW.EW_LENGTH)
     codes = (Request(each) for each in (0x1A, 0x1C, 0x1D, 0x24, 0x25))
     places = (Request(0x26, (_KINDS[name], axis, 0, 0)) for name in _DYNAMIC)
-    alarm, programs, sequence, feed, spindle, *positions = link.ask(*codes, *places)
-    current, main = _unpacked(">ii", programs)
+    *states, absolute, machine, relative, distance = link.ask(*codes, *places)
+    read = {name: _whole(value) for head, _ in states for name, value in head.items()}
     made = ODBDY(
         axis=axis,
-        alarm=_short(_unpacked(">I", alarm)[0]),
-        prgnum=current,
-        prgmnum=main,
-        seqnum=_unpacked(">i", sequence)[0],
-        actf=_first(_values(feed)),
-        acts=_first(_values(spindle)),
+        alarm=read["alarms"],
+        prgnum=read["running"],
+        prgmnum=read["main"],
+        seqnum=read["sequence"],
+        actf=read["feed"],
+        acts=read["rpm"],
     )
-    for name, payload in zip(_DYNAMIC, positions, strict=True):
-        values = [each.mantissa for each in _values(payload)]
+    for name, (_, rows) in zip(_DYNAMIC, (absolute, machine, relative, distance), strict=True):
+        values = [each["position"].mantissa for each in rows]
         if axis == ALL_AXES:
             room = getattr(made.pos.faxis, name)
             count = min(len(values), len(room), (length - _DYNAMIC_HEADER) // 16)
@@ -257,8 +252,7 @@ def cnc_rdmacro(link: RemoteLink, number: int, length: int) -> tuple[EW, ODBM]:
 
 def cnc_wrmacro(link: RemoteLink, number: int, length: int, mcr_val: int, dec_val: int) -> EW:
     _check(length >= _SINGLE, EW.EW_LENGTH)
-    link.ask(Request(0x16, (number, number, 0, 0), bytes(_macro(link, mcr_val, dec_val))))
-    return EW.EW_OK
+    return link.write(Request(0x16, (number, number, 0, 0)), each=[_macro(link, mcr_val, dec_val)])
 
 
 def cnc_rdmacror(link: RemoteLink, s_number: int, e_number: int, length: int) -> tuple[EW, IODBMR]:
@@ -282,8 +276,7 @@ def cnc_wrmacror(link: RemoteLink, length: int, macror: IODBMR) -> EW:
         _macro(link, entry.mcr_val, entry.dec_val)
         for entry, _ in zip(macror.data, range(count), strict=False)
     ]
-    link.ask(Request(0x16, (first, last, 0, 0), b"".join(map(bytes, values))))
-    return EW.EW_OK
+    return link.write(Request(0x16, (first, last, 0, 0)), each=values)
 
 
 def cnc_getmactype(link: RemoteLink) -> tuple[EW, int]:
@@ -299,22 +292,15 @@ def cnc_rdparam(link: RemoteLink, number: int, axis: int, length: int) -> tuple[
     _check(length >= _AXIS_HEADER + 1, EW.EW_LENGTH)
     while True:
         try:
-            (payload,) = link.ask(Request(0x8D if link.wide else 0x0E, (number, number, axis, 0)))
+            ((_, records),) = link.ask(Request(0x8D if link.wide else 0x0E, (number, number, axis, 0)))
             break
         except Refused as refusal:
             if refusal.code != EW.EW_FUNC or not link.wide:
                 raise
             link.wide = False
-    _, _, kind = _unpacked(">Ihh", payload)
+    _check(bool(records) and bool(records[0].get("values")), EW.EW_PROTOCOL)
+    kind, values = records[0]["type"], [_whole(each) for each in records[0]["values"]]
     _check(kind in _FIELDS, EW.EW_PROTOCOL)
-    size = VALUE8_SIZE if link.wide else 4
-    slots = [payload[at : at + size] for at in range(8, len(payload), size)]
-    values = (
-        [each.mantissa for slot in slots for each in _values(slot)]
-        if link.wide
-        else [int.from_bytes(slot, "big", signed=True) for slot in slots]
-    )
-    _check(bool(values), EW.EW_PROTOCOL)
     made = IODBPSD(datano=number, type=axis)
     name, sign = _FIELDS[kind]
     values = [value - 256 if sign and value >= sign else value for value in values]
@@ -330,31 +316,26 @@ def cnc_rdparam(link: RemoteLink, number: int, axis: int, length: int) -> tuple[
 def pmc_rdpmcrng(
     link: RemoteLink, adr_type: int, data_type: int, s_number: int, e_number: int, length: int
 ) -> tuple[EW, IODBPMC]:
-    _check(0 <= data_type < len(_SIZES), EW.EW_ATTRIB)
-    size, count = _SIZES[data_type], e_number - s_number + 1
+    _check(0 <= data_type < len(PMC_WIDTHS), EW.EW_ATTRIB)
+    size, count = PMC_WIDTHS[data_type], e_number - s_number + 1
     _check(count >= 1, EW.EW_NUMBER)
     _check(count % size == 0 and length == _PMC_HEADER + count, EW.EW_LENGTH)
-    (data,) = link.ask(Request(0x8001, (s_number, e_number, adr_type, data_type), target=PMC))
-    _check(len(data) == count, EW.EW_PROTOCOL)
+    ((head, _),) = link.ask(Request(0x8001, (s_number, e_number, adr_type, data_type), target=PMC))
+    _check(len(head["values"]) == count, EW.EW_PROTOCOL)
     made = HEADER.make("IODBPMC", PMC_ITEMS=count // size)(
         type_a=adr_type, type_d=data_type, datano_s=s_number, datano_e=e_number
     )
     part = (made.u.cdata, made.u.idata, made.u.ldata)[data_type]
-    memoryview(part).cast("B")[:] = _swapped(data, size)
+    memoryview(part).cast("B")[:] = swapped(head["values"], size)
     return EW.EW_OK, made
 
 
 def pmc_wrpmcrng(link: RemoteLink, length: int, buf: bytes) -> EW:
     _check(_PMC_HEADER <= length <= len(buf), EW.EW_LENGTH)
     kind, data_type, first, last = struct.unpack_from("<4h", buf)
-    _check(0 <= data_type < len(_SIZES), EW.EW_ATTRIB)
-    data = _swapped(buf[_PMC_HEADER:length], _SIZES[data_type])
-    link.ask(Request(0x8002, (first, last, kind, data_type), data, target=PMC))
-    return EW.EW_OK
-
-
-def _swapped(data: bytes, width: int) -> bytes:
-    return b"".join(data[at : at + width][::-1] for at in range(0, len(data), width))
+    _check(0 <= data_type < len(PMC_WIDTHS), EW.EW_ATTRIB)
+    values = swapped(buf[_PMC_HEADER:length], PMC_WIDTHS[data_type])
+    return link.write(Request(0x8002, (first, last, kind, data_type), target=PMC), values=values)
 
 
 # ---------------------------------------------------------------------- programs
@@ -413,16 +394,16 @@ def cnc_dwnend(link: RemoteLink) -> EW:
 
 
 REMOTE: dict[str, Callable[..., Any]] = {
+    **{name: row.read for name, row in READINGS.items()},
+    **{name: _read_positions(kind) for name, kind in _POSITIONS.items()},
     **{
         function.__name__: function
         for function in (
-            cnc_sysinfo, cnc_statinfo, cnc_alarm, cnc_rdprgnum, cnc_rdseqnum, cnc_actf, cnc_rddynamic,
-            cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_wrmacror, cnc_getmactype, cnc_setmactype, cnc_rdparam,
-            pmc_rdpmcrng, pmc_wrpmcrng, cnc_search, cnc_delete, cnc_upstart, cnc_upload, cnc_upend,
+            cnc_rddynamic, cnc_rdmacro, cnc_wrmacro, cnc_rdmacror, cnc_wrmacror, cnc_getmactype, cnc_setmactype,
+            cnc_rdparam, pmc_rdpmcrng, pmc_wrpmcrng, cnc_search, cnc_delete, cnc_upstart, cnc_upload, cnc_upend,
             cnc_dwnstart, cnc_download, cnc_dwnend,
         )
     },
-    **{f"cnc_{name}": _positions(name) for name in _KINDS},
 }  # fmt: skip
 """The functions that a handle of the network has, by name."""
 

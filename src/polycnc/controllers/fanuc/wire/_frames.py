@@ -81,12 +81,15 @@ class FrameReader:
         self._bytes = bytearray()
 
     def feed(self, data: bytes) -> Iterator[Frame]:
-        """Add bytes and yield the frames that are complete now.
+        """Add bytes and return the frames that are complete, each when it is asked for.
 
         Raises:
             ProtocolError: the bytes are no frame; the stream cannot be found again.
         """
         self._bytes += data
+        return self._frames()
+
+    def _frames(self) -> Iterator[Frame]:
         while len(self._bytes) >= HEADER_SIZE:
             sync, version, kind, size = _HEADER.unpack_from(self._bytes)
             if sync != SYNC:

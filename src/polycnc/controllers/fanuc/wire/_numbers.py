@@ -55,7 +55,15 @@ class Value8:
         """
         if len(data) != VALUE8_SIZE:
             raise ProtocolError(f"a number has {len(data)} bytes, not {VALUE8_SIZE}")
-        mantissa, base, exponent = _VALUE8.unpack(data)
+        return cls.checked(*_VALUE8.unpack(data))
+
+    @classmethod
+    def checked(cls, mantissa: int, base: int, exponent: int) -> Value8:
+        """Return the number of these parts.
+
+        Raises:
+            ProtocolError: They are no number.
+        """
         if exponent == -1 and base in (0, _MARK):
             return VACANT
         if base == 0 and exponent == 0:
@@ -66,6 +74,11 @@ class Value8:
 
 
 VACANT = Value8(0, 0, None)
+
+
+def swapped(data: bytes, width: int) -> bytes:
+    """Turn values of the PMC, the low byte first, into those of the wire, and back."""
+    return b"".join(data[at : at + width][::-1] for at in range(0, len(data), width))
 
 
 def text(value: str, size: int, encoding: str = "ascii") -> bytes:

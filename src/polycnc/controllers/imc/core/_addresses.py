@@ -128,13 +128,13 @@ SEGID = address("segID1")
 SEGLEN = address("seglen1")
 RADIUS = address("radius1")
 
-# What a write to a word sets off. Up to DO_SYNSRCVAR it is a command that the axis takes in its next turn.
+# What a write to a word sets off. Up to DO_ENASYN it is a command that the axis takes in its next turn.
 STORE = 0
 DO_RUN, DO_GO_MCS, DO_GO_PCS, DO_TGVEL_MCS, DO_TGVEL_PCS = 1, 2, 3, 4, 5
-DO_GOHOME, DO_SETHOME, DO_CLEAR, DO_ENGEAR, DO_STARTSYN, DO_SYNSRCVAR = 6, 7, 8, 9, 10, 11
-REFUSE = 12
-DO_CLEAR_FIFO, DO_CLEARIMC, DO_EVENTS = 13, 14, 15
-DO_CAPTURE, DO_POPCAP, DO_CLRCAP, DO_ZERO, DO_CLRENCS, DO_CLEAR_BITS = 16, 17, 18, 19, 20, 21
+DO_GOHOME, DO_SETHOME, DO_CLEAR, DO_ENGEAR, DO_STARTSYN, DO_SYNSRCVAR, DO_ENASYN = 6, 7, 8, 9, 10, 11, 12
+REFUSE = 13
+DO_CLEAR_FIFO, DO_CLEARIMC, DO_EVENTS = 14, 15, 16
+DO_CAPTURE, DO_POPCAP, DO_CLRCAP, DO_ZERO, DO_CLRENCS, DO_CLEAR_BITS = 17, 18, 19, 20, 21, 22
 
 _ACTIONS = {
     "run": DO_RUN,
@@ -147,7 +147,7 @@ _ACTIONS = {
     "clear": DO_CLEAR,
     "engear": DO_ENGEAR,
     "startsyn": DO_STARTSYN,
-    "enasyn": DO_STARTSYN,
+    "enasyn": DO_ENASYN,
     "synsrcvar": DO_SYNSRCVAR,
     "clrififo": DO_CLEAR_FIFO,
     "clrqfifo": DO_CLEAR_FIFO,

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from polycnc.controllers.imc.core import _addresses as addr
+from polycnc.controllers.imc.core._bits import ACC_LIMIT, VEL_LIMIT
 from polycnc.controllers.imc.core._commands import take_commands
 from polycnc.controllers.imc.core._errors import halt_axis
 from polycnc.controllers.imc.core._follow import follow_step
 from polycnc.controllers.imc.core._planner import advance_system, moved, show_slope, system_step
 from polycnc.controllers.imc.core._state import (
-    ACC_LIMIT,
     AXIS_ERROR,
     GEAR,
     IDLE,
     SMOOTH_ROWS,
     SYNC,
-    VEL_LIMIT,
     CardState,
 )
 from polycnc.controllers.imc.core._words import (

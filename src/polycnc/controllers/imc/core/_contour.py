@@ -13,7 +13,7 @@ from polycnc.controllers.imc.core._addresses import (
     RUN,
     STARTGROUP,
 )
-from polycnc.controllers.imc.core._errors import take_over
+from polycnc.controllers.imc.core._ownership import take_over
 from polycnc.controllers.imc.core._state import CFIFO, COORDINATES, GIVEN, IDLE, SPACES, CardState
 from polycnc.controllers.imc.core._words import FLAG, ONE, get_u16, put16
 from polycnc.kernel import compiled

@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from polycnc.controllers.imc.core import _addresses as addr
+from polycnc.controllers.imc.core._bits import (
+    NLIM,
+    NLIM_ON,
+    NSOF,
+    NSOFT_ON,
+    PLIM,
+    PLIM_HIGH,
+    PLIM_ON,
+    POSERR_LIMIT,
+    PSOF,
+    PSOFT_ON,
+    STOP,
+)
+from polycnc.controllers.imc.core._ownership import drop_couplings
 from polycnc.controllers.imc.core._path import stop_space
 from polycnc.controllers.imc.core._planner import rest_system, start_velocity
 from polycnc.controllers.imc.core._state import (
     AXIS_ERROR,
     GIVEN,
     IDLE,
-    NLIM,
-    NSOF,
-    PLIM,
-    POSERR_LIMIT,
-    PSOF,
     RELEASED,
     SPACES,
-    STOP,
     VELOCITY,
     CardState,
 )
@@ -27,10 +35,6 @@ _POSITIVE = PLIM | PSOF
 _NEGATIVE = NLIM | NSOF
 _LIMITS = _POSITIVE | _NEGATIVE
 
-# aioctr
-_PLIM_HIGH, _PLIM_ON, _NLIM_HIGH, _NLIM_ON = 0x1, 0x2, 0x4, 0x8
-_PSOFT_ON, _NSOFT_ON = 0x4000, 0x8000
-
 
 @compiled
 def is_blocked(s: CardState, i: int, direction: int) -> bool:
@@ -39,31 +43,6 @@ def is_blocked(s: CardState, i: int, direction: int) -> bool:
     if met & ~_LIMITS:
         return True
     return bool((met & _POSITIVE and direction >= 0) or (met & _NEGATIVE and direction <= 0))
-
-
-@compiled
-def drop_couplings(s: CardState, i: int) -> None:
-    """Leave gear, synchronous motion and homing."""
-    axis, m = s.axis[i], s.memory
-    axis["engaged"] = 0
-    axis["armed"] = 0
-    axis["locked"] = 0
-    axis["sync_share"] = -1.0
-    put16(m, i, addr.ENGEAR, 0)
-    put16(m, i, addr.STARTSYN, 0)
-    put16(m, i, addr.ENASYN, 0)
-    if axis["home"] != 0:
-        axis["home"] = 0
-        put16(m, i, addr.HOMED, 0)
-    put16(m, i, addr.GOHOME, 0)
-
-
-@compiled
-def take_over(s: CardState, i: int) -> None:
-    """Let what else moves the main system go, because a new motion takes it over."""
-    axis = s.axis[i]
-    if axis["engaged"] != 0 or axis["home"] != 0 or axis["sync_share"] >= 0.0:
-        drop_couplings(s, i)
 
 
 @compiled
@@ -135,14 +114,14 @@ def _new_errors(s: CardState, i: int, levels: int) -> int:
     velocity = get32(m, i, addr.CURVEL)
     position = get48(m, i, addr.CURPOS_FRACTION) >> 16
     if velocity > 0:
-        if control & _PLIM_ON and (levels & 1) == (control & _PLIM_HIGH):
+        if control & PLIM_ON and (levels & 1) == (control & PLIM_HIGH):
             found |= PLIM
-        if control & _PSOFT_ON and position >= get32(m, i, addr.PSOFTLIM):
+        if control & PSOFT_ON and position >= get32(m, i, addr.PSOFTLIM):
             found |= PSOF
     elif velocity < 0:
-        if control & _NLIM_ON and (levels >> 1 & 1) == (control >> 2 & 1):
+        if control & NLIM_ON and (levels >> 1 & 1) == (control >> 2 & 1):
             found |= NLIM
-        if control & _NSOFT_ON and position <= get32(m, i, addr.NSOFTLIM):
+        if control & NSOFT_ON and position <= get32(m, i, addr.NSOFTLIM):
             found |= NSOF
     return found
 

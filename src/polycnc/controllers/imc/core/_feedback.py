@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from polycnc.controllers.imc.core import _addresses as addr
+from polycnc.controllers.imc.core._bits import CAPTURE_ON, FOLLOW_COMMAND, ORIGIN_HIGH
 from polycnc.controllers.imc.core._planner import to_units
 from polycnc.controllers.imc.core._state import AXIS_RESTED, GEAR, IDLE, MOVE, CardState
 from polycnc.controllers.imc.core._words import (
@@ -22,10 +23,6 @@ from polycnc.controllers.imc.core._words import (
 from polycnc.controllers.imc.core._write_effects import keep_capture
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, REFERENCE, KernelState, compiled
 
-_CAPTURE_ON = 0x0400  # encpctr
-_FOLLOW_COMMAND = 0x8000
-_ORIGIN_HIGH = 0x10  # aioctr
-
 
 @compiled
 def encoders_cycle(s: CardState, i: int, actual: float) -> None:
@@ -34,7 +31,7 @@ def encoders_cycle(s: CardState, i: int, actual: float) -> None:
     counts = math.floor(actual * axis["counts_per_pulse"] + 0.5)
     step = counts - axis["counts"]
     axis["counts"] = counts
-    if get_u16(m, i, addr.ENCPCTR) & _FOLLOW_COMMAND:
+    if get_u16(m, i, addr.ENCPCTR) & FOLLOW_COMMAND:
         put48(m, i, addr.ENCP_FRACTION, get48(m, i, addr.CURPOS_FRACTION))
         put32(m, i, addr.ENCPVEL, get32(m, i, addr.CURVEL))
     elif step != 0 or get32(m, i, addr.ENCPVEL) != 0:
@@ -61,7 +58,7 @@ def terminals_cycle(s: CardState, state: KernelState, i: int) -> int:
     levels = (levels | state.switches.switch[i, REFERENCE]["level"] << 2) ^ axis["inverted"]
     if levels != axis["levels"]:
         control = get_u16(m, i, addr.AIOCTR)
-        high = (control & 1) | (control >> 1 & 2) | (4 if control & _ORIGIN_HIGH else 0)
+        high = (control & 1) | (control >> 1 & 2) | (4 if control & ORIGIN_HIGH else 0)
         active = ~(levels ^ high) & (levels ^ axis["levels"]) & 7
         put16(m, i, addr.AIOLAT, get_u16(m, i, addr.AIOLAT) | active)
         axis["levels"] = levels
@@ -81,7 +78,7 @@ def probes_cycle(s: CardState, state: KernelState, i: int, actual: float, last: 
     axis["probe_now"] = 0
     if asked == 0 and (actual == last or not math.isfinite(origin)):
         return
-    captures = (get_u16(m, i, addr.ENCPCTR) & _CAPTURE_ON) != 0
+    captures = (get_u16(m, i, addr.ENCPCTR) & CAPTURE_ON) != 0
     if asked != 0:
         put16(m, i, addr.COUNTER, get_u16(m, i, addr.COUNTER) + 1)
         if captures:

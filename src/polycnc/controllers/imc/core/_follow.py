@@ -9,9 +9,11 @@ present velocity and arrives at rest, or to a velocity, straight.
 from __future__ import annotations
 
 from polycnc.controllers.imc.core import _addresses as addr
+from polycnc.controllers.imc.core._ownership import cancel_waiting, end_sync, is_pending, take_over
 from polycnc.controllers.imc.core._planner import ramped, start_velocity, to_units
-from polycnc.controllers.imc.core._state import GEAR, IDLE, SYNC, VELOCITY, CardState
+from polycnc.controllers.imc.core._state import GEAR, GOAL, IDLE, SYNC, VELOCITY, CardState
 from polycnc.controllers.imc.core._words import (
+    FLAG,
     clip32,
     get32,
     get48,
@@ -21,89 +23,128 @@ from polycnc.controllers.imc.core._words import (
     scaled,
     wrap32,
 )
-from polycnc.controllers.imc.core._write_effects import row_of, sync_source
+from polycnc.controllers.imc.core._write_effects import row_of
 from polycnc.kernel import compiled
 
 _ONE_32 = 1 << 32
 
 
 @compiled
-def source_velocity(s: CardState, i: int) -> int:
-    """Return the increment that the gear of axis `i` follows."""
-    at = get_u16(s.memory, i, addr.GEARSRC)
-    row = row_of(s, at, get_u16(s.memory, i, addr.MASTER))
+def _read(s: CardState, at: int, axis: int) -> int:
+    """Return what stands at an address, 0 if nothing does."""
+    row = row_of(s, at, axis)
     return get32(s.memory, row, at) if row >= 0 and at + 1 < s.memory.shape[1] else 0
 
 
 @compiled
+def _take_gear(s: CardState, i: int) -> None:
+    """Follow what the registers of the gear say now."""
+    axis, m = s.axis[i], s.memory
+    axis["gear_source"] = get_u16(m, i, addr.GEARSRC)
+    axis["gear_master"] = get_u16(m, i, addr.MASTER)
+    axis["gear_ratio"] = get48(m, i, addr.GEARRATIO)
+
+
+@compiled
+def _source_velocity(s: CardState, i: int) -> int:
+    """Return the increment that the gear of axis `i` follows; the registers count unless they are another gear's."""
+    axis = s.axis[i]
+    if axis["waits"] == 0:
+        _take_gear(s, i)
+    return _read(s, axis["gear_source"], axis["gear_master"])
+
+
+@compiled
+def _stop_move(s: CardState, i: int, mode: int) -> None:
+    """Let a coupling have the main system, and show that a move has ended."""
+    s.system[0, i]["mode"] = mode
+    put16(s.memory, i, addr.GO, 0)
+
+
+@compiled
 def begin_gear(s: CardState, i: int) -> None:
-    """Engage the gear: from now on the slave follows, at once or when its synchronous motion starts."""
-    axis, row = s.axis[i], s.system[0, i]
-    axis["engaged"] = 1
+    """Engage the gear: from now on the slave follows, with a ramp of its own."""
+    axis, m = s.axis[i], s.memory
+    axis["waits"] = 0
+    axis["prepared"] = 0
+    take_over(s, i)
+    if is_pending(s, i):
+        put16(m, i, addr.STARTSYN, 0)
     axis["armed"] = 0
-    axis["home"] = 0
     axis["locked"] = 0
     axis["rest"] = 0
-    axis["sync_share"] = -1.0
-    if s.memory[i, addr.ENASYN] == 0:
-        row["mode"] = GEAR
+    put16(m, i, addr.ENGEAR, FLAG)
+    _stop_move(s, i, GEAR)
+
+
+@compiled
+def arm_gear(s: CardState, i: int) -> None:
+    """Let the gear wait for startsyn beside whatever moves the slave."""
+    s.axis[i]["waits"] = 1
+    s.axis[i]["armed"] = 0
+    put16(s.memory, i, addr.ENGEAR, FLAG)
 
 
 @compiled
 def leave_gear(s: CardState, i: int) -> None:
-    """Leave the gear: go on with the speed of this moment, or to gearoutvel."""
-    axis = s.axis[i]
-    if axis["engaged"] == 0:
-        return
-    axis["engaged"] = 0
-    end_sync(s, i)
-    if s.system[0, i]["mode"] != GEAR:  # it waits for its synchronous motion to start
-        return
-    velocity = get32(s.memory, i, addr.VEL)
-    if s.memory[i, addr.GEAROUTMOD] != 0:
-        velocity = get32(s.memory, i, addr.GEAROUTVEL)
-    elif axis["locked"] != 0:
-        velocity = clip32(scaled(source_velocity(s, i), get48(s.memory, i, addr.GEARRATIO))[0])
-        put32(s.memory, i, addr.VEL, velocity)  # a locked slave has that speed now
-    put32(s.memory, i, addr.TGVEL, velocity)
-    start_velocity(s, 0, i, velocity)
+    """Leave the gear: go on with the speed of this moment, or to gearoutvel; forget one that waits."""
+    axis, m = s.axis[i], s.memory
+    engaged = s.system[0, i]["mode"] == GEAR
+    velocity = get32(m, i, addr.VEL)
+    if engaged and m[i, addr.GEAROUTMOD] != 0:
+        velocity = get32(m, i, addr.GEAROUTVEL)
+    elif engaged and axis["locked"] != 0:
+        velocity = clip32(scaled(_source_velocity(s, i), axis["gear_ratio"])[0])
+        put32(m, i, addr.VEL, velocity)  # a locked slave has that speed now
+    if axis["waits"] != 0:
+        cancel_waiting(s, i)
+    if engaged:
+        end_sync(s, i)
+        put32(m, i, addr.TGVEL, velocity)
+        start_velocity(s, 0, i, velocity)
 
 
 @compiled
 def begin_sync(s: CardState, i: int) -> None:
-    """Start the synchronous motion whose source has been noted when startsyn was written."""
+    """Start what waits for startsyn: the engagement of a gear, or a synchronous motion."""
     axis, m = s.axis[i], s.memory
+    geared = axis["waits"] != 0 or s.system[0, i]["mode"] == GEAR
+    geared = geared and m[i, addr.SYNTYPE] == 0 and axis["prepared"] != GOAL
+    axis["waits"] = 0
+    axis["prepared"] = 0
+    take_over(s, i)
+    put16(m, i, addr.STARTSYN, FLAG)
+    put16(m, i, addr.ENASYN, FLAG)
+    put16(m, i, addr.ENGEAR, FLAG if geared else 0)
     span = get32(m, i, addr.SYNSRCVAR)
     axis["sync_share"] = 0.0
+    axis["sync_from"] = axis["sync_noted"]
+    axis["sync_source"] = get_u16(m, i, addr.SYNSRC)
+    axis["sync_axis"] = get_u16(m, i, addr.SYNAXIS)
+    axis["sync_span"] = span
+    axis["sync_type"] = m[i, addr.SYNTYPE]
+    axis["sync_target"] = get32(m, i, addr.TGVEL)
     axis["sync_way"] = 0
     axis["sync_part"] = 0.0
     axis["sync_velocity"] = get32(m, i, addr.VEL) / 65536.0
-    if axis["engaged"] != 0:
-        s.system[0, i]["mode"] = GEAR
+    _stop_move(s, i, GEAR if geared else SYNC)
+    if geared:
         return
-    s.system[0, i]["mode"] = SYNC
     distance = get32(m, i, addr.SLAVEDIST) * 65536
     if m[i, addr.SLAVEABS] != 0:
         distance -= get48(m, i, addr.POS_FRACTION)
     axis["sync_distance"] = distance / 65536.0
-    axis["sync_slope"] = axis["sync_velocity"] * span if get_u16(m, i, addr.SYNSRC) == addr.TICKS else 0.0
-
-
-@compiled
-def end_sync(s: CardState, i: int) -> None:
-    """Leave synchronous motion, complete or not."""
-    s.axis[i]["sync_share"] = -1.0
-    put16(s.memory, i, addr.STARTSYN, 0)
-    put16(s.memory, i, addr.ENASYN, 0)
+    axis["sync_slope"] = axis["sync_velocity"] * span if axis["sync_source"] == addr.TICKS else 0.0
 
 
 @compiled
 def _share(s: CardState, i: int) -> float:
     """Return which part of the pacing change has been covered, from 0 on."""
-    span = get32(s.memory, i, addr.SYNSRCVAR)
-    if span <= 0:
+    axis = s.axis[i]
+    if axis["sync_span"] <= 0:
         return 1.0
-    return abs(wrap32(sync_source(s, i) - s.axis[i]["sync_from"])) / span
+    source = _read(s, axis["sync_source"], axis["sync_axis"])
+    return float(abs(wrap32(source - axis["sync_from"])) / axis["sync_span"])
 
 
 @compiled
@@ -145,7 +186,8 @@ def _led_in(s: CardState, i: int, source: int, ratio: int) -> int:
 @compiled
 def _gear_step(s: CardState, i: int) -> int:
     axis, m = s.axis[i], s.memory
-    source, ratio = source_velocity(s, i), get48(m, i, addr.GEARRATIO)
+    source = _source_velocity(s, i)
+    ratio = axis["gear_ratio"]
     if axis["sync_share"] >= 0.0:
         return _led_in(s, i, source, ratio)
     step, fraction = scaled(source, ratio)
@@ -178,20 +220,20 @@ def _position_step(s: CardState, i: int, now: float) -> int:
 
 @compiled
 def _sync_step(s: CardState, i: int) -> int:
-    axis, m, row = s.axis[i], s.memory, s.system[0, i]
+    axis, row = s.axis[i], s.system[0, i]
     if axis["sync_share"] < 0.0:
         row["mode"] = IDLE
         return 0
     before = axis["sync_share"]
     now = max(_share(s, i), before)
     axis["sync_share"] = now
-    if m[i, addr.SYNTYPE] != 0:
+    if axis["sync_type"] != 0:
         step = _position_step(s, i, now)
         if now >= 1.0:
             row["mode"] = IDLE
             end_sync(s, i)
         return step
-    target = get32(m, i, addr.TGVEL)
+    target = int(axis["sync_target"])
     if now >= 1.0:
         row["mode"] = VELOCITY
         row["target"] = target

@@ -1,7 +1,8 @@
 """Search the origin: run to an edge of the origin switch, come back to that place once or twice, count index pulses.
 
-What to do is in homeseq. The bits are this project's own: the one value that is known from programs, 0014h (origin
-switch only, positive direction), means the same here.
+What to do is in homeseq (`_bits`): the one value that is known from programs, 0014h (origin switch only, positive
+direction), means the same here. The closing move has the speed of the stage that it ends, as homing uses highvel and
+lowvel alone (Manual 004, 4.3).
 """
 
 from __future__ import annotations
@@ -11,19 +12,20 @@ import math
 import numpy as np
 
 from polycnc.controllers.imc.core import _addresses as addr
+from polycnc.controllers.imc.core._bits import (
+    HOME_GO_TO,
+    HOME_INDEX,
+    HOME_NEGATIVE,
+    HOME_RETURNS,
+    HOME_RISING,
+    HOME_SWITCH,
+)
 from polycnc.controllers.imc.core._origin import set_origin_at
 from polycnc.controllers.imc.core._planner import begin_move, start_velocity
 from polycnc.controllers.imc.core._state import IDLE, CardState
 from polycnc.controllers.imc.core._words import get32, get_u16, put16, put32
 from polycnc.kernel import REFERENCE, KernelState, compiled
 
-# homeseq
-HOME_NEGATIVE = 0x01
-HOME_GO_TO = 0x02  # in the end, go to homestpos instead of stopping
-HOME_SWITCH = 0x04
-HOME_INDEX = 0x08
-HOME_RISING = 0x10
-HOME_RETURNS = 0x60  # how often the axis comes back to the edge, 0 to 2
 _RETURNS_SHIFT = 5
 
 # Phases.
@@ -128,14 +130,23 @@ def _count(s: CardState, state: KernelState, i: int, beyond: float) -> bool:
 
 
 @compiled
+def _closing_speed(sequence: int) -> int:
+    """Return the parameter of the speed that the last stage of a search has."""
+    comes_back = sequence & HOME_SWITCH and sequence & HOME_RETURNS
+    return addr.LOWVEL if comes_back else addr.HIGHVEL
+
+
+@compiled
 def _found(s: CardState, state: KernelState, i: int) -> None:
     """Set the origin at `home_edge`, and stop or go where it is asked for."""
     axis, m = s.axis[i], s.memory
     set_origin_at(s, i, state.servo.actual[i] - axis["home_edge"])
     axis["home"] = ENDING
-    if get_u16(m, i, addr.HOMESEQ) & HOME_GO_TO:
+    sequence = get_u16(m, i, addr.HOMESEQ)
+    if sequence & HOME_GO_TO:
+        put32(m, i, addr.DIST, 0)
         put32(m, i, addr.TGPOS, get32(m, i, addr.HOMESTPOS))
-        begin_move(s, 0, i)
+        begin_move(s, 0, i, _closing_speed(sequence))
     else:
         start_velocity(s, 0, i, 0)
 

@@ -10,13 +10,22 @@ from __future__ import annotations
 import math
 
 from polycnc.controllers.imc.core import _addresses as addr
-from polycnc.controllers.imc.core._state import GIVEN, IDLE, MOVE, RELEASED, VELOCITY, CardState
+from polycnc.controllers.imc.core._bits import INSERR
+from polycnc.controllers.imc.core._state import (
+    GIVEN,
+    IDLE,
+    MOVE,
+    RELEASED,
+    VELOCITY,
+    CardState,
+)
 from polycnc.controllers.imc.core._words import (
     FLAG,
     ONE,
     clip32,
     get32,
     get48,
+    get_u16,
     put16,
     put32,
     put48,
@@ -63,7 +72,7 @@ def advance_system(s: CardState, layer: int, i: int, step: int) -> None:
 
 @compiled
 def _plan_move(s: CardState, layer: int, i: int) -> None:
-    """Plan the way that is left of a move, from the velocity in memory; a move that cannot be is over."""
+    """Plan the way that is left of a move, from the velocity in memory; one that has no speed any more brakes."""
     m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
     k = layer * s.axis.shape[0] + i
     row["left"] -= row["done"]
@@ -71,13 +80,14 @@ def _plan_move(s: CardState, layer: int, i: int) -> None:
     row["cycles"] = 0
     row["paused"] = 0
     row["stale"] = 0
+    speed = get32(m, i, row["speed_at"])
     count = plan_profile(
         s.phases[k],
         0.0,
         get32(m, i, o + addr.VEL) / 65536.0,
         row["left"] / 65536.0,
         0.0,
-        get32(m, i, o + addr.MAXVEL) / 65536.0,
+        (abs(speed) if s.axis[i]["home"] != 0 else speed) / 65536.0,
         get32(m, i, o + addr.ACCEL) / 65536.0,
         get32(m, i, o + addr.DECEL) / 65536.0,
         0.0,
@@ -85,8 +95,8 @@ def _plan_move(s: CardState, layer: int, i: int) -> None:
     )
     row["phases"] = count
     if count < 0:
-        row["mode"] = IDLE
-        put16(m, i, o + addr.GO, 0)
+        refuse_move(s, layer, i)
+        start_velocity(s, layer, i, 0)
         return
     row["duration"] = profile_duration(s.phases[k], count)
 
@@ -181,7 +191,7 @@ def _move_cycle(s: CardState, layer: int, i: int) -> int:
     if row["stale"] != 0 or row["paused"] != 0 or velocity != row["velocity"]:
         _plan_move(s, layer, i)
         if row["mode"] != MOVE:
-            return 0
+            return _velocity_cycle(s, layer, i)
     row["cycles"] += 1
     at = row["left"]
     if row["cycles"] < row["duration"] - REST_SLACK:
@@ -197,8 +207,23 @@ def _move_cycle(s: CardState, layer: int, i: int) -> int:
 
 
 @compiled
-def begin_move(s: CardState, layer: int, i: int) -> bool:
-    """Begin the move that the registers describe; False if its target is beyond 32 bits."""
+def refuse_move(s: CardState, layer: int, i: int) -> None:
+    """Show that a move is a bad instruction: it has no speed, acceleration or deceleration."""
+    put16(s.memory, i, layer * addr.PCS + addr.GO, 0)
+    put16(s.memory, i, addr.ERROR, get_u16(s.memory, i, addr.ERROR) | INSERR)
+
+
+@compiled
+def can_move(s: CardState, layer: int, i: int) -> bool:
+    """Tell whether the registers of a coordinate system let it move to a target."""
+    m, o = s.memory, layer * addr.PCS
+    speed, accel = get32(m, i, o + addr.MAXVEL), get32(m, i, o + addr.ACCEL)
+    return bool(speed > 0 and accel > 0 and get32(m, i, o + addr.DECEL) > 0)
+
+
+@compiled
+def begin_move(s: CardState, layer: int, i: int, speed_at: int) -> bool:
+    """Begin the move that the registers describe, as fast as that parameter says; False if beyond 32 bits."""
     m, o, row = s.memory, layer * addr.PCS, s.system[layer, i]
     position = get48(m, i, o + addr.POS_FRACTION)
     distance = get32(m, i, o + addr.DIST)
@@ -214,6 +239,7 @@ def begin_move(s: CardState, layer: int, i: int) -> bool:
         row["left"] = get32(m, i, o + addr.TGPOS) * ONE - position
     row["done"] = 0
     row["followed"] = get32(m, i, o + addr.TGPOS)
+    row["speed_at"] = speed_at
     row["mode"] = MOVE
     row["stale"] = 1
     return True

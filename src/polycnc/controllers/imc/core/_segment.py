@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 
 from polycnc.controllers.imc.core import _addresses as addr
-from polycnc.controllers.imc.core._errors import take_over
+from polycnc.controllers.imc.core._bits import INSERR
 from polycnc.controllers.imc.core._instructions import ARC, HEADER, POINTS
+from polycnc.controllers.imc.core._ownership import take_over
 from polycnc.controllers.imc.core._planner import to_units
 from polycnc.controllers.imc.core._queue import cell, drop_head, drop_point
 from polycnc.controllers.imc.core._state import (
     COORDINATES,
     GIVEN,
     IDLE,
-    INSERR,
     PFIFO1,
     RELEASED,
     SPACES,

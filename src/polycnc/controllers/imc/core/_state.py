@@ -39,10 +39,7 @@ GEAR = 3
 SYNC = 4
 GIVEN = 5  # a path space or a contour says how much
 
-# Bits of an axis' error.
-PLIM, NLIM, PSOF, NSOF, STOP, ALM = 0x1, 0x2, 0x4, 0x8, 0x10, 0x40
-POSERR_LIMIT, TGPOS_RANGE, POS_RANGE, INSERR = 0x80, 0x200, 0x400, 0x1000
-VEL_LIMIT, ACC_LIMIT = 0x2000, 0x4000
+GOAL = 2  # of `prepared`
 
 # What stops `run_cycles`, bits of `attention` and of its mask.
 AXIS_RESTED = 1  # moving of an axis became 0
@@ -78,6 +75,7 @@ SYSTEM_ROW = np.dtype(
         ("paused", np.int64),
         ("stale", np.int64),  # of MOVE: it has to be planned
         ("followed", np.int64),  # target that a tracking move was planned for
+        ("speed_at", np.int64),  # of MOVE: address of the parameter that limits its speed
     ],
     align=True,
 )
@@ -109,9 +107,25 @@ AXIS_ROW = np.dtype(
         ("rest", np.int64),  # of the product ratio times increment, 2**-48
         ("locked", np.int64),
         ("ratio", np.int64),  # that it is locked to
-        ("engaged", np.int64),
+        (
+            "gear_source",
+            np.int64,
+        ),  # address that the gear follows; while another gear waits, registers are its
+        ("gear_master", np.int64),
+        ("gear_ratio", np.int64),
+        ("waits", np.int64),  # a gear waits for startsyn
+        (
+            "prepared",
+            np.int64,
+        ),  # synsrcvar has been written and nothing started since: 2 with a goal in mcstgvel
         ("armed", np.int64),  # synsrcvar has been written and mcstgvel not since: 2 in this turn, 1 before
+        ("sync_noted", np.int64),  # source when startsyn or enasyn was written
         ("sync_from", np.int64),  # source at the start
+        ("sync_source", np.int64),  # its address
+        ("sync_axis", np.int64),
+        ("sync_span", np.int64),  # change of the source over the whole motion
+        ("sync_type", np.int64),  # 0 to a velocity
+        ("sync_target", np.int64),  # that velocity
         ("sync_share", np.float64),  # done
         ("sync_velocity", np.float64),  # at the start, pulses per cycle
         ("sync_distance", np.float64),  # to go

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from polycnc.controllers.imc.core import _addresses as addr
+from polycnc.controllers.imc.core._ownership import is_pending
 from polycnc.controllers.imc.core._parameters import WORDS
-from polycnc.controllers.imc.core._state import CAPTURES, QUEUES, CardState
+from polycnc.controllers.imc.core._state import CAPTURES, GEAR, GOAL, QUEUES, CardState
 from polycnc.controllers.imc.core._words import FLAG, get32, get48, get_u16, put16, put32, put48, wrap32
 from polycnc.kernel import compiled, entry
 
@@ -71,8 +72,9 @@ def _couples_at_once(s: CardState, i: int, action: int) -> bool:
     m = s.memory
     if action == addr.DO_ENGEAR:
         return bool(m[i, addr.ENASYN] == 0)
-    if action == addr.DO_STARTSYN:
-        return bool(m[i, addr.STARTSYN] != 0 and m[i, addr.ENASYN] != 0)
+    if action in (addr.DO_STARTSYN, addr.DO_ENASYN):
+        both = m[i, addr.STARTSYN] != 0 and m[i, addr.ENASYN] != 0
+        return bool(both and (action == addr.DO_STARTSYN or s.axis[i]["sync_share"] < 0.0))
     return bool(action == addr.DO_GOHOME)
 
 
@@ -102,8 +104,13 @@ def _command(s: CardState, i: int, action: int, value: int) -> None:
         s.card[0]["hold"] = 1
     if action == addr.DO_SYNSRCVAR:
         row["armed"] = 2
-    if action == addr.DO_STARTSYN:
-        row["sync_from"] = sync_source(s, i)
+        row["prepared"] = 1
+        if is_pending(s, i):  # what is set up now starts when startsyn is set after it
+            put16(s.memory, i, addr.STARTSYN, 0)
+    elif action == addr.DO_ENGEAR:
+        row["armed"] = 0
+    elif action in (addr.DO_STARTSYN, addr.DO_ENASYN):
+        row["sync_noted"] = sync_source(s, i)
     if addr.DO_GO_MCS <= action <= addr.DO_GOHOME and value != 0 and s.memory[i, addr.RUN] != 0:
         second = action in (addr.DO_GO_PCS, addr.DO_TGVEL_PCS)
         put16(s.memory, i, _PCS_MOVING if second else addr.SYSTEM_MOVING, FLAG)
@@ -169,17 +176,21 @@ def write_word(s: CardState, at: int, axis: int, value: int) -> None:
 def _is_goal(s: CardState, axis: int, value: int) -> bool:
     """Tell whether mcstgvel is written as the goal of a synchronous motion that is being set up, not as a command.
 
-    It is the first time behind synsrcvar, as the functions of synchronous motion do. A stop that comes later than
-    synsrcvar is a stop all the same.
+    It is the first write after synsrcvar, as the functions of synchronous motion do. A stop that comes in a later
+    cycle than synsrcvar is a stop all the same, and so is any velocity then on a gear.
     """
     if not 0 <= axis < s.axis.shape[0]:
         return False
     row = s.axis[axis]
     armed = row["armed"]
     row["armed"] = 0
-    if armed == 0 or row["engaged"] != 0 or s.memory[axis, addr.SYNTYPE] != 0:
+    if armed == 0 or s.memory[axis, addr.SYNTYPE] != 0:
         return False
-    return bool(armed == 2 or wrap32(value) != 0)
+    geared = row["waits"] != 0 or s.system[0, axis]["mode"] == GEAR
+    if armed == 2 or (wrap32(value) != 0 and not geared):
+        row["prepared"] = GOAL
+        return True
+    return False
 
 
 @compiled

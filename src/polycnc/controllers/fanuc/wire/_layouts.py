@@ -1,15 +1,22 @@
-"""The commands by code: the name of the library's function, its arguments, and what is in its data and replies.
+"""The commands by code: the name of the library's function, its arguments, and the records in its data and replies.
 
-A field is `name:code`; codes are those of `struct` (big-endian), `8` for a number of eight bytes, `sN` for a text of N
-bytes, `?N` for N bytes of which nothing is known, `*` for the rest, `4*`/`8*` for one value for each axis that the
-series has room for. `each` repeats to the end.
+Client, server, dissector and reference page read this table. `each` and `data_each` repeat to the end.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
-from polycnc.controllers.fanuc.wire import CNC, PMC
+from polycnc.controllers.fanuc.wire._blocks import CNC, PMC, Request
+from polycnc.controllers.fanuc.wire._records import record
+
+Values: TypeAlias = Mapping[str, Any]
+Rows: TypeAlias = Sequence[Any]
+"""Records that repeat: mappings by name, or plain values where a record has one field."""
+Content: TypeAlias = Values | Rows | tuple[Values, Rows] | None
+"""What a payload holds: the head, what repeats, or both."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +29,57 @@ class Layout:
     each: str = ""
     data: str = ""
     data_each: str = ""
+
+    def pack(self, content: Content) -> bytes:
+        """Return the payload of a reply."""
+        return _packed(self.head, self.each, content)
+
+    def unpack(self, payload: bytes) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+        """Return what a reply holds: its head, and what repeats.
+
+        Raises:
+            ProtocolError: It holds something else.
+        """
+        return _unpacked(self.head, self.each, payload)
+
+    def pack_data(self, content: Content) -> bytes:
+        """Return the data of a request."""
+        return _packed(self.data, self.data_each, content)
+
+    def unpack_data(self, data: bytes) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+        """Return what the data of a request hold.
+
+        Raises:
+            ProtocolError: They hold something else.
+        """
+        return _unpacked(self.data, self.data_each, data)
+
+
+def _packed(head: str, each: str, content: Content) -> bytes:
+    if isinstance(content, Mapping):
+        return record(head).pack(content)
+    values, rows = content if isinstance(content, tuple) else (None, content)
+    first = record(head).pack(values) if values is not None else b""
+    return first + record(each).pack_all(rows) if rows else first
+
+
+def _unpacked(head: str, each: str, data: bytes) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    first = record(head).unpack(data)
+    at, rows = record(head).size, []
+    size = record(each).size
+    while each and at is not None and at < len(data):
+        rows.append(record(each).unpack(data, at))
+        at = None if size is None else at + size
+    return first, rows
+
+
+def layout_of(request: Request) -> Layout:
+    """Return what is known of a request's command.
+
+    Raises:
+        KeyError: Nothing is.
+    """
+    return LAYOUTS[request.target, request.command]
 
 
 _TOOL_LIFE = "cnc_rdngrp"
@@ -107,7 +165,7 @@ LAYOUTS: dict[tuple[int, int], Layout] = {
     (CNC, 0xF0): Layout("cnc_rdpdf_line", "first count", "text:s*", data="path:s256"),
     (CNC, 0xFC): Layout("cnc_exeprgname2", "", "path:s*"),
     (CNC, 0xFD): Layout("cnc_loadtorq", "motor axis", "unknown:?4"),
-    (CNC, 0x120): Layout("cnc_rdtimer", "timer", "minutes:<i milliseconds:<i"),
+    (CNC, 0x120): Layout("cnc_rdtimer", "timer", "minutes:<i milliseconds:<i"),  # seen on two series
     (PMC, 0x8001): Layout("pmc_rdpmcrng", "first last area type", "values:*"),
     (PMC, 0x8002): Layout("pmc_wrpmcrng", "first last area type", data="values:*"),
     (PMC, 0x8003): Layout("pmc_rdpmcinfo", "", "unknown:*"),
@@ -115,3 +173,10 @@ LAYOUTS: dict[tuple[int, int], Layout] = {
 # fmt: on
 AREAS = "GFYXARTKCD"
 """Letters of PMC areas by their numbers."""
+PMC_WIDTHS = (1, 2, 4)
+"""Bytes of a value of the PMC, by its type."""
+POSITION_KINDS = {
+    0: "absolute", 1: "machine", 2: "relative", 3: "distance", 4: "absolute", 6: "relative", 7: "distance", 8: "skip",
+    9: "servo_delay", 10: "acceleration_delay",
+}  # fmt: skip
+"""What is read as a position, by its kind; a client asks for the last kind of a name."""

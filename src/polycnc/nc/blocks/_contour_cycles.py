@@ -1,0 +1,191 @@
+"""Turning cycles about a contour, which stands in other blocks of the program: G70 to G73.
+
+Depths, retracts and tapers are radii, allowances along X diameters where X is one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from polycnc.nc.blocks import _motion as motion
+from polycnc.nc.blocks import _turning_moves as turns
+from polycnc.nc.blocks._block import BlockContext
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._contours import (
+    ContourTrouble,
+    contour_blocks,
+    holds_cycle,
+    names_x_and_z,
+    numbered_block,
+    without_compensation,
+)  # fmt: skip
+from polycnc.nc.blocks._corner_blocks import refuse_open
+from polycnc.nc.blocks._handlers import carries_out
+from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline
+from polycnc.nc.blocks._outcomes import NEXT
+from polycnc.nc.blocks._turning import Piece, Roughing, Step, TurningError, exchanged, repeat, rough
+from polycnc.nc.blocks._turning_pockets import rough_pockets
+from polycnc.nc.blocks._word_checks import refuse_unused
+from polycnc.nc.blocks._words import GWord, whole_number
+from polycnc.nc.modal._actions import Action
+from polycnc.nc.modal._modal import length_scale
+from polycnc.nc.text._place import Place
+from polycnc.nc.text._scan import STATEMENT
+from polycnc.nc.text._scan_plain import Block
+
+
+@carries_out(Action.TURN_FINISH)
+def finish(block: BlockContext, g: GWord) -> list[QueueItem]:
+    """Return the moves of the contour, executed as its blocks stand there, and the rapid back."""
+    if _gives_parameters(block):
+        raise block.problem(f"G{g.code} without a contour", "Add P and Q, its first and last block.", g.word)
+    blocks = _contour(block, g)
+    x, z = turns.axes(block)
+    start = block.start
+    refuse_unused(block)
+    found = [item for each in blocks for item in _executed(block, each, block.after, g)]
+    refuse_open(block, block.after, g)
+    back = Step((start[x], start[z]), rapid=True)
+    return [*found, *turns.items(block, [back], block.start)]
+
+
+@carries_out(Action.TURN_ROUGH, Action.FACE_ROUGH, Action.TURN_REPEAT)
+def rough_contour(block: BlockContext, g: GWord) -> list[QueueItem]:
+    """Return the moves of a cycle that cuts up to the contour; none where the block gives parameters only."""
+    if _gives_parameters(block):
+        set_parameters(block, g)
+        return []
+    blocks = _contour(block, g)
+    state = block.after.copy()
+    moves = [
+        item
+        for each in blocks
+        for item in _executed(block, without_compensation(each, block.dialect), state, g, measured=True)
+        if isinstance(item, (Line, Arc))
+    ]
+    refuse_open(block, state, g)
+    both = names_x_and_z(blocks[0], block.dialect) if blocks else False
+    return contour_cycle(block, g, moves, both_axes=both)
+
+
+def _gives_parameters(block: BlockContext) -> bool:
+    return "P" not in block.words.by_letter and "Q" not in block.words.by_letter
+
+
+def _executed(
+    block: BlockContext, other: Block, state: ChannelState, g: GWord, *, measured: bool = False
+) -> list[QueueItem]:
+    """Execute a block of a contour within the present block; return its moves."""
+    inner = block.within(other, state, measured=measured)
+    block.rules.execute(inner)
+    if inner.outcome is not NEXT or any(isinstance(item, Spline) for item in inner.items):
+        raise inner.problem(*_moves_only(g), None)
+    motion.note_position(inner)
+    return inner.items
+
+
+def _moves_only(g: GWord) -> tuple[str, str]:
+    return f"a contour of G{g.code} with a call, a cycle, a stop or an end", "Let it hold moves only."
+
+
+def _contour(block: BlockContext, g: GWord) -> list[Block]:
+    """Return the blocks of the contour; where they follow here, the program goes on after them."""
+    numbers = _contour_numbers(block, g)
+    text, here, rules = block.text, block.block.end, block.rules.text_rules
+    begin = numbered_block(text, numbers[0], here, len(text), rules)
+    blocks = contour_blocks(text, begin or numbered_block(text, numbers[0], 0, here, rules), numbers, rules)
+    if isinstance(blocks, ContourTrouble):
+        raise block.problem(*blocks, g.word)
+    if any(each.flags & STATEMENT for each in blocks):
+        raise block.problem(
+            f"a contour of G{g.code} with statements is not supported yet", "Write plain words.", g.word
+        )
+    if any(holds_cycle(each, block.dialect) for each in blocks):
+        raise block.problem(*_moves_only(g), g.word)
+    block.goes_on = Place(text, blocks[-1].end, blocks[-1].line + 1) if begin else None
+    return [each for each in blocks if each.words]
+
+
+def _contour_numbers(block: BlockContext, g: GWord) -> tuple[int, int]:
+    """Take P and Q, the first and the last block."""
+    numbers = []
+    for letter in "PQ":
+        word = block.words.take(letter)
+        if word is None:
+            raise block.problem(
+                f"G{g.code} without {letter}", "Give P and Q, the first and last block.", g.word
+            )
+        numbers.append(whole_number(word, "a block number", block.problem))
+    return numbers[0], numbers[1]
+
+
+def set_parameters(block: BlockContext, g: GWord) -> None:
+    """Keep what the first block of G71, G72 or G73 says."""
+    turning = block.after.turning
+    match g.action:
+        case Action.TURN_ROUGH:
+            depth, escape = turns.length(block, "U"), turns.length(block, "R")
+            turning = replace(turning, rough=(_or(depth, turning.rough[0]), _or(escape, turning.rough[1])))
+        case Action.FACE_ROUGH:
+            depth, escape = turns.length(block, "W"), turns.length(block, "R")
+            turning = replace(turning, face=(_or(depth, turning.face[0]), _or(escape, turning.face[1])))
+        case _:
+            u, w = turns.length(block, "U"), turns.length(block, "W")
+            passes = block.words.take("R")
+            count = (
+                turning.relief[2]
+                if passes is None
+                else whole_number(passes, "a number of passes", block.problem)
+            )
+            turning = replace(turning, relief=(_or(u, turning.relief[0]), _or(w, turning.relief[1]), count))
+    block.after.turning = turning
+
+
+def contour_cycle(
+    block: BlockContext, g: GWord, moves: Sequence[Line | Arc], *, both_axes: bool
+) -> list[QueueItem]:
+    """Return the moves of G71, G72 or G73 about a contour; `both_axes`: its first block names X and Z.
+
+    Raises:
+        ProgramError: the contour cannot be roughed, a word makes no sense, a limit would be passed.
+    """
+    turns.refuse_compensation(block)
+    turning = block.after.turning
+    u, w = turns.length(block, "U") or 0.0, turns.length(block, "W") or 0.0
+    modal, (x, _) = block.after.modal, turns.axes(block)
+    is_diameter = float(modal.scale[x]) < 0.75 * length_scale(modal)
+    allowance = u * (0.5 if is_diameter else 1.0), w
+    pieces = _pieces(block, moves)
+    if not pieces:
+        raise block.problem(f"G{g.code}: the contour moves nothing", "Check P and Q.", g.word)
+    first_rapid = bool(getattr(moves[0], "rapid", False))
+    cut = rough_pockets if both_axes else rough
+    try:
+        if g.action is Action.TURN_ROUGH:
+            steps = cut(pieces, Roughing(*turning.rough, allowance), first_rapid=first_rapid)
+        elif g.action is Action.FACE_ROUGH:
+            turned = [piece.exchanged() for piece in pieces]
+            numbers = Roughing(*turning.face, allowance[::-1])
+            steps = exchanged(cut(turned, numbers, first_rapid=first_rapid))
+        else:
+            relief = turning.relief
+            steps = repeat(pieces, relief[:2], relief[2], allowance, first_rapid=first_rapid)
+    except TurningError as error:
+        raise block.problem(f"G{g.code}: {error.what}", error.hint, g.word) from None
+    return list(turns.items(block, steps, block.start))
+
+
+def _pieces(block: BlockContext, moves: Sequence[Line | Arc]) -> list[Piece]:
+    pieces = []
+    for move in moves:
+        start, end = turns.plane_point(block, move.start), turns.plane_point(block, move.end)
+        if isinstance(move, Arc):
+            pieces.append(Piece(start, end, (move.center[1], move.center[0]), move.sweep_rad))
+        elif start != end:
+            pieces.append(Piece(start, end))
+    return pieces
+
+
+def _or(value: float | None, other: float) -> float:
+    return other if value is None else value

@@ -1,0 +1,39 @@
+"""Lines that are no words: what is wrong with them."""
+
+from __future__ import annotations
+
+from polycnc.errors import ProgramError
+from polycnc.nc.dialect._dialect import Dialect
+from polycnc.nc.text._not_words import slip, statements
+from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan_plain import Block
+
+_LANGUAGES = (
+    "Name the dialect of the control that they are for, like --dialect fanuc for custom macros or bosch for CPL, "
+    "or post the program without them."
+)
+
+
+class NotBlocks:
+    """Say what is wrong with lines that are no words; statements of a language make one error a program."""
+
+    def __init__(self, dialect: Dialect) -> None:
+        self._name = dialect.name
+        self._rules = dialect.text_rules()
+        self._known: tuple[ProgramText, int, int] | None = None  # a program, its first statement, how many
+
+    def problem(self, text: ProgramText, block: Block) -> ProgramError:
+        """Return what is wrong with a line."""
+        wrong = slip(text.content[block.offset : text.line_end(block.offset)].decode("latin-1"), self._rules)
+        if wrong is not None:
+            position = text.position(block.offset + wrong.place)
+            return ProgramError(wrong.what, position=position, hint=wrong.hint)
+        if self._known is None or self._known[0] is not text:
+            self._known = (text, *statements(text, self._rules))
+        _, first, count = self._known
+        blocks = "1 block has them" if count <= 1 else f"{count} blocks have them, this is the first"
+        return ProgramError(
+            f"dialect '{self._name}' reads no variables, expressions or program flow ({blocks})",
+            position=text.line_position(first or block.line),
+            hint=_LANGUAGES,
+        )

@@ -1,0 +1,108 @@
+"""Compensation of tools: their data, length (G43, G44, G49, H), and radius (G40, G41, G42, D)."""
+
+from __future__ import annotations
+
+from polycnc.machine import ToolConfig
+from polycnc.nc.blocks._block import BlockContext
+from polycnc.nc.blocks._channel_state import of_another_channel
+from polycnc.nc.blocks._compensation import Side
+from polycnc.nc.blocks._tip import TIPS, TipShift
+from polycnc.nc.blocks._words import whole_number
+from polycnc.nc.modal._actions import Group
+from polycnc.nc.modal._modal import NO_AXIS
+
+
+def tool_data(block: BlockContext, tool: int) -> ToolConfig:
+    """Return the data of a tool, zeros with a message if there are none; tool 0 is no tool."""
+    tools = block.after.machine.tools
+    if block.after.tables.has_tool(tool):
+        return block.after.tables.tool(tool)
+    if tool and not tools:
+        block.note("the machine has no tool table: lengths and radii of all tools are 0 mm")
+    elif tool:
+        block.note(f"tool {tool} is not in the machine's tool table: its length and radius are 0 mm")
+    return ToolConfig()
+
+
+def compensate_length(block: BlockContext) -> None:
+    """Carry out tool length compensation: G43, G44, G49 and H.
+
+    Raises:
+        ProgramError: there is no Z axis, or H is no tool.
+    """
+    g = block.words.g.get(Group.LENGTH_COMPENSATION)
+    state, coordinates = block.after, block.after.coordinates
+    sign = coordinates.length_sign if g is None else g.value
+    if g is None and "H" not in block.words.by_letter:
+        return
+    if g is None and sign == 0:
+        if not block.dialect.h_compensates:
+            return  # an H that is left over is reported as such
+        sign = 1
+    if block.dialect.h_compensates and g is None and block.words.by_letter["H"].value == 0.0:
+        sign = 0
+    h_word = block.words.take("H")
+    axis = int(block.after.modal.letter_axis[ord("Z") - ord("A")])
+    if axis == NO_AXIS:
+        if sign and of_another_channel("Z") in block.after.axis_names:
+            raise block.problem(
+                "tool length compensation along axis Z, which belongs to another channel",
+                "Take it out, or execute the program in that channel.",
+                h_word if g is None else g.word,
+            )
+        if sign and g is not None:
+            raise block.problem(
+                "tool length compensation on a machine without a Z axis", "Take it out.", g.word
+            )
+        return
+    if sign == 0:
+        state.place_zero(coordinates.with_length({}, 0))
+        block.after.length_tool = 0
+        return
+    tool = block.after.tool if h_word is None else whole_number(h_word, "a tool offset number", block.problem)
+    data = tool_data(block, tool)
+    block.after.length_tool = tool
+    shift = {axis: sign * (data.length_mm + data.wear_length_mm)}
+    state.place_zero(coordinates.with_length(shift, sign))
+
+
+def compensate_radius(block: BlockContext) -> None:
+    """Carry out G40, G41, G42 and D; `block.change` changes the stage, when all else is right.
+
+    Raises:
+        ProgramError: D is no tool, or the plane is not there.
+    """
+    state = block.after
+    g = block.words.g.get(Group.RADIUS_COMPENSATION)
+    d_word = block.words.take("D")
+    if d_word is not None:
+        state.compensation_tool = whole_number(d_word, "a tool offset number", block.problem)
+    if g is not None:
+        state.side = g.value
+        if state.side == 0:
+            block.change = state.compensation.cancel
+            return
+    elif state.side == 0 or d_word is None:
+        return
+    plane = block.plane("radius compensation", None if g is None else g.word)
+    tool = state.tool if state.compensation_tool is None else state.compensation_tool
+    data = tool_data(block, tool)
+    radius = data.radius_mm + data.wear_radius_mm
+    radius += state.tables.tool_radius(state.placement.compensations)
+    tip = _tip(block, data, radius)
+
+    def start() -> None:
+        state.compensation = state.compensation.copy()
+        state.compensation.start(Side(state.side), radius, plane, block.line)
+        if tip != state.tip.vector:
+            state.tip = TipShift(tip)
+
+    block.change = start
+
+
+def _tip(block: BlockContext, data: ToolConfig, radius: float) -> tuple[tuple[int, float], ...]:
+    """Return the way from the middle of a tool's nose to its tip, by axis; none for a tool without a tip."""
+    letters = block.after.modal.letter_axis
+    ways = zip("XZ", TIPS[data.tip], strict=True)
+    named = [(int(letters[ord(name) - ord("A")]), way * radius) for name, way in ways]
+    return tuple(named) if any(way for _, way in named) else ()

@@ -1,0 +1,98 @@
+"""Check part programs: every error, and what a machinist would remark."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from polycnc.cnc import RunOptions
+from polycnc.errors import ProgramError
+from polycnc.machine import Machine, MachineConfig, load_machine
+from polycnc.nc import Dialect, ProgramText
+from polycnc.runner._execution import run_to_end
+from polycnc.runner._program_control import control_for, run_under
+from polycnc.runner._rehearsal import rehearsed
+from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark
+from polycnc.runner._settings import RunSettings, program_text
+
+
+@dataclass(frozen=True, slots=True)
+class CheckReport:
+    """What is wrong with a part program, and what is no error but seldom meant."""
+
+    errors: list[ProgramError]
+    remarks: list[Remark]
+
+
+def check(
+    program: str | Path | ProgramText,
+    machine: str | Path | MachineConfig | None = None,
+    dialect: str | Dialect | None = None,
+    *,
+    root: str | Path | None = None,
+    ignore: Iterable[str] = (),
+    strict: bool = False,
+) -> list[ProgramError]:
+    """Return every error of a part program, not only the first; an empty list if there is none.
+
+    `ignore` names G and M codes that count as if they were not there. With `strict` the remarks of `inspect` are errors
+    too.
+
+    A program with statements of a language (CPL) is linked with the sub-programs in `root`, but not run; with `strict`
+    in a copy of that folder, which finds what is wrong with the blocks that it gives.
+
+    Raises:
+        UsageError: no such file, machine or dialect.
+    """
+    report = inspect(program, machine, dialect, root=root, ignore=ignore, rehearse=strict)
+    if not strict:
+        return report.errors
+    return [*report.errors, *map(_as_error, report.remarks)]
+
+
+def _as_error(remark: Remark) -> ProgramError:
+    return ProgramError(
+        remark.text,
+        code=remark.key,
+        position=remark.position,
+        hint="Strict checking makes this remark an error.",
+    )
+
+
+def inspect(
+    program: str | Path | ProgramText,
+    machine: str | Path | MachineConfig | None = None,
+    dialect: str | Dialect | None = None,
+    *,
+    root: str | Path | None = None,
+    ignore: Iterable[str] = (),
+    rehearse: bool = True,
+) -> CheckReport:
+    """Return the errors of a part program as `check` does, and what a machinist would remark on it.
+
+    Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut,
+    program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
+    without an error is run in a copy of `root` for that, and for errors of the blocks that it gives, unless `rehearse`
+    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged.
+
+    Raises:
+        UsageError: no such file, machine or dialect.
+    """
+    settings = RunSettings(machine, dialect, root=root, ignore=tuple(ignore))
+    text = program_text(program)
+    simulated = Machine(load_machine(machine))
+    chosen = settings.dialect_of(text)
+    control = control_for(chosen, text, simulated, settings.surroundings_of(program))
+    if control is not None and control.has_statements(text):
+        errors = control.check(text)
+        if errors or not rehearse:
+            return CheckReport(errors, [])
+        return CheckReport(*rehearsed(text, simulated.config, chosen, settings.root_of(program)))
+    options = RunOptions(stands_at_stops=False, collect_errors=True)
+    execution = run_under(control, simulated, text, chosen, options)
+    watch = MachiningWatch(execution.channel)
+    execution.channel.on_filled = watch.look
+    run_to_end(execution, every_cycle=False)
+    empty = empty_remark(text)
+    return CheckReport(execution.channel.errors, watch.remarks if empty is None else [empty])

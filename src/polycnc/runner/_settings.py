@@ -1,0 +1,94 @@
+"""What is run or checked: a program, and on what and how."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from polycnc.errors import UsageError
+from polycnc.machine import MachineConfig
+from polycnc.nc import Dialect, ProgramText, dialect_for
+from polycnc.outputs import keep_inputs
+from polycnc.runner._execution import LOOP_LIMIT_S
+from polycnc.runner._program_control import ProgramControl, Surroundings, check_screen_file, root_of
+
+Program = str | Path | ProgramText
+
+
+@dataclass(frozen=True, slots=True)
+class RunSettings:
+    """Set on what programs are run or checked, and how: what `polycnc.run` tells of each argument.
+
+    Raises:
+        UsageError: a limit or an override that cannot be.
+    """
+
+    machine: str | Path | MachineConfig | None = None
+    dialect: str | Dialect | None = None
+    servo: bool = False
+    skip_levels: frozenset[int] = frozenset()
+    stop_at_m0: bool = False
+    feed_override: float = 1.0
+    root: str | Path | None = None
+    keys: tuple[str, ...] = ()
+    screen: str | Path | None = None
+    ignore: tuple[str, ...] = ()
+    loop_limit_s: float = LOOP_LIMIT_S
+
+    def __post_init__(self) -> None:
+        if not self.loop_limit_s > 0.0:
+            raise UsageError(f"a limit of {self.loop_limit_s:g} s for loops", hint="Give seconds above 0.")
+        if not self.feed_override > 0.0:
+            raise UsageError(f"a feed override of {self.feed_override:g}", hint="Give more than 0, up to 2.")
+
+    def dialect_of(self, text: ProgramText) -> Dialect:
+        """Return the dialect of a program, without the codes that are ignored.
+
+        Raises:
+            UsageError: no such dialect or code.
+        """
+        chosen = dialect_for(text.name, self.dialect)
+        return chosen.leaving_out(self.ignore) if self.ignore else chosen
+
+    def root_of(self, program: Program) -> Path:
+        """Return the folder with the files of the control.
+
+        Raises:
+            UsageError: There is no such folder.
+        """
+        return root_of(program, self.root)
+
+    def surroundings_of(self, program: Program) -> Surroundings:
+        """Return where a program runs.
+
+        Raises:
+            UsageError: There is no such folder.
+        """
+        return Surroundings(self.root_of(program), self.keys, self.skip_levels)
+
+    def check_screen(self, program: Program, text: ProgramText, control: ProgramControl | None) -> None:
+        """Check that what a program shows can be written where it should.
+
+        Raises:
+            UsageError: the program shows nothing, or the place is wrong.
+        """
+        if self.screen is None:
+            return
+        files: Iterable[object] = (program, self.machine, self.dialect)
+        keep_inputs(self.screen, (each for each in files if isinstance(each, str | Path)), "a screen")
+        check_screen_file(self.screen, text, control)
+
+
+def program_text(program: Program) -> ProgramText:
+    """Return a program from a path, or from a text of several lines."""
+    if isinstance(program, ProgramText):
+        return program
+    if isinstance(program, str) and ("\n" in program or "\r" in program):
+        return ProgramText.from_text(program)
+    try:
+        return ProgramText.from_path(program)
+    except UsageError as error:
+        if isinstance(program, str) and " " in program:
+            error.hint = "Check the name and the folder; a program text needs a newline at its end."
+        raise
