@@ -58,6 +58,18 @@ Read, and held to each other; bytes of captures are in the tests.
 The maker's own library was never run against this server, and no control was at hand. Where sources contradict each other
 the one that shows captured bytes was followed.
 
+## What is refused, and how
+
+| asked | answer | source |
+| --- | --- | --- |
+| a command that the series does not know | 1 (EW_FUNC) | diohpix/pyfanuc, `sample_with_error.md`: a 160i |
+| another path than the first | 11 (EW_PATH) | Manual 000, return values |
+| a range whose end is before its begin, or with a number that is not there | 3 (EW_NUMBER) | Manual 000, return values |
+| a range that no frame of the series holds | 2 (EW_LENGTH) | Manual 000, return values; sizes of frames as the maker's library takes them |
+| `cnc_rdsvmeter` of kinds 0, 2 and 3 (3: amperes, which this control does not know) | 1 (EW_FUNC) | none |
+| `cnc_rdsvmeter` of any other kind | 4 (EW_ATTRIB) | Manual 000, return values |
+| `cnc_rdtimer` 0 to 4 | power on, operating, cutting, cycle, external signal (6755, 6756); others 3 (EW_NUMBER) | requests of collectors to controls |
+
 What is this control's own and not proven by anybody: the flags of commanded words (those of `cnc_modal`), the type of the
 tool offset memory, and sizes of the reply that accepts a session on old series.
 """

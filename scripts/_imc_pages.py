@@ -8,13 +8,14 @@ from typing import Any
 from polycnc.controllers.imc import imclib
 from polycnc.controllers.imc.core import _bits, _ownership, _parameters
 from polycnc.controllers.imc.library import _device, _expansions, _memory, _motion, _network, _path
+from polycnc.controllers.imc.library._motion_rows import ROWS
 
 _GROUPS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "Virtual cards": (_network, ("attach", "detach", "NetCard", "Port")),
     "Find, open, close": (_device, ()),
     "Parameters, bits, waits": (_memory, ()),
     "Paths, contours, events, captures": (_path, ()),
-    "Motion": (_motion, ()),
+    "Motion": (_motion, tuple(ROWS)),
 }
 
 _HEAD = "# {title}\n\n<!-- Written by scripts/reference. -->\n\n{text}\n"

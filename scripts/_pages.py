@@ -64,15 +64,21 @@ def bosch_ncs_page() -> str:
     return page()
 
 
+def cpl_page() -> str:
+    """Return the page of CPL."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_cpl_page.py"))["page"]
+    return page()
+
+
 def dialects_page() -> str:
     """Return the page of the dialects, its tables written anew."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_dialect_page.py"))["page"]
     return page()
 
 
-def stub(module: str) -> str:
-    """Return the type stub of a module that reads structures from a header."""
-    made: Callable[[str], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_stubs.py"))["stub"]
+def stub(module: str, kind: str = "stub") -> str:
+    """Return the type stub of a module that reads structures from a header, or functions from rows."""
+    made: Callable[[str], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_stubs.py"))[kind]
     return made(module)
 
 
@@ -84,7 +90,9 @@ STUBS = {
         "polycnc.controllers.imc.library._declared",
     )
 }
-
+STUBS["src/polycnc/controllers/imc/library/_motion.pyi"] = partial(
+    stub, "polycnc.controllers.imc.library._motion", "functions_stub"
+)
 
 PAGES: dict[str, Callable[[], str]] = {
     "docs/explanation/life-of-a-block.md": life_of_a_block_page,
@@ -92,6 +100,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/apci-system-file.md": apci_system_file_page,
     "docs/reference/bosch-ncs.md": bosch_ncs_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/cpl.md": cpl_page,
     "docs/reference/dialects.md": dialects_page,
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),

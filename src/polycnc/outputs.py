@@ -39,6 +39,10 @@ _BESIDE = r"\.before|-journal|-wal|-shm"  # what writers make beside the file th
 _NO_LINK = getattr(os, "O_NOFOLLOW", 0)
 
 
+def _listed(names: Sequence[str]) -> str:
+    return f"{', '.join(names[:-1])} or {names[-1]}" if len(names) > 1 else names[0]
+
+
 def check_output(path: str | Path, extensions: Sequence[str], what: str) -> Path:
     """Return `path`, where `what` ("a trace") could be written; with `extensions` its name must end with one of them.
 
@@ -53,7 +57,7 @@ def check_output(path: str | Path, extensions: Sequence[str], what: str) -> Path
         trouble = f"'{path.suffix}' is none of its formats" if path.suffix else "the name tells no format"
         raise UsageError(
             f"{what} cannot be written to {path}: {trouble}",
-            hint=f"Use a name that ends with {', '.join(extensions[:-1])} or {extensions[-1]}.",
+            hint=f"Use a name that ends with {_listed(extensions)}.",
         )
     if is_folder:
         raise UsageError(f"{what} cannot be written to {path}: it is a folder", hint="Give a file name.")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import hypothesis.strategies as st
@@ -18,8 +20,8 @@ from polycnc.nc.channel._running import Running
 from polycnc.nc.channel._sub_programs import SubPrograms
 from polycnc.nc.sources._block_source import EndSource
 from polycnc.nc.text._place import Place
-from polycnc.nc.text._scan import scan_rules
-from polycnc.nc.text._scan_plain import Block, scan_blocks
+from polycnc.nc.text._scan import PERCENT, scan_rules
+from polycnc.nc.text._scan_plain import Block, scan_block
 from support.block_strategies import programs
 from support.programs import FIVE, channel_state, queue_bytes
 
@@ -76,14 +78,13 @@ def reader_of(text: ProgramText) -> Reader:
     return Reader(text, rules, scan_rules(rules), frozenset({3}))
 
 
-def all_of(reader: Reader, running: Running) -> list[Block]:
-    found = []
-    while not reader.at_end or reader.more():
-        block = reader.take(running)
-        assert block is not EndSource.RETURN
-        if isinstance(block, Block):
-            found.append(block)
-    return found
+def said(read: Callable[[], Block | EndSource | None]) -> object:
+    """Return a block, or why it is none; None for nothing that is to be executed."""
+    try:
+        block = read()
+    except ProgramError as error:
+        return str(error)
+    return block if isinstance(block, Block) else None
 
 
 @settings(max_examples=60)
@@ -91,14 +92,27 @@ def all_of(reader: Reader, running: Running) -> list[Block]:
 def test_a_reader_gives_the_blocks_of_a_text_from_any_line_on(program: str, data: st.DataObject) -> None:
     text = ProgramText.from_text(program, "t.nc")
     line = data.draw(st.integers(1, program.count("\n")))
-    begin = text.line_start(line)
-    reader = reader_of(text)
-    reader.jump(Place(text, begin, line), len(text))
-    found = all_of(reader, Running(Place(text)))
-    expected = [
-        block for block in scan_blocks(text, FANUC.text_rules(), begin, line) if block.skip_level != 3
-    ]
-    assert [(block.words, block.line) for block in found] == [(block.words, block.line) for block in expected]
+    reader, running = reader_of(text), Running(Place(text))
+    reader.jump(Place(text, text.line_start(line), line), len(text))
+    found = []
+    while not reader.at_end or reader.more():
+        found.append(said(lambda: reader.take(running)))
+    expected: list[object] = []
+    begun = False
+    for number in range(line, program.count("\n") + 1):
+        block = said(partial(scan_block, text, text.line_start(number), number, FANUC.text_rules()))
+        if not isinstance(block, Block):
+            expected.append(block)
+        elif not block.is_blank:
+            ends = bool(block.flags & PERCENT or (begun and block.words and block.words[0].letter == "O"))
+            executed = block.skip_level != 3 and not ends
+            expected.append(block if executed else None)
+            begun = begun or (executed and bool(block.words))
+    assert [_key(each) for each in found] == [_key(each) for each in expected]
+
+
+def _key(found: object) -> object:
+    return (found.words, found.line, found.flags) if isinstance(found, Block) else found
 
 
 def test_a_percent_sign_or_another_number_ends_a_program_that_has_begun_and_no_other() -> None:

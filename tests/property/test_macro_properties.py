@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -15,7 +14,7 @@ from polycnc.kernel import drop_queue
 from polycnc.machine import Machine, load_machine
 from polycnc.nc import Channel, ProgramText, load_dialect
 from polycnc.nc.macro import MacroLanguage
-from support.rs274 import COMMAND
+from support.rs274 import COMMAND, call
 
 DIFFERENTIAL = 60
 FUZZED = 3000
@@ -136,7 +135,6 @@ def run(text: str) -> tuple[Channel, MacroLanguage]:
 @pytest.mark.skipif(COMMAND is None, reason="rs274 is not installed")
 @pytest.mark.parametrize("count", [DIFFERENTIAL, pytest.param(2000, marks=pytest.mark.long)])
 def test_random_programs_calculate_what_rs274_calculates(tmp_path: Path, count: int) -> None:
-    assert COMMAND is not None
     compared = 0
     for seed in range(count):
         writer = Writer(seed)
@@ -146,9 +144,7 @@ def test_random_programs_calculate_what_rs274_calculates(tmp_path: Path, count: 
             writer.block(3, 1)
         path = tmp_path / f"{seed}.ngc"
         path.write_text("\n".join([*writer.words, "M2", ""]))
-        done = subprocess.run(
-            [COMMAND, "-g", str(path)], capture_output=True, text=True, timeout=20, check=False
-        )
+        done = call(path)
         wanted = [float(each) for each in _FEED.findall(done.stdout)]
         if len(wanted) > 400:
             continue

@@ -68,6 +68,12 @@ class Line:
         self.socket.close()
 
 
+def free_port() -> int:
+    """Return a port that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        return int(taken.getsockname()[1])
+
+
 def values(payload: bytes) -> list[float | None]:
     """Return the numbers of a payload."""
     return [Value8.from_wire(payload[at : at + 8]).number for at in range(0, len(payload), 8)]

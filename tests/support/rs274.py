@@ -63,23 +63,28 @@ class Answer:
     block: str = ""
 
 
-def interpret(program: str, folder: Path, *, block_delete: bool = False) -> Answer:
-    """Run rs274 on a program text in `folder`, with an empty tool table and no variables."""
+def call(file: Path, *options: str) -> subprocess.CompletedProcess[str]:
+    """Run rs274 on a file, at home in its folder: it keeps its tools in a file there, and others may run too."""
     assert COMMAND is not None
-    file, tools = folder / "program.ngc", folder / "tools.tbl"
-    file.write_text(program, encoding="ascii")
-    tools.write_text(tool_table(), encoding="ascii")
-    options = ["-b"] if block_delete else []
-    done = subprocess.run(
-        [COMMAND, "-g", *options, "-t", str(tools), str(file)],
+    return subprocess.run(
+        [COMMAND, "-g", *options, str(file)],
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
         check=False,
         timeout=60,
-        cwd=folder,
-        env={**os.environ, "HOME": str(folder)},  # it keeps its tools in a file there, and others may run too
+        cwd=file.parent,
+        env={**os.environ, "HOME": str(file.parent)},
     )
+
+
+def interpret(program: str, folder: Path, *, block_delete: bool = False) -> Answer:
+    """Run rs274 on a program text in `folder`, with an empty tool table and no variables."""
+    file, tools = folder / "program.ngc", folder / "tools.tbl"
+    file.write_text(program, encoding="ascii")
+    tools.write_text(tool_table(), encoding="ascii")
+    options = ["-b"] if block_delete else []
+    done = call(file, *options, "-t", str(tools))
     calls = [(name, [part.strip() for part in rest.split(",")]) for name, rest in _CALL.findall(done.stdout)]
     if done.returncode == 0:
         return Answer(calls)

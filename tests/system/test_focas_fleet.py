@@ -13,15 +13,10 @@ import pytest
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.servers.focas import Frame, FrameType, Request, read_replies, write_requests
 from support.command import COMMAND, environment
-from support.focas_line import Line, end, serve, values
+from support.focas_line import Line, end, free_port, serve, values
 
 KILLS, MANY_KILLS = 5, 50
 SEED = 815
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as taken:
-        return int(taken.getsockname()[1])
 
 
 def test_several_machines_in_one_process_are_machines_of_their_own() -> None:

@@ -38,11 +38,153 @@ def _prepared(source: Path, dialect: Path, *programs: str) -> list[tuple[list[li
     return [(ends, error) for ends, error in json.loads(run.stdout)]
 
 
-def test_a_g_code_is_one_row_and_one_function(tmp_path: Path) -> None:
-    package = tmp_path / "polycnc"
+def _copy(folder: Path) -> Path:
+    """Return a copy of the package in a folder."""
+    package = folder / "polycnc"
     shutil.copytree(
         Path(polycnc.__file__).parent, package, ignore=shutil.ignore_patterns("__pycache__", "front")
     )
+    return package
+
+
+_LINKS = """
+import json, sys
+from polycnc.nc.cpl import Linker, Run
+from support.cpl_host import RecordingHost
+found = []
+for text in sys.argv[1:]:
+    host = RecordingHost()
+    linker = Linker(host.program)
+    main, errors = linker.link(text, "main.cpl")
+    run = main and Run(main, linker, host)
+    while run and run.step() is not None:
+        pass
+    found.append([run.globals if run else {}, [str(error) for error in errors]])
+print(json.dumps(found))
+"""
+
+
+def test_a_cpl_function_is_one_decorated_function(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    page = REPOSITORY / "docs" / "how-to" / "add-a-cpl-function.md"
+    (function,) = (each for each in fences(page) if each.title)
+    with (package / function.title).open("a", encoding="utf-8") as file:
+        file.write(f"\n\n{function.text}")
+    programs = (
+        "1 A=5 : #A=HYP(A,12) : #B=HYP(3,4,12)",
+        "1 #A=HYP(5)",
+        '1 #A=HYP(5,"12")',
+        "1 HYP=3",
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", _LINKS, *programs],
+        env={**os.environ, "PYTHONPATH": os.pathsep.join((str(tmp_path), str(REPOSITORY / "tests")))},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    (values, _), *refused = json.loads(run.stdout)
+    assert values == {"#A": 13, "#B": 13}
+    number = "HYP takes 2 to 3 arguments, not "
+    whats = (f"{number}1", "HYP takes a number, not a string", f"{number}0")
+    for (_, errors), what in zip(refused, whats, strict=True):
+        assert what in errors[0]
+
+
+def _put(file: Path, text: str, before: str) -> None:
+    """Write text into a file before what stands there once."""
+    content = file.read_text(encoding="utf-8")
+    assert content.count(before) == 1, (file, before)
+    file.write_text(content.replace(before, text + before), encoding="utf-8")
+
+
+_CALLS = """
+import asyncio, threading
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.imc import Card, imclib
+from polycnc.machine import Host
+from polycnc.runner import WallClock
+from polycnc.servers.focas import FocasServer, load_profile
+
+control = PowerMate(2)
+control.programs.register(1234, "O1234\\nG4X7.\\nM30\\n")
+control.select_program(1234)
+control.cycle_start()
+control.advance(50)
+fwlib.attach(0, control)
+code, handle = fwlib.cnc_allclibhndl()
+print(*fwlib.cnc_exeprgname(handle))
+print(fwlib.FUNCTIONS["cnc_exeprgname"].prototype, fwlib.STRUCTURES["ODBEXEPRG"].size)
+
+ready = threading.Event()
+
+async def serve():
+    global port, end, loop
+    loop, end = asyncio.get_running_loop(), asyncio.Event()
+    with Host(control, WallClock(), rate=0.0) as host:
+        server = FocasServer(host, control, load_profile("31i"), port=0)
+        await server.start()
+        port = server.port
+        ready.set()
+        await end.wait()
+        await server.close()
+
+thread = threading.Thread(target=lambda: asyncio.run(serve()))
+thread.start()
+ready.wait()
+code, remote = fwlib.cnc_allclibhndl3("127.0.0.1", port, 10)
+print(*fwlib.cnc_exeprgname(remote))
+fwlib.cnc_freelibhndl(remote)
+loop.call_soon_threadsafe(end.set)
+thread.join()
+
+imclib.attach(card := Card())
+imclib.IMC_FindNetCard(imclib.NIC_INFO())
+status, handle = imclib.IMC_Open(0, 0)
+imclib.IMC_SetParam32(handle, imclib.mcstgvelLoc, 13 << 16, 2, imclib.SEL_IFIFO)
+print(imclib.IMC_GetParam32(handle, imclib.mcstgvelLoc, 2)[1] >> 16, imclib.IMC_Stop(handle, 2, imclib.SEL_IFIFO).name)
+print(imclib.IMC_GetParam32(handle, imclib.mcstgvelLoc, 2)[1], imclib.FUNCTIONS["IMC_Stop"].prototype)
+"""
+
+
+def test_a_library_function_is_declared_once(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    structure, function, row, motion, expansion = (
+        each for each in fences(REPOSITORY / "docs" / "how-to" / "add-a-library-function.md") if each.title
+    )
+    library = package / "controllers" / "fanuc" / "library"
+    _put(package / structure.title, f"#pragma pack(2)\n{structure.text}", "#pragma pack(4)")
+    module = package / function.title
+    with module.open("a", encoding="utf-8") as file:
+        file.write(f"\n\n{function.text}")
+    _put(
+        module,
+        "from polycnc.controllers.fanuc.library._structs import ODBEXEPRG\n",
+        "from polycnc.cnc import",
+    )
+    _put(library / "_remote.py", row.text, '}\n"""The functions that read one record')
+    _put(package / motion.title, motion.text, '}\n"""By name: arguments before')
+    _put(package / expansion.title, expansion.text, '}\n"""What each function writes')
+
+    run = subprocess.run(
+        [sys.executable, "-c", _CALLS],
+        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    assert run.stdout.splitlines() == [
+        "0 ODBEXEPRG(name=b'O1234', o_num=1234)",
+        "short cnc_exeprgname(unsigned short FlibHndl, ODBEXEPRG *exeprg) 40",
+        "0 ODBEXEPRG(name=b'O1234', o_num=1234)",
+        "13 IMC_OK",
+        "0 IMC_STATUS IMC_Stop(IMC_HANDLE Handle, IMC32 axis, int fifoSel)",
+    ]
+
+
+def test_a_g_code_is_one_row_and_one_function(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
     row, function, dialect = (
         each for each in fences(REPOSITORY / "docs" / "how-to" / "add-a-g-code.md") if each.title
     )

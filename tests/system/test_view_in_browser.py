@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -210,4 +211,39 @@ def test_a_distance_is_measured_between_two_places(chromium: Any, tmp_path: Path
             point,
         )
     assert view.page.locator("#status").inner_text() == "Distance 13.000 mm (X 3.000, Y 4.000, Z 12.000)"
+    view.close()
+
+
+def test_the_chart_goes_through_the_trace(chromium: Any, tmp_path: Path) -> None:
+    """However many points are crowded together, a line that can be seen as one is where the record is."""
+    feeds = [310.0 + 137.0 * (n * n % 29) for n in range(900)]
+    lines = [f"G1 X{(n % 2) * (3 + n % 7)} Y{0.3 * n:.1f} F{feed:.0f}" for n, feed in enumerate(feeds)]
+    program = tmp_path / "plateaus.nc"
+    program.write_text("G21 G90 G94\n" + "\n".join(lines) + "\nM30\n")
+    view = Opened(chromium, tmp_path, str(program), "mill3")
+    trace = view.trace
+    speed = np.where(trace.rapid, np.nan, trace.feed_mm_s * 60.0)
+    end_s = float(trace.t_s[-1])
+    for first, last in ((0.0, 1.0), (0.4, 0.6), (0.71, 0.72)):
+        view.page.evaluate(
+            "([a, b]) => Plotly.relayout('chart', {'xaxis.range[0]': a, 'xaxis.range[1]': b})",
+            [first * end_s, last * end_s],
+        )
+        x, y = view.page.evaluate(
+            "() => [...document.getElementById('chart').data].map((d) => [d.x, d.y])[0]"
+        )
+        drawn = np.array([[t, np.nan if v is None else v] for t, v in zip(x, y, strict=True)], np.float64)
+        nearest = (
+            np.abs(drawn[:, None, 0] - trace.t_s[None, ::1]).argmin(axis=1) if len(drawn) < 200 else None
+        )
+        at = np.searchsorted(trace.t_s, drawn[:, 0]).clip(0, len(trace) - 1) if nearest is None else nearest
+        known = np.isfinite(drawn[:, 1])
+        assert np.nanmax(np.abs(drawn[known, 1] - speed[at][known])) < 8.0  # the view's tolerance is 6 mm/min
+        piece_s = (last - first) * end_s / 200.0
+        for (t0, v0), (t1, v1) in pairwise(drawn):
+            if t1 - t0 < piece_s or not np.isfinite(v0 + v1):
+                continue
+            inside = (trace.t_s > t0) & (trace.t_s < t1)
+            line = v0 + (v1 - v0) * (trace.t_s[inside] - t0) / (t1 - t0)
+            assert np.nanmax(np.abs(line - speed[inside])) < 15.0, (t0, t1)
     view.close()

@@ -14,10 +14,13 @@ from typing import Any
 
 import pytest
 
+from polycnc.controllers.apci import pcap
 from polycnc.controllers.apci.board import _declared as apci
+from polycnc.controllers.fanuc import fwlib
 from polycnc.controllers.fanuc.library import _structs as fanuc
+from polycnc.controllers.imc import imclib
 from polycnc.controllers.imc.library import _declared as imc
-from polycnc.controllers.library import Header, layout
+from polycnc.controllers.library import Bytes, Header, layout
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 GOLDEN: dict[str, dict[str, Any]] = json.loads(
@@ -119,6 +122,31 @@ def test_every_pointer_says_how_much_it_leads_to() -> None:
                 assert not each.held or each.counted_by, (cls, name)
 
 
+LIBRARIES = {"fanuc": fwlib, "apci": pcap, "imc": imclib}
+
+
+@pytest.mark.parametrize("vendor", LIBRARIES)
+def test_every_argument_has_a_type_of_c(vendor: str) -> None:
+    for function in LIBRARIES[vendor].FUNCTIONS.values():
+        for each in function.arguments:
+            known = getattr(each.type, "ctype", None) or getattr(each.type, "of", None)
+            assert known is not None, (function.prototype, each.name)
+
+
+@pytest.mark.parametrize("vendor", LIBRARIES)
+def test_every_array_says_how_many_elements_c_passes(vendor: str) -> None:
+    constants = HEADERS[vendor].constants
+    for function in LIBRARIES[vendor].FUNCTIONS.values():
+        counted = {each.length_of for each in function.arguments}
+        names = {each.name for each in function.arguments}
+        for each in function.arguments:
+            elements = getattr(each.type, "of", None)
+            array = elements not in (None, callable) or isinstance(each.type, Bytes) or each.zero() == []
+            assert bool(each.many) == (array and each.name not in counted), (function.prototype, each.name)
+            terms = set(re.findall(r"[A-Za-z]\w*(?=\.|\b)", re.sub(r"\.\w+", "", each.many))) - {"max"}
+            assert terms <= names | set(constants), (function.prototype, each.many)
+
+
 PAGES: dict[str, Any] = runpy.run_path(str(REPOSITORY / "scripts" / "_pages.py"))
 STUBS: dict[str, Callable[[], str]] = PAGES["STUBS"]
 
@@ -169,3 +197,9 @@ def test_a_header_declares_constants_types_and_what_lies_beside() -> None:
     assert (header.constants, list(header.classes)) == ({"DEPTH": 3}, ["TAPE", "EITHER"])
     assert ctypes.sizeof(header.classes["EITHER"]) == 48
     assert [each.declaration for each in header.layouts["TAPE"].fields][1:3] == ["WORD wound[3]", "WORD end"]
+
+
+def test_without_a_word_about_packing_c_aligns_and_cuts() -> None:
+    made = Header("typedef struct { char a; long b; } LOOSE;", __name__).classes["LOOSE"]
+    assert (ctypes.sizeof(made), made.b.offset) == (8, 4)
+    assert made(b=2**32 + 5).b == 5

@@ -225,7 +225,17 @@ def test_no_command_leaves_an_old_status(state: str) -> None:
 
 def test_the_public_commands_are_all_tried() -> None:
     text = Path(__file__).read_text()
-    others = {"status", "axes", "channel_status", "snapshot", "advance", "be_watched", "waiting_functions"}
+    others = {
+        "status",
+        "axes",
+        "channel_status",
+        "inventory",
+        "snapshot",
+        "advance",
+        "be_watched",
+        "waiting_functions",
+        "tool_in_use",
+    }
     names = {
         name
         for name, value in vars(Control).items()
@@ -242,6 +252,10 @@ def test_a_status_is_one_object_until_time_passes(state: str) -> None:
     assert made.status() is first
     assert made.axes() is first.axes
     assert made.channel_status() is first.channel
+    if first.channel.block is None:
+        assert made.tool_in_use() is None
+    else:
+        assert made.tool_in_use() is first.channel.tool
     made.advance(1)
     assert made.status() is not first
     assert made.status().cycle == first.cycle + 1
@@ -429,3 +443,48 @@ def test_axes_of_two_channels() -> None:
     made.feed_hold(channel=1)
     assert made.status().channels[1].run_state is RunState.HOLD
     assert made.status().channel.run_state is RunState.ACTIVE
+
+
+LEFT = """G1 X31.5 F900
+Y7.25 F1400
+X-12.5 Y-3.75
+G4 P1.35
+G0 X2.5 Y1.25
+M2
+"""
+
+
+@pytest.mark.parametrize("jerk_mm_s3", [0.0, 9000.0])
+@pytest.mark.parametrize("feed", [0.65, 1.0, 1.4])
+def test_the_time_that_is_left_runs_down_to_the_end(feed: float, jerk_mm_s3: float) -> None:
+    made = Control(cnc_machine(path={"jerk_mm_s3": jerk_mm_s3} if jerk_mm_s3 else {}))
+    made.programs.create("LEFT", LEFT)
+    made.select_program("LEFT")
+    made.set_overrides(feed=feed)
+    assert made.status().left_s == (0.0,)
+    made.cycle_start()
+    made.advance(1)
+    found = []
+    while made.channel_status().active:
+        found.append((made.clock.now_s, made.status().left_s[0]))
+        made.advance(237)
+    assert len(found) > 10
+    ends = [now_s + left_s for now_s, left_s in found if left_s > 0.0]
+    # With limited jerk ramps take longer than their mean acceleration says.
+    slack_s = 0.4 if jerk_mm_s3 else 0.003
+    assert max(ends) - min(ends) < slack_s
+    assert found[-1][1] < 0.5
+
+
+def test_a_hold_keeps_the_time_that_is_left() -> None:
+    made = Control(cnc_machine())
+    made.programs.create("LEFT", LEFT)
+    made.select_program("LEFT")
+    made.cycle_start()
+    made.advance(900)
+    made.feed_hold()
+    made.advance(600)
+    left_s = made.status().left_s
+    made.advance(4000)
+    assert made.status().left_s == left_s
+    assert left_s[0] > 1.0

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import shutil
-import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Literal
@@ -15,6 +13,7 @@ import pytest
 from polycnc.errors import ConfigurationError, ProgramError
 from polycnc.nc.blocks._compensation import CompensationError, RadiusCompensation, Side
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, QueueItem, Wait
+from support.rs274 import COMMAND, call
 
 XY_PLANE = (0, 1, 2)
 FEED = Feed(speed_mm_s=10.0)
@@ -522,7 +521,6 @@ def test_configuration_is_checked() -> None:
 
 # --- against another control ------------------------------------------------------------------------------
 
-RS274 = shutil.which("rs274")
 FEED_LINE = re.compile(r"(STRAIGHT_FEED|ARC_FEED)\((.*)\)")
 
 
@@ -542,10 +540,7 @@ def rs274_feeds(moves: Sequence[Move], radius: float, side: Side, folder: Path) 
     lines += ["G40", "M2"]
     program = folder / "contour.ngc"
     program.write_text("\n".join(lines) + "\n")
-    assert RS274 is not None
-    done = subprocess.run(
-        [RS274, "-g", str(program)], capture_output=True, text=True, cwd=folder, check=False
-    )
+    done = call(program)
     assert "PROGRAM_END" in done.stdout, done.stdout + done.stderr
     feeds: list[tuple[float, ...]] = []
     for kind, words in FEED_LINE.findall(done.stdout):
@@ -566,7 +561,7 @@ CONTOURS: dict[str, list[Step]] = {
 }  # fmt: skip
 
 
-@pytest.mark.skipif(RS274 is None, reason="rs274 (LinuxCNC) is not installed")
+@pytest.mark.skipif(COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
 @pytest.mark.parametrize("side", Side)
 @pytest.mark.parametrize("name", CONTOURS)
 def test_contours_as_linuxcnc_compensates_them(name: str, side: Side, tmp_path: Path) -> None:

@@ -9,7 +9,8 @@ import pytest
 
 from polycnc import conformance
 from polycnc.nc.cpl import Linker
-from polycnc.nc.cpl._functions import FUNCTIONS, MANY
+from polycnc.nc.cpl._function import MANY
+from polycnc.nc.cpl._functions import FUNCTIONS
 from support.cpl_runs import Root
 
 WORDS = re.compile(r"<[^>]*>|\"[^\"]*\"(?:\|\"[^\"]*\")*|\+<offset>|[\[\]{}()]|[A-Za-z0-9]+")

@@ -53,6 +53,50 @@ def test_a_program_that_a_program_has_written_runs(root: Root) -> None:
     assert root.run("N1 G0 X29\nM30\n\x03\n").end_position_mm["X"] == 29
 
 
+CALLS = [
+    "{n} CALL MADE{din}",
+    "N{n} P MADE",
+    '{n} IF FILEACCESS("MADE")>0 THEN\n{n}1 CALL MADE{din}\n{n}2 ENDIF',
+]
+
+
+@pytest.mark.covers("cpl.CALL", "cpl.link")
+@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.parametrize("marked", [False, True])
+def test_what_a_program_has_written_is_what_it_calls(root: Root, call: str, marked: bool) -> None:
+    """The texts have one length, and are written faster than the clock of some disks goes on."""
+    root.write("MADE", b"N1 (DIN)\nN2 G0 X11\n" if marked else b"N2 G0 X11\n")
+    head = '{n} PRN#(1,"N1 (DIN)")\n' if marked else ""
+    write = f'{{n}} OPENW(1,"MADE") : REWRITE(1)\n{head}{{n}} PRN#(1,"N2 G0 X{{x}}") : CLOSE(1)\n'
+    lines = [call.format(n=10, din="")]
+    for n, x in ((20, 37), (30, 29), (40, 53)):
+        lines += [
+            write.format(n=n, x=x),
+            call.format(n=n + 1, din=" DIN" * (x == 29)),
+            f"{n + 2} WAIT",
+            f"{n + 3} #X{x}=MPOS(1)",
+        ]
+    variables = root.run("\n".join(lines)).variables
+    assert [variables[f"#X{x}"] for x in (37, 29, 53)] == [37, 29, 53]
+
+
+@pytest.mark.covers("cpl.CALL")
+def test_a_program_left_out_of_linking_may_be_written_before_it_is_called(root: Root) -> None:
+    write = '1 OPENW(1,"MADE") : PRN#(1,"N2 G0 X37") : CLOSE(1)\n'
+    assert root.run(write + "2 CALL MADE DIN").end_position_mm["X"] == 37
+    (root.folder / "MADE").unlink()
+    assert root.error(write + "2 CALL MADE") == "2: there is no sub-program MADE"
+    assert root.error("1 A=1\n2 CALL MADE DIN") == "2: there is no sub-program MADE"
+
+
+def test_a_program_that_was_wrong_runs_once_it_is_written_anew(root: Root) -> None:
+    write = '{} OPENW(1,"MADE") : REWRITE(1) : PRN#(1,"{}") : CLOSE(1)\n'
+    wrong = root.run(write.format(1, "1 A%=") + "2 CALL MADE DIN", check=False)
+    assert [Path(each.file).name for each in wrong.alarms] == ["MADE"]
+    root.write("MADE", b"N2 G0 X11\n")
+    assert root.run(write.format(1, "1 #A=3") + "2 CALL MADE").variables["#A"] == 3
+
+
 def test_a_file_from_an_editor_is_continued_on_a_new_line(root: Root) -> None:
     root.write("P5", b"N10 X5\nN20 M30")
     root.run('1 OPENW(1,"P5")\n2 PRN#(1,"N30")\n3 CLOSE(1)')

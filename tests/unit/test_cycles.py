@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +19,7 @@ from polycnc.nc.blocks._cycles import (
     expand_cycle,
 )
 from polycnc.nc.dialect._cycle_settings import CycleSettings
+from support.rs274 import COMMAND, call
 
 PLACE = CyclePlace(hole_mm=(5.0, 7.0), initial_mm=10.0, level_mm=10.0)
 R_PLACE = CyclePlace(hole_mm=(5.0, 7.0), initial_mm=10.0, level_mm=10.0, retract="r")
@@ -243,7 +242,6 @@ def test_plain_cycles_do_not_ask_for_the_spindle() -> None:
 
 # --- against another control ------------------------------------------------------------------------------
 
-RS274 = shutil.which("rs274")
 CALL = re.compile(r"N\.+\s+(\w+)\((.*)\)")
 CALLS = {
     "DWELL": "dwell",
@@ -259,10 +257,7 @@ def rs274_steps(block: str, folder: Path) -> list[str]:
     """Return what LinuxCNC's interpreter does for one cycle block from X0 Y0 Z10, in the words of `text`."""
     program = folder / "cycle.ngc"
     program.write_text(f"G21 G17 G90 G94 G49 G40\nM3 S600 F100\nG0 X0 Y0 Z10\n{block}\nG80\nM2\n")
-    assert RS274 is not None
-    done = subprocess.run(
-        [RS274, "-g", str(program)], capture_output=True, text=True, cwd=folder, check=False
-    )
+    done = call(program)
     assert "PROGRAM_END" in done.stdout, done.stdout + done.stderr
     started = finished = False
     place = (0.0, 0.0, 10.0)
@@ -323,7 +318,7 @@ def last_xy(before: list[str]) -> list[str]:
     return [step for step in before if step.startswith("xy")][-1:]
 
 
-needs_rs274 = pytest.mark.skipif(RS274 is None, reason="rs274 (LinuxCNC) is not installed")
+needs_rs274 = pytest.mark.skipif(COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
 
 
 @needs_rs274

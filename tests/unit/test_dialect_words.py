@@ -554,3 +554,42 @@ def test_blanks_inside_numbers_count_for_nothing(block: str, plain: str, ordinar
 @pytest.mark.parametrize("block", ["X1 .2.3", "X1 (a) 0", "X", "X 1 0 0 . 1 . 2"])
 def test_what_is_no_number_with_blanks_is_refused(block: str) -> None:
     assert refusal(f"{block}\n", dialect="fanuc")
+
+
+# --- two codes of one group: the last one counts
+
+PAIRS = [
+    ("G91 G90 X17.", "G90 X17.", "G91 and G90 exclude each other (group 'distance')"),
+    ("G90 G91 X17.", "G91 X17.", "G90 and G91 exclude each other (group 'distance')"),
+    ("G0 G1 X10. F1000", "G1 X10. F1000", "G0 and G1 exclude each other (group 'motion')"),
+    ("G1 G0 X10. F1000", "G0 X10. F1000", "G1 and G0 exclude each other (group 'motion')"),
+    ("G17 G18 G2 X8. Z30. R2.", "G18 G2 X8. Z30. R2.", "G17 and G18 exclude each other (group 'plane')"),
+    ("G28 G53 G0 X3.", "G53 G0 X3.", "G28 and G53 exclude each other (group 'non modal')"),
+    ("M8 M9", "M9", "M8 and M9 exclude each other (group 'coolant')"),
+    ("M9 M7 X3.", "M7 X3.", "M9 and M7 exclude each other (group 'coolant')"),
+    ("S300 M3 M4 M5", "S300 M5", "M3 and M4 exclude each other (group 'spindle')"),
+    ("G1 G1 X7. F50", "G1 X7. F50", "G1 stands twice in this block"),
+    ("M8 M8", "M8", "M8 stands twice in this block"),
+]
+
+
+@pytest.mark.parametrize(("block", "last", "what"), PAIRS)
+def test_of_two_codes_of_one_group_the_last_one_counts(block: str, last: str, what: str) -> None:
+    config = machine_config(LINEAR, SPINDLE)
+    programs = [f"G0 X4. Y5. Z30. F77\n{each}\nG1 X21. Y2.5\n" for each in (block, last)]
+    assert moves(programs[0], dialect="fanuc", config=config) == moves(
+        programs[1], dialect="fanuc", config=config
+    )
+    found, without = (notes(each, dialect="fanuc", config=config) for each in programs)
+    assert [each for each in found if each not in without][:1] == [f"{what}: the last one counts"]
+
+
+@pytest.mark.parametrize("dialect", ["din", "haas", "grbl", "linuxcnc", "bosch"])
+def test_elsewhere_they_are_refused(dialect: str) -> None:
+    assert refusal("G90 G91 X17.\n", dialect=dialect).endswith(
+        "G90 and G91 exclude each other (group 'distance')"
+    )
+
+
+def test_words_of_the_code_that_does_not_count_are_refused() -> None:
+    assert "'R' has no meaning in this block" in refusal("G0 X4. F9\nG2 G1 X9. R3.\n", dialect="fanuc")

@@ -8,6 +8,7 @@ import pytest
 
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.servers.focas import (
+    PROFILES,
     FocasControl,
     Frame,
     FrameReader,
@@ -152,3 +153,55 @@ def test_a_program_past_a_limit_is_an_overtravel_of_its_axis(profile: str) -> No
     assert struct.unpack_from(">4i", found.payload) == (501, 4, 2, 16)
     assert found.payload[16:33] == b"OVER TRAVEL : -Y\0"
     assert bits.payload == (1 << 4).to_bytes(4, "big")
+
+
+@pytest.mark.parametrize("profile", ["power-mate", *LATER])
+@pytest.mark.parametrize(
+    ("asked", "status"),
+    [
+        (r(0x15, 100, 532), 3),  # some are not there
+        (r(0x15, 100, 533), 2),  # more than any frame holds
+        (r(0x15, 500, 999), 2),
+        (r(0x15, 533, 532), 3),
+        (r(0x56, 2), 1),
+        (r(0x56, 4), 4),
+        (r(0x56, -1), 4),
+        (r(0x120, 5), 3),
+        (Request(0x24, path=2), 11),
+        (Request(0x15, (500, 500, 0, 0), path=9), 11),
+        (Request(0x7FF, path=2), 1),
+    ],
+)
+def test_what_is_refused_is_refused_with_the_code_of_a_control(
+    profile: str, asked: Request, status: int
+) -> None:
+    _, session = served(profile, PROGRAM)
+    (found,) = ask(session, asked)
+    assert (found.status, found.payload) == (status, b"")
+
+
+def test_a_range_is_as_long_as_the_frames_of_the_series() -> None:
+    for profile, most in (("16i", (1450 - 2 - 16) // 8), ("31i", (2910 - 2 - 16) // 8)):
+        control, session = served(profile, PROGRAM)
+        control.macros.set(500 + most - 1, -7.5)
+        whole, longer = (ask(session, r(0x15, 500, 500 + count - 1))[0] for count in (most, most + 1))
+        assert (whole.status, len(whole.payload), longer.status) == (0, 8 * most, 2)
+        assert Value8.from_wire(whole.payload[-8:]).number == -7.5
+
+
+@pytest.mark.parametrize("profile", ["power-mate", *LATER])
+def test_the_fifth_timer_is_that_of_an_external_signal(profile: str) -> None:
+    control, session = served(profile, PROGRAM)
+    control.parameters.set(6755, 12345)
+    control.parameters.set(6756, 678)
+    (found,) = ask(session, r(0x120, 4))
+    assert struct.unpack("<2i", found.payload) == (678, 12345)
+
+
+def test_a_later_series_holds_more_programs() -> None:
+    assert [load_profile(name).program_characters for name in PROFILES] == [
+        128_000,
+        128_000,
+        128_000,
+        1_000_000,
+    ]

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc.library._remote import _POSITIONS, READINGS
+from polycnc.controllers.fanuc.library._structs import HEADER
 from polycnc.controllers.fanuc.wire import (
     LAYOUTS,
     POSITION_KINDS,
@@ -113,7 +114,7 @@ def test_what_a_value_of_eight_bytes_holds_is_shown() -> None:
 def test_a_reading_finds_its_elements_in_the_record_of_its_command(name: str) -> None:
     row = READINGS[name]
     fields = {each.name for each in record(layout_of(Request(row.commands[0])).head).parts}
-    elements = {each.name for each in layout(row.structure).fields}
+    elements = {each.name for each in layout(HEADER.classes[row.structure]).fields}
     assert set(row.names.values()) <= fields
     assert set(row.names) <= elements
     assert {row.names.get(each, each) for each in elements} & fields == fields - {"addinfo"}

@@ -12,13 +12,13 @@ KNOWN = {
         "_parameter _path_units _setup _shapes _spool_commands _status"
     ),
     "polycnc.controllers.fanuc": (
-        "data._bindings data._tool_offsets device._axis_motion device._execution device._history device._macros "
-        "device._mdi device._modal_data device._panel device._pmc_memory device._positions device._power_mate "
-        "device._programs device._signals device._snapshot device._transfer"
+        "data._bindings data._tool_offsets device._axis_motion device._device_state device._execution "
+        "device._history device._macros device._mdi device._modal_data device._panel device._pmc_memory "
+        "device._positions device._power_mate device._programs device._signals device._snapshot device._transfer"
     ),
     "polycnc.controllers.imc.card": "_card _status",
     "polycnc.runner": (
-        "_result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
+        "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
         "batches._report batches._store batches._sweep batches._thumbnail batches._workers batches._write "
         "comparison._both comparison._compare plots plots._over_time plots._paths plots._plot plots._scene "
         "view view._page view._part_frame view._track view._view"

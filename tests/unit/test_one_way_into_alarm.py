@@ -68,7 +68,7 @@ def test_every_error_is_an_alarm_with_its_text(before: str, way: str, error: str
     made.reset()
     made.advance(500)
     assert not made.alarms.active
-    assert made.channels[0].run_state is RunState.RESET
+    assert [each.run_state for each in made.channels] == [RunState.RESET]
 
 
 @pytest.mark.parametrize("steps", [1, 3])

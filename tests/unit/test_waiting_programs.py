@@ -9,6 +9,7 @@ import pytest
 from polycnc.cnc import ControlEvent, RunState
 from polycnc.controllers.bosch import Pnc
 from polycnc.controllers.fanuc import PowerMate
+from polycnc.controllers.fanuc.device._history import Monitored
 from polycnc.nc.channel._turns import BARREN_TURNS, TURNS_PER_CYCLE
 from polycnc.runner import run
 
@@ -110,3 +111,17 @@ def test_a_cpl_program_that_waits_is_asked_once_a_cycle(tmp_path: Path) -> None:
         assert made.advance(300) == 300
         assert made.run_state(1) is RunState.ACTIVE, (text, made.status().alarms)
         made.close()
+
+
+def test_what_the_history_notes_does_not_depend_on_the_cut() -> None:
+    """Signals that a program gives are noted in their cycles, also where many cycles pass in one call."""
+    text = "#1132=5\nG4X0.01\n#1132=2\nG4X0.01\n#3000=7(BROKEN)\nM30\n"
+    found = []
+    for cut in (1, 100):
+        made = started(text)
+        made.history.monitor({1: Monitored("F", 0, 0xFF), 2: Monitored("F", 54, 0xFF)})
+        for _ in range(100 // cut):
+            made.advance(cut)
+        found.append(made.history.operations())
+    assert found[0] == found[1]
+    assert len(found[0]) > 6

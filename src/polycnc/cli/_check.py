@@ -40,6 +40,7 @@ def check_command(
     strict: options.Strict = False,
     ignore: options.Ignore = None,
     root: options.Root = None,
+    stock: options.Stock = None,
     as_json: options.AsJson = False,
 ) -> None:
     """Report every error of part programs, each with its place and what to do, and remarks on the machining."""
@@ -58,7 +59,7 @@ def check_command(
             found.unreadable[str(program)] = error
             continue
         found.reports[text.name] = runner.inspect(
-            text, config, dialect, root=root, ignore=options.codes_of(ignore)
+            text, config, dialect, root=root, ignore=options.codes_of(ignore), stock=stock
         )
     if as_json:
         print_json(_as_dict(found, strict))

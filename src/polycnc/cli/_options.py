@@ -86,6 +86,20 @@ Screen = Annotated[
     Path | None,
     typer.Option(help="Write what the program shows to a .txt, .svg or .png file.", metavar="FILE"),
 ]
+Stock = Annotated[
+    str | None,
+    typer.Option(
+        help="Cut stock: auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 (work coordinates, mm) or an STL file.",
+        metavar="auto|FORM|FILE",
+    ),
+]
+Resolution = Annotated[
+    float | None,
+    typer.Option(help="Width of a cell of the stock (mm; default: by its size).", metavar="MM"),
+]
+SaveStock = Annotated[
+    Path | None, typer.Option(help="Write what is left of the stock to an .stl file.", metavar="FILE")
+]
 LoopLimit = Annotated[
     float | None,
     typer.Option(

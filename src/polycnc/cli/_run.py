@@ -28,12 +28,18 @@ class _Outputs:
     trace: Path | None
     plot: Path | None
     screen: Path | None
+    stock: Path | None
 
     def check(self, programs: Sequence[Path], inputs: Iterable[str | Path | None]) -> None:
         """Refuse files of several programs, and those that are read or written twice."""
         from polycnc.outputs import keep_apart, keep_inputs
 
-        outputs = (("a trace", self.trace), ("a plot", self.plot), ("a screen", self.screen))
+        outputs = (
+            ("a trace", self.trace),
+            ("a plot", self.plot),
+            ("a screen", self.screen),
+            ("stock", self.stock),
+        )
         read = tuple(inputs)
         for what, output in outputs:
             if output is not None and len(programs) > 1:
@@ -43,7 +49,7 @@ class _Outputs:
 
     def say(self) -> None:
         """Say what has been written."""
-        for path in (self.trace, self.plot, self.screen):
+        for path in (self.trace, self.plot, self.screen, self.stock):
             if path is not None:
                 say(f"wrote      {path}")
 
@@ -64,13 +70,18 @@ def run_command(
     keys: options.Keys = None,
     screen: options.Screen = None,
     loop_limit: options.LoopLimit = None,
+    stock: options.Stock = None,
+    resolution: options.Resolution = None,
+    save_stock: options.SaveStock = None,
 ) -> None:
     """Run part programs on a simulated machine and say how long they take and where they go."""
     from polycnc import runner
     from polycnc.machine import load_machine
 
-    outputs = _Outputs(trace, plot, screen)
-    outputs.check(programs, (*programs, machine, dialect, keys))
+    if save_stock is not None:
+        check_stock_file(save_stock, stock)
+    outputs = _Outputs(trace, plot, screen, save_stock)
+    outputs.check(programs, (*programs, machine, dialect, keys, stock if stock != "auto" else None))
     texts = [read_program(program) for program in programs]
     config = load_machine(machine)
     if servo:
@@ -86,6 +97,8 @@ def run_command(
         screen=screen,
         ignore=options.codes_of(ignore),
         loop_limit_s=runner.LOOP_LIMIT_S if loop_limit is None else loop_limit,
+        stock=stock,
+        resolution_mm=resolution,
     )
     results = []
     for text in texts:
@@ -97,7 +110,7 @@ def run_command(
     else:
         _say_total(results)
         outputs.say()
-    sys.exit(0 if all(result.ok for result in results) else 1)
+    sys.exit(0 if all(result.ok and not result.collisions for result in results) else 1)
 
 
 def _run(text: ProgramText, config: MachineConfig, settings: RunSettings, outputs: _Outputs) -> RunResult:
@@ -119,7 +132,22 @@ def _run(text: ProgramText, config: MachineConfig, settings: RunSettings, output
         if picture is not None and outputs.plot is not None:
             names = tuple((axis.name, axis.unit) for axis in config.axes)
             runner.plot_track(result, names, picture.track(picture.execution()), outputs.plot)
+        if outputs.stock is not None and result.stock is not None:
+            result.stock.mesh().write_stl(outputs.stock)
     return result
+
+
+def check_stock_file(path: Path, stock: str | None) -> None:
+    """Check that what is left of the stock can be written where it should.
+
+    Raises:
+        UsageError: nothing is cut, or no .stl file.
+    """
+    from polycnc.outputs import check_output
+
+    if stock is None:
+        raise UsageError("there is no stock to save", hint="Say what is cut: --stock auto.")
+    check_output(path, (".stl",), "stock")
 
 
 def _say_total(results: Sequence[RunResult]) -> None:

@@ -10,12 +10,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from polycnc.cli._output import say
+from polycnc.cli._output import say, say_error
 from polycnc.units import whole
 
 if TYPE_CHECKING:
     from polycnc.servers.focas import Fault, FocasServer, Keeper, Profile
 
+_SHARE_S = 0.01  # of the wall clock that all controls together may take before a door answers
 _NUMBER = re.compile(rb"\s*O(\d{1,4})\b")
 _MOST = 4000
 
@@ -107,6 +108,20 @@ class _Wanted:
     faults: tuple[Fault, ...]
 
 
+class _Late:
+    """Say once that clocks are late."""
+
+    def __init__(self) -> None:
+        self._said = False
+
+    def say(self, _lag_s: float) -> None:
+        if not self._said:
+            self._said = True
+            say_error(
+                "the clocks of the controls are late: their programs take longer than the time they have"
+            )
+
+
 def _addresses(first: str, count: int) -> list[str]:
     """Return so many addresses of this computer, from one on.
 
@@ -139,9 +154,12 @@ async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
     keepers: list[Keeper] = []
     controls: list[PowerMate] = []
     wall = runner.WallClock()
+    late = _Late()
     try:
         for address in addresses:
-            control = PowerMate(wanted.axes, memory=wanted.memory)
+            control = PowerMate(
+                wanted.axes, memory=wanted.memory, characters=wanted.profile.program_characters
+            )
             controls.append(control)
             if content is not None:
                 number, text = _numbered(content)
@@ -151,7 +169,13 @@ async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
             if not servers:
                 control.advance(1)  # what has to be compiled is compiled before anybody waits for an answer
             faults = Faults(wanted.faults, control.clock.now_s)
-            keeper = Keeper(ServedControl(control, faults, again=content is not None), wall, rate=wanted.rate)
+            keeper = Keeper(
+                ServedControl(control, faults, again=content is not None),
+                wall,
+                rate=wanted.rate,
+                share_s=_SHARE_S / len(addresses),
+                on_late=late.say,
+            )
             keepers.append(keeper)
             server = FocasServer(
                 keeper, control, wanted.profile, address=address, port=wanted.port, faults=faults

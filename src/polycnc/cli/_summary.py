@@ -76,10 +76,16 @@ def print_summary(result: RunResult, units: Units = Units.MM) -> None:
     ]
     for line in columns([header, *axes], right=_NUMBERS):
         say(line)
+    if result.machined is not None:
+        removed, left = result.removed_mm3 / 1000.0, result.machined.stock.volume_mm3 / 1000.0
+        say(f"removed    {removed:,.3f} cm3 of {removed + left:,.3f} cm3")
     for message in result.messages:
         times = f" ({message.count} times)" if message.count > 1 else ""
         place = f"line {message.line}: " if message.line else ""
         say(f"message    {place}{message.text}{times}")
+    for collision in result.collisions:
+        place = "" if collision.position is None else f"{collision.position}: "
+        say_problem(f"{place}{collision}", lead=bold_red("collision: "))
     for alarm in result.alarms:
         say_problem(str(alarm), lead=bold_red("alarm: "))
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         OperatorMessages,
         PastAlarm,
     )
-    from polycnc.cnc._control import PROGRAM_MESSAGE, Control
+    from polycnc.cnc._control import Control
     from polycnc.cnc._control_channel import ControlChannel
     from polycnc.cnc._control_data import (
         AfterManual,
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     )
     from polycnc.cnc._control_snapshot import ControlSnapshot
     from polycnc.cnc._control_time import ControlEvent
+    from polycnc.cnc._inventory import AxisLimits, Identity, Inventory, PastMessage, SetBreakpoint
     from polycnc.cnc._manual import AxisMotion, Handwheel, ManualData, ManualKind, ManualMotion, ManualState
     from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
     from polycnc.cnc._program_edit import ProgramEdit
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
         ToolInUse,
         WorkOffset,
     )
+    from polycnc.cnc._stopping import PROGRAM_MESSAGE
     from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
     from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
@@ -71,7 +73,7 @@ _LATER = {
         "OperatorMessages",
         "PastAlarm",
     ),
-    "_control": ("PROGRAM_MESSAGE", "Control"),
+    "_control": ("Control",),
     "_control_time": ("ControlEvent",),
     "_control_channel": ("ControlChannel",),
     "_control_data": (
@@ -85,6 +87,7 @@ _LATER = {
         "Switches",
     ),
     "_control_snapshot": ("ControlSnapshot",),
+    "_inventory": ("AxisLimits", "Identity", "Inventory", "PastMessage", "SetBreakpoint"),
     "_manual": ("AxisMotion", "Handwheel", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
     "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
     "_program_edit": ("ProgramEdit",),
@@ -101,6 +104,7 @@ _LATER = {
         "ToolInUse",
         "WorkOffset",
     ),
+    "_stopping": ("PROGRAM_MESSAGE",),
     "_tables": ("OffsetTable", "Tool", "ToolTable"),
     "_timers": ("PartCounter", "Parts", "Timer", "Timers", "TimersState"),
 }
@@ -115,6 +119,7 @@ __all__ = [
     "AlarmRow",
     "AlarmTable",
     "Answer",
+    "AxisLimits",
     "AxisMotion",
     "AxisStatus",
     "Breakpoint",
@@ -132,6 +137,8 @@ __all__ = [
     "Found",
     "Function",
     "Handwheel",
+    "Identity",
+    "Inventory",
     "ManualData",
     "ManualKind",
     "ManualMotion",
@@ -147,6 +154,7 @@ __all__ = [
     "PartCounter",
     "Parts",
     "PastAlarm",
+    "PastMessage",
     "PlcModel",
     "PlcState",
     "ProgramEdit",
@@ -161,6 +169,7 @@ __all__ = [
     "RunState",
     "Script",
     "Search",
+    "SetBreakpoint",
     "Spindle",
     "SpindleMotion",
     "SpindleState",

@@ -133,6 +133,8 @@ class AlarmList:
         self.owners = dict(owners or {})
         self.active: tuple[Alarm, ...] = ()
         """The alarms that are on, oldest first."""
+        self.revision = 0
+        """Grows with every change of the history."""
         past = self._history.last(1)
         self.last_time: str | None = past[-1].content["time"] if past else None
         """When the last alarm of the history came, by the machine's date and time (ISO), even if it is gone."""
@@ -197,6 +199,7 @@ class AlarmList:
             }
         )
         self._history.trim(self._keep)
+        self.revision += 1
         self._change({**self._active, alarm.key: alarm})
         return alarm
 
@@ -233,6 +236,7 @@ class AlarmList:
     def clear_history(self) -> None:
         """Forget the history; the alarms that are on stay."""
         self._history.trim(0)
+        self.revision += 1
         self.last_time = None
         self._clock.changes += 1
 
@@ -252,6 +256,8 @@ class OperatorMessages:
         self._clock = clock
         self._keep = keep
         self._history = store.history(_MESSAGES)
+        self.revision = 0
+        """Grows with every change of the history."""
         self.shown: tuple[OperatorMessage, ...] = ()
         """The messages that are shown, oldest first."""
 
@@ -274,6 +280,7 @@ class OperatorMessages:
         message = OperatorMessage(number, text, self._clock.cycles)
         self._history.append({"number": number, "text": text, "time": self._clock.now.isoformat()})
         self._history.trim(self._keep)
+        self.revision += 1
         self._change(*(each for each in self.shown if each.number != number), message)
         return message
 

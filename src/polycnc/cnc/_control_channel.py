@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 
 from polycnc.cnc._block_search import block_line
+from polycnc.cnc._channel_axes import ChannelAxes
 from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
-from polycnc.cnc._control_snapshot import ChannelMoment, KeptText
 from polycnc.cnc._manual import ManualMotion
+from polycnc.cnc._path_blocks import next_block, prepared_block, unless_refused
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
-from polycnc.cnc._run_snapshot import FindText
-from polycnc.cnc._run_state import RunOptions, RunState
+from polycnc.cnc._run_making import RunMaker
+from polycnc.cnc._run_state import INTERRUPTED, RunState
 from polycnc.cnc._stops import Breakpoint, Step
 from polycnc.errors import UsageError
-from polycnc.kernel import OTHER_SOURCE, READY, give_to_point_to_point
-from polycnc.machine import Machine, MachineConfig, Snapshot
+from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import (
     BlockRecord,
     Dialect,
-    Event,
-    Language,
-    Library,
     ProgramText,
-    of_another_channel,
 )
-
-INTERRUPTED = frozenset(
-    {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
-)
-"""States in which a program stands and can go on."""
 
 
 class ControlChannel:
@@ -46,23 +36,13 @@ class ControlChannel:
         machine: Machine,
         path: int,
         data: ChannelData,
-        dialect: Dialect,
         manual: ManualMotion,
-        *,
-        config: MachineConfig,
-        library: Library,
-        dry_run_mm_min: float,
-        on_event: Callable[[ControlChannel, Event], bool],
-        language: Language | None = None,
+        runs: RunMaker,
     ) -> None:
         self.path = path
-        self.language = language
         self.skip_signal = False
         self.on_skip: Callable[[], None] | None = None
         self.data = data
-        names = machine.config.axis_names
-        self.axes = tuple(name for name in names if name in data.axes)
-        """The names of its axes, in the order of the machine."""
         self.mode = Mode.AUTO
         self.overrides = Overrides()
         self.switches = Switches()
@@ -76,30 +56,10 @@ class ControlChannel:
         self.returning = False  # axes go back to where the program was interrupted
         self._machine = machine
         self._clock = machine.clock
-        self._dialect = dialect
         self._manual = manual
-        self._file = config
-        self.config = self._own(config)
-        self.names: Sequence[str] | None = None
-        """Names of the machine's axes for programs, see `of_another_channel`; None: as the machine has them."""
-        self._library = library
-        self._dry_run_mm_s = dry_run_mm_min / 60.0
-        self._on_event = on_event
-        self._lent: tuple[tuple[int, float], ...] | None = None  # axes and where they were
-        self._changed = False  # the machine has other limits than the run knows
-        machine.state.paths.axis[path, [name not in data.axes for name in config.axis_names]] = -1
-        machine.state.paths.position[path] = machine.state.base
-        machine.state.paths.queued[path] = machine.state.base
-
-    def _own(self, config: MachineConfig) -> MachineConfig:
-        """Return the machine file as the programs of this channel see it: no word reaches the axes of others."""
-        axes = tuple(
-            axis
-            if axis.name in self.data.axes
-            else axis.model_copy(update={"name": of_another_channel(axis.name)})
-            for axis in config.axes
-        )
-        return config.model_copy(update={"axes": axes})
+        self.runs = runs
+        self.own_axes = ChannelAxes(machine, path, data.axes)
+        self.axes = self.own_axes.names
 
     # ------------------------------------------------------------------ what it does
 
@@ -133,12 +93,7 @@ class ControlChannel:
     @property
     def next_block(self) -> BlockRecord | None:
         """The block that comes next where the path stands between two blocks; None where none is known."""
-        run = self.run
-        row = self._machine.state.paths.row[self.path]
-        if run is None or row["state"] != READY:
-            return None
-        tag = run.feed.next_tag()
-        return None if tag is None else run.channel.records.block(tag)
+        return None if self.run is None else next_block(self._machine, self.run)
 
     @property
     def programs(self) -> frozenset[str]:
@@ -150,7 +105,18 @@ class ControlChannel:
             names |= {block.program, *(call.program for call in block.stack)}
         return frozenset(names)
 
+    @property
+    def prepared(self) -> BlockRecord | None:
+        """The block that was prepared last of those whose motion is queued; the executed one where none is."""
+        return None if self.run is None else prepared_block(self._machine, self.run)
+
     # ------------------------------------------------------------------ commands
+
+    def select(self, text: ProgramText | None) -> None:
+        """Take a text as the program of the next start in automatic, from its beginning; None: none."""
+        self.program = text
+        self.search = None
+        self._clock.changes += 1
 
     def seek(self, text: ProgramText, search: Search) -> int:
         """Make the selected program ready to begin at a block; return its line.
@@ -163,36 +129,18 @@ class ControlChannel:
             block_line(text, search.line, search.sequence)
         except UsageError as error:
             raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
-        with self._whole_or_nothing():
-            self._load(text, mdi=False)
-            self.set_switches(self.switches)  # statements may ask for them
-            line = self._find(search)
+        run = self.run
+        try:
+            with unless_refused(self._machine, self.path, run):
+                self._load(text, mdi=False)
+                self.set_switches(self.switches)  # statements may ask for them
+                line = self._find(search)
+        except ControlError:
+            self.run = run
+            raise
         self.search = search
         self._clock.changes += 1
         return line
-
-    @contextmanager
-    def _whole_or_nothing(self) -> Iterator[None]:
-        """Let a refusal within leave run and path as they were."""
-        state = self._machine.state
-        arrays = (state.owner, *(each[self.path] for each in (state.paths.position, state.paths.queued)))
-        kept = [each.copy() for each in arrays]
-        row, run = state.paths.row[self.path : self.path + 1], self.run
-        kept_row = row.copy()
-        try:
-            saved = None if run is None else run.snapshot()
-        except UsageError:  # a language has executed it: it stands at its beginning then
-            saved = None
-        try:
-            yield
-        except ControlError:
-            row[:] = kept_row
-            for each, content in zip(arrays, kept, strict=True):
-                each[:] = content
-            if run is not None and saved is not None:
-                run.restore(saved)
-            self.run = run
-            raise
 
     def _find(self, search: Search) -> int:
         assert self.run is not None
@@ -215,7 +163,7 @@ class ControlChannel:
         assert self.run is not None
         self.search = None
         self.is_mdi = mdi
-        self._lent = None
+        self.own_axes.taken = None
         self.set_switches(self.switches)
         self.set_overrides(self.overrides)
         self.run.breakpoints = self.breakpoints
@@ -226,31 +174,16 @@ class ControlChannel:
     def _has_found(self, text: ProgramText, search: Search | None) -> bool:
         """Tell whether the run stands before the block of a search; its statements are not executed a second time."""
         run = self.run
-        if run is None or self._changed or search is None or search != self.search:
+        if run is None or self.runs.stale or search is None or search != self.search:
             return False
         return run.program is text and run.state is RunState.READY and run.channel.holds_searched
 
     def _load(self, text: ProgramText, *, mdi: bool) -> None:
-        if self.run is None or self._changed:
-            self._changed = False
-            self.run = self._new_run(text)
+        if self.run is None or self.runs.stale:
+            self.runs.stale = False
+            self.run = self.runs.make(text)
         else:
             self.run.load(text, keeps_modal=mdi)
-
-    def _new_run(self, text: ProgramText, *, attaches: bool = True) -> ProgramRun:
-        return ProgramRun(
-            self._machine,
-            text,
-            self._dialect,
-            path=self.path,
-            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
-            config=self.config,
-            library=self._library,
-            language=self.language,
-            axes=self.names,
-            on_event=lambda event: self._on_event(self, event),
-            attaches=attaches,
-        )
 
     def go_on(self, after_manual: AfterManual, step: Step) -> None:
         """Let an interrupted program go on; axes that were moved by hand go back first, if the control does that.
@@ -260,7 +193,7 @@ class ControlChannel:
         """
         self.check_rest()
         self._clock.changes += 1
-        displaced = self._displaced()
+        displaced = self.own_axes.displaced()
         if not displaced:
             self._take_back(step)
             return
@@ -278,7 +211,7 @@ class ControlChannel:
         """Go on once the axes are back where the program was interrupted."""
         if self.returning and not self._manual.moves(self.axes):
             self.returning = False
-            if not self._displaced():
+            if not self.own_axes.displaced():
                 self._take_back(Step.RUN)
 
     def hold(self, *, at_once: bool = False) -> None:
@@ -298,7 +231,7 @@ class ControlChannel:
         self.search = None
         if self.run is not None:
             self.run.reset()
-            self._lent = None
+            self.own_axes.taken = None
 
     def fail(self) -> None:
         """Stop because of an alarm; only a reset helps."""
@@ -312,21 +245,14 @@ class ControlChannel:
         Raises:
             ControlError: A program is being executed, or the axes are still braking.
         """
-        if self._lent is not None:
+        if self.own_axes.taken is not None:
             return
         if self.active:
             raise ControlError(
                 Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
             )
         self.check_rest()
-        state = self._machine.state
-        taken = []
-        for axis in self._indexes():
-            if state.owner[axis] in (self.path, OTHER_SOURCE):
-                give_to_point_to_point(state, axis)
-                taken.append((axis, float(state.base[axis])))
-        if self.interrupted or self.broken:
-            self._lent = tuple(taken)
+        self.own_axes.lend(come_back=self.interrupted or self.broken)
 
     # ------------------------------------------------------------------ settings
 
@@ -344,23 +270,16 @@ class ControlChannel:
 
     def change_config(self, config: MachineConfig, dialect: Dialect) -> None:
         """Let programs that begin from now on keep other limits, and be read in this dialect."""
-        self._file, self._dialect = config, dialect
-        self.config = self._own(config)
-        self._changed = True
+        self.runs.change(config, dialect, self.data.axes)
         self._clock.changes += 1
 
     def share(self, axes: tuple[str, ...]) -> None:
         """Have these axes from now on; no program is being executed."""
-        state, names = self._machine.state, self._machine.config.axis_names
         self.data = replace(self.data, axes=axes)
-        self.axes = tuple(name for name in names if name in axes)
-        for index, name in enumerate(names):
-            if name not in axes and state.owner[index] == self.path:
-                give_to_point_to_point(state, index)
-            state.paths.axis[self.path, index] = index if name in axes else -1
-        state.paths.position[self.path] = state.base
-        state.paths.queued[self.path] = state.base
-        self.change_config(self._file, self._dialect)
+        self.own_axes.share(axes)
+        self.axes = self.own_axes.names
+        self.runs.share(axes)
+        self._clock.changes += 1
 
     def set_switches(self, switches: Switches) -> None:
         """Take over what the operator has switched on."""
@@ -381,60 +300,6 @@ class ControlChannel:
             self.run.feed_override = overrides.feed
             self.run.rapid_override = overrides.rapid
 
-    # ------------------------------------------------------------------ state
-
-    def moment(self, waiting: Sequence[int]) -> ChannelMoment:
-        """Return what the channel holds beside its run."""
-        return ChannelMoment(
-            mode=self.mode,
-            overrides=self.overrides,
-            switches=self.switches,
-            program=_kept(self.program),
-            mdi=_kept(self.mdi),
-            search=self.search,
-            is_mdi=self.is_mdi,
-            broken=self.broken,
-            returning=self.returning,
-            lent=self._lent,
-            waiting=tuple(waiting),
-        )
-
-    def way_back(self, run: Snapshot | None, find: FindText) -> Callable[[], ProgramRun | None]:
-        """Return what makes a run that goes back to a snapshot, when it is certain that it can be done.
-
-        Raises:
-            SnapshotError: It cannot.
-        """
-        if run is None:
-            return lambda: None
-        made = self._new_run(ProgramText("", b""), attaches=False)
-        back = made.way_back(run, find=find)
-
-        def go_back() -> ProgramRun:
-            back()
-            return made
-
-        return go_back
-
-    def put_back(self, moment: ChannelMoment, run: ProgramRun | None) -> None:
-        """Go back to a moment, with a run that nobody else has."""
-        self._clock.changes += 1
-        self.mode = moment.mode
-        self.overrides = moment.overrides
-        self.switches = moment.switches
-        self.program = _text(moment.program)
-        self.mdi = _text(moment.mdi)
-        self.search = moment.search
-        self.is_mdi = moment.is_mdi
-        self.broken = moment.broken
-        self.returning = moment.returning
-        self._lent = moment.lent
-        self.run = run
-        if run is not None:
-            self._changed = False
-            run.on_skip = self.on_skip
-            run.stopper.breakpoints = self.breakpoints
-
     # ------------------------------------------------------------------ lent axes
 
     def check_rest(self) -> None:
@@ -446,23 +311,9 @@ class ControlChannel:
         if not self.at_rest:
             raise ControlError(Refusal.RUNNING, "the axes are still braking", hint="Wait until they stand.")
 
-    def _indexes(self) -> tuple[int, ...]:
-        return tuple(axis for axis in self._machine.state.paths.axis[self.path].tolist() if axis >= 0)
-
-    def _displaced(self) -> dict[str, float]:
-        """Return where the axes that are elsewhere were when the program was interrupted."""
-        if self._lent is None:
-            return {}
-        names = self._machine.config.axis_names
-        base = self._machine.state.base
-        return {names[axis]: there for axis, there in self._lent if base[axis] != there}
-
     def _take_back(self, step: Step) -> None:
         """Take lent axes back, which are where they were, and go on."""
-        for axis, _ in self._lent or ():
-            locked = self.run is not None and self.run.machine_lock
-            self._machine.state.owner[axis] = OTHER_SOURCE if locked else self.path
-        self._lent = None
+        self.own_axes.take_back(locked=self.run is not None and self.run.machine_lock)
         self._go(step)
 
     def _go(self, step: Step) -> None:
@@ -483,11 +334,3 @@ class ControlChannel:
             go()
         except UsageError as error:
             raise ControlError(Refusal.RUNNING, error.what, hint=error.hint) from error
-
-
-def _kept(text: ProgramText | None) -> KeptText | None:
-    return None if text is None else KeptText(text.name, text.content.decode("latin-1"))
-
-
-def _text(kept: KeptText | None) -> ProgramText | None:
-    return None if kept is None else ProgramText(kept.name, kept.content.encode("latin-1"))

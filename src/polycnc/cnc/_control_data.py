@@ -50,6 +50,7 @@ class ControlData:
     after an emergency stop a reset comes first. `answer_limit_s`: how long the PLC may take (None: for ever).
     `dry_run_mm_min` is the feed of a dry run, `sub_program_names` are the names under which a called number is sought.
     `reset_stops_spindle`, `end_stops_spindle` (M2, M30) and `count_parts` (at the program end) say so.
+    `serial_number` is that of the control.
     """
 
     manual: ManualData = field(default_factory=ManualData)
@@ -70,6 +71,7 @@ class ControlData:
     answer_limit_s: float | None = None
     dry_run_mm_min: float = 3000.0
     sub_program_names: tuple[str, ...] = ("O{number:04d}", "O{number}", "{number}")
+    serial_number: str = ""
 
 
 @dataclass(frozen=True, slots=True)

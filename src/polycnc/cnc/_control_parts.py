@@ -10,12 +10,14 @@ from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_data import ControlData
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._plc import PlcModel
+from polycnc.cnc._program_edit import ProgramEdits
 from polycnc.cnc._program_memory import ProgramMemory
+from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._status import Emergency
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
-from polycnc.machine import Clock, Machine
+from polycnc.machine import Clock, Machine, MachineConfig
 from polycnc.nc import Dialect
 
 
@@ -33,6 +35,7 @@ class ControlParts:
     data: ControlData
     dialect: Dialect
     programs: ProgramMemory
+    edits: ProgramEdits
     tools: ToolTable
     offsets: OffsetTable
     alarms: AlarmList
@@ -45,3 +48,32 @@ class ControlParts:
     manual: ManualMotion
     emergency: Emergency = Emergency.OFF
     relative_zero: list[float] = field(default_factory=list)
+
+    def channel(self, number: int) -> ControlChannel:
+        """Return a channel by its number, from 0.
+
+        Raises:
+            ControlError: There is no such channel.
+        """
+        if not 0 <= number < len(self.channels):
+            raise ControlError(
+                Refusal.DATA, f"there is no channel {number}", hint=f"Give 0 to {len(self.channels) - 1}."
+            )
+        return self.channels[number]
+
+    def chosen(self, number: int | None) -> tuple[ControlChannel, ...]:
+        """Return the channel that a command means, all of them for None.
+
+        Raises:
+            ControlError: There is no such channel.
+        """
+        return self.channels if number is None else (self.channel(number),)
+
+    def owner(self, axis: str) -> ControlChannel:
+        """Return the channel of an axis; the first one for an axis that there is not."""
+        return next((channel for channel in self.channels if axis in channel.axes), self.channels[0])
+
+
+def live_config(config: MachineConfig, tools: ToolTable, offsets: OffsetTable) -> MachineConfig:
+    """Return a machine file with the tables that change while programs run."""
+    return config.model_copy(update={"tools": tools, "offsets": offsets})

@@ -133,7 +133,8 @@ class ManualMotion:
         self._machine = machine
         self._alarms = alarms
         self._axes: tuple[AxisConfig, ...] = machine.config.axes
-        self._names = machine.config.axis_names
+        self.names = machine.config.axis_names
+        """The names of the axes, by their place."""
         self.motions = [_REST] * len(self._axes)
         """What each axis is doing by hand, by its place."""
         self.references = [referenced] * len(self._axes)
@@ -170,7 +171,7 @@ class ManualMotion:
     @property
     def referenced(self) -> dict[str, bool]:
         """Which axes are referenced."""
-        return dict(zip(self._names, self.references, strict=True))
+        return dict(zip(self.names, self.references, strict=True))
 
     def motion(self, axis: str) -> AxisMotion:
         """Return what an axis is doing by hand."""
@@ -389,11 +390,11 @@ class ManualMotion:
     # ------------------------------------------------------------------ planning
 
     def _index(self, axis: str) -> int:
-        if axis not in self._names:
+        if axis not in self.names:
             raise ControlError(
-                Refusal.DATA, f"there is no axis '{axis}'", hint=f"The axes are {', '.join(self._names)}."
+                Refusal.DATA, f"there is no axis '{axis}'", hint=f"The axes are {', '.join(self.names)}."
             )
-        return self._names.index(axis)
+        return self.names.index(axis)
 
     def _position(self, i: int) -> float:
         return float(self._machine.state.base[i])

@@ -42,6 +42,7 @@ class FeedSnapshot(NamedTuple):
     left: int = _NEVER
     box: tuple[Floats, Floats] | None = None
     due: bool = True
+    releases: bool = False
 
 
 class PathFeed:
@@ -64,6 +65,7 @@ class PathFeed:
         self._left = _NEVER  # the count at which the path stood when it went on
         self._met_at: int | None = None  # the count at which a condition has become true
         self._due = True  # whatever the queue holds
+        self._releases = False  # the stop ahead is wanted no more, if nobody wants it before time passes
         state = machine.state
         self.row = state.paths.row[channel.path]
         self._low_water = _LOW_WATER + int(self.row["depth"])
@@ -84,6 +86,10 @@ class PathFeed:
     def feed(self) -> None:
         """Prepare what may be prepared, and set when the path has to be looked at again."""
         self._due = False
+        if self._releases:
+            self._releases = False
+            self.row["limit"] = NO_LIMIT
+            self.prepare()
         self._forget_marks()
         self._fill()
         self._find_stop()
@@ -240,20 +246,34 @@ class PathFeed:
     # ------------------------------------------------------------------ stops
 
     def go_on(self) -> None:
-        """Go on from a stop."""
-        self._met_at = None
-        self._left = int(self.row["head"])
-        self.look_again()
-
-    def look_again(self) -> None:
-        """Look for stops anew: the stopper has changed."""
-        row = self.row
+        """Go on from a stop between two blocks."""
+        head = int(self.row["head"])
+        if self._met_at is not None and self._met_at <= head:
+            self._met_at = None
+        self._left = head
         self._seen = 0
-        self._due = True
-        if row["limit"] != NO_LIMIT:
-            row["limit"] = NO_LIMIT
+        self._due, self._releases = True, False
+        if self.row["limit"] != NO_LIMIT:
+            self.row["limit"] = NO_LIMIT
             self.prepare()
         self._find_stop()
+
+    def look_again(self) -> None:
+        """Look for stops anew: the stopper has changed.
+
+        A stop that the path brakes for already is kept if it is still wanted: braking leaves nothing to spare. One that
+        is wanted no more is let go when time passes, so it may be wanted again before.
+        """
+        self._seen = 0
+        self._due, self._releases = True, False
+        limit = int(self.row["limit"])
+        if limit == NO_LIMIT or self._met_at is not None:
+            self._find_stop()
+            return
+        wanted = self._next_stop(limit)
+        if wanted is not None and wanted < limit:
+            self._set_limit(wanted)
+        self._releases = wanted is None or wanted > limit
 
     def let_pass(self) -> None:
         """Let the block that comes next begin, whatever the stopper says."""
@@ -261,17 +281,24 @@ class PathFeed:
 
     def _find_stop(self) -> None:
         """Let the path rest at the first boundary where the stopper wants that and where it still can."""
+        if self._met_at is not None and self.row["limit"] == NO_LIMIT:
+            self._set_limit(max(self._met_at, self._earliest()))
+        if self.row["limit"] == NO_LIMIT and (wanted := self._next_stop()) is not None:
+            self._set_limit(wanted)
+
+    def _next_stop(self, limit: int = NO_LIMIT) -> int | None:
+        """Return the count of the first boundary where the stopper wants the path to rest, None if there is none.
+
+        The path can still rest there, or brakes for it already: `limit`.
+        """
         row = self.row
         head, tail = int(row["head"]), int(row["tail"])
-        if self._met_at is not None:
-            self._set_limit(max(self._met_at, self._earliest()))
-        if row["limit"] != NO_LIMIT or self.stopper.idle or head >= tail:
-            return
+        if self.stopper.idle or head >= tail:
+            return None
         if row["state"] == READY and head != self._left:
             tag = self.tags(head, head + 1)[0]  # nothing lay before it when it came
             if tag != row["tag"] and self.stopper.stops_before(tag):
-                self._set_limit(head)
-                return
+                return head
         first = max(head, self._seen)
         begin = max(first - 1, head)
         tags = self.tags(begin, tail)
@@ -282,10 +309,10 @@ class PathFeed:
             if self.stopper.stops_before(boundary.tag):
                 if earliest is None:
                     earliest = self._earliest()
-                if boundary.count >= earliest:
-                    self._set_limit(boundary.count)
-                    return
+                if boundary.count >= earliest or boundary.count == limit:
+                    return boundary.count
         self._seen = tail
+        return None
 
     def _earliest(self) -> int:
         state = self.machine.state
@@ -310,13 +337,14 @@ class PathFeed:
             self._left,
             box,
             self._due,
+            self._releases,
         )
 
     def restore(self, saved: FeedSnapshot) -> None:
         """Go back to a snapshot."""
         self._ends = deque(saved.ends)
         self._seen, self._met_at, self._left = saved.seen, saved.met_at, saved.left
-        self._due = saved.due
+        self._due, self._releases = saved.due, saved.releases
         self.low[:], self.high[:] = saved.low, saved.high
         self._box = None if saved.box is None else (saved.box[0].copy(), saved.box[1].copy())
 
@@ -326,4 +354,4 @@ class PathFeed:
         self._left = _NEVER
         self._seen = 0
         self._met_at = None
-        self._due = True
+        self._due, self._releases = True, False

@@ -73,6 +73,8 @@ class ProgramMemory:
     def __init__(self, store: Store, clock: Clock, data: MemoryData | None = None) -> None:
         self.data = data or MemoryData()
         self.write_protected = False
+        self.revision = 0
+        """Grows with every change of the directory or of a program."""
         self.running: frozenset[str] = frozenset()
         self.edited: frozenset[str] = frozenset()
         self._store = store
@@ -202,6 +204,7 @@ class ProgramMemory:
             ControlError: There is none, or it is protected or in use.
         """
         self._changeable(name)
+        self.revision += 1
         del self._area[name]
 
     def delete_all(self) -> int:
@@ -214,6 +217,7 @@ class ProgramMemory:
         names = [each.name for each in self.directory() if not each.protected]
         for name in names:
             self._changeable(name)
+        self.revision += 1
         with self._store.transaction():
             for name in names:
                 del self._area[name]
@@ -227,6 +231,7 @@ class ProgramMemory:
         """
         self._changeable(name)
         self._check_new(new)
+        self.revision += 1
         with self._store.transaction():
             self._area.put(new, self._area[name], self._area.attributes(name))
             del self._area[name]
@@ -248,11 +253,13 @@ class ProgramMemory:
         self._check_key()
         self._known(name)
         self._check_free(name)
+        self.revision += 1
         self._area.put(name, self._area[name], {**self._area.attributes(name), "protected": on})
 
     # ------------------------------------------------------------------ checks
 
     def _put(self, name: str, content: bytes) -> None:
+        self.revision += 1
         attributes = {
             "size": len(content),
             "comment": self.data.comment_of(content),

@@ -175,6 +175,7 @@ class Conduct:
 
         What must end `machine.advance` early is put into the clock's mask, beside what is there; `asleep` as `advance`.
         """
+        self.machine.state.clock[0]["mask"] |= kernel.RECORDER_FULL  # rows are kept whatever the program does
         if self.moment.dropping or (self.moment.state is RunState.HOLD and self.at_rest):
             return 0 if self.at_rest else cycles
         if self.moment.state not in _GOING:
@@ -240,19 +241,24 @@ class Conduct:
         self._pass_stop()
         self.moment.hold = False
         self.moment.state = RunState.ACTIVE
-        stopper = self.stopper
-        stopper.step = Step.RUN
-        self.feed.go_on()
-        self.feed.feed()
-        following = self.feed.next_tag()
-        depth_of = record if within or following is None else following
-        stopper.step, stopper.depth = step, self.channel.records.depth(depth_of)
-        if not within and self._stand_at_marks():
-            self.set_hold()
-            return
+        if within:
+            self._step_from(step, record)
+        else:
+            self.stopper.step = Step.RUN
+            self.feed.go_on()
+            self.feed.feed()
+            following = self.feed.next_tag()
+            self._step_from(step, record if following is None else following)
+            if self._stand_at_marks():
+                self.set_hold()
+                return
         self.feed.look_again()
         self.set_hold()
         self.look()
+
+    def _step_from(self, step: Step, tag: int) -> None:
+        """Go as far as `step` says, from the block of a tag."""
+        self.stopper.step, self.stopper.depth = step, self.channel.records.depth(tag)
 
     @property
     def step_of_switch(self) -> Step:
@@ -323,6 +329,9 @@ class Conduct:
         if event.word and self.on_event is not None:
             self.moment.unanswered = bool(self.on_event(event)) and not self.moment.suppressed.answers
             self.set_hold()
+        if event.barrier:
+            self.moment.barrier = True
+            self._pass_barrier()
         if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
             self.moment.probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
         elif event.stop is Stop.DRAIN:
@@ -336,6 +345,18 @@ class Conduct:
             self.moment.state = _STOP_STATES[event.stop]
             self.set_hold()
         elif event.stop is not None and self.options.stands_at_stops:
+            self._go_on()
+
+    def answered(self) -> None:
+        """Let the path, and preparation, go on from an auxiliary function."""
+        self.moment.unanswered = False
+        self._pass_barrier()
+        self.set_hold()
+
+    def _pass_barrier(self) -> None:
+        """Let preparation go on behind functions that have been answered: what they change counts for what follows."""
+        if self.moment.barrier and not self.moment.unanswered:
+            self.moment.barrier = False
             self._go_on()
 
     def _go_on(self) -> None:
@@ -412,7 +433,7 @@ class Conduct:
         self.moment.dropping = False
         self.moment.hold = False
         self.moment.stop = None
-        self.moment.unanswered = False
+        self.moment.unanswered = self.moment.barrier = False
         self.moment.probing = None
         self.moment.met = None
         self.set_hold()

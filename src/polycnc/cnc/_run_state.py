@@ -20,6 +20,12 @@ class RunState(StrEnum):
     ALARM = "alarm"
 
 
+INTERRUPTED = frozenset(
+    {RunState.HOLD, RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
+)
+"""States in which a program stands and can go on."""
+
+
 @dataclass(frozen=True, slots=True)
 class RunOptions:
     """Set how a program is run: what an operator has set before it starts.

@@ -11,7 +11,7 @@ from polycnc.cnc._alarms import Alarm, OperatorMessage
 from polycnc.cnc._control_data import Mode, Overrides, Switches
 from polycnc.cnc._frozen import row
 from polycnc.cnc._manual import Handwheel
-from polycnc.cnc._run_state import RunState
+from polycnc.cnc._run_state import INTERRUPTED, RunState
 from polycnc.cnc._spindle import SpindleState
 from polycnc.cnc._timers import Parts, Timer
 from polycnc.nc import BlockRecord, ModalWords
@@ -114,12 +114,24 @@ class ChannelStatus(NamedTuple):
     switches: Switches
     axes: tuple[str, ...]
 
+    @property
+    def active(self) -> bool:
+        """Whether a program is being executed, or about to when axes have returned."""
+        return self.returning or self.run_state is RunState.ACTIVE
+
+    @property
+    def interrupted(self) -> bool:
+        """Whether a program stands and could go on."""
+        return self.run_state in INTERRUPTED
+
 
 @row
 class Status(NamedTuple):
     """A control at one cycle; mode, overrides and switches are those of the first channel.
 
     `last_alarm` is the machine's date and time (ISO) when the newest alarm of the history came; it may be gone.
+    `left_s` is how long what each channel has planned ahead still takes, without holds (s); how long its program has
+    taken so far is `Timer.CYCLE`.
     """
 
     cycle: int
@@ -137,6 +149,7 @@ class Status(NamedTuple):
     messages: tuple[OperatorMessage, ...]
     wheel: Handwheel
     timers_s: Mapping[Timer, float]
+    left_s: tuple[float, ...]
     parts: Parts
 
     @property

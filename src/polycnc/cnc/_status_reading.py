@@ -24,7 +24,7 @@ from polycnc.cnc._status import (
     ToolInUse,
     WorkOffset,
 )
-from polycnc.kernel import RAPID, RUNNING, WAIT
+from polycnc.kernel import RAPID, RUNNING, WAIT, planned_s
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecord, Group
 
@@ -42,6 +42,12 @@ class StatusReader:
         self._names: tuple[str, ...] = config.axis_names
         self._units = tuple(axis.unit for axis in config.axes)
         self._limit(config)
+        state, count = of.machine.state, len(self._names)
+        columns = state.servo.actual, state.velocity, state.setpoint, state.servo.row["following_error"]
+        self._arrays = tuple(column[:count] for column in columns)
+        planned_s(
+            of.machine.state.seg, of.machine.state.paths, 0, of.clock.cycle_s
+        )  # load it before time passes
         self._blocks = [_BlockPart(of, channel) for channel in of.channels]
         self._moment: tuple[object, ...] = ()
         self._status: Status | None = None
@@ -84,6 +90,7 @@ class StatusReader:
                 of.messages.shown,
                 of.manual.wheel,
                 FrozenDict(of.timers.shown_s()),
+                tuple(self._left_s(channel.path) for channel in of.channels),
                 of.parts.parts,
             )
         return self._status
@@ -93,6 +100,12 @@ class StatusReader:
         self._look()
         return self._axes or self._read_axes()
 
+    def tool(self, number: int) -> ToolInUse | None:
+        """Return the tool of a channel of the status, None before its first block."""
+        self._look()
+        part = self._blocks[number]
+        return None if part.read() is None else part.tool
+
     def channel(self, number: int) -> ChannelStatus:
         """Return a channel of the status."""
         self._look()
@@ -101,36 +114,38 @@ class StatusReader:
     # ------------------------------------------------------------------ axes
 
     def _read_axes(self) -> Mapping[str, AxisStatus]:
-        of = self._of
+        of, manual = self._of, self._of.manual
         if of.machine.config is not self._config:
             self._limit(of.machine.config)
-        state, manual, count = of.machine.state, of.manual, len(self._names)
-        actual = state.servo.actual[:count].tolist()
-        velocity = state.velocity[:count].tolist()
         zero, to_go = self._of_blocks()
-        kinds: list[str] = ["none"] * count
+        kinds: list[str] = ["none"] * len(zero)
         for index, motion in enumerate(manual.motions):
             if motion.kind is not ManualKind.NONE:
                 kinds[index] = motion.kind.value
-                to_go[index] = _left(motion, float(state.base[index]))
-        rows = map(
-            AxisStatus,
-            self._names,
-            self._units,
-            actual,
-            [a - z for a, z in zip(actual, zero, strict=True)],
-            [a - z for a, z in zip(actual, of.relative_zero, strict=True)],
-            to_go,
-            state.setpoint[:count].tolist(),
-            actual,
-            state.servo.row["following_error"][:count].tolist(),
-            velocity,
-            manual.references,
-            [v != 0.0 for v in velocity],
-            kinds,
-            [min(100.0, 100.0 * abs(v) / most) for v, most in zip(velocity, self._most, strict=True)],
-            manual.jog_speeds,
-        )  # fmt: skip
+                to_go[index] = _left(motion, float(of.machine.state.base[index]))
+        actual, velocity, setpoint, lag = (each.tolist() for each in self._arrays)
+        rows: list[AxisStatus] = []
+        for index, name in enumerate(self._names):
+            at, speed = actual[index], velocity[index]
+            rows.append(
+                AxisStatus(
+                    name,
+                    self._units[index],
+                    at,
+                    at - zero[index],
+                    at - of.relative_zero[index],
+                    to_go[index],
+                    setpoint[index],
+                    at,
+                    lag[index],
+                    speed,
+                    manual.references[index],
+                    speed != 0.0,
+                    kinds[index],
+                    min(100.0, 100.0 * abs(speed) / self._most[index]) if speed else 0.0,
+                    manual.jog_speeds[index],
+                )
+            )
         self._axes = FrozenDict(zip(self._names, rows, strict=True))
         return self._axes
 
@@ -153,6 +168,13 @@ class StatusReader:
         return zero, to_go
 
     # ------------------------------------------------------------------ channels
+
+    def _left_s(self, path: int) -> float:
+        state = self._of.machine.state
+        row = state.paths.row[path]
+        if row["head"] >= row["prepared"]:
+            return 0.0
+        return planned_s(state.seg, state.paths, path, self._of.clock.cycle_s)
 
     def _channel(self, number: int) -> ChannelStatus:
         if (known := self._channels[number]) is not None:

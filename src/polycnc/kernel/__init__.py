@@ -39,6 +39,7 @@ from polycnc.kernel._path import (
     slot,
     start_path,
 )
+from polycnc.kernel._planned_time import planned_s
 from polycnc.kernel._point_to_point import ADDED, MAIN, PointToPoint, move_to, rest_position, stop_axis
 from polycnc.kernel._profile import (
     SHORT_JUMP,
@@ -182,6 +183,7 @@ __all__ = [
     "move_to",
     "place_machine",
     "plan_profile",
+    "planned_s",
     "prepare_path",
     "profile_at",
     "profile_duration",

@@ -178,6 +178,10 @@ def plan_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     more = (row["cap"], 0.0, row["cap"], math.inf, row["cap"], math.inf, tail - 1, row["cap"])
     final = tail if met else -1
     _put(seg, k, rest)
+    rests = path["limit"] <= tail  # behind the last segment, which owes nothing to what comes into view later
+    if rests:
+        seg.geo[k, EASE] = math.inf
+    stop = (0.0, 0.0, 0.0, math.inf, 0.0, math.inf, tail - 1, 0.0)
     to_go = 0.0
     for count in range(tail - 1, known - 1, -1):
         k = slot(paths, g, count)
@@ -194,6 +198,8 @@ def plan_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         if not met:
             more = _step_back(seg, k, count, more, limit, reached, corner, unknown, jerk, dt)
         rest = _step_back(seg, k, count, rest, limit, reached, corner, unknown, jerk, dt)
+        if rests and unknown:
+            _step_back(seg, k, count, stop, limit, reached, corner, False, jerk, dt)
         if count == head:
             geo[SHARE_IN], geo[ZONE_IN] = path["entry_share"], path["entry_zone"]
             geo[REDUCED] = min(geo[REDUCED], row["accel"] * (1.0 - path["entry_share"]))

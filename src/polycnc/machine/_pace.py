@@ -74,6 +74,17 @@ class Pace:
         with self._lock:
             self._since_s, self._before, self._done = self._wall.now_s(), 0.0, 0
 
+    def drop_lag(self, most_s: float) -> float:
+        """Let what is late by more than `most_s` of the wall clock not be caught up with; return how much that was."""
+        with self._lock:
+            if self._rate in (0.0, math.inf):
+                return 0.0
+            late_s = self._late(self._cycle_s) * self._cycle_s / self._rate
+            if late_s <= most_s:
+                return 0.0
+            self._since_s, self._before, self._done = self._wall.now_s(), 0.0, 0
+            return late_s
+
     def step(self, cycles: int) -> None:
         """Make `cycles` more cycles due at once, frozen or not.
 

@@ -29,6 +29,7 @@ from polycnc.runner._wall import WallClock
 
 if TYPE_CHECKING:
     from polycnc.runner._debugger import Debugger, Place
+    from polycnc.runner._machining import Machined, MachiningCollector, tools_of
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._schemas import SCHEMAS, json_schema
     from polycnc.runner._verify import Violation, verify_trace
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 
 _LATER = {
     "_debugger": ("Debugger", "Place"),
+    "_machining": ("Machined", "MachiningCollector", "tools_of"),
     "_post": ("PostResult", "post_file"),
     "_schemas": ("SCHEMAS", "json_schema"),
     "_verify": ("Violation", "verify_trace"),
@@ -64,6 +66,8 @@ __all__ = [
     "Comparison",
     "Debugger",
     "Deviation",
+    "Machined",
+    "MachiningCollector",
     "Operation",
     "PathDeviation",
     "Place",
@@ -100,6 +104,7 @@ __all__ = [
     "run",
     "run_program",
     "time_text",
+    "tools_of",
     "trace_columns",
     "verify_post",
     "verify_trace",

@@ -14,6 +14,7 @@ from polycnc.runner._execution import run_to_end
 from polycnc.runner._program_control import control_for, run_under
 from polycnc.runner._rehearsal import rehearsed
 from polycnc.runner._remarks import MachiningWatch, Remark, empty_remark
+from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings, program_text
 
 
@@ -68,18 +69,20 @@ def inspect(
     root: str | Path | None = None,
     ignore: Iterable[str] = (),
     rehearse: bool = True,
+    stock: str | None = None,
 ) -> CheckReport:
     """Return the errors of a part program as `check` does, and what a machinist would remark on it.
 
     Remarked are cutting with the spindle at rest or without a tool, rapids across where the part has been cut,
     program stops, and a program in which nothing stands. A program with statements of a language (CPL) that is linked
     without an error is run in a copy of `root` for that, and for errors of the blocks that it gives, unless `rehearse`
-    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged.
+    is off or the folder is larger than 500 files or 32 MB; that, and where its run ended early, is logged. With `stock`
+    (as in `run`) a program without an error cuts it, and collisions are remarked too.
 
     Raises:
         UsageError: no such file, machine or dialect.
     """
-    settings = RunSettings(machine, dialect, root=root, ignore=tuple(ignore))
+    settings = RunSettings(machine, dialect, root=root, ignore=tuple(ignore), stock=stock)
     text = program_text(program)
     simulated = Machine(load_machine(machine))
     chosen = settings.dialect_of(text)
@@ -94,5 +97,13 @@ def inspect(
     watch = MachiningWatch(execution.channel)
     execution.channel.on_filled = watch.look
     run_to_end(execution, every_cycle=False)
-    empty = empty_remark(text)
-    return CheckReport(execution.channel.errors, watch.remarks if empty is None else [empty])
+    if (empty := empty_remark(text)) is not None:
+        return CheckReport(execution.channel.errors, [empty])
+    if stock is None or execution.channel.errors:
+        return CheckReport(execution.channel.errors, watch.remarks)
+    return CheckReport([], [*watch.remarks, *_collisions(text, settings)])
+
+
+def _collisions(text: ProgramText, settings: RunSettings) -> list[Remark]:
+    found = run_program(text, settings, check=False).collisions
+    return [Remark(each.kind.name.lower(), str(each), each.position) for each in found if each.position]

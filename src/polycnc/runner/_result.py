@@ -21,7 +21,9 @@ from polycnc.runner._operations import Operation
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+    from polycnc.runner._machining import Collision, Machined
     from polycnc.runner.view import View
+    from polycnc.stock import Stock
 
 Floats = npt.NDArray[np.float64]
 
@@ -140,6 +142,8 @@ class RunResult:
     variables: dict[str, object] = field(default_factory=dict, repr=False)
     """Variables of a program's language by name, after the run: permanent and global ones."""
     operations: list[Operation] = field(default_factory=list, repr=False)
+    machined: Machined | None = field(default=None, repr=False, compare=False)
+    """What the run has cut from a body, with `stock`."""
 
     def __str__(self) -> str:
         state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"
@@ -178,6 +182,21 @@ class RunResult:
     def ok(self) -> bool:
         """Whether the program ran to its end."""
         return not self.alarms
+
+    @property
+    def stock(self) -> Stock | None:
+        """What is left of the body that was cut, with `stock`."""
+        return None if self.machined is None else self.machined.stock
+
+    @property
+    def removed_mm3(self) -> float:
+        """What was cut from a body, 0 without `stock`; `machined` has it by block and by tool."""
+        return 0.0 if self.machined is None else self.machined.volume_mm3
+
+    @property
+    def collisions(self) -> list[Collision]:
+        """What went wrong in the body that was cut, with `stock`."""
+        return [] if self.machined is None else self.machined.collisions
 
     @property
     def path_mm(self) -> float:
@@ -271,6 +290,7 @@ class RunResult:
             "messages": [{"text": m.text, "line": m.line, "count": m.count} for m in self.messages],
             "events": [{"time_s": e.time_s, "line": e.line, "word": e.word} for e in self.events],
             **({"variables": self.variables} if self.variables else {}),
+            **({} if self.machined is None else {"stock": self.machined.as_dict()}),
         }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, overload
 
@@ -40,6 +41,8 @@ def run(
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
     loop_limit_s: float = LOOP_LIMIT_S,
+    stock: str | None = None,
+    resolution_mm: float | None = None,
 ) -> TracedResult: ...
 
 
@@ -63,6 +66,8 @@ def run(
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
     loop_limit_s: float = LOOP_LIMIT_S,
+    stock: str | None = None,
+    resolution_mm: float | None = None,
 ) -> RunResult: ...
 
 
@@ -85,6 +90,8 @@ def run(
     screen: str | Path | None = None,
     ignore: Iterable[str] = (),
     loop_limit_s: float = LOOP_LIMIT_S,
+    stock: str | None = None,
+    resolution_mm: float | None = None,
 ) -> RunResult:
     """Run a part program on a simulated machine and return times, lengths, extents and messages.
 
@@ -103,6 +110,10 @@ def run(
     `screen` (.txt, .svg or .png). A loop of its statements may go round for `loop_limit_s` of the machine's time
     without a block or a WAIT; one that comes back to where it was is an error at once.
 
+    With `stock` the tools cut a body: `auto`, `box=X0,Y0,Z0,X1,Y1,Z1`, `cylinder=D,Z0,Z1` (mm, work coordinates) or an
+    STL file, in cells of `resolution_mm`. What is left, what was removed and what went wrong are in the result:
+    `stock`, `removed_mm3`, `collisions`, `machined`.
+
     Raises:
         ProgramError: with `check`, the program cannot be run as written; what ran before it is in `.result`.
         AlarmError: with `check`, the machine stopped.
@@ -120,6 +131,8 @@ def run(
         screen=screen,
         ignore=tuple(ignore),
         loop_limit_s=loop_limit_s,
+        stock=stock,
+        resolution_mm=resolution_mm,
     )
     return run_program(
         program,
@@ -153,6 +166,12 @@ def run_program(
     config = load_machine(settings.machine)
     collector = TraceCollector(config, settings.servo) if trace else None
     tagged = [sink for sink in (collector.add_tagged if collector else None, tagged_rows) if sink is not None]
+    form, machining = settings.form(), None
+    if form is not None:
+        from polycnc.runner._machining import MachiningCollector
+
+        machining = MachiningCollector(config)
+        tagged.append(machining.add)
     record = Record(text, config, servo=settings.servo, rows=rows, tagged=tagged, progress=progress)
     simulated = Machine(config, servo=settings.servo, record_cycles=record.cycles)
     dialect = settings.dialect_of(text)
@@ -177,6 +196,10 @@ def run_program(
     if remark := times_remark(config, dialect, [event.word for _, event in log.found]):
         execution.channel.messages.note(remark, 0)
     result = _result(execution, log, collector, stuck)
+    if form is not None and machining is not None:
+        machined = machining.machined(form)
+        notes = [RunMessage(text, 0, 1) for text in machined.messages]
+        result = replace(result, machined=machined, messages=[*result.messages, *notes])
     if control is not None:
         result.variables.update(control.variables())
     if check:

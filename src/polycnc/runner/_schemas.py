@@ -114,8 +114,38 @@ def _result() -> Schema:
             "messages": _list(_object({"text": _TEXT, "line": _LINE, "count": _COUNT})),
             "events": _list(_object({"time_s": _time("When"), "line": _LINE, "word": _TEXT})),
             "variables": {"type": "object", "description": "Variables of the program's language, by name."},
+            "stock": _stock(),
         },
-        ("variables",),
+        ("variables", "stock"),
+    )
+
+
+def _stock() -> Schema:
+    place = _list({"type": "number"}, minItems=3, maxItems=3, description="X, Y, Z, mm.")
+    volume = _number("Volume, mm3.", low=0.0)
+    return _object(
+        {
+            "low_mm": place,
+            "high_mm": place,
+            "cell_mm": _length("Width of a cell"),
+            "volume_mm3": volume,
+            "removed_mm3": volume,
+            "removed_by_tool_mm3": _map(volume, "What each tool has removed, by its number."),
+            "removed_by_line_mm3": _list(_object({"program": _TEXT, "line": _LINE, "volume_mm3": volume})),
+            "collisions": _list(
+                _object(
+                    {
+                        "kind": _TEXT,
+                        "text": _TEXT,
+                        "program": _TEXT,
+                        "line": _LINE,
+                        "time_s": _time("When it began"),
+                        "place_mm": place,
+                        "depth_mm": _length("Greatest depth"),
+                    }
+                )
+            ),
+        }
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
@@ -12,6 +13,9 @@ from polycnc.nc import Dialect, ProgramText, dialect_for
 from polycnc.outputs import keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._program_control import ProgramControl, Surroundings, check_screen_file, root_of
+
+if TYPE_CHECKING:
+    from polycnc.stock import Form
 
 Program = str | Path | ProgramText
 
@@ -35,12 +39,29 @@ class RunSettings:
     screen: str | Path | None = None
     ignore: tuple[str, ...] = ()
     loop_limit_s: float = LOOP_LIMIT_S
+    stock: str | None = None
+    resolution_mm: float | None = None
 
     def __post_init__(self) -> None:
         if not self.loop_limit_s > 0.0:
             raise UsageError(f"a limit of {self.loop_limit_s:g} s for loops", hint="Give seconds above 0.")
         if not self.feed_override > 0.0:
             raise UsageError(f"a feed override of {self.feed_override:g}", hint="Give more than 0, up to 2.")
+        if self.resolution_mm is not None and self.stock is None:
+            raise UsageError("a resolution without stock", hint="Say what is cut too, like stock='auto'.")
+        self.form()
+
+    def form(self) -> Form | None:
+        """Return what body is cut; None if none is.
+
+        Raises:
+            UsageError: no such form.
+        """
+        if self.stock is None:
+            return None
+        from polycnc.stock import Form
+
+        return Form(self.stock, self.resolution_mm)
 
     def dialect_of(self, text: ProgramText) -> Dialect:
         """Return the dialect of a program, without the codes that are ignored.

@@ -7,6 +7,7 @@ from typing import Any, cast
 
 from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
+from polycnc.controllers.bosch._channel_ports import ChannelPorts
 from polycnc.controllers.bosch.ncs import Mode
 from polycnc.controllers.bosch.system import (
     SD_GROUPS,
@@ -35,26 +36,13 @@ _OTHER_GROUPS = ((138, 139), (168, 169), (268, 269), (147, 148, 247, 347, 447, 5
 
 
 class ChannelData:
-    """The system data of channel `number`; `language` is the country code of MACODA 6010 00010, `modes` tells modes.
+    """The system data of channel `number` of `channels`; `language` is the country code of MACODA 6010 00010."""
 
-    `spindle` tells the override of the spindle and its actual speed (rpm), None where that is the programmed one.
-    """
-
-    def __init__(
-        self,
-        axes: SystemAxes,
-        number: int,
-        runs: Callable[[int], ProgramRun | None],
-        modes: Callable[[int], Mode],
-        language: int,
-        spindle: Callable[[], tuple[float, float | None]] = lambda: (1.0, None),
-    ) -> None:
+    def __init__(self, axes: SystemAxes, number: int, channels: ChannelPorts, language: int) -> None:
         self._axes = axes
         self._number = number
-        self._runs = runs
-        self._modes = modes
+        self._channels = channels
         self._language = language
-        self._spindle = spindle
         self.functions: Mapping[str, Callable[..., object]] = {
             "SD": lambda *place: self.system_data().sd(*place),
             "SDR": lambda *place: self.system_data().sdr(*place),
@@ -67,7 +55,7 @@ class ChannelData:
     @property
     def run(self) -> ProgramRun:
         """The run of the channel."""
-        run = self._runs(self._number)
+        run = self._channels.run(self._number)
         assert run is not None, "attach the run first"
         return run
 
@@ -79,7 +67,7 @@ class ChannelData:
         state = run.channel.state
         programmed, executed = self.programmed(), run.modal
         once = programmed.placement.once
-        override, rpm = self._spindle()
+        override, rpm = self._channels.spindle()
         overrides = {_SPINDLE: override * 100.0}
         turning = programmed if executed is None else executed
         if rpm is None:
@@ -110,7 +98,7 @@ class ChannelData:
         mode = _SINGLE_BLOCK if self.run.single_block else _AUTOMATIC
         if self.run.channel.seeking:
             return _SEARCH + mode
-        return _PROGRAM_BLOCK if self._modes(self._number) is Mode.PROGRAM_BLOCK else mode
+        return _PROGRAM_BLOCK if self._channels.mode(self._number) is Mode.PROGRAM_BLOCK else mode
 
     def programmed(self) -> ModalWords:
         """Return the words that were programmed last."""

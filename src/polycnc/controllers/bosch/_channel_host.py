@@ -155,8 +155,7 @@ class ChannelHost:
             permanence.own()
         else:
             permanence.look()
-        self.system.runs[self.number] = run
-        self.system.machine = run.machine
+        self.system.channels.attach(self.number, run)
         self.system.links.start_up()
         for each in self.system.not_installed:
             run.channel.messages.note(f"MSG: {each.what}", 0)
@@ -247,7 +246,7 @@ class ChannelHost:
     # ------------------------------------------------------------------ within
 
     def _attached(self) -> ProgramRun:
-        run = self.system.run_of(self.number)
+        run = self.system.channels.run(self.number)
         assert run is not None, "attach the run first"
         return run
 

@@ -13,8 +13,6 @@ from polycnc.cnc import (
     ControlData,
     ControlError,
     ControlSnapshot,
-    Mode,
-    ProgramRun,
     Refusal,
     RunState,
     Script,
@@ -22,8 +20,10 @@ from polycnc.cnc import (
 )
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_host import ChannelHost
+from polycnc.controllers.bosch._channel_ports import MODES, DeviceChannels
 from polycnc.controllers.bosch._dialogs import AREAS, dialog_for
 from polycnc.controllers.bosch._memory import first_of
+from polycnc.controllers.bosch._operator import DeviceOperator
 from polycnc.controllers.bosch._parameters import DIALOG_CALLS, DIALOG_CHANNEL, DIALOG_PROGRAMS
 from polycnc.controllers.bosch._services import Services
 from polycnc.controllers.bosch._system import BoschSystem
@@ -35,18 +35,7 @@ from polycnc.machine import Clock, MachineConfig, Snapshot, load_machine
 from polycnc.nc import ProgramText, load_dialect
 from polycnc.nc.cpl import Fault
 
-_MODES = {
-    BoschMode.JOG: Mode.JOG, BoschMode.REFERENCE: Mode.REF, BoschMode.MDI: Mode.MDI, BoschMode.AUTOMATIC: Mode.AUTO,
-    BoschMode.PROGRAM_BLOCK: Mode.AUTO, BoschMode.SINGLE_STEP: Mode.AUTO, BoschMode.SINGLE_BLOCK: Mode.AUTO,
-    BoschMode.DEBUG_BLOCK: Mode.AUTO, BoschMode.DEBUG_AUTOMATIC: Mode.AUTO,
-}  # fmt: skip
 _ONE_BY_ONE = (BoschMode.PROGRAM_BLOCK, BoschMode.SINGLE_STEP, BoschMode.SINGLE_BLOCK, BoschMode.DEBUG_BLOCK)
-_SHOWN = {
-    Mode.AUTO: BoschMode.AUTOMATIC,
-    Mode.MDI: BoschMode.MDI,
-    Mode.JOG: BoschMode.JOG,
-    Mode.REF: BoschMode.REFERENCE,
-}
 Axes: TypeAlias = Sequence[str]
 Condition: TypeAlias = Callable[[], bool]
 
@@ -90,23 +79,14 @@ class Pnc:
         self._control = Control(
             machine, channels=owners, memory=Path(root) / STORE, dialect=dialect, data=data, script=script, servo=servo,
         )  # fmt: skip
-        self.system = BoschSystem(
-            root, self._control.clock, machine, axes=axes, store=self._control.machine.memory
-        )
-        self.system.machine = self._control.machine
-        self.system.run_of = self._run_of
-        self.system.mode_of = self._shown_mode
-        self.system.selected = self._selected
-        self.system.spindle_now = self._spindle_now
-        self.system.referenced = lambda: frozenset(
-            name for name, done in self._control.manual.referenced.items() if done
-        )
-        self.services = Services(self.system, self)
+        self._channels = DeviceChannels(self._control)
+        store = self._control.machine.memory
+        self.system = BoschSystem(root, self._control.clock, machine, self._channels, axes=axes, store=store)
+        self.services = Services(self.system, DeviceOperator(self))
         self.ncs = NcsServer(self.services)
         """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
         self.server = server or self.ncs
         self._control.be_watched(self.ncs)
-        self._modes: dict[int, BoschMode] = {}
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
                 self.system,
@@ -117,9 +97,9 @@ class Pnc:
                 stepping=stepping,
             )
             hosts.append(host)
-            channel.language = host.language
+            channel.runs.language = host.language
             channel.change_config(self.system.live_config(), dialect)
-            channel.names = axes.names_in(number)
+            channel.runs.names = axes.names_in(number)
         self.hosts = tuple(hosts)
         self.system.links.start_up()
         places = ((area, first_of(self.system.directory, name)) for area, name in AREAS.items())
@@ -179,12 +159,12 @@ class Pnc:
         Raises:
             ControlError: There is no such mode, or a program is being executed.
         """
-        if mode not in _MODES:
+        if mode not in MODES:
             raise ControlError(Refusal.DATA, f"the mode {mode} cannot be selected", hint="See `Mode`.")
         path = None if channel is None else self._path(channel)
-        self._control.select_mode(_MODES[mode], channel=path)
+        self._control.select_mode(MODES[mode], channel=path)
         self._control.set_switches(single_block=mode in _ONE_BY_ONE, channel=path)
-        self._modes.update(dict.fromkeys(self.system.axes.channels if channel is None else (channel,), mode))
+        self._channels.select_mode([*self.system.axes.channels] if channel is None else [channel], mode)
 
     def select_program(self, name: str, *, channel: int = 1) -> None:
         """Select a part program of the root.
@@ -197,6 +177,23 @@ class Pnc:
             raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
         self._control.select_program(ProgramText.from_text(text, name), channel=self._path(channel))
         self.system.reset_signal(channel, False)
+
+    def has_program(self, name: str) -> bool:
+        """Tell whether there is a part program."""
+        return self._text(name) is not None
+
+    def select_blocks(self, text: str, *, channel: int = 1) -> None:
+        """Select blocks put in by hand.
+
+        Raises:
+            ControlError: See `Control.set_mdi`.
+        """
+        self._control.set_mdi(text, channel=self._path(channel))
+        self.system.reset_signal(channel, False)
+
+    def leave_program(self, *, channel: int = 1) -> None:
+        """Leave the selected program."""
+        self._control.reset(channel=self._path(channel))
 
     def cycle_start(self, *, channel: int = 1) -> None:
         """Begin what is selected, or go on.
@@ -297,7 +294,7 @@ class Pnc:
             [tuple(map(self.system.axes.physical_name, own)) for own in self.system.axes.channels.values()]
         )
         for number, each in enumerate(self._control.channels, 1):
-            each.names = self.system.axes.names_in(number)
+            each.runs.names = self.system.axes.names_in(number)
 
     # ------------------------------------------------------------------ what it knows
 
@@ -323,45 +320,6 @@ class Pnc:
         """Return permanent variables and a channel's global ones, by name."""
         return self.hosts[channel - 1].variables()
 
-    # ------------------------------------------------------------------ for MCOPS (Operator)
-
-    def has_program(self, name: str) -> bool:
-        """Tell whether there is a part program."""
-        return self._text(name) is not None
-
-    def select(self, channel: int, name: str) -> None:
-        """Select a part program."""
-        self.select_program(name, channel=channel)
-
-    def select_text(self, channel: int, text: str) -> None:
-        """Select blocks put in by hand."""
-        self._control.set_mdi(text, channel=self._path(channel))
-        self.system.reset_signal(channel, False)
-
-    def start(self, channel: int) -> None:
-        """Start, or go on."""
-        self.cycle_start(channel=channel)
-
-    def reset_channel(self, channel: int) -> None:
-        """Break off what a channel executes."""
-        self.reset(channel=channel)
-
-    def leave(self, channel: int) -> None:
-        """Leave the selected program."""
-        self._control.reset(channel=self._path(channel))
-
-    def search(self, channel: int, start: str) -> bool:
-        """Let the selected program begin at a block; tell whether there is such a block."""
-        try:
-            self.search_block(start, channel=channel)
-        except ControlError:
-            return False
-        return True
-
-    def set_channel_mode(self, channel: int, mode: BoschMode) -> None:
-        """Switch the mode of a channel."""
-        self.select_mode(mode, channel=channel)
-
     # ------------------------------------------------------------------ within
 
     def _start_dialog(self, program: tuple[str, str], block: SelectedBlock | None) -> None:
@@ -372,31 +330,8 @@ class Pnc:
         self.hosts[channel - 1].files.block = block
         self.cycle_start(channel=channel)
 
-    def _spindle_now(self) -> tuple[float, float]:
-        now = self._control.spindle.state()
-        return now.override, abs(now.actual_rpm)
-
     def _path(self, channel: int) -> int:
         return channel - 1
-
-    def _run_of(self, number: int) -> ProgramRun | None:
-        return self._control.channels[number - 1].run
-
-    def _shown_mode(self, number: int) -> BoschMode:
-        mode = self._control.channels[number - 1].mode
-        kept = self._modes.get(number)
-        return kept if kept is not None and _MODES[kept] is mode else _SHOWN.get(mode, BoschMode.NONE)
-
-    def _selected(self, number: int) -> str:
-        """Return the program that a start would begin; one that has ended has to be selected again."""
-        channel = self._control.channels[number - 1]
-        if channel.program is None or (
-            channel.run_state is RunState.COMPLETED
-            and channel.run is not None
-            and channel.run.program is channel.program
-        ):
-            return ""
-        return channel.program.name
 
     def _text(self, name: str) -> str | None:
         try:

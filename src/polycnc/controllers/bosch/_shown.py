@@ -9,6 +9,7 @@ import numpy as np
 from polycnc.cnc import ProgramRun, RunState
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_data import ChannelData
+from polycnc.controllers.bosch._channel_ports import ChannelPorts
 from polycnc.controllers.bosch._positions import workpiece
 from polycnc.controllers.bosch.ncs import (
     Axis,
@@ -17,7 +18,6 @@ from polycnc.controllers.bosch.ncs import (
     Drive,
     Image,
     Ipo,
-    Mode,
     Sav,
     Spindle,
     SpindleMotion,
@@ -41,46 +41,37 @@ _MOTIONS = {1: SpindleMotion.CLOCKWISE, -1: SpindleMotion.COUNTER_CLOCKWISE, 0: 
 
 
 class Shown:
-    """Keep an image up to date: `renew` reads axes, channels and the spindle at the present cycle.
-
-    `modes` tells the mode of a channel, `referenced` which axes are, `selected` the program that a start would begin.
-    """
+    """Keep an image up to date: `renew` reads axes, channels and the spindle at the present cycle."""
 
     def __init__(
         self,
         axes: SystemAxes,
-        machine: Callable[[], Machine],
-        runs: Callable[[int], ProgramRun | None],
+        channels: ChannelPorts,
         data: Callable[[int], ChannelData],
         tables: Callable[[], tuple[ZeroShifts, ToolCompensations]],
-        modes: Callable[[int], Mode],
-        referenced: Callable[[], frozenset[str]],
-        selected: Callable[[int], str],
     ) -> None:
         self._axes = axes
-        self._machine = machine
-        self._runs = runs
+        self._channels = channels
         self._data = data
         self._tables = tables
-        self._modes = modes
-        self._referenced = referenced
-        self._selected = selected
         self._tags: dict[int, int] = {}
         self.image = Image(channels={number: Channel(number) for number in axes.channels})
 
     def renew(self) -> Image:
         """Read everything at the present cycle."""
-        image, machine = self.image, self._machine()
+        image, machine = self.image, self._channels.machine
         image.cycle = machine.clock.cycles
         image.drives, image.all_channels = len(self._axes.numbers), len(image.channels)
         image.interface_channels = _INTERFACE_CHANNELS
-        referenced = self._referenced()
+        referenced = self._channels.referenced()
         for index, number in enumerate(self._axes.numbers):
             image.axes[number] = self._axis(machine, index, number, referenced)
         for number, shown in image.channels.items():
             self._channel(shown, number)
         image.spindles[1] = self._spindle(machine)
-        image.test_mode = any(run is not None and run.machine_lock for run in map(self._runs, image.channels))
+        image.test_mode = any(
+            run is not None and run.machine_lock for run in map(self._channels.run, image.channels)
+        )
         return image
 
     def _axis(self, machine: Machine, index: int, number: int, referenced: frozenset[str]) -> Axis:
@@ -100,10 +91,10 @@ class Shown:
         shown.jog_speed = config.vmax * 60.0 if config.unit == "mm" else config.vmax / 6.0
         window = config.servo.in_position
         shown.in_window = abs(setpoint - actual) <= window
-        run = None if channel is None else self._runs(channel)
+        run = None if channel is None else self._channels.run(channel)
         if channel is not None and channel in axes.channels:
             shown.logical_name = axes.logical.get((channel, number), "")
-            shown.mode = self._modes(channel)
+            shown.mode = self._channels.mode(channel)
         if run is None:
             shown.axis_coordinate = setpoint
             return shown
@@ -128,9 +119,9 @@ class Shown:
         return [each + left for each, left in zip(run.position.values(), to_go, strict=True)]
 
     def _channel(self, shown: Channel, number: int) -> None:
-        run = self._runs(number)
-        shown.mode = self._modes(number)
-        shown.program = self._selected(number)
+        run = self._channels.run(number)
+        shown.mode = self._channels.mode(number)
+        shown.program = self._channels.selected(number)
         shown.sav = Sav.AT_START if shown.program else Sav.INACTIVE
         if run is None:
             shown.coordinates = [
@@ -219,7 +210,7 @@ class Shown:
         return found
 
     def _spindle(self, machine: Machine) -> Spindle:
-        run = next((run for run in map(self._runs, self.image.channels) if run is not None), None)
+        run = next((run for run in map(self._channels.run, self.image.channels) if run is not None), None)
         top = machine.config.spindle.max_rpm
         if run is None:
             return Spindle(limits=(0.0, top), gear_limits=(0.0, top))

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from polycnc.cnc import ProgramRun
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_data import ChannelData
+from polycnc.controllers.bosch._channel_ports import AttachedRuns, ChannelPorts
 from polycnc.controllers.bosch._kept_tables import KeptTables
 from polycnc.controllers.bosch._link_files import LinkFiles
 from polycnc.controllers.bosch._live_tables import LiveOffsets, LiveTools, fill_from_machine
@@ -32,7 +32,7 @@ from polycnc.controllers.bosch._positions import Positions
 from polycnc.controllers.bosch._shown import Shown
 from polycnc.controllers.bosch._table_files import TableFiles
 from polycnc.controllers.bosch.files import Directory, StoredFile
-from polycnc.controllers.bosch.ncs import Clients, Mode
+from polycnc.controllers.bosch.ncs import Clients
 from polycnc.controllers.bosch.system import (
     ALL_CHANNELS,
     RESET_EXECUTED,
@@ -52,7 +52,7 @@ from polycnc.controllers.bosch.system import (
     date_text,
     time_text,
 )
-from polycnc.machine import Clock, Machine, MachineConfig, Store
+from polycnc.machine import Clock, MachineConfig, Store
 from polycnc.nc import Channel
 from polycnc.nc.cpl import Fault
 
@@ -78,6 +78,7 @@ class BoschSystem:
         root: str | Path,
         clock: Clock,
         config: MachineConfig,
+        channels: ChannelPorts | None = None,
         *,
         axes: SystemAxes | None = None,
         store: Store | None = None,
@@ -86,14 +87,7 @@ class BoschSystem:
         self.clock = clock
         self.axes = axes or SystemAxes(config.axis_names)
         self.directory = Directory(root)
-        self.runs: dict[int, ProgramRun] = {}
-        self.run_of: Callable[[int], ProgramRun | None] = self.runs.get
-        self.machine: Machine | None = None
-        self.mode_of: Callable[[int], Mode] = lambda number: Mode.AUTOMATIC
-        self.referenced: Callable[[], frozenset[str]] = lambda: frozenset(config.axis_names)
-        self.selected: Callable[[int], str] = lambda number: ""
-        self.spindle_now: Callable[[], tuple[float, float | None]] = lambda: (1.0, None)
-        """The override of the spindle and its actual speed (rpm), None where that is the programmed one."""
+        self.channels: ChannelPorts = channels or AttachedRuns(config.axis_names)
         self.clients = Clients()
         self.open_files: dict[Path, StoredFile] = {}
         self.running_files: list[Callable[[], set[Path]]] = []
@@ -125,28 +119,17 @@ class BoschSystem:
         self.live_tools = LiveTools(self.tools)
         self.drives = Drives(self.axes.physical, self._drive, self._write_lines)
         self.data = {
-            number: ChannelData(
-                self.axes,
-                number,
-                lambda each: self.run_of(each),
-                lambda each: self.mode_of(each),
-                int(str(self.parameter(LANGUAGE))),
-                lambda: self.spindle_now(),
-            )
+            number: ChannelData(self.axes, number, self.channels, int(str(self.parameter(LANGUAGE))))
             for number in self.axes.channels
         }
-        self.shown = Shown(
-            self.axes, self.the_machine, lambda each: self.run_of(each), self.data.__getitem__,
-            lambda: (self.shifts, self.tools), lambda number: self.mode_of(number), lambda: self.referenced(),
-            lambda number: self.selected(number),
-        )  # fmt: skip
+        self.shown = Shown(self.axes, self.channels, self.data.__getitem__, lambda: (self.shifts, self.tools))
 
     # ------------------------------------------------------------------ functions of a channel
 
     def functions(self, number: int) -> dict[str, Callable[..., object]]:
         """Return what programs of a channel can call."""
         return {
-            **Positions(self.axes, number, lambda each: self.run_of(each)).functions,
+            **Positions(self.axes, number, self.channels.run).functions,
             **self.data[number].functions,
             "MCA": self._macoda[number][0].mca,
             "SCS": self.drives.scs,
@@ -208,11 +191,6 @@ class BoschSystem:
                     return file, text
         return None
 
-    def the_machine(self) -> Machine:
-        """Return the machine."""
-        assert self.machine is not None, "attach a run first"
-        return self.machine
-
     # ------------------------------------------------------------------ errors and memory
 
     def note_error(self, channel: int, code: str, category: Category, text: str = "") -> None:
@@ -228,7 +206,7 @@ class BoschSystem:
     def note_errors(self) -> None:
         """Note what has gone wrong in the channels since."""
         for number in self.axes.channels:
-            run = self.run_of(number)
+            run = self.channels.run(number)
             if run is None:
                 continue
             found = [(each.code, Category.PART_PROGRAM, each.what) for each in run.channel.errors]
@@ -256,7 +234,7 @@ class BoschSystem:
         shifts = self.shifts
         shifts.channel = number
         shifts.channels = self._channel_names()
-        run = self.run_of(number)
+        run = self.channels.run(number)
         if run is not None:
             state = run.channel.state
             shifts.inch = bool(self.data[number].programmed().inch)
@@ -266,7 +244,7 @@ class BoschSystem:
 
     def _tools_for(self, number: int) -> ToolCompensations:
         tools = self.tools
-        run = self.run_of(number)
+        run = self.channels.run(number)
         if run is not None:
             state = run.channel.state
             codes = state.placement.compensations
@@ -298,7 +276,7 @@ class BoschSystem:
         """Return a parameter of a simulated drive: position, speed, following distance, names, lists of numbers."""
         if ident[0] != "S":
             return None
-        index, machine = self.axes.index(physical), self.the_machine()
+        index, machine = self.axes.index(physical), self.channels.machine
         axis = self.shown.renew().axes[physical]
         match ident[1]:
             case 30 | 140 | 141:

@@ -108,6 +108,21 @@ class Text:
 
 
 @dataclass(frozen=True, slots=True)
+class Opaque:
+    """A handle, of 32 bits in C, that no program looks into; null is refused with `refusal`."""
+
+    c: str
+    refusal: int
+    ctype: Any = ctypes.c_uint32
+
+    def take(self, value: Any, to: Any) -> Any:
+        """Refuse null."""
+        if value is None:
+            raise Refused(self.refusal)
+        return value
+
+
+@dataclass(frozen=True, slots=True)
 class Bytes:
     """Memory of any content: bytes, a text, a structure, or a list of structures that lie behind each other."""
 
@@ -192,6 +207,6 @@ TEXT: TypeAlias = Annotated[str, Text()]
 # fmt: off
 __all__ = [
     "DOUBLE", "INT", "LONG", "SHORT", "TEXT", "USHORT", "Bytes", "CType",
-    "Elements", "Number", "Pointer", "Real", "Text", "Whole", "whole",
+    "Elements", "Number", "Opaque", "Pointer", "Real", "Text", "Whole", "whole",
 ]
 # fmt: on

@@ -18,7 +18,7 @@ import inspect
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, Any, get_args, get_origin, get_type_hints
+from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from polycnc.controllers.library._c_types import CType, Pointer
 from polycnc.controllers.library._codes import Code
@@ -33,6 +33,8 @@ class Direction(Enum):
 
 
 IN, OUT, INOUT = Direction
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,16 @@ class LengthOf:
     name: str
 
 
+@dataclass(frozen=True, slots=True)
+class Many:
+    """Marks an array and says how many elements C passes, in terms of other arguments and constants.
+
+    Not needed where an argument is its `LengthOf`.
+    """
+
+    count: str
+
+
 class BadArgument(Exception):  # noqa: N818  becomes a UsageError
     """An argument that no C compiler would take."""
 
@@ -70,6 +82,7 @@ class Argument:
     returned: bool = False
     length_of: str = ""
     zero: Callable[[], Any] = lambda: None
+    many: str = ""
 
     def take(self, value: Any, to: Any) -> Any:
         """Return what the function is given for `value`, see `CType`.
@@ -155,6 +168,16 @@ def function_of(body: Callable[..., Any], first: Argument | None, code: str) -> 
     return Function(body.__name__, c, made, coded, (body.__doc__ or "").strip(), zero)
 
 
+def named(body: F, name: str, text: str, arguments: dict[str, Any], returns: Any = None) -> F:
+    """Give a function a name, a description, and arguments as if they had been written."""
+    body.__name__ = body.__qualname__ = name
+    body.__doc__ = text
+    body.__annotations__ = {**arguments, "return": returns}
+    parameters = [inspect.Parameter(each, inspect.Parameter.POSITIONAL_OR_KEYWORD) for each in arguments]
+    body.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    return body
+
+
 def _result(hint: Any, code: str, name: str) -> tuple[str, bool]:
     if isinstance(hint, type) and issubclass(hint, Code):
         return code, True
@@ -181,8 +204,9 @@ def passed(name: str, hint: Any) -> Argument:
     length = _told(hint, LengthOf)
     returned = not isinstance(told, Pointer) and direction is not Direction.IN
     c = f"{told.c} *" if returned and not told.c.endswith("*") else told.c
+    counted = length.name if length else ""
     return Argument(
-        name.rstrip("_"), c, told, direction, returned=returned, length_of=length.name if length else ""
+        name.rstrip("_"), c, told, direction, returned=returned, length_of=counted, many=_many(hint)
     )
 
 
@@ -191,7 +215,13 @@ def _returned(out: Out, hint: Any) -> Argument:
     c = out.c or (told.c if told else "")
     if not out.c and not c.endswith("*"):
         c = f"{c} *"
-    return Argument(out.name, c, told, Direction.OUT, False, True, zero=_zero(_python(hint)))
+    zero = _zero(_python(hint))
+    return Argument(out.name, c, told, Direction.OUT, False, True, zero=zero, many=_many(hint))
+
+
+def _many(hint: Any) -> str:
+    found = _told(hint, Many)
+    return found.count if found else ""
 
 
 def _zero(hint: Any) -> Callable[[], Any]:
@@ -228,6 +258,6 @@ def _all_told(hint: Any) -> Iterator[Any]:
 
 # fmt: off
 __all__ = [
-    "IN", "INOUT", "OUT", "Argument", "Coded", "Direction", "Function", "LengthOf", "Out",
+    "IN", "INOUT", "OUT", "Argument", "Coded", "Direction", "Function", "LengthOf", "Many", "Out", "named",
 ]
 # fmt: on

@@ -1,1 +1,1 @@
-"""The ordinary interpreter: modal state, coordinates, compensation, cycles, and what it queues."""
+"""The reference interpreter: steps of a block, modal state, coordinates, compensation, cycles, and what it queues."""

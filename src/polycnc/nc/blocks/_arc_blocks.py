@@ -14,7 +14,7 @@ from polycnc.nc.blocks._arcs import (
     TWO_PI,
     arc_by_center,
     arc_by_radius,
-)  # fmt: skip
+)
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Arc, Point
 from polycnc.nc.blocks._words import code_text
@@ -27,7 +27,7 @@ from polycnc.nc.modal._modal import (
     PLANE,
     PLANE_LETTERS,
     length_scale,
-)  # fmt: skip
+)
 
 _ARC_TROUBLE = {
     ARC_NO_RADIUS: (

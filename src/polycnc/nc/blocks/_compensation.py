@@ -114,6 +114,47 @@ class SavedCompensation(NamedTuple):
     at: XY | None
 
 
+class _Plane(NamedTuple):
+    """The axes of the plane that is compensated, and moves in it at compensated places."""
+
+    p: int
+    q: int
+    normal: int
+
+    def leg(self, item: Move | Wait) -> Leg | None:
+        """Return the way of an item in the plane; None if it does not move there."""
+        if isinstance(item, Wait):
+            return None
+        i, j, _ = self
+        start, end = item.start, item.end
+        if isinstance(item, Line):
+            return line_leg(start[i], start[j], end[i], end[j])
+        if item.plane != self:
+            raise _refusal("plane_change", item.line)
+        return arc_leg(start[i], start[j], end[i], end[j], *item.center, item.sweep_rad)
+
+    def line(self, item: Move, start: XY, end: XY) -> Line:
+        """Return a straight move between two places, otherwise like an item."""
+        first, last = self.point(item.start, start), self.point(item.end, end)
+        return Line(first, last, item.feed, _is_rapid(item), item.exact_stop, item.line, item.tag)
+
+    def arc(self, item: Arc, start: XY, end: XY, sweep: float) -> Arc:
+        """Return an arc about the same centre between two places."""
+        return replace(
+            item, start=self.point(item.start, start), end=self.point(item.end, end), sweep_rad=sweep
+        )
+
+    def placed(self, item: Move | Wait, at: XY) -> QueueItem:
+        """Return an item without plane motion at a place."""
+        return item if isinstance(item, Wait) else self.line(item, at, at)
+
+    def point(self, point: Point, at: XY) -> Point:
+        """Return a point moved to a place in the plane."""
+        values = list(point)
+        values[self.p], values[self.q] = at
+        return tuple(values)
+
+
 class RadiusCompensation:
     """Shift plane moves by the tool radius, one stream of queue items in, one out.
 
@@ -142,7 +183,7 @@ class RadiusCompensation:
             )
         self._shallow_cosine = math.cos(math.radians(shallow_deg))
         self._meet_cosine = self._shallow_cosine if outer == "arc" else 0.0
-        self._plane = (0, 1, 2)
+        self._plane = _Plane(0, 1, 2)
         self._offset = 0.0
         self._hold: list[Move | Wait] = []
         self.reset()
@@ -186,7 +227,7 @@ class RadiusCompensation:
         made = cls()
         made._mode = _Mode(saved.mode)
         made.active = made._mode is not _Mode.OFF
-        made._plane, made._offset = saved.plane, saved.offset
+        made._plane, made._offset = _Plane(*saved.plane), saved.offset
         made._hold = list(saved.hold)
         made._move, made._leg = saved.move, saved.leg
         made._pending, made._lead_in, made._at = saved.pending, saved.lead_in, saved.at
@@ -205,7 +246,7 @@ class RadiusCompensation:
             raise _refusal("radius", line)
         offset = float(side * radius_mm)
         if self._mode in (_Mode.OFF, _Mode.ENTERING):
-            self._plane = plane
+            self._plane = _Plane(*plane)
             self._offset = offset
             self._mode = _Mode.ENTERING
             self.active = True
@@ -251,12 +292,12 @@ class RadiusCompensation:
             return [item]
         if isinstance(item, Spline):
             raise _refusal("spline", item.line)
-        leg = self._leg_of(item)
+        leg = self._plane.leg(item)
         if leg is None or isinstance(item, Wait):
             if self._pending:
                 self._hold.append(item)
                 return []
-            return [item if self._at is None else self._placed(item, self._at)]
+            return [item if self._at is None else self._plane.placed(item, self._at)]
         if self._mode is _Mode.ENTERING:
             return self._enter(item, leg)
         if self._mode is _Mode.LEAVING:
@@ -264,17 +305,6 @@ class RadiusCompensation:
         if self._offset == 0.0:
             return [item]
         return self._follow(item, leg)
-
-    def _leg_of(self, item: Move | Wait) -> Leg | None:
-        if isinstance(item, Wait):
-            return None
-        i, j, _ = self._plane
-        start, end = item.start, item.end
-        if isinstance(item, Line):
-            return line_leg(start[i], start[j], end[i], end[j])
-        if item.plane != self._plane:
-            raise _refusal("plane_change", item.line)
-        return arc_leg(start[i], start[j], end[i], end[j], *item.center, item.sweep_rad)
 
     def _enter(self, item: Move, leg: Leg) -> list[QueueItem]:
         if isinstance(item, Arc):
@@ -293,7 +323,7 @@ class RadiusCompensation:
             self.reset()
             return [item]
         out = self.flush()
-        out.append(self._line(item, self._at, (leg.x1, leg.y1)))
+        out.append(self._plane.line(item, self._at, (leg.x1, leg.y1)))
         self.reset()
         return out
 
@@ -354,18 +384,18 @@ class RadiusCompensation:
             radius = leg.radius0 - leg.sense * self._offset
             if _vanishes(sweep * leg.sense * radius, item.line):
                 end = start
-                out.append(self._line(item, start, end))
+                out.append(self._plane.line(item, start, end))
             else:
-                out.append(self._arc(item, start, end, sweep))
+                out.append(self._plane.arc(item, start, end, sweep))
         else:
             if isinstance(item, Line) and not self._lead_in:
                 travel = (end[0] - start[0]) * leg.tx0 + (end[1] - start[1]) * leg.ty0
                 end = start if _vanishes(travel, item.line) else end
-            out.append(self._line(item, start, end))
+            out.append(self._plane.line(item, start, end))
         self._at = end
         self._pending = False
         if self._hold:
-            out.extend(self._placed(held, end) for held in self._hold)
+            out.extend(self._plane.placed(held, end) for held in self._hold)
             self._hold.clear()
 
     def _round(
@@ -376,8 +406,8 @@ class RadiusCompensation:
         feed = _path_feed(before, leg) if _is_rapid(after) else _path_feed(after, next_leg)
         out.append(
             Arc(
-                start=self._point(after.start, self._at),
-                end=self._point(after.start, joint.start),
+                start=self._plane.point(after.start, self._at),
+                end=self._plane.point(after.start, joint.start),
                 center=(next_leg.x0, next_leg.y0),
                 sweep_rad=joint.sweep_rad,
                 plane=self._plane,
@@ -395,26 +425,9 @@ class RadiusCompensation:
         assert start is not None
         if math.hypot(end[0] - start[0], end[1] - start[1]) <= _ROUNDING_MM:
             return
-        first, last = self._point(after.start, start), self._point(after.start, end)
+        first, last = self._plane.point(after.start, start), self._plane.point(after.start, end)
         out.append(Line(first, last, after.feed, _is_rapid(after), False, after.line, after.tag))
         self._at = end
-
-    def _line(self, item: Move, start: XY, end: XY) -> Line:
-        first, last = self._point(item.start, start), self._point(item.end, end)
-        return Line(first, last, item.feed, _is_rapid(item), item.exact_stop, item.line, item.tag)
-
-    def _arc(self, item: Arc, start: XY, end: XY, sweep: float) -> Arc:
-        first, last = self._point(item.start, start), self._point(item.end, end)
-        return replace(item, start=first, end=last, sweep_rad=sweep)
-
-    def _placed(self, item: Move | Wait, at: XY) -> QueueItem:
-        """Return an item without plane motion at a compensated place."""
-        return item if isinstance(item, Wait) else self._line(item, at, at)
-
-    def _point(self, point: Point, at: XY) -> Point:
-        values = list(point)
-        values[self._plane[0]], values[self._plane[1]] = at
-        return tuple(values)
 
 
 def _vanishes(travel_mm: float, line: int) -> bool:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
@@ -19,7 +20,7 @@ from polycnc.nc.blocks._contours import (
     names_x_and_z,
     numbered_block,
     without_compensation,
-)  # fmt: skip
+)
 from polycnc.nc.blocks._corner_blocks import refuse_open
 from polycnc.nc.blocks._handlers import carries_out
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Spline
@@ -33,6 +34,8 @@ from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import Block
+
+_DEPTHS = {Action.TURN_ROUGH: ("rough", "U"), Action.FACE_ROUGH: ("face", "W")}  # depth of a cut, and escape
 
 
 @carries_out(Action.TURN_FINISH)
@@ -123,22 +126,18 @@ def _contour_numbers(block: BlockContext, g: GWord) -> tuple[int, int]:
 def set_parameters(block: BlockContext, g: GWord) -> None:
     """Keep what the first block of G71, G72 or G73 says."""
     turning = block.after.turning
-    match g.action:
-        case Action.TURN_ROUGH:
-            depth, escape = turns.length(block, "U"), turns.length(block, "R")
-            turning = replace(turning, rough=(_or(depth, turning.rough[0]), _or(escape, turning.rough[1])))
-        case Action.FACE_ROUGH:
-            depth, escape = turns.length(block, "W"), turns.length(block, "R")
-            turning = replace(turning, face=(_or(depth, turning.face[0]), _or(escape, turning.face[1])))
-        case _:
-            u, w = turns.length(block, "U"), turns.length(block, "W")
-            passes = block.words.take("R")
-            count = (
-                turning.relief[2]
-                if passes is None
-                else whole_number(passes, "a number of passes", block.problem)
-            )
-            turning = replace(turning, relief=(_or(u, turning.relief[0]), _or(w, turning.relief[1]), count))
+    if g.action is Action.TURN_REPEAT:
+        u, w, passes = turning.relief
+        u, w = _or(turns.length(block, "U"), u), _or(turns.length(block, "W"), w)
+        if (word := block.words.take("R")) is not None:
+            passes = whole_number(word, "a number of passes", block.problem)
+        turning = replace(turning, relief=(u, w, passes))
+    else:
+        field, letter = _DEPTHS[g.action]
+        depth, escape = getattr(turning, field)
+        numbers = _or(turns.length(block, letter), depth), _or(turns.length(block, "R"), escape)
+        changed: dict[str, Any] = {field: numbers}
+        turning = replace(turning, **changed)
     block.after.turning = turning
 
 

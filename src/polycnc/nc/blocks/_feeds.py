@@ -13,7 +13,7 @@ from polycnc.nc.modal._modal import (
     FEED_NUMBER,
     FEED_PER_REVOLUTION,
     NO_AXIS,
-)  # fmt: skip
+)
 from polycnc.units import SECONDS_PER_MINUTE
 
 

@@ -14,7 +14,7 @@ from polycnc.nc.modal._actions import Action, Group
 Handler: TypeAlias = Callable[[BlockContext, GWord], Iterable[QueueItem] | None]
 """Changes the state after the block, and returns what goes into the queue."""
 
-_MARK = "carries_out"
+_MARK = "_carries_out"
 
 
 def carries_out(*kinds: Action | Group) -> Callable[[Handler], Handler]:

@@ -83,9 +83,9 @@ class Interpreter:
 
     def _commit(self, block: BlockContext) -> None:
         """Put what a block has done in force, report it and queue it."""
-        state, after = self.state, block.after
-        corners = state.path_tolerance_mm, state.merge_mm
-        state.take(after)
+        state, before = self.state, block.before
+        corners = before.path_tolerance_mm, before.merge_mm
+        state.take(block.after)
         for text in block.notes:
             self.messages.add(text)
         for tag in block.marks:

@@ -24,7 +24,7 @@ from polycnc.nc.modal._modal import (
     PLANE,
     set_inch,
     set_plane,
-)  # fmt: skip
+)
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH, SECONDS_PER_MINUTE
 

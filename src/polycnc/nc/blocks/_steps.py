@@ -39,7 +39,7 @@ from polycnc.nc.modal._modal import (
     MOTION_NURBS,
     SLOWEST_AXIS,
     STOPS_SUPPRESSED,
-)  # fmt: skip
+)
 from polycnc.nc.text._scan import MESSAGE
 from polycnc.units import MM_PER_INCH
 
@@ -62,6 +62,7 @@ def words(block: BlockContext) -> None:
         refuse_others(block)
     if found.left_out:
         leave_out(block)
+    block.notes += found.remarks
 
 
 def ends(block: BlockContext) -> None:

@@ -53,12 +53,13 @@ class BlockWords:
 
     Each word of an address is for one function: who takes it first has it. `increment` is the size of a
     length without a decimal point, 0 if such numbers are as they stand. `left_out` are codes that the user told to
-    leave out, `takes_words` says that the words beside them go with them.
+    leave out, `takes_words` says that the words beside them go with them. `remarks` are to be reported.
     """
 
     g: dict[Group, GWord] = field(default_factory=dict)
     ignored: list[GWord] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
     m: list[MWord] = field(default_factory=list)
     by_letter: dict[str, Word] = field(default_factory=dict)
     increment: float = 0.0
@@ -171,7 +172,7 @@ class WordSorter:
             words.ignored.append(entry)
             return
         if group in words.g:
-            raise _exclude(f"G{words.g[group].code}", f"G{code}", group, word, fail)
+            self._override(f"G{words.g[group].code}", f"G{code}", group, word, words, fail)
         words.g[group] = entry
 
     def _add_m(self, word: Word, words: BlockWords, fail: Fail) -> None:
@@ -186,14 +187,33 @@ class WordSorter:
         if action is MAction.LEFT_OUT:
             words.left_out.append(f"M{code}")
             return
-        for other in words.m:
+        for other in list(words.m):
+            pair = action, other.action
             if other.code == code or (action.group and other.action.group == action.group):
-                raise _exclude(f"M{other.code}", f"M{code}", action.group, word, fail)
-            if MAction.COOLANT_OFF in (action, other.action) and (
-                action in _COOLANT_ON or other.action in _COOLANT_ON
-            ):
-                raise _exclude(f"M{other.code}", f"M{code}", "coolant", word, fail)
+                group = action.group
+            elif MAction.COOLANT_OFF in pair and not set(pair).isdisjoint(_COOLANT_ON):
+                group = "coolant"
+            else:
+                continue
+            self._override(f"M{other.code}", f"M{code}", group, word, words, fail)
+            words.m.remove(other)
         words.m.append(MWord(word, code, action))
+
+    def _override(
+        self, first: str, second: str, group: str, word: Word, words: BlockWords, fail: Fail
+    ) -> None:
+        """Let the last of two codes that exclude each other count, where the dialect says so.
+
+        Raises:
+            ProgramError: the dialect refuses them.
+        """
+        twice = first == second
+        what = f"{first} stands twice in this block"
+        if not twice:
+            what = f"{first} and {second} exclude each other (group '{group.replace('_', ' ')}')"
+        if self._dialect.same_group == "error":
+            raise fail(what, "Write it once." if twice else "Write one of them.", word)
+        words.remarks.append(f"{what}: the last one counts")
 
 
 def _blocks_with(code: str, text: ProgramText) -> int:
@@ -201,13 +221,6 @@ def _blocks_with(code: str, text: ProgramText) -> int:
     pattern = rb"[Gg][ \t]*0*" + re.escape(code.encode()) + rb"(?![0-9.])"
     content = _REMARKS.sub(lambda found: b" " * len(found[0]), text.content)
     return len({content.rfind(b"\n", 0, found.start()) for found in re.finditer(pattern, content)})
-
-
-def _exclude(first: str, second: str, group: str, word: Word, fail: Fail) -> ProgramError:
-    if first == second:
-        return fail(f"{first} stands twice in this block", "Write it once.", word)
-    name = group.replace("_", " ")
-    return fail(f"{first} and {second} exclude each other (group '{name}')", "Write one of them.", word)
 
 
 def _add_value(word: Word, words: BlockWords, fail: Fail) -> None:

@@ -1,160 +1,127 @@
-"""The functions and commands of CPL: how many arguments they take and what they return (Manual 003, annex A.2)."""
+"""The functions and commands of CPL by their names (Manual 003, annex A.2): its own, and those of the control.
+
+One of its own is a Python function with `@function` in `_numbers` or `_strings`, and needs nothing else. One of the
+control is a row here; a `Host` says what it does.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from polycnc.nc.cpl import _numbers, _strings
+from polycnc.nc.cpl._function import Function, functions_of
 
-from polycnc.nc.cpl._variables import Kind
+_F = Function
+POSITIONS = (
+    _F("AXO(axis[,type])", "D", "Return the last G92 shift of a coordinate."),
+    _F("CPOS(axis[,type])", "D", "Return the last programmed position of a coordinate."),
+    _F("CPROBE(axis[,type])", "D", "Return the measured value of a coordinate."),
+    _F("PPOS(axis[,type])", "D", "Return where an axis was when the probe switched, with its shifts."),
+    _F(
+        "PROBE(axis[,type])",
+        "D",
+        "Return where an axis was when the probe switched, from the machine's zero.",
+    ),
+    _F("WPOS(axis[,type[,channel]])", "D", "Return the command position of a coordinate."),
+    _F("MPOS(axis[,type[,channel]])", "D", "Return the command position of an axis from the machine's zero."),
+    _F("APOS(axis)", "D", "Return the actual position of a physical axis from the machine's zero."),
+    _F("SPOS(axis)", "D", "Return the command position of a physical axis from the machine's zero."),
+    _F("COF(axis[,type])", "D", "Return the last contour shift (G60) of a coordinate."),
+    _F(
+        "DPC(axis[,type])",
+        "D",
+        "Return the last workpiece position compensation (G138): a shift, 0 the angle.",
+    ),
+    _F(
+        "SCL(selection[,axis[,type]])",
+        "D",
+        "Return the angle, pole or factor that G37 or G38 programmed last.",
+    ),
+)
+SYSTEM = (
+    _F("FXC(axis[,G address[,table[,unit]]])", "D", "Return an axis zero shift, or set it.", settable=True),
+    _F("FXCR(channel or layout,table[,classification])", "I", "Make a table of zero shifts."),
+    _F("FXDEL(table,axis)", "I", "Delete a column of a table of zero shifts."),
+    _F("FXINS(table,position,axis name[,axis type])", "I", "Insert a column into a table of zero shifts."),
+    _F("TC(selection[,group[,table[,unit]]])", "D", "Return a tool compensation, or set it.", settable=True),
+    _F("TDA(sector,place,field[,table])", "X", "Return a field of the tool database, or set it.", settable=True),
+    _F("MCA(block,index[,channel])", "X", "Return a value of a MACODA parameter."),
+    _F("NCF(NC function)", "S", "Return the NC function of the same modal group that was programmed last."),
+    _F("SCS(axis,type,number[,result])", "X", "Return a parameter of a drive.", results=(3,)),
+    _F("SCSL(axis,type,number,file[,result])", "I", "Write a list of a drive into a file.", results=(4,)),
+    _F("SD(group[,index[,index[,index]]])", "I", "Return system data that are INTEGER."),
+    _F("SDR(group[,index[,index]])", "D", "Return system data that are REAL."),
+    _F("AXP(axis,position[,axis type])", "X", "Return the word of an axis that is selected by its index."),
+    _F("IC(bit[,group[,index]])", "B", "Return a signal of the interface to the PLC, or set it.", settable=True),
+    _F("PLC(type,module,address,size)", "I", "Return data of the PLC, or set them.", least=3, settable=True),
+    _F("CLOCK", "I", "Return the time of the control in ms."),
+    _F("DATE", "S", "Return the date as DD.MM."),
+    _F("TIME", "S", "Return the time as HH.MM.SS."),
+    _F("GETERR(channel,[category],field[,number])", "I", "Put present errors into a field; return how many.",
+       results=(2,)),
+    _F("MCODS(type,channel,version,buffer,size[,axis][,ID][,P1])", "I", "Read data of a channel into a variable.",
+       results=(2, 3), waiting=True),
+    _F("MCOPS(function,channel[,P1[,P2[,P3[,P4]]]])", "I", "Have a channel do something.", waiting=True),
+    _F("MMC(variable{,variable})", "I", "Show variables to a client, and wait until it has them.",
+       most=20, results=(0,), listed=True, waiting=True, named=True),
+)  # fmt: skip
+FILES = (
+    _F("OPENW(number,name[,length][,remark][,record length])", "I", "Open a file to write at its end.", command=True),
+    _F("OPENR(number,name[,record length])", "I", "Open a file for reading.", command=True),
+    _F("PRN#(number,{value}[;])", "I", "Write values into a file; 0 shows them as a message.",
+       least=1, listed=True, command=True),
+    _F("INP#(number,{variable}[;])", "I", "Read variables from a file.", results=(1,), listed=True, command=True),
+    _F("REWRITE(number)", "I", "Discard what is in a file.", command=True),
+    _F("CLOSE(number)", "I", "Close a file.", command=True),
+    _F("EOF(number)", "B", "Tell whether the end of a file is reached."),
+    _F("FILEPOS(number[,mode])", "I", "Return the place in a file: 1 the byte, 2 the record, 3 the byte in it."),
+    _F("SEEK(number,place[,offset])", "I", "Go to a place in a file.", command=True),
+    _F("FILESIZE(number[,k])", "I", "Return the size of a file: 1 and 2 in bytes, 3 and 4 in records."),
+    _F("ERASE(name)", "I", "Erase a file; 0 done, 1 it is not there, 2 protected, 3 in use."),
+    _F("FILEACCESS(name)", "I", "Return -1 for no file, else 1 execute, 2 write, 4 read, 8 folder, 16 in use."),
+    _F("FILEDATE(name[,mode])", "S", "Return the date of a file, or (2) its time."),
+    _F("LJUST", "I", "Write numbers without blanks before them from here on.", command=True),
+    _F("NJUST", "I", "Write numbers in their formats again.", command=True),
+)  # fmt: skip
+SCREEN = (
+    _F("DSP(line,column,{value})", "I", "Show values from a line and column on.", listed=True, command=True),
+    _F("PRN(line,column,text[,variable])", "I", "Show a text, with a place for a variable.",
+       results=(3,), listed=True, command=True),
+    _F("INP(variable)", "I", "Have a variable put in at its place.",
+       results=(0,), listed=True, command=True, waiting=True),
+    _F("INKEY", "I", "Return the code of a key that was pressed, 0 without one."),
+    _F("SFK(variable,[text],...)", "I", "Show softkeys, and wait for one.",
+       least=1, most=9, results=(0,), command=True, waiting=True),
+    _F("CSF", "I", "Delete the softkeys.", command=True),
+    _F("DLF", "I", "Bring the dialog window to the front.", command=True),
+    _F("CLG", "I", "Clear the area for CPL, and move its window to the background.", command=True),
+    _F("CLR", "I", "Clear the graphic window.", command=True),
+    _F("CLS", "I", "Clear the whole screen.", command=True),
+    _F("ENDDLG", "I", "End a dialog.", command=True),
+    _F("DLG", "I", "Begin a dialog, in which PRN and INP may stand.", command=True),
+    _F("TFO(font,size,cut,orientation)", "I", "Select the font of texts.", least=1, command=True),
+    _F("COL([graphics],[text],[background],[table],[softkeys],[background])", "I", "Select colours.",
+       least=1, command=True),
+    _F("RGB(code,red,green,blue)", "I", "Set a colour of table 3.", command=True),
+    _F("GMD(line type)", "I", "Select the type of lines.", command=True),
+    _F("GWD(left,right,bottom,top)", "I", "Set the graphic window, in pixels.", command=True),
+    _F("MWD(left,right,bottom,top)", "I", "Set the coordinates of the graphic window's edges.", command=True),
+    _F("LIN([x,y,]x,y)", "I", "Draw a line.", command=True),
+    _F("CIR(x,y,radius)", "I", "Draw a circle, or an arc by start, end and centre.", least=1, most=6, command=True),
+    _F("FIL(x,y,pattern,colour[,contour colour])", "I", "Fill a closed contour.", command=True),
+    _F("GPR(x,y,text)", "I", "Write a text at a pixel.", command=True),
+    _F("BMP(x,y,file[,copy type])", "I", "Show a bitmap.", command=True),
+)  # fmt: skip
 
-MANY = 1000
+GROUPS: dict[str, tuple[Function, ...]] = {
+    "Numbers": tuple(functions_of(vars(_numbers))),
+    "Texts": tuple(functions_of(vars(_strings))),
+    "Positions": POSITIONS,
+    "Data of the control": SYSTEM,
+    "Files": FILES,
+    "Dialogs and graphics": SCREEN,
+}
+"""Every function and command, by what it is about."""
 
-
-@dataclass(frozen=True, slots=True)
-class Function:
-    """A function or command.
-
-    `count` is the least and the most of its arguments, `results` the places of those that are variables which it
-    sets (from `results[0]` on, if `listed`). What `listed` functions get tells its type, and a semicolon may end it.
-    `own` functions are CPL's, the others are the control's. A `waiting` one may have to wait for its answer;
-    a `named` one gets the names of its variables too, as `names`.
-    """
-
-    name: str
-    kind: Kind
-    count: tuple[int, int]
-    usage: str
-    results: tuple[int, ...] = ()
-    own: bool = False
-    waiting: bool = False
-    listed: bool = False
-    settable: bool = False
-    command: bool = False
-    named: bool = False
-
-
-def _rows() -> list[Function]:
-    f = Function
-    own = [
-        *(f(name, "R", (1, 1), f"{name}(angle)", own=True) for name in ("SIN", "COS", "TAN")),
-        *(f(name, "R", (1, 1), f"{name}(value)", own=True) for name in ("ASIN", "ACOS", "ATAN", "SQRT")),
-        f("ABS", "X", (1, 1), "ABS(value)", own=True),
-        f("INT", "I", (1, 1), "INT(value)", own=True),
-        f("ROUND", "I", (1, 1), "ROUND(value)", own=True),
-        f("BCD", "I", (1, 1), "BCD(binary value)", own=True),
-        f("BIN", "I", (1, 1), "BIN(BCD value)", own=True),
-        f("LEN", "I", (1, 1), "LEN(text)", own=True),
-        f("INSTR", "I", (2, 3), "INSTR(wanted,text[,start])", own=True),
-        f("ASC", "I", (1, 1), "ASC(text)", own=True),
-        f("CHR$", "S", (1, 1), "CHR$(code)", own=True),
-        f("STR$", "S", (1, 2), "STR$([format,]value)", own=True),
-        f("VAL", "X", (1, 1), "VAL(text)", own=True),
-        f("MID$", "S", (2, 3), "MID$(text,start[,number])", own=True, settable=True),
-        f("TRIM$", "S", (1, 2), 'TRIM$(text[,"L" or "R"])', own=True),
-    ]
-    positions = [
-        *(
-            f(name, "D", (1, 2), f"{name}(axis[,type])")
-            for name in ("AXO", "CPOS", "CPROBE", "PPOS", "PROBE")
-        ),
-        *(f(name, "D", (1, 3), f"{name}(axis[,type[,channel]])") for name in ("WPOS", "MPOS")),
-        *(f(name, "D", (1, 1), f"{name}(axis)") for name in ("APOS", "SPOS")),
-        f("COF", "D", (1, 2), "COF(axis[,type])"),
-        f("DPC", "D", (1, 2), "DPC(axis[,type])"),
-        f("SCL", "D", (1, 3), "SCL(selection[,axis[,type]])"),
-    ]
-    system = [
-        f("FXC", "D", (1, 4), "FXC(axis[,G address[,table[,unit]]])", settable=True),
-        f("FXCR", "I", (2, 3), "FXCR(channel or layout,table[,classification])"),
-        f("FXDEL", "I", (2, 2), "FXDEL(table,axis)"),
-        f("FXINS", "I", (3, 4), "FXINS(table,position,axis name[,axis type])"),
-        f("TC", "D", (1, 4), "TC(selection[,group[,table[,unit]]])", settable=True),
-        f("TDA", "X", (3, 4), "TDA(sector,place,field[,table])", settable=True),
-        f("MCA", "X", (2, 3), "MCA(block,index[,channel])"),
-        f("NCF", "S", (1, 1), "NCF(NC function)"),
-        f("SCS", "X", (3, 4), "SCS(axis,type,number[,result])", results=(3,)),
-        f("SCSL", "I", (4, 5), "SCSL(axis,type,number,file[,result])", results=(4,)),
-        f("SD", "I", (1, 4), "SD(group[,index[,index[,index]]])"),
-        f("SDR", "D", (1, 3), "SDR(group[,index[,index]])"),
-        f("AXP", "X", (2, 3), "AXP(axis,position[,axis type])"),
-        f("IC", "B", (1, 3), "IC(bit[,group[,index]])", settable=True),
-        f("PLC", "I", (3, 4), "PLC(type,module,address,size)", settable=True),
-        f("CLOCK", "I", (0, 0), "CLOCK"),
-        f("DATE", "S", (0, 0), "DATE"),
-        f("TIME", "S", (0, 0), "TIME"),
-        f("GETERR", "I", (3, 4), "GETERR(channel,[category],field[,number])", results=(2,)),
-        f(
-            "MCODS",
-            "I",
-            (5, 8),
-            "MCODS(type,channel,version,buffer,size[,axis][,ID][,P1])",
-            results=(2, 3),
-            waiting=True,
-        ),
-        f("MCOPS", "I", (2, 6), "MCOPS(function,channel[,P1[,P2[,P3[,P4]]]])", waiting=True),
-        f(
-            "MMC",
-            "I",
-            (1, 20),
-            "MMC(variable{,variable})",
-            results=(0,),
-            listed=True,
-            waiting=True,
-            named=True,
-        ),
-    ]
-    files = [
-        f("OPENW", "I", (2, 5), "OPENW(number,name[,length][,remark][,record length])", command=True),
-        f("OPENR", "I", (2, 3), "OPENR(number,name[,record length])", command=True),
-        f("PRN#", "I", (1, MANY), "PRN#(number,{value}[;])", listed=True, command=True),
-        f("INP#", "I", (2, MANY), "INP#(number,{variable}[;])", results=(1,), listed=True, command=True),
-        f("REWRITE", "I", (1, 1), "REWRITE(number)", command=True),
-        f("CLOSE", "I", (1, 1), "CLOSE(number)", command=True),
-        f("EOF", "B", (1, 1), "EOF(number)"),
-        f("FILEPOS", "I", (1, 2), "FILEPOS(number[,mode])"),
-        f("SEEK", "I", (2, 3), "SEEK(number,place[,offset])", command=True),
-        f("FILESIZE", "I", (1, 2), "FILESIZE(number[,k])"),
-        f("ERASE", "I", (1, 1), "ERASE(name)"),
-        f("FILEACCESS", "I", (1, 1), "FILEACCESS(name)"),
-        f("FILEDATE", "S", (1, 2), "FILEDATE(name[,mode])"),
-        f("LJUST", "I", (0, 0), "LJUST", command=True),
-        f("NJUST", "I", (0, 0), "NJUST", command=True),
-    ]
-    screen = [
-        f("DSP", "I", (3, MANY), "DSP(line,column,{value})", listed=True, command=True),
-        f("PRN", "I", (3, 4), "PRN(line,column,text[,variable])", results=(3,), listed=True, command=True),
-        f("INP", "I", (1, 1), "INP(variable)", results=(0,), listed=True, command=True, waiting=True),
-        f("INKEY", "I", (0, 0), "INKEY"),
-        f(
-            "SFK",
-            "I",
-            (1, 9),
-            "SFK(variable,[text],...)",
-            results=(0,),
-            command=True,
-            waiting=True,
-        ),
-        *(f(name, "I", (0, 0), name, command=True) for name in ("CSF", "DLF", "CLG", "CLR", "CLS", "ENDDLG")),
-        f("DLG", "I", (0, 0), "DLG", command=True),
-        f("TFO", "I", (1, 4), "TFO(font,size,cut,orientation)", command=True),
-        f(
-            "COL",
-            "I",
-            (1, 6),
-            "COL([graphics],[text],[background],[table],[softkeys],[background])",
-            command=True,
-        ),
-        f("RGB", "I", (4, 4), "RGB(code,red,green,blue)", command=True),
-        f("GMD", "I", (1, 1), "GMD(line type)", command=True),
-        f("GWD", "I", (4, 4), "GWD(left,right,bottom,top)", command=True),
-        f("MWD", "I", (4, 4), "MWD(left,right,bottom,top)", command=True),
-        f("LIN", "I", (2, 4), "LIN([x,y,]x,y)", command=True),
-        f("CIR", "I", (1, 6), "CIR(x,y,radius)", command=True),
-        f("FIL", "I", (4, 5), "FIL(x,y,pattern,colour[,contour colour])", command=True),
-        f("GPR", "I", (3, 3), "GPR(x,y,text)", command=True),
-        f("BMP", "I", (3, 4), "BMP(x,y,file[,copy type])", command=True),
-    ]
-    return [*own, *positions, *system, *files, *screen]
-
-
-FUNCTIONS: dict[str, Function] = {function.name: function for function in _rows()}
+FUNCTIONS: dict[str, Function] = {row.name: row for rows in GROUPS.values() for row in rows}
 """Every function and command by its name."""
+OWN = {row.run.__name__: row.run for row in FUNCTIONS.values() if row.run is not None}
+"""What running programs know of Python for CPL's own functions."""

@@ -2,22 +2,32 @@
 
 from __future__ import annotations
 
-from polycnc.language import Infix, Lexicon, Operators, Prefix
+import re
 
-RESERVED = frozenset(
-    """
-    ABS ACOS AND APOS ASC ASIN ATAN AXO AXP BCD BIN BMP CALL CASE CHR$ CIR CLG CLOCK CLOSE CLR CLS COF COL
-    COM COS CPOS CPROBE CSF DATE DIM DLF DLG DO DPC DSP ELSE END ENDCASE ENDDLG ENDIF EOF ERASE FALSE FIL
-    FILEACCESS FILEDATE FILEPOS FILESIZE FIX FIXB FIXE FOR FXC FXCR FXDEL FXINS GETERR GMD GOTO GPR GWD IC IF
-    INKEY INP INP# INSTR INT LABEL LEN LIN LJUST MCA MCODS MCOPS MIC MID$ MMC MPOS MWD NCF NEXT NJUST NOT NUL
-    OF OPENR OPENW OR OTHERWISE PDIM PLC PPOS PRN PRN# PROBE REM REPEAT REWRITE RGB ROUND SCL SCS SCSL SD SDR
-    SEEK SFK SIN SPOS SQRT STEP STR$ TAN TC TD TDA TDR TFO THEN TIME TO TRIM$ TRUE TXT$ UNTIL VAL WAIT WHILE
-    WPOS XOR
-    """.split()  # noqa: SIM905 (a list of 120 words in quotes is no easier to read)
-)
-"""Words that no variable may have as its name (Manual 003, 2.4.1; with TO and SCSL, which its list leaves out)."""
+from polycnc.language import Infix, Lexicon, Operators, Prefix
+from polycnc.nc.cpl._functions import FUNCTIONS
+
+STATEMENTS = {
+    "IF condition THEN ... [ELSE ...] ENDIF": "carries out one of two routines",
+    "CASE number OF LABEL constant{,constant} ... [OTHERWISE ...] ENDCASE": "carries out the routine of a number",
+    "FOR variable=start [STEP step] TO end ... NEXT [variable]": "counts; the end is tested before each round",
+    "WHILE condition DO ... END": "repeats as long as a condition holds, tested before each round",
+    "REPEAT ... UNTIL condition": "repeats until a condition holds, tested after each round",
+    "GOTO N20, GOTO 120, GOTO .LABEL": "goes on at an NC block, a CPL block or a label",
+    "CALL program[[value{,value}]] [DIN]": "calls a sub-program; with DIN it is excluded from linking",
+    "DIM variable(size[,size])": "makes a variable a field, a string a character field",
+    "PDIM parameter$(size)": "makes room for a text that a program is called with",
+    "WAIT[([IC(...)[=state]][,ms[,result%]])]": "waits until all blocks before it are executed, or a signal, or a time",
+    "REM": "begins a remark up to the end of the line",
+}
+"""The statements of CPL, as they are written, and what each does."""
+_OTHERS = ("AND", "OR", "XOR", "NOT", "TRUE", "FALSE", "NUL")
 UNUSED = frozenset(("COM", "FIX", "FIXB", "FIXE", "MIC", "TD", "TDR", "TXT$"))
 """Reserved words without a function."""
+_KEYWORD = re.compile(r"\b[A-Z]{2,}\b")
+_KEYWORDS = frozenset(_KEYWORD.findall(" ".join(STATEMENTS))) - {"DIN"}
+RESERVED = frozenset(FUNCTIONS) | UNUSED | _KEYWORDS | frozenset(_OTHERS)
+"""Words that no variable may have as its name (Manual 003, 2.4.1; with TO and SCSL, which its list leaves out)."""
 
 LEXICON = Lexicon(
     (

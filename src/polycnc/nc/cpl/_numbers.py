@@ -7,6 +7,7 @@ from array import array
 from collections.abc import Callable
 
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT, INVALID_PARAMETER, INVALID_VARIABLE, Fault
+from polycnc.nc.cpl._function import Function, Takes, function
 
 LOWEST, HIGHEST = -(1 << 31), (1 << 31) - 1
 _ULPS = 4.0 * 2.220446049250313e-16
@@ -102,6 +103,7 @@ def _shown(value: object) -> str:
     return "a text" if value.__class__ is str else "TRUE or FALSE" if value.__class__ is bool else f"{value}"
 
 
+@function("SIN(angle)", "R", Takes.NUMBER)
 def sine(degrees: float) -> float:
     """Return the sine of an angle in degrees, exact where it is a simple number."""
     degrees = math.fmod(degrees, 360.0)
@@ -109,6 +111,7 @@ def sine(degrees: float) -> float:
     return math.sin(math.radians(degrees)) if exact is None else exact
 
 
+@function("COS(angle)", "R", Takes.NUMBER)
 def cosine(degrees: float) -> float:
     """Return the cosine of an angle in degrees, exact where it is a simple number."""
     degrees = abs(math.fmod(degrees, 360.0))
@@ -116,6 +119,7 @@ def cosine(degrees: float) -> float:
     return math.cos(math.radians(degrees)) if exact is None else exact
 
 
+@function("TAN(angle)", "R", Takes.NUMBER)
 def tangent(degrees: float) -> float:
     """Return the tangent of an angle in degrees.
 
@@ -136,28 +140,58 @@ def _in_degrees(function: Callable[[float], float], value: float) -> float:
     return nice if abs(nice - degrees) <= _ULPS * abs(degrees) else degrees
 
 
+@function("ASIN(value)", "R", Takes.NUMBER)
 def arc_sine(value: float) -> float:
-    """Return the angle of a sine, in degrees; ValueError if there is none."""
+    """Return the angle of a sine, in degrees.
+
+    Raises:
+        ValueError: There is none.
+    """
     return _in_degrees(math.asin, value)
 
 
+@function("ACOS(value)", "R", Takes.NUMBER)
 def arc_cosine(value: float) -> float:
-    """Return the angle of a cosine, in degrees; ValueError if there is none."""
+    """Return the angle of a cosine, in degrees.
+
+    Raises:
+        ValueError: There is none.
+    """
     return _in_degrees(math.acos, value)
 
 
+@function("ATAN(value)", "R", Takes.NUMBER)
 def arc_tangent(value: float) -> float:
     """Return the angle of a tangent, in degrees."""
     return _in_degrees(math.atan, value)
 
 
+@function("SQRT(value)", "R", Takes.NUMBER)
+def root(value: float) -> float:
+    """Return the square root of a number.
+
+    Raises:
+        Fault: It is negative.
+    """
+    if value < 0:
+        raise Fault(INVALID_PARAMETER, "SQRT takes no negative number")
+    return float(value**0.5)
+
+
+ABSOLUTE = Function(
+    "ABS(value)", "X", "Return a number without its sign.", abs, (Takes.NUMBER,), keeps_type=True
+)
+
+
+@function("INT(value)", "I", Takes.NUMBER)
 def whole(value: float) -> int:
-    """Return a number without its decimals (INT)."""
+    """Return a number without its decimals."""
     return _bounded(math.trunc(value))
 
 
+@function("ROUND(value)", "I", Takes.NUMBER)
 def nearest(value: float) -> int:
-    """Return a number rounded to the nearest whole one, halves away from zero (ROUND)."""
+    """Return a number rounded to the nearest whole one, halves away from zero."""
     return _bounded(math.floor(value + 0.5) if value >= 0 else math.ceil(value - 0.5))
 
 
@@ -167,6 +201,7 @@ def _bounded(value: int) -> int:
     return value
 
 
+@function("BCD(binary value)", "I", Takes.NUMBER)
 def to_bcd(value: int) -> int:
     """Return a number with each decimal digit in four bits.
 
@@ -179,6 +214,7 @@ def to_bcd(value: int) -> int:
     return int(str(value), 16)
 
 
+@function("BIN(BCD value)", "I", Takes.NUMBER)
 def from_bcd(value: int) -> int:
     """Return the number that decimal digits of four bits each stand for.
 

@@ -107,7 +107,7 @@ class Linker:
         """The codes that call programs where they stand alone, as they were when `look_again` was called."""
         self._stepping = stepping
         self._tables = tables or NoTables()
-        self._faulty: set[str] = set()
+        self._faulty: dict[str, str] = {}  # texts by file
         self._programs: dict[str, Program] = {}
         self._files: dict[tuple[str, str], tuple[str, str] | None] = {}
         self._checked: dict[tuple[str, int], bool] = {}
@@ -131,12 +131,14 @@ class Linker:
             self._programs.clear()
 
     def sub_program(self, address: str, name: str) -> Program | None:
-        """Return a sub-program that is called, compiled now if it was not linked; None if there is none.
+        """Return a sub-program that is called, as its file is now; None if there is none.
+
+        One that was not linked, or has been written since, is compiled.
 
         Raises:
             ProgramError: Something is wrong with it.
         """
-        found = self._found(address, name)
+        found = self._find(address, name)
         if found is None:
             return None
         errors: list[ProgramError] = []
@@ -173,7 +175,7 @@ class Linker:
         return self._files[key]
 
     def _compiled(self, text: str, file: str, errors: list[ProgramError]) -> Program | None:
-        if file in self._faulty:
+        if self._faulty.get(file) == text:
             return None
         known = self._programs.get(file)
         if known is None or known.text != text:
@@ -182,7 +184,7 @@ class Linker:
             )
             errors += found
             if program is None:
-                self._faulty.add(file)
+                self._faulty[file] = text
                 self._tables.drop(file)
                 return None
             self._programs[file] = program
@@ -221,6 +223,8 @@ class Linker:
         """Return what is wrong with a call, and whether what it calls is right."""
         found = self._found(call.address, call.name)
         shown = shown_call(call.address, call.name)
+        if found is None and call.unlinked:
+            return None, True  # it may be written before it is called
         if found is None:
             hint = "write it into a file of this name"
             return Flaw(call.at, f"there is no sub-program {shown}", hint), False

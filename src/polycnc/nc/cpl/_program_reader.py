@@ -155,7 +155,7 @@ class _ProgramReader:
             target = reader.call()
             function = FUNCTIONS[token.word]
             if reader.tokens.token.word != "=":
-                if function.own:
+                if function.run is not None:
                     raise Flaw(
                         token.at, f"{token.word} does nothing by itself", "assign its value to a variable"
                     )

@@ -13,6 +13,7 @@ from polycnc.machine import SnapshotError
 from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
 from polycnc.nc.cpl._fields import dimension_field
+from polycnc.nc.cpl._functions import OWN
 from polycnc.nc.cpl._host import (
     OMITTED,
     PAUSE,
@@ -334,28 +335,15 @@ def _duration(value: object) -> int:
     return milliseconds
 
 
-def _root(value: float) -> float:
-    if value < 0:
-        raise Fault(INVALID_PARAMETER, "SQRT takes no negative number")
-    return float(value**0.5)
-
-
 _SCOPE: dict[str, object] = {
     "OMITTED": OMITTED, "PAUSE": PAUSE, "Box": Box, "Item": Item, "BlockWord": BlockWord, "Lines": Lines,
     "NcValues": NcValues, "Step": Step, "SubProgram": SubProgram, "Waiting": Waiting, "wait_for": wait_for,
-    "OverflowError": OverflowError, "abs": abs, "cell": _cell, "single": _numbers.single_rounder(),
+    **OWN, "OverflowError": OverflowError, "cell": _cell, "single": _numbers.single_rounder(),
     "to_integer": _numbers.to_integer, "to_real": _numbers.to_real, "to_double": _numbers.to_double,
-    "to_boolean": _numbers.to_boolean, "sine": _numbers.sine, "cosine": _numbers.cosine,
-    "tangent": _numbers.tangent, "arc_sine": _numbers.arc_sine, "arc_cosine": _numbers.arc_cosine,
-    "arc_tangent": _numbers.arc_tangent, "root": _root, "whole": _numbers.whole, "nearest": _numbers.nearest,
-    "to_bcd": _numbers.to_bcd, "from_bcd": _numbers.from_bcd, "text_of": _strings.text_of, "put": _strings.put,
+    "to_boolean": _numbers.to_boolean, "text_of": _strings.text_of, "put": _strings.put,
     "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,
-    "dimension_field": dimension_field, "middle": _strings.middle, "section": _strings.section,
-    "trimmed": _strings.trimmed,
-    "length": _strings.length, "position": _strings.position, "code": _strings.code,
-    "character": _strings.character, "written": _strings.written, "number": _strings.number,
-    "added": _strings.added, "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept,
-    "assigned": _assigned, "duration": _duration,
-    "as_word": _as_word, "inserted": _inserted, "ic_condition": _ic_condition,
+    "dimension_field": dimension_field, "section": _strings.section, "added": _strings.added,
+    "parameter": _parameter, "parameter_field": _parameter_field, "kept": _kept, "assigned": _assigned,
+    "duration": _duration, "as_word": _as_word, "inserted": _inserted, "ic_condition": _ic_condition,
 }  # fmt: skip
 """What a running program knows of Python."""

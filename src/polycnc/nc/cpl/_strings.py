@@ -15,6 +15,7 @@ from polycnc.nc.cpl._faults import (
     Fault,
 )
 from polycnc.nc.cpl._formats import default_format, in_format
+from polycnc.nc.cpl._function import Takes, function
 from polycnc.nc.cpl._numbers import HIGHEST, not_assigned
 
 LONGEST = 1024
@@ -163,8 +164,9 @@ def dimension(old: object, size: int) -> CharacterField:
     return old
 
 
+@function("MID$(text,start[,number])", "S", Takes.STORED, Takes.PLACE, Takes.PLACE, settable=True)
 def middle(value: Stored, start: object, number: object = None) -> Stored:
-    """Return a part of a text (MID$): of a character field as a reference to it."""
+    """Return a part of a text: of a character field as a reference to it."""
     begin = _place(start) - 1
     length = LONGEST if number is None else _place(number)
     if isinstance(value, CharacterField):
@@ -187,8 +189,9 @@ def section(target: Stored, start: object, number: object = None) -> Section:
     return Section(target, _place(start), target.size if number is None else _place(number))
 
 
+@function('TRIM$(text[,"L" or "R"])', "S", Takes.STORED, Takes.LETTER)
 def trimmed(value: Stored, side: object = None) -> Stored:
-    """Return a text without blanks at its ends (TRIM$): of a character field as a reference to it.
+    """Return a text without blanks at its ends, or at the left or right one: of a character field as a reference to it.
 
     Raises:
         Fault: The side is neither "L" nor "R".
@@ -208,26 +211,30 @@ def trimmed(value: Stored, side: object = None) -> Stored:
     return text[first : first + length]
 
 
+@function("LEN(text)", "I", Takes.TEXT)
 def length(text: str | None) -> int:
-    """Return the number of characters (LEN), -1 for NUL."""
+    """Return the number of characters, -1 for NUL."""
     return -1 if text is None else len(text)
 
 
+@function("INSTR(wanted,text[,start])", "I", Takes.TEXT, Takes.TEXT, Takes.PLACE)
 def position(wanted: str | None, text: str | None, start: object = None) -> int:
-    """Return where a text is found in another from a place on (INSTR), 0 if it is not."""
+    """Return where a text is found in another from a place on, 0 if it is not."""
     begin = 0 if start is None else _place(start) - 1
     if wanted is None or text is None:
         return 0
     return text.find(wanted, begin) + 1
 
 
+@function("ASC(text)", "I", Takes.TEXT)
 def code(text: str | None) -> int:
-    """Return the code of the first character (ASC), -1 if there is none."""
+    """Return the code of the first character, -1 if there is none."""
     return ord(text[0]) if text else -1
 
 
+@function("CHR$(code)", "S", Takes.INTEGER)
 def character(value: object) -> str:
-    """Return the character of a code (CHR$).
+    """Return the character of a code.
 
     Raises:
         Fault: No character has this code.
@@ -239,8 +246,9 @@ def character(value: object) -> str:
     return chr(value)
 
 
-def written(kind: str, value: float | None, form: str | None = None) -> str:
-    """Return a number as text (STR$).
+@function("STR$([format,]value)", "S", Takes.TEXT, Takes.PRINTED, new_text=True)
+def written(form: str | None, kind: str, value: float | None) -> str:
+    """Return a number as text.
 
     Raises:
         Fault: It does not fit the format, or there is none in it.
@@ -253,8 +261,9 @@ def written(kind: str, value: float | None, form: str | None = None) -> str:
     return text
 
 
+@function("VAL(text)", "X", Takes.TEXT)
 def number(text: str | None) -> int | float | None:
-    """Return the number at the beginning of a text (VAL), NUL if there is none.
+    """Return the number at the beginning of a text, NUL if there is none.
 
     Raises:
         OverflowError: It is too large.

@@ -6,12 +6,14 @@ expression is DOUBLE all of it is reckoned with double precision (Manual 003, 2.
 
 from __future__ import annotations
 
+import ast
 from collections.abc import Callable, Container
 from typing import NamedTuple
 
 from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
-from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT, NESTING_TOO_DEEP
-from polycnc.nc.cpl._functions import FUNCTIONS, Function
+from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT, NESTING_TOO_DEEP, Fault
+from polycnc.nc.cpl._function import Function, Takes
+from polycnc.nc.cpl._functions import FUNCTIONS
 from polycnc.nc.cpl._reader import single
 from polycnc.nc.cpl._syntax import Call, Expression, Leaf, Name, Number, Parentheses, Text, Word
 from polycnc.nc.cpl._variables import KIND_NAMES, Kind, Variable
@@ -19,10 +21,7 @@ from polycnc.nc.cpl._variables import KIND_NAMES, Kind, Variable
 NUMERIC: Container[Kind] = ("I", "R", "D", "X")
 _COMPARISONS = {"=": "==", "<>": "!=", "<": "<", "<=": "<=", ">": ">", ">=": ">="}
 _LOGIC = {"AND": "&", "OR": "|", "XOR": "^"}
-_DEGREES = {"SIN": "sine", "COS": "cosine", "TAN": "tangent", "SQRT": "root"}
-_DEGREES |= {"ASIN": "arc_sine", "ACOS": "arc_cosine", "ATAN": "arc_tangent"}
-_WHOLE = {"INT": "whole", "ROUND": "nearest", "BCD": "to_bcd", "BIN": "from_bcd"}
-_TEXT_CODES = {"LEN": "length", "ASC": "code", "VAL": "number"}
+_CONSTANT = frozenset("+-.0123456789'\"")
 _CHAIN_DEPTH = 3
 _IN_ONE = 10
 """So many operands are rounded inside each other; what they give is kept: Python nests only so deep."""
@@ -155,10 +154,10 @@ class Values:
                 return True
             case Parentheses():
                 return self.makes_text(tree.inner)
-            case Call(function="STR$"):
-                return True
-            case Call(function="MID$" | "TRIM$") if tree.arguments and tree.arguments[0] is not None:
-                return self.makes_text(tree.arguments[0])
+            case Call():
+                row = FUNCTIONS[tree.function]
+                source = tree.arguments[0] if row.takes[:1] == (Takes.STORED,) else None
+                return row.new_text or (source is not None and self.makes_text(source))
         return False
 
     def is_text(self, tree: Expression) -> bool:
@@ -363,63 +362,58 @@ class Values:
         return Typed(infix(self.rounded(left), operator, self.rounded(right)), kind, exact=whole)
 
     def _call(self, call: Call) -> Typed:
-        function = FUNCTIONS[call.function]
-        if not function.own:
-            if function.command:
-                raise Flaw(call.at, f"{call.function} is a command and has no value")
-            return Typed(Python(self.host_call(call)), function.kind, leaf=True)
-        first, *others = call.arguments
-        if first is None or None in others:
-            raise Flaw(call.at, f"{call.function} has an argument left out", function.usage)
-        if call.function in _TEXT_CODES:
-            return Typed(
-                Python(f"{_TEXT_CODES[call.function]}({self.text(first)})"), function.kind, leaf=True
-            )
-        if call.function == "INSTR":
-            texts = [self.text(tree) for tree in call.arguments[:2] if tree is not None]
-            start = [self.assigned(tree) for tree in call.arguments[2:] if tree is not None]
-            return Typed(Python(f"position({', '.join(texts + start)})"), "I")
-        return self._own_number(call.function, first)
-
-    def _own_number(self, name: str, tree: Expression) -> Typed:
-        typed = self._typed(tree)
-        if typed.kind not in NUMERIC:
-            raise Flaw(tree.at, f"{name} takes a number, not {KIND_NAMES[typed.kind]}")
-        argument = self.rounded(typed).text
-        if name == "ABS":
-            return Typed(Python(f"abs({argument})"), typed.kind)
-        if name in _WHOLE:
-            return Typed(Python(f"{_WHOLE[name]}({argument})"), "I")
-        return Typed(Python(f"{_DEGREES[name]}({argument})"), "D" if self._double else "R", exact=False)
+        row = FUNCTIONS[call.function]
+        if row.run is None:
+            if row.command:
+                raise Flaw(call.at, f"{row.name} is a command and has no value")
+            return Typed(Python(self.host_call(call)), row.kind, leaf=True)
+        python, kinds = self._own_call(call, row)
+        if row.keeps_type:
+            return Typed(python, kinds[0])
+        if row.kind == "R":
+            return Typed(python, "D" if self._double else "R", exact=False)
+        return Typed(python, row.kind, leaf=row.kind == "X" and python.text[0] not in _CONSTANT)
 
     def _text_call(self, call: Call) -> str:
-        function = FUNCTIONS[call.function]
-        if not function.own:
+        row = FUNCTIONS[call.function]
+        if row.run is None:
             return self.host_call(call)
-        first, *others = call.arguments
-        if first is None:
-            raise Flaw(call.at, f"{call.function} has an argument left out", function.usage)
-        match call.function:
-            case "CHR$":
-                return f"character({self.integer(first)})"
-            case "STR$":
-                value = others[0] if others else first
-                if value is None:
-                    raise Flaw(call.at, "STR$ has an argument left out", function.usage)
-                typed = self.value(value)
-                if typed.kind not in NUMERIC:
-                    raise Flaw(value.at, f"STR$ takes a number, not {KIND_NAMES[typed.kind]}")
-                form = [self.text(first)] if others else []
-                return f"written({', '.join((repr(typed.kind), self.rounded(typed).text, *form))})"
-            case "MID$":
-                places = [self.assigned(tree) for tree in others if tree is not None]
-                if len(places) != len(others):
-                    raise Flaw(call.at, "MID$ has an argument left out", function.usage)
-                return f"middle({', '.join((self.stored(first), *places))})"
-            case "TRIM$":
-                side = [f"assigned({self.text(tree)})" for tree in others if tree is not None]
-                return f"trimmed({', '.join((self.stored(first), *side))})"
-        raise Flaw(call.at, f"{call.function} is no text")
+        if row.kind != "S":
+            raise Flaw(call.at, f"{row.name} is no text")
+        return self._own_call(call, row)[0].text
+
+    def _own_call(self, call: Call, row: Function) -> tuple[Python, list[Kind]]:
+        """Return the call of one of CPL's own functions, and the types of its arguments; a constant is evaluated."""
+        assert row.run is not None
+        left_out = row.leading if len(call.arguments) == row.count[0] else 0
+        parts, kinds = ["None"] * left_out, list[Kind]()
+        for takes, tree in zip(row.takes[left_out:], call.arguments, strict=False):
+            if tree is None:
+                raise Flaw(call.at, f"{row.name} has an argument left out", row.usage)
+            text, kind = self._taken(row.name, takes, tree)
+            parts.append(text)
+            kinds.append(kind)
+        constant = _evaluated(row.run, parts)
+        return Python(f"{row.run.__name__}({', '.join(parts)})") if constant is None else constant, kinds
+
+    def _taken(self, name: str, takes: Takes, tree: Expression) -> tuple[str, Kind]:
+        """Return an argument as a function takes it, and its type."""
+        match takes:
+            case Takes.TEXT:
+                return self.text(tree), "S"
+            case Takes.LETTER:
+                return f"assigned({self.text(tree)})", "S"
+            case Takes.STORED:
+                return self.stored(tree), "S"
+            case Takes.PLACE:
+                return self.assigned(tree), "I"
+            case Takes.INTEGER:
+                return self.integer(tree), "I"
+        typed = self._typed(tree) if takes is Takes.NUMBER else self.value(tree)
+        if typed.kind not in NUMERIC:
+            raise Flaw(tree.at, f"{name} takes a number, not {KIND_NAMES[typed.kind]}")
+        number = self.rounded(typed).text
+        return number if takes is Takes.NUMBER else f"{typed.kind!r}, {number}", typed.kind
 
     def _joined(self, tree: Chain[Leaf], depth: int) -> str:
         def text(part: Expression) -> str:
@@ -449,10 +443,22 @@ def _has_double(tree: Expression | None) -> bool:
         return _has_double(tree.first)
     if isinstance(tree, Call):
         function = FUNCTIONS[tree.function]
-        return function.kind == "D" or (function.own and any(map(_has_double, tree.arguments)))
+        return function.kind == "D" or (function.run is not None and any(map(_has_double, tree.arguments)))
     if isinstance(tree, Parentheses):
         return _has_double(tree.inner)
     return isinstance(tree, Unary) and _has_double(tree.operand)
+
+
+def _evaluated(run: Callable[..., object], parts: list[str]) -> Python | None:
+    """Return what a function gives for constants as one; None if they are none, or it refuses them."""
+    if not all(part[0] in _CONSTANT for part in parts):
+        return None
+    try:
+        value = run(*ast.literal_eval(f"({', '.join(parts)},)"))
+    except (Fault, ArithmeticError, SyntaxError, TypeError, ValueError):
+        return None
+    text = repr(value)
+    return None if value is None else prefix("-", Python(text[1:])) if text[0] == "-" else Python(text)
 
 
 def _sets(tree: Expression | None) -> bool:

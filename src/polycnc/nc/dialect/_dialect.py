@@ -237,6 +237,10 @@ class Dialect(StrictModel):
     corner_words: bool = Field(
         default=False, description="R and C of a straight move round or chamfer the corner to the next one."
     )
+    same_group: Literal["error", "last"] = Field(
+        default="error",
+        description='Two codes of one group in a block: "error" refuses them, "last" takes the last and says so.',
+    )
     tool_word: Literal["select", "turret"] = Field(
         default="select",
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',

@@ -2,7 +2,7 @@
 
 It knows straight and circular motion, absolute and incremental, and feed. At the first block that
 holds anything else, or anything wrong, it stops without having changed anything for that block, and the
-ordinary interpreter takes it. So it needs no errors of its own, and both ways give the same motion.
+reference interpreter takes it. So it needs no errors of its own, and both ways give the same motion.
 
 A compiled call costs by the arrays that it hands over, so what runs for every block takes those it needs.
 """

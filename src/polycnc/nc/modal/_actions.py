@@ -154,7 +154,7 @@ class Action(IntEnum):
     POLAR = Group.POLAR, "", "The words of the plane are radius and angle"
     POLAR_OFF = Group.POLAR, "", "Polar coordinates off"
     ADDITIONAL_OFFSET = Group.WORK_OFFSET, "P", "Select additional work offset P"
-    ADDITIONAL_OFFSET_110 = Group.WORK_OFFSET, "", "Select additional work offset 1 with G110, 2 with G111 ..."
+    ADDITIONAL_OFFSET_110 = Group.WORK_OFFSET, "", "Select additional work offset 1 by G110, 2 by G111 and so on"
     SKIP_MOVE = Family.PATH, "axes", "Straight at feed until the skip signal comes"
     TURN_FINISH = Family.CONTOUR_CYCLE, "P Q", "Finish the contour of blocks P to Q"
     TURN_ROUGH = Family.CONTOUR_CYCLE, "P Q U W R", "Rough the contour along Z"

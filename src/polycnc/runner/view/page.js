@@ -256,18 +256,29 @@
     return { x, y };
   }
   const CHART_POINTS = 4000;
-  function chartPoints(of, left_out, from_s, to_s) { // the lowest and highest of each of many pieces, where there are too many
+  function chartPoints(of, left_out, from_s, to_s) { // where many are crowded within a pixel or so: the first, lowest, highest and last
     const first = Math.max(after(data.t_s, from_s) - 1, 0), last = Math.min(after(data.t_s, to_s) + 1, points);
-    const x = [], y = [], step = Math.max(Math.ceil((last - first) / (CHART_POINTS / 2)), 1);
-    for (let k = first; k < last; k += step) {
-      let low = -1, high = -1, gap = false;
-      for (let j = k; j < Math.min(k + step, last); j++) {
-        if (left_out(j)) { gap = true; continue; }
+    const x = [], y = [], crowd_s = (to_s - from_s) / (CHART_POINTS / 4);
+    let gap = false; // since the last point that is drawn
+    for (let k = first, end; k < last; k = end) {
+      const kept = new Set();
+      for (end = k + 1; end < last && data.t_s[end] < data.t_s[k] + crowd_s;) end++;
+      let low = -1, high = -1, begin = -1, close = -1;
+      for (let j = k; j < end; j++) {
+        if (left_out(j)) continue;
+        if (begin < 0) begin = j;
+        close = j;
         if (low < 0 || of(j) < of(low)) low = j;
         if (high < 0 || of(j) > of(high)) high = j;
       }
-      if (low >= 0) for (const j of new Set([Math.min(low, high), Math.max(low, high)])) { x.push(data.t_s[j]); y.push(of(j)); }
-      if (gap) { x.push(data.t_s[k]); y.push(null); }
+      for (const j of [begin, low, high, close]) kept.add(j);
+      for (let j = k; j < end; j++) {
+        if (left_out(j)) { gap = true; continue; }
+        if (!kept.has(j)) continue;
+        if (gap && x.length) { x.push(data.t_s[j]); y.push(null); }
+        x.push(data.t_s[j]); y.push(of(j));
+        gap = false;
+      }
     }
     return { x, y };
   }

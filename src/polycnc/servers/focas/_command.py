@@ -5,19 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from datetime import datetime
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from polycnc.controllers.fanuc import AxisPositions, PowerMate
-from polycnc.controllers.fanuc.wire import Content, Request, Value8, layout_of, record
+from polycnc.controllers.fanuc.wire import CNC, Content, Request, Value8, layout_of, record
 from polycnc.servers.focas._profile import Profile
 
-if TYPE_CHECKING:
-    from polycnc.cnc import Status
-
-NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED, REJECTED = 1, 2, 3, 4, 5, 6, 7, 13
+NOT_THERE, LENGTH, NUMBER, ATTRIBUTE, DATA, NO_OPTION, PROTECTED = range(1, 8)
+WRONG_PATH, REJECTED = 11, 13
 """Codes that clients get, by the names of the function library."""
 ALL = -1
-MOST_NUMBERS = 200
+MOST_NUMBERS = 433
+"""Values of eight bytes that the largest frame of all series holds."""
 
 
 class RefusedError(Exception):
@@ -36,30 +35,42 @@ class View:
         self.profile = profile
 
     @cached_property
-    def status(self) -> Status:
-        """What the control is and does."""
-        return self.control.status()
-
-    @cached_property
     def positions(self) -> tuple[AxisPositions, ...]:
         """Where its axes are, in increments."""
         return self.control.positions.read()
 
     def forget(self) -> None:
         """Read anew: something has been changed."""
-        self.__dict__.pop("status", None)
         self.__dict__.pop("positions", None)
 
 
 Command: TypeAlias = Callable[[View, Request], Content]
 """Carries out a request and returns what the reply holds; it refuses by raising `RefusedError`."""
+COMMANDS: dict[tuple[int, int], Command] = {}
+"""The commands that are answered, by target and code."""
+WRITING: set[tuple[int, int]] = set()
+"""Those that change something."""
+
+
+def answers(*codes: int, target: int = CNC, writes: bool = False) -> Callable[[Command], Command]:
+    """Say which commands a function answers; what stands in request and reply is in `wire.LAYOUTS`."""
+
+    def note(function: Command) -> Command:
+        keys = [(target, code) for code in codes]
+        COMMANDS.update(dict.fromkeys(keys, function))
+        WRITING.update(keys if writes else ())
+        return function
+
+    return note
 
 
 def numbers(request: Request) -> range:
     """Return the numbers from the first to the second argument."""
     first, last = request.arguments[:2]
-    if last < first or last - first >= MOST_NUMBERS:
+    if last < first:
         raise RefusedError(NUMBER)
+    if last - first >= MOST_NUMBERS:
+        raise RefusedError(LENGTH)
     return range(first, last + 1)
 
 

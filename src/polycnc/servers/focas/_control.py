@@ -17,6 +17,7 @@ from polycnc.servers.focas._command import (
     NOT_THERE,
     PROTECTED,
     REJECTED,
+    WRONG_PATH,
     RefusedError,
     View,
 )
@@ -117,9 +118,11 @@ class FocasControl:
         return self._kept[1]
 
     def _reply(self, view: View, request: Request, plan: Plan) -> Reply:
-        command = known(self.profile, request) if request.path <= 1 else None
+        command = known(self.profile, request)
         if command is None:
             return Reply(status=NOT_THERE)
+        if request.path > 1:
+            return Reply(status=WRONG_PATH)
         missing = plan.missing
         if missing is not None and (not missing or (request.target, request.command) in missing):
             return Reply(status=NO_OPTION)

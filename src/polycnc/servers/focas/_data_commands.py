@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from polycnc.controllers.fanuc import DIAGNOSIS, Attribute, ParameterRow, pmc
-from polycnc.controllers.fanuc.wire import PMC_WIDTHS, Content, Request, Value8, swapped
+from polycnc.controllers.fanuc.wire import PMC, PMC_WIDTHS, Content, Request, Value8, swapped
 from polycnc.servers.focas._command import (
     ATTRIBUTE,
     DATA,
@@ -18,6 +18,7 @@ from polycnc.servers.focas._command import (
     PROTECTED,
     RefusedError,
     View,
+    answers,
     axes_of,
     data_of,
     given,
@@ -62,6 +63,7 @@ def _value(number: float | None) -> Value8:
     return Value8(mantissa, exponent, made.base)
 
 
+@answers(0x15)
 def read_macros(view: View, request: Request) -> Content:
     """Return macro variables; a vacant one is marked."""
     return [_value(_readable_macro(view, number)) for number in numbers(request)]
@@ -80,6 +82,7 @@ def _set_macros(view: View, values: dict[int, float | None]) -> None:
             view.control.macros.set(number, value)
 
 
+@answers(0x16, writes=True)
 def write_macros(view: View, request: Request) -> Content:
     """Set macro variables."""
     found = numbers(request)
@@ -88,15 +91,19 @@ def write_macros(view: View, request: Request) -> Content:
     return None
 
 
+@answers(0xA7)
 def read_doubles(view: View, request: Request) -> Content:
     """Return macro variables as floating-point numbers; a vacant one is no number."""
     first, count = request.arguments[:2]
-    if not 0 < count <= MOST_NUMBERS:
+    if count < 1:
         raise RefusedError(NUMBER)
+    if count > MOST_NUMBERS:
+        raise RefusedError(LENGTH)
     values = [_readable_macro(view, number) for number in range(first, first + count)]
     return [math.nan if value is None else value for value in values]
 
 
+@answers(0xA8, writes=True)
 def write_double(view: View, request: Request) -> Content:
     """Set a macro variable; what is no number makes it vacant."""
     value = given_each(request, 1)[0]["value"]
@@ -106,6 +113,7 @@ def write_double(view: View, request: Request) -> Content:
     return None
 
 
+@answers(0x17)
 def macro_range(view: View, request: Request) -> Content:
     """Return how many local and how many common variables there are."""
     commons = (last - first + 1 for first, last in view.control.macros.variables.ranges)
@@ -147,17 +155,20 @@ def _of_parameters(view: View, rows: list[ParameterRow], asked: int) -> Content:
     )
 
 
+@answers(0x0E, 0x8D)
 def parameters(view: View, request: Request) -> Content:
     """Return parameters, of one axis or all; numbers without one are left out."""
     return _of_parameters(view, _readable(view, request), request.arguments[2])
 
 
+@answers(0x29, 0x90)
 def settings(view: View, request: Request) -> Content:
     """Return the parameters that stand on the setting screen."""
     rows = [row for row in _readable(view, request) if Attribute.SETTING in row.attributes]
     return _of_parameters(view, rows, request.arguments[2])
 
 
+@answers(0x10)
 def parameter_types(view: View, request: Request) -> Content:
     """Return numbers and type words of so many parameters from one on, and the numbers before and behind."""
     first, count = request.arguments[:2]
@@ -179,6 +190,7 @@ _OLD_DIAGNOSIS = {0: 3, 1: 0, 2: 1, 3: 2}
 """Type numbers of diagnosis data on old series, by those of parameters: bits, byte, word, two words."""
 
 
+@answers(0x30, 0x93)
 def diagnosis(view: View, request: Request) -> Content:
     """Return diagnosis data, of one axis or all; numbers without any are left out."""
     control = view.control
@@ -229,6 +241,7 @@ def _offset_decimals(view: View) -> int:
     return view.control.increment.decimals + int(view.control.inch_input)
 
 
+@answers(0x08)
 def read_tool_offsets(view: View, request: Request) -> Content:
     """Return tool offsets."""
     _check_type(request.arguments[2])
@@ -239,6 +252,7 @@ def read_tool_offsets(view: View, request: Request) -> Content:
     return [Value8(value, _offset_decimals(view)) for value in found]
 
 
+@answers(0x09, writes=True)
 def write_tool_offset(view: View, request: Request) -> Content:
     """Set a tool offset."""
     number = one_number(request)
@@ -253,11 +267,13 @@ def write_tool_offset(view: View, request: Request) -> Content:
     return None
 
 
+@answers(0x0A)
 def tool_offset_range(view: View, request: Request) -> Content:
     """Return how many tool offsets there are, and the type of their memory: one value each."""
     return {"offsets": view.control.tool_offsets.count, "memory": 0}
 
 
+@answers(0x0B)
 def read_work_offset(view: View, request: Request) -> Content:
     """Return a work offset of one axis or all."""
     control, name, asked = view.control, offset_name(one_number(request)), request.arguments[2]
@@ -269,6 +285,7 @@ def read_work_offset(view: View, request: Request) -> Content:
     return padded(made, view, asked)
 
 
+@answers(0x0C, writes=True)
 def write_work_offset(view: View, request: Request) -> Content:
     """Set a work offset of one axis, or of all."""
     control, name, asked = view.control, offset_name(one_number(request)), request.arguments[2]
@@ -287,10 +304,11 @@ def write_work_offset(view: View, request: Request) -> Content:
 # ---------------------------------------------------------------------- timers
 
 
-_TIMERS = {0: (None, 6750), 1: (6751, 6752), 2: (6753, 6754), 3: (6757, 6758)}
-"""Parameters of each timer: milliseconds and minutes."""
+_TIMERS = {0: (None, 6750), 1: (6751, 6752), 2: (6753, 6754), 3: (6757, 6758), 4: (6755, 6756)}
+"""Parameters of each timer: milliseconds and minutes; 4 is the time of an external signal."""
 
 
+@answers(0x120)
 def timer(view: View, request: Request) -> Content:
     """Return a timer: minutes and milliseconds."""
     found = _TIMERS.get(request.arguments[0])
@@ -300,6 +318,7 @@ def timer(view: View, request: Request) -> Content:
     return {"minutes": minutes, "milliseconds": ms}
 
 
+@answers(0x48, 0x4A, 0x52, 0x8B)
 def no_tool_life(view: View, request: Request) -> Content:
     """Refuse: this control manages no tool life, which is an option."""
     raise RefusedError(NO_OPTION)
@@ -322,6 +341,7 @@ def _pmc_place(view: View, request: Request) -> tuple[str, int, int]:
     return letter, first, last
 
 
+@answers(0x8001, target=PMC)
 def read_pmc(view: View, request: Request) -> Content:
     """Return bytes, words or double words of an area."""
     letter, first, last = _pmc_place(view, request)
@@ -329,6 +349,7 @@ def read_pmc(view: View, request: Request) -> Content:
     return {"values": values}
 
 
+@answers(0x8002, target=PMC, writes=True)
 def write_pmc(view: View, request: Request) -> Content:
     """Set bytes, words or double words of an area that is not protected."""
     letter, first, last = _pmc_place(view, request)

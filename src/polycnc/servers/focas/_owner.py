@@ -16,7 +16,8 @@ from polycnc.servers.focas._served import ServedControl
 R = TypeVar("R")
 _BUSY_BEAT_S = 0.05
 _IDLE_BEAT_S = 1.0
-_MOST_CYCLES = 20_000  # that are caught up with in one go, so that nobody waits long
+_MOST_CYCLES = 20_000  # that are caught up with in one go
+_MOST_LATE_S = 0.5
 
 
 class Owner(Protocol):
@@ -47,11 +48,24 @@ class HostOwner:
 class Keeper:
     """Let the time of a control pass in the running event loop, at `rate` seconds for each second of `wall`.
 
-    Time is let pass before every request and from time to time; `failed` ends with the error if it cannot.
+    Time is let pass before every request and from time to time, for at most `share_s` of the wall clock in one go, so
+    that nobody waits long for others whose time is costly. A clock that is late by half a second drops its lag and
+    tells `on_late` how much. `failed` ends with the error if time cannot pass.
     """
 
-    def __init__(self, served: ServedControl, wall: Wall, *, rate: float = 1.0) -> None:
+    def __init__(
+        self,
+        served: ServedControl,
+        wall: Wall,
+        *,
+        rate: float = 1.0,
+        share_s: float = 0.01,
+        on_late: Callable[[float], None] | None = None,
+    ) -> None:
         self.pace = Pace(wall, rate)
+        self._wall = wall
+        self._share_s = share_s
+        self._on_late = on_late
         self.failed: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._served = served
         self._timer: asyncio.TimerHandle | None = None
@@ -78,11 +92,16 @@ class Keeper:
             self.failed.cancel()
 
     def _catch_up(self) -> bool:
-        """Let pass what is due; tell whether there is more."""
+        """Let pass what is due, within its share of the wall clock; tell whether there is more."""
         due = self.pace.due(self._served.clock.cycle_s, _MOST_CYCLES)
-        if due:
-            self.pace.count(self._served.advance(due))
-        return due == _MOST_CYCLES
+        if not due:
+            return False
+        end_s = self._wall.now_s() + self._share_s
+        passed = self._served.advance(due, is_enough=lambda: self._wall.now_s() >= end_s)
+        self.pace.count(passed)
+        if passed < due and (lag_s := self.pace.drop_lag(_MOST_LATE_S)) and self._on_late is not None:
+            self._on_late(lag_s)
+        return passed < due or due == _MOST_CYCLES
 
     def _beat(self) -> None:
         try:

@@ -30,6 +30,8 @@ class Profile(StrictModel):
     """System variables of macros are read like other ones; the library's manual knows local and common ones."""
     refused: tuple[int, ...] = ()
     """Command codes that this series does not know."""
+    program_characters: int = Field(default=128_000, gt=0)
+    """The size of the program memory of a control that is served."""
     most_sessions: int = 5
     most_spindles: int = Field(default=8, ge=1, le=8)
 

@@ -14,6 +14,7 @@ from polycnc.servers.focas._command import (
     REJECTED,
     RefusedError,
     View,
+    answers,
     given,
     moment,
 )
@@ -22,12 +23,14 @@ from polycnc.units import whole
 _NO_SUCH_PROGRAM = 1
 
 
+@answers(0x1C)
 def program_numbers(view: View, request: Request) -> Content:
     """Return the numbers of the program in execution and of its main program."""
     running, main = view.control.execution.numbers
     return {"running": running, "main": main}
 
 
+@answers(0x1D)
 def sequence_number(view: View, request: Request) -> Content:
     """Return the sequence number that was executed last."""
     return {"sequence": view.control.execution.sequence}
@@ -36,6 +39,7 @@ def sequence_number(view: View, request: Request) -> Content:
 _MOST_TEXT = 1400
 
 
+@answers(0x20)
 def executed_text(view: View, request: Request) -> Content:
     """Return the line that is executed and the program from there on."""
     most = request.arguments[0]
@@ -46,12 +50,14 @@ def executed_text(view: View, request: Request) -> Content:
     return {"block": 0 if block is None else block.line, "text": text}
 
 
+@answers(0xCF)
 def program_name(view: View, request: Request) -> Content:
     """Return number and name of the program in execution."""
     number = view.control.execution.numbers[0]
     return {"program": number, "name": _file(number)}
 
 
+@answers(0xFC)
 def program_path(view: View, request: Request) -> Content:
     """Return the path of the program in execution."""
     return {"path": text(_path(view.control.execution.numbers[0]), _PATH)}
@@ -60,6 +66,7 @@ def program_path(view: View, request: Request) -> Content:
 _ROW = 72
 
 
+@answers(0x06)
 def directory(view: View, request: Request) -> Content:
     """Return the programs from a number on: numbers, with comments, or with sizes as well."""
     first, most, kind, _ = request.arguments
@@ -76,6 +83,7 @@ def directory(view: View, request: Request) -> Content:
     return rows[: min(most, _MOST_TEXT // _ROW)]
 
 
+@answers(0x03, writes=True)
 def select(view: View, request: Request) -> Content:
     """Select a program."""
     _select(view, request.arguments[0], RefusedError(LENGTH, _NO_SUCH_PROGRAM))
@@ -88,6 +96,7 @@ def _select(view: View, number: int, missing: RefusedError) -> None:
     view.control.select_program(number)
 
 
+@answers(0x05, writes=True)
 def delete(view: View, request: Request) -> Content:
     """Delete a program that is neither selected nor protected."""
     _delete(view, request.arguments[0])
@@ -105,6 +114,7 @@ def _delete(view: View, number: int) -> None:
     control.programs.delete(number)
 
 
+@answers(0x01, writes=True)
 def start(view: View, request: Request) -> Content:
     """Press cycle start."""
     view.control.cycle_start()
@@ -153,11 +163,13 @@ def _in_folder(view: View, path: str) -> list[str | ProgramEntry]:
     return [*_FOLDERS[path], *sorted(programs, key=lambda each: each.name)]
 
 
+@answers(0xAE)
 def drives(view: View, request: Request) -> Content:
     """Return the names of the drives."""
     return [{"drive": _DRIVE}]
 
 
+@answers(0xB0)
 def current_folder(view: View, request: Request) -> Content:
     """Return the current folder of the foreground (1) or background (2)."""
     if request.arguments[0] not in (1, 2):
@@ -165,6 +177,7 @@ def current_folder(view: View, request: Request) -> Content:
     return {"folder": text(_FOLDER, _PATH)}
 
 
+@answers(0xB4)
 def folder_counts(view: View, request: Request) -> Content:
     """Return how many folders and files a folder has."""
     held = _in_folder(view, _asked(request))
@@ -175,6 +188,7 @@ def folder_counts(view: View, request: Request) -> Content:
 _ENTRY = 128
 
 
+@answers(0xB3)
 def folder(view: View, request: Request) -> Content:
     """Return entries of a folder, each with kind, date, size, attributes, name and comment."""
     first, most, _, with_size = request.arguments
@@ -200,6 +214,7 @@ def folder(view: View, request: Request) -> Content:
 _FILE_KIND = 0
 
 
+@answers(0xB5, writes=True)
 def add(view: View, request: Request) -> Content:
     """Make an empty program; folders cannot be made."""
     number = _number(_asked(request))
@@ -214,23 +229,27 @@ def add(view: View, request: Request) -> Content:
     return None
 
 
+@answers(0xB6, writes=True)
 def remove(view: View, request: Request) -> Content:
     """Delete the program of a path."""
     _delete(view, _number(_asked(request)))
     return None
 
 
+@answers(0xBA, writes=True)
 def select_main(view: View, request: Request) -> Content:
     """Select the program of a path."""
     _select(view, _number(_asked(request)), RefusedError(DATA))
     return None
 
 
+@answers(0xB9)
 def main_path(view: View, request: Request) -> Content:
     """Return the path of the selected program."""
     return {"path": text(_path(view.control.selected), _PATH)}
 
 
+@answers(0xF0)
 def lines(view: View, request: Request) -> Content:
     """Return so many lines of a program from one on, counted from 0."""
     first, count = request.arguments[:2]

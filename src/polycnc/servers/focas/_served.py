@@ -36,9 +36,16 @@ class ServedControl:
         """Whether something is executed."""
         return self.control.control.channels[0].active
 
-    def advance(self, cycles: int, *, until: int | Callable[[], bool] | None = None) -> int:
-        """Let up to `cycles` control cycles pass; return how many did."""
+    def advance(
+        self,
+        cycles: int,
+        *,
+        until: int | Callable[[], bool] | None = None,
+        is_enough: Callable[[], bool] | None = None,
+    ) -> int:
+        """Let up to `cycles` control cycles pass, or until `is_enough` says so; return how many did."""
         done = 0
+        self.control.control.be_shared(is_enough)
         while done < cycles:
             asked = min(cycles - done, self._to_next())
             passed = self.control.advance(asked, until=until)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from datetime import datetime
 
 from polycnc.cnc import PROGRAM_MESSAGE, Alarm
@@ -28,6 +29,7 @@ from polycnc.servers.focas._command import (
     NUMBER,
     RefusedError,
     View,
+    answers,
     axes_of,
     given,
     named,
@@ -35,6 +37,7 @@ from polycnc.servers.focas._command import (
 )
 
 
+@answers(0x18)
 def system(view: View, request: Request) -> Content:
     """Return the 18 bytes that say which control this is."""
     profile = view.profile
@@ -53,20 +56,23 @@ _LATER_RUN = {4: 3}
 _LATER_MOTION = {3: 2}
 
 
+@answers(0x19)
 def state(view: View, request: Request) -> Content:
     """Return mode, run state, motion, functions, emergency stop, alarm and editing."""
-    found = named(request, read_state(view.control, view.status))
+    found = named(request, read_state(view.control))
     if not view.profile.old_states:
         found["run"] = _LATER_RUN.get(found["run"], found["run"])
         found["motion"] = _LATER_MOTION.get(found["motion"], found["motion"])
     return found
 
 
+@answers(0xE1)
 def handle_retrace(view: View, request: Request) -> Content:
     """Return the state of manual handle retrace: 0, since this control never retraces by the handle."""
     return {"hdck": bytes(4)}
 
 
+@answers(0x98)
 def machining_type(view: View, request: Request) -> Content:
     """Return the side of a compound machine that is chosen: 0, as it is on every other one."""
     return {"tmmode": 0}
@@ -92,12 +98,13 @@ def _type_of(view: View, alarm: Alarm) -> int:
     return next(number for group, number in _TYPES if bits & group)
 
 
+@answers(0x1A)
 def alarm_bits(view: View, request: Request) -> Content:
     """Return the groups of the alarms that are on."""
     if view.profile.old_states:
         return {"alarms": int(view.control.alarm_bits)}
     later = 0
-    for alarm in shown(view.status.alarms):
+    for alarm in shown(view.control.control.alarms.active):
         later |= 1 << _type_of(view, alarm)
     return {"alarms": later}
 
@@ -105,6 +112,7 @@ def alarm_bits(view: View, request: Request) -> Content:
 _ALARM_HEAD = 16
 
 
+@answers(0x23)
 def alarms(view: View, request: Request) -> Content:
     """Return the alarms that are on, of one type or all, as many as are asked for and fit a frame."""
     kind, most, mode, size = request.arguments
@@ -112,7 +120,7 @@ def alarms(view: View, request: Request) -> Content:
         raise RefusedError(LENGTH)
     rows = []
     names = [view.control.axis_name(axis) for axis in range(1, view.control.axes + 1)]
-    for alarm in shown(view.status.alarms):
+    for alarm in shown(view.control.control.alarms.active):
         number = _type_of(view, alarm)
         if kind in (ALL, number):
             axis = names.index(alarm.axis) + 1 if alarm.axis in names else 0
@@ -129,6 +137,7 @@ _MESSAGE_SIZE = 268
 _OPERATOR, _MACRO_STOP = 0, 4
 
 
+@answers(0x34)
 def messages(view: View, request: Request) -> Content:
     """Return messages: those from outside (0), those of stops in macros (4); there are no others, so they are empty."""
     kind = request.arguments[0]
@@ -138,7 +147,7 @@ def messages(view: View, request: Request) -> Content:
         raise RefusedError(NO_OPTION)
     made = [
         {"number": each.number, "type": kind, "length": len(words.rstrip(b"\0")), "text": words}
-        for each in view.status.messages
+        for each in view.control.control.messages.shown
         if kind == (_MACRO_STOP if each.number == PROGRAM_MESSAGE else _OPERATOR)
         for words in [text(each.text, 256)]
     ]
@@ -151,6 +160,7 @@ def messages(view: View, request: Request) -> Content:
 _SKIP = "skip"
 
 
+@answers(0x26)
 def positions(view: View, request: Request) -> Content:
     """Return positions of a kind, of one axis or all."""
     kind, asked = request.arguments[:2]
@@ -168,22 +178,26 @@ def positions(view: View, request: Request) -> Content:
     return padded(made, view, asked)
 
 
+@answers(0x24)
 def feed(view: View, request: Request) -> Content:
     """Return the actual feed: mm/min, with inch input 0.01 inch/min."""
     return {"feed": Value8(view.control.positions.feed(), 2 if view.control.inch_input else 0)}
 
 
+@answers(0x25)
 def spindle_speed(view: View, request: Request) -> Content:
     """Return the actual spindle speed."""
-    return {"rpm": Value8.of(abs(view.status.spindle.actual_rpm), 0)}
+    return {"rpm": Value8.of(abs(view.control.control.spindle.state().actual_rpm), 0)}
 
 
+@answers(0x89)
 def axis_names(view: View, request: Request) -> Content:
     """Return the names of the axes."""
     names = (view.control.axis_name(axis) for axis in range(1, view.control.axes + 1))
     return [{"name": each[:1], "suffix": each[1:]} for each in names]
 
 
+@answers(0x8A)
 def spindle_names(view: View, request: Request) -> Content:
     """Return the name of the spindle."""
     return [{"name": "S", "suffix": "1"}]
@@ -192,14 +206,16 @@ def spindle_names(view: View, request: Request) -> Content:
 _SPINDLES = 1
 
 
+@answers(0xA4)
 def counts(view: View, request: Request) -> Content:
     """Return how many spindles (1) or axes there are."""
     return {"count": 1 if request.arguments[0] == _SPINDLES else view.control.axes}
 
 
-_LOAD_PERCENT = 1
+_LOAD_PERCENT, _KINDS_OF_METERS = 1, range(4)
 
 
+@answers(0x56)
 def servo_meter(view: View, request: Request) -> Content:
     """Return the load of the servo motors in percent.
 
@@ -207,11 +223,11 @@ def servo_meter(view: View, request: Request) -> Content:
     the torque override allows, and none with the servo off. Amperes this control does not know.
     """
     if request.arguments[0] != _LOAD_PERCENT:
-        raise RefusedError(NOT_THERE)
-    control, signals = view.control, view.control.signals
+        raise RefusedError(NOT_THERE if request.arguments[0] in _KINDS_OF_METERS else ATTRIBUTE)
+    signals = view.control.signals
     made = []
-    for number, axis in enumerate(view.status.axes.values(), 1):
-        share = 100.0 * axis.velocity / control.machine.config.axes[number - 1].vmax
+    for number, axis in enumerate(view.control.control.axes().values(), 1):
+        share = math.copysign(axis.load_percent, axis.velocity)
         most = signals.torque_override(number)
         made.append(Value8.of(0.0 if signals.servo_is_off(number) else max(-most, min(most, share)), 0))
     return padded(made, view)
@@ -220,6 +236,7 @@ def servo_meter(view: View, request: Request) -> Content:
 _RAW_LOAD, _MOST_RPM, _LOAD_METER, _MOTOR_RPM = 0, 1, 4, 5
 
 
+@answers(0x40)
 def spindle(view: View, request: Request) -> Content:
     """Return the load of the spindle in percent, its highest speed, or its speed now.
 
@@ -230,7 +247,7 @@ def spindle(view: View, request: Request) -> Content:
     if asked not in (ALL, 1):
         raise RefusedError(ATTRIBUTE)
     most = view.control.machine.config.spindle.max_rpm
-    rpm = abs(view.status.spindle.actual_rpm)
+    rpm = abs(view.control.control.spindle.state().actual_rpm)
     if kind in (_RAW_LOAD, _LOAD_METER) and view.profile.wide_values:
         value = 100.0 * rpm / most
     elif kind in (_MOST_RPM, _MOTOR_RPM):
@@ -244,6 +261,7 @@ def spindle(view: View, request: Request) -> Content:
 _AXES, _OFFSET, _MACRO, _ZERO, _CUT = range(5)
 
 
+@answers(0x1B)
 def figures(view: View, request: Request) -> Content:
     """Return the decimals of positions, tool offsets, macro variables, work zero offsets or the cutting feed."""
     control = view.control
@@ -276,6 +294,7 @@ _LAST_GROUP = 23
 _WITH_DECIMAL = 1
 
 
+@answers(0x96)
 def modal_code(view: View, request: Request) -> Content:
     """Return the G code of a group that holds with the executed block or one of the next two.
 
@@ -311,6 +330,7 @@ _FIRST_ADDRESS = 100
 _HERE, _POINT, _NEGATIVE, _DIGITS = 0x80, 0x40, 0x20, 0x1F
 
 
+@answers(0x97)
 def commanded(view: View, request: Request) -> Content:
     """Return the last word of an address, or of ten of them, as it is written."""
     asked, block = request.arguments[:2]
@@ -344,6 +364,7 @@ _PANEL = {  # by the names of the record: those of the panel
 _PANEL_BITS = {name: bit for bit, (name, _) in PANEL_SIGNALS.items()}
 
 
+@answers(0x5D)
 def panel(view: View, request: Request) -> Content:
     """Return the signals of the software operator's panel that the mask names; the others are 0."""
     mask = request.arguments[0]
@@ -360,11 +381,13 @@ def panel(view: View, request: Request) -> Content:
 _DATE, _TIME = 0, 1
 
 
+@answers(0x45)
 def clock(view: View, request: Request) -> Content:
     """Return date and time, whichever was asked for: clients take the half that they want."""
     return named(request, view.control.clock.now)
 
 
+@answers(0x46, writes=True)
 def set_clock(view: View, request: Request) -> Content:
     """Set the date or the time of the control."""
     year, month, day, *time = given(request).values()

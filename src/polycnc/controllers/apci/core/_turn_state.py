@@ -18,9 +18,13 @@ TASKS = 4
 INTEGER, DOUBLE, BOOLEAN = range(3)
 
 # Operations. What is not among them is REFUSED: Python carries it out.
-(REFUSED, CONSTANT, DROP, LOAD, STORE, LOAD_ELEMENT, STORE_ELEMENT, OF_ONE, OF_TWO) = range(9)
-(JUMP, JUMP_FALSE, DECIDE, WITHIN, CALL, RETURN, END_CONDITION, AXIS, SLOT, COMMON, SET_COMMON) = range(9, 20)
-(BUFFER, WAIT_TIME, WAIT_AXES) = range(20, 23)
+REFUSED = 0
+(CONSTANT, LOAD, LOAD_ELEMENT, OF_ONE, OF_TWO, AXIS, SLOT, COMMON, BUFFER) = range(
+    1, 10
+)  # put a value on the stack
+(DROP, JUMP, JUMP_FALSE, DECIDE, WITHIN, END_CONDITION) = range(10, 16)
+(STORE, STORE_ELEMENT, SET_COMMON, CALL, RETURN, WAIT_TIME, WAIT_AXES) = range(16, 23)  # not in conditions
+LAST_VALUE, LAST_JUMP, LAST_STORE, LAST_FRAME = BUFFER, WITHIN, SET_COMMON, RETURN
 
 # Functions of one value and of two.
 (
@@ -58,6 +62,7 @@ MEMORY_CELLS = 4096
 FRAMES = 256
 KEPT_CELLS = 32  # of the stack, to see whether a program comes back to where it was
 KEPT_FRAMES = 8
+PLACES = 8
 BUFFER_BYTES = 1000
 
 TASK_ROW = np.dtype(
@@ -105,6 +110,7 @@ class Turns(NamedTuple):
     buffer: npt.NDArray[np.uint8]  # [TASKS, BUFFER_BYTES] common buffers
     kept: Floats  # [KEPT_CELLS] scratch
     kept_frame: Whole  # [KEPT_FRAMES, 2] scratch
+    place: Whole  # [PLACES] scratch: where that was
 
 
 def make_turns(tasks: int = TASKS) -> Turns:
@@ -127,4 +133,5 @@ def make_turns(tasks: int = TASKS) -> Turns:
         buffer=np.zeros((tasks, BUFFER_BYTES), np.uint8),
         kept=np.zeros(KEPT_CELLS),
         kept_frame=np.zeros((KEPT_FRAMES, 2), np.int64),
+        place=np.zeros(PLACES, np.int64),
     )

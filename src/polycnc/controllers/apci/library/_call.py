@@ -28,6 +28,7 @@ from polycnc.controllers.library import (
     Elements,
     Facade,
     LengthOf,
+    Many,
     Number,
     Out,
     Pointer,
@@ -78,7 +79,8 @@ LONG_AT: TypeAlias = Annotated[int, Whole("long *")]
 DOUBLE_AT: TypeAlias = Annotated[float, Real("double *")]
 
 Records: TypeAlias = Annotated[Elements[TSRP], Pointer("TSRP *", of=TSRP)]
-FilledRecords: TypeAlias = Annotated[Records, INOUT]
+FilledRecords: TypeAlias = Annotated[Records, INOUT, Many("MAXAXIS")]
+SelectedRecords: TypeAlias = Annotated[Records, Many("max(as.san) + 1")]
 FilledSystem: TypeAlias = Annotated[ROSI, OUT]
 FilledStatus: TypeAlias = Annotated[CNCTS, OUT]
 FilledDoubles: TypeAlias = Annotated[CDBUF, INOUT]

@@ -12,17 +12,16 @@ from polycnc.controllers.apci.board import _jog_commands as jogs
 from polycnc.controllers.apci.board._move_commands import MOVES, Kind, Speeds, go, queue
 from polycnc.controllers.apci.board._path_units import trajectory_units
 from polycnc.controllers.apci.board._records import AS, CMP, HMP, HMP3D, LMP, TSRP
-from polycnc.controllers.apci.library._call import LONG, Records, axes_call
+from polycnc.controllers.apci.library._call import LONG, Records, SelectedRecords, axes_call
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Selection
-from polycnc.controllers.apci.library._table import named
-from polycnc.controllers.library import Refused
+from polycnc.controllers.library import Refused, named
 from polycnc.errors import UsageError
 
 # ---------------------------------------------------------------------- single axes
 
 
 @axes_call
-def ja(asel: Selection, tsrp: Records) -> None:
+def ja(asel: Selection, tsrp: SelectedRecords) -> None:
     """Jog the selected axes to `tsrp[axis].tp`, each by itself (Manual 002, 4.4.19).
 
     `tsrp` is the whole sequence of records, indexed by axis number; accelerations and velocities are those that
@@ -35,7 +34,7 @@ def ja(asel: Selection, tsrp: Records) -> None:
 
 
 @axes_call
-def jr(asel: Selection, tsrp: Records) -> None:
+def jr(asel: Selection, tsrp: SelectedRecords) -> None:
     """Jog the selected axes by `tsrp[axis].tp`, each by itself (Manual 002, 4.4.23).
 
     Raises:
@@ -45,7 +44,7 @@ def jr(asel: Selection, tsrp: Records) -> None:
 
 
 @axes_call
-def jhi(asel: Selection, tsrp: Records) -> None:
+def jhi(asel: Selection, tsrp: SelectedRecords) -> None:
     """Search the encoder's index over the distance `tsrp[axis].tp` (Manual 002, 4.4.20).
 
     Raises:

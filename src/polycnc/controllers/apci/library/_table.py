@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from inspect import Parameter, Signature
 from operator import attrgetter
 from typing import Annotated, Any, TypeAlias, TypeVar
 
@@ -31,7 +30,7 @@ from polycnc.controllers.apci.library._call import (
     record_call,
 )
 from polycnc.controllers.apci.library._session import UNKNOWN_ERROR, Exchange, Session
-from polycnc.controllers.library import INOUT, Out, Refused
+from polycnc.controllers.library import INOUT, Out, Refused, named
 
 POSITION = "axis unit"
 VELOCITY = "axis unit per time unit"
@@ -90,16 +89,6 @@ class Rule:
 
 
 PLAIN = Rule()
-
-
-def named(body: F, name: str, text: str, arguments: dict[str, Any], returns: Any = None) -> F:
-    """Give a function a name, a description, and arguments as if they had been written."""
-    body.__name__ = body.__qualname__ = name
-    body.__doc__ = text
-    body.__annotations__ = {**arguments, "return": returns}
-    parameters = [Parameter(each, Parameter.POSITIONAL_OR_KEYWORD) for each in arguments]
-    body.__signature__ = Signature(parameters)  # type: ignore[attr-defined]
-    return body
 
 
 def _text(verb: str, what: str, unit: str, rest: str, section: int, rule: Rule) -> str:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple, Protocol
 
-from polycnc.controllers.apci.core._turns import LATE, WAIT_UNIT_S
+from polycnc.controllers.apci.core._turn_steps import LATE, WAIT_UNIT_S
 from polycnc.controllers.apci.sap._cnc_file import read_cnc, write_cnc
 from polycnc.controllers.apci.sap._faults import FAULTS, ILLEGAL, REFUSED, STACK_OVERFLOW, VALUE_RANGE, Fault
 from polycnc.controllers.apci.sap._host import Host

@@ -45,9 +45,10 @@ class FileCommands:
         self._open: dict[int, Handle] = {}
         self._left = False
         self.functions: Mapping[str, Callable[..., object]] = {
-            "OPENW": self._openw, "OPENR": self._openr, "PRN#": self._print, "INP#": self._input,
-            "REWRITE": self._rewrite, "CLOSE": self._close, "EOF": self._eof, "FILEPOS": self._filepos,
-            "SEEK": self._seek, "FILESIZE": self._filesize, "ERASE": self._erase, "LJUST": self._ljust,
+            "OPENW": self._writing(self._openw), "OPENR": self._openr, "PRN#": self._writing(self._print),
+            "INP#": self._input, "REWRITE": self._writing(self._rewrite), "CLOSE": self._writing(self._close),
+            "EOF": self._eof, "FILEPOS": self._filepos, "SEEK": self._seek, "FILESIZE": self._filesize,
+            "ERASE": self._writing(self._erase), "LJUST": self._ljust,
             "NJUST": self._njust, "FILEACCESS": self._access, "FILEDATE": self._date,
         }  # fmt: skip
 
@@ -68,6 +69,7 @@ class FileCommands:
             Fault: The end of a record could not be written; all files are closed nevertheless.
         """
         self._left = False
+        self._directory.writes += 1
         handles, self._open = list(self._open.values()), {}
         trouble: Fault | None = None
         for handle in handles:
@@ -232,6 +234,15 @@ class FileCommands:
         return path in self._active() or (file is not None and file.in_use)
 
     # ------------------------------------------------------------------ within
+
+    def _writing(self, command: Callable[..., object]) -> Callable[..., object]:
+        """Return a command after which texts of programs are read anew."""
+
+        def write(*arguments: object, **named: object) -> object:
+            self._directory.writes += 1
+            return command(*arguments, **named)
+
+        return write
 
     def _handle(self, number: int, trouble: str) -> Handle:
         if number not in self._open:

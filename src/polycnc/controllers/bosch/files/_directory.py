@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 import stat
+from contextlib import suppress
 from pathlib import Path
 
 from polycnc.nc.cpl import Fault
@@ -24,6 +25,9 @@ class Directory:
 
     def __init__(self, root: str | Path) -> None:
         self.root = Path(root).resolve()
+        self.writes = 0
+        """How often programs have written: the clock of a disk may be too coarse to tell."""
+        self._texts: dict[str, tuple[tuple[int, ...], str]] = {}
 
     def path(self, name: str | None) -> Path:
         """Return the path that a name stands for, whether there is such a file or not.
@@ -60,9 +64,29 @@ class Directory:
         Raises:
             Fault: The name leads out of the root.
         """
+        state: tuple[int, ...] = ()
+        with suppress(OSError, ValueError):
+            found = os.stat(f"{self.root}/{name}")
+            state = (
+                found.st_dev,
+                found.st_ino,
+                found.st_size,
+                found.st_mtime_ns,
+                found.st_ctime_ns,
+                self.writes,
+            )
+        known = self._texts.get(name)
+        if known is not None and state and known[0] == state:
+            return known[1]
         path = self.path(name)
         if not is_file(path):
             return None
+        text = self._read(path)
+        self._texts[name] = state, text
+        return text
+
+    @staticmethod
+    def _read(path: Path) -> str:
         content = path.read_bytes().partition(b"\x03")[0].removeprefix(b"\xef\xbb\xbf")
         try:
             return content.decode("utf-8")

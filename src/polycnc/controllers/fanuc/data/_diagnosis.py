@@ -58,15 +58,17 @@ def _stopped(power_mate: PowerMate, axis: int) -> int:
 
 
 def _axis_state(power_mate: PowerMate, axis: int) -> int:
-    status = power_mate.status().axes[power_mate.axis_name(axis)]
+    status = power_mate.control.axes()[power_mate.axis_name(axis)]
     return 0 if not status.moving else 2 if status.manual != "none" else 1
 
 
 # fmt: off
 DIAGNOSIS: dict[int, Diagnosis] = {
-    0: Diagnosis("waits for the answer to a function", Kind.BYTE, lambda it, axis: bool(it.status().channel.functions)),
-    1: Diagnosis("axes move", Kind.BYTE, lambda it, axis: it.status().channel.motion is Motion.MOVING),
-    2: Diagnosis("dwells", Kind.BYTE, lambda it, axis: it.status().channel.motion is Motion.DWELL),
+    0: Diagnosis(
+        "waits for the answer to a function", Kind.BYTE, lambda it, axis: bool(it.control.channel_status().functions)
+    ),
+    1: Diagnosis("axes move", Kind.BYTE, lambda it, axis: it.control.channel_status().motion is Motion.MOVING),
+    2: Diagnosis("dwells", Kind.BYTE, lambda it, axis: it.control.channel_status().motion is Motion.DWELL),
     4: Diagnosis("the feed override is 0 %", Kind.BYTE, lambda it, axis: it.signals.feed_override == 0),
     20: Diagnosis("what stops: #2 reset, #3 emergency stop, #5 feed hold", Kind.BIT, _stopped),
     30: Diagnosis("feed override (%)", Kind.WORD, lambda it, axis: it.signals.feed_override),

@@ -39,15 +39,14 @@ class Execution:
     @property
     def block(self) -> BlockRecord | None:
         """The block that is executed, or was last; None when there is none of a program that goes on."""
-        channel = self._power_mate.control.channels[0]
-        return channel.executed
+        return self._power_mate.control.channel_status().block
 
     @property
     def _going_on(self) -> BlockRecord | None:
         """The block of a program that is executed or interrupted."""
-        channel = self._power_mate.control.channels[0]
+        channel = self._power_mate.control.channel_status()
         going = channel.active or channel.interrupted or channel.run_state is RunState.ALARM
-        return channel.executed if going else None
+        return channel.block if going else None
 
     @property
     def numbers(self) -> tuple[int, int]:
@@ -61,7 +60,7 @@ class Execution:
     @property
     def sequence(self) -> int:
         """The last sequence number on the way to the executed block; at rest the one at the cursor."""
-        block = self._power_mate.control.channels[0].executed
+        block = self.block
         if self._power_mate.cursor:
             return self._sequence_before(self._power_mate.selected, self._power_mate.cursor + 1)
         if block is None:
@@ -93,14 +92,7 @@ class Execution:
     @property
     def prepared(self) -> BlockRecord | None:
         """The block that was read ahead last."""
-        power_mate = self._power_mate
-        run = power_mate.control.channels[0].run
-        state = power_mate.machine.state
-        row = state.paths.row[0]
-        if run is None or row["tail"] <= row["head"]:
-            return self.block
-        last = int(row["base"]) + (int(row["tail"]) - 1) % int(row["capacity"])
-        return run.channel.records.block(int(state.seg.row[last]["tag"])) or self.block
+        return self._power_mate.control.channels[0].prepared
 
     @property
     def ahead(self) -> int:

@@ -64,6 +64,15 @@ class Histories:
 
     # ------------------------------------------------------------------ sampling
 
+    @property
+    def is_awake(self) -> bool:
+        """Whether the next cycle may bring something to note."""
+        return self._watches_f or self._power_mate.control.alarms.active != self._active
+
+    def look(self) -> None:
+        """Note what a cycle has brought, in that cycle."""
+        self.sample(force=False)
+
     def switched_on(self) -> None:
         """Note date and time at which the power came on; sampling goes on."""
         self.state.stopped = False

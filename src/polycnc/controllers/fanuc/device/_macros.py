@@ -75,8 +75,8 @@ class Macros:
 
     def local(self, number: int) -> Value:
         """Return a local variable of the macro that is being executed, of the main program at rest."""
-        channel = self._power_mate.control.channels[0]
-        block = channel.executed if channel.active or channel.interrupted else None
+        channel = self._power_mate.control.channel_status()
+        block = channel.block if channel.active or channel.interrupted else None
         return self.language.locals_of(() if block is None else block.stack)[number]
 
     def at_rest(self, number: int) -> Value:

@@ -85,13 +85,13 @@ class Positions:
     def _shift(self) -> dict[str, float]:
         """Return what absolute positions have beside work positions: the tool length; before any block G54."""
         control = self._power_mate.control
-        channel = control.channel_status()
-        if channel.block is not None:
-            length_mm = channel.tool.compensation_mm
-            return {_LENGTH_AXIS: length_mm} if length_mm else {}
+        tool = control.tool_in_use()
+        if tool is not None:
+            return {_LENGTH_AXIS: tool.compensation_mm} if tool.compensation_mm else {}
         return {name: -value for name, value in control.offsets.get(_START_OFFSET, {}).items()}
 
     @property
     def tool_length_mm(self) -> float:
         """The tool length compensation of the executed block, along its axis."""
-        return self._power_mate.control.channel_status().tool.compensation_mm
+        tool = self._power_mate.control.tool_in_use()
+        return 0.0 if tool is None else tool.compensation_mm

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from polycnc.cnc import Emergency, Motion, RunState, Status
+from polycnc.cnc import Emergency, Motion, RunState
 from polycnc.controllers.fanuc.device._alarms import shown
 
 if TYPE_CHECKING:
@@ -38,12 +38,12 @@ class State:
     edit: int
 
 
-def read_state(power_mate: PowerMate, status: Status | None = None, *, uploading: bool = False) -> State:
-    """Return the state, of `status` if it is given; `uploading` says whether a program is going out."""
-    status = status or power_mate.status()
-    channel = status.channel
-    reset = power_mate.signals.reset_is_on or status.emergency is Emergency.RESET_NEEDED
-    stopped = status.emergency is Emergency.ON
+def read_state(power_mate: PowerMate, *, uploading: bool = False) -> State:
+    """Return the state in the present cycle; `uploading` says whether a program is going out."""
+    control = power_mate.control
+    channel = control.channel_status()
+    reset = power_mate.signals.reset_is_on or control.emergency is Emergency.RESET_NEEDED
+    stopped = control.emergency is Emergency.ON
     battery = _BATTERY if power_mate.signals.state.battery_low else 0
     return State(
         aut=int(power_mate.mode),
@@ -51,7 +51,7 @@ def read_state(power_mate: PowerMate, status: Status | None = None, *, uploading
         motion=_MOTION[channel.motion],
         mstb=int(bool(channel.functions)),
         emergency=_EMERGENCY if stopped else _RESET if reset else 0,
-        alarm=_ALARM if shown(status.alarms) else battery,
+        alarm=_ALARM if shown(control.alarms.active) else battery,
         edit=_edit(power_mate, uploading),
     )
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Annotated
 
 from polycnc.cnc import PROGRAM_MESSAGE
@@ -32,7 +33,7 @@ from polycnc.controllers.fanuc.library._structs import (
     ODBSYSC,
     OPMSG,
 )
-from polycnc.controllers.library import INOUT, LONG, SHORT, LengthOf, Out, Refused
+from polycnc.controllers.library import INOUT, LONG, SHORT, LengthOf, Many, Out, Pointer, Refused
 
 _END = -1
 _ALARM_SIZES = (4, 38)
@@ -159,8 +160,8 @@ def cnc_getfigure(
 ) -> tuple[
     EW,
     Annotated[int, SHORT, Out("valid_fig")],
-    Annotated[list[int], SHORT, Out("dec_fig_in")],
-    Annotated[list[int], SHORT, Out("dec_fig_out")],
+    Annotated[list[int], SHORT, Out("dec_fig_in"), Many("MAX_AXIS")],
+    Annotated[list[int], SHORT, Out("dec_fig_out"), Many("MAX_AXIS")],
 ]:
     """Read digits and decimals of axis data, tool offsets and macro variables (Manual 000, cnc_getfigure).
 
@@ -188,7 +189,7 @@ def cnc_getfigure(
 
 
 @call
-def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt")]]:
+def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt"), Many("MAX_AXIS")]]:
     """Read the motor current of each axis (Manual 000, cnc_rdcurrent).
 
     Ruling: parameter 2086 is the current at the highest speed of the axis, and the current follows the speed; the
@@ -196,9 +197,9 @@ def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt
     """
     device = link.read("cnc_rdcurrent")
     found = [0] * device.max_axis
-    for k, axis in enumerate(device.status().axes.values()):
+    for k, axis in enumerate(device.control.axes().values()):
         rated = device.parameters.value(2086, k + 1)
-        share = axis.velocity / device.machine.config.axes[k].vmax
+        share = math.copysign(axis.load_percent / 100.0, axis.velocity)
         most = device.signals.torque_override(k + 1) / 100.0
         if not device.signals.servo_is_off(k + 1):
             found[k] = round(rated * max(-most, min(most, share)))
@@ -206,15 +207,15 @@ def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt
 
 
 @call
-def cnc_rdsrvspeed(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("speed")]]:
+def cnc_rdsrvspeed(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("speed"), Many("MAX_AXIS")]]:
     """Read the actual speed of each axis (Manual 000, cnc_rdsrvspeed). Ruling: mm/min, deg/min."""
     device = link.read("cnc_rdsrvspeed")
-    speeds = [round(axis.velocity * _MM_MIN) for axis in device.status().axes.values()]
+    speeds = [round(axis.velocity * _MM_MIN) for axis in device.control.axes().values()]
     return EW.EW_OK, speeds + [0] * (device.max_axis - len(speeds))
 
 
 @call
-def cnc_rdloopgain(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("gain")]]:
+def cnc_rdloopgain(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("gain"), Many("MAX_AXIS")]]:
     """Read the loop gain of each axis (Manual 000, cnc_rdloopgain). Ruling: 0.01/s, parameter 1825."""
     device = link.read("cnc_rdloopgain")
     gains = [device.parameters.value(1825, axis) for axis in range(1, device.axes + 1)]
@@ -257,7 +258,7 @@ def cnc_rdopmsg(
 @call
 def cnc_rdopmsg3(
     link: Link, type: SHORT, num: Annotated[SHORT, INOUT]
-) -> tuple[EW, SHORT, Annotated[list[OPMSG], Out("opmsg", c="OPMSG *")]]:
+) -> tuple[EW, SHORT, Annotated[list[OPMSG], Pointer("OPMSG *", of=OPMSG), Out("opmsg"), Many("num")]]:
     """Read at most `num` messages to the operator, 0 from outside, 4 of macros, -1 all; return how many there were."""
     if num < 1:
         raise Refused(EW.EW_LENGTH)

@@ -14,14 +14,14 @@ from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
 from polycnc.controllers.fanuc.library._structs import ODBEXEC, ODBFIN, ODBOPDI, ODBPOS
-from polycnc.controllers.library import IN, LONG, SHORT, Bytes, Out, Refused
+from polycnc.controllers.library import IN, LONG, SHORT, Bytes, Many, Out, Refused
 
 _POSITION = 6
 _MOST = 99_999_999
 _DWELLS_MS = range(1, 99_999_999 + 1)
 _AXIS_BITS = 0x3F
 _ENABLED = 7
-Positions: TypeAlias = Annotated[bytes, Bytes("ODBPOS *")]
+Positions: TypeAlias = Annotated[bytes, Bytes("ODBPOS *"), Many("axis")]
 Answer: TypeAlias = tuple[EW, Annotated[ODBEXEC, Out("odb")]]
 
 

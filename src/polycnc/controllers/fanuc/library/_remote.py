@@ -26,15 +26,9 @@ from polycnc.controllers.fanuc.library._structs import (
     IODBPMC,
     IODBPSD,
     MAX_AXIS,
-    ODBACT,
-    ODBALM,
     ODBAXIS,
     ODBDY,
     ODBM,
-    ODBPRO,
-    ODBSEQ,
-    ODBST,
-    ODBSYS,
     ODBUP,
 )
 from polycnc.controllers.fanuc.wire import (
@@ -149,16 +143,16 @@ class Row:
     Elements have the names of the record's fields, those of `names` excepted.
     """
 
-    structure: Any
+    structure: str
     commands: tuple[int, ...]
     names: Mapping[str, str] = field(default_factory=dict)
 
     def read(self, link: RemoteLink) -> tuple[EW, Any]:
         """Ask, and fill the structure."""
         head, _ = link.ask(*map(Request, self.commands))[0]
-        fields = {each.name: self.names.get(each.name, each.name) for each in layout(self.structure).fields}
-        filled = {name: _whole(head[at]) for name, at in fields.items() if at in head}
-        return EW.EW_OK, self.structure(**filled)
+        made = HEADER.classes[self.structure]
+        fields = {each.name: self.names.get(each.name, each.name) for each in layout(made).fields}
+        return EW.EW_OK, made(**{name: _whole(head[at]) for name, at in fields.items() if at in head})
 
 
 def _whole(value: Any) -> Any:
@@ -166,12 +160,12 @@ def _whole(value: Any) -> Any:
 
 
 READINGS = {
-    "cnc_sysinfo": Row(ODBSYS, (0x18,)),
-    "cnc_statinfo": Row(ODBST, (0x19, 0xE1, 0x98)),
-    "cnc_alarm": Row(ODBALM, (0x1A,), {"data": "alarms"}),
-    "cnc_rdprgnum": Row(ODBPRO, (0x1C,), {"data": "running", "mdata": "main"}),
-    "cnc_rdseqnum": Row(ODBSEQ, (0x1D,), {"data": "sequence"}),
-    "cnc_actf": Row(ODBACT, (0x24,), {"data": "feed"}),
+    "cnc_sysinfo": Row("ODBSYS", (0x18,)),
+    "cnc_statinfo": Row("ODBST", (0x19, 0xE1, 0x98)),
+    "cnc_alarm": Row("ODBALM", (0x1A,), {"data": "alarms"}),
+    "cnc_rdprgnum": Row("ODBPRO", (0x1C,), {"data": "running", "mdata": "main"}),
+    "cnc_rdseqnum": Row("ODBSEQ", (0x1D,), {"data": "sequence"}),
+    "cnc_actf": Row("ODBACT", (0x24,), {"data": "feed"}),
 }
 """The functions that read one record, by name."""
 

@@ -32,6 +32,8 @@ from polycnc.controllers.library import (
     OUT,
     Elements,
     LengthOf,
+    Number,
+    Opaque,
     Out,
     Pointer,
     Refused,
@@ -137,7 +139,7 @@ PointQueue: TypeAlias = Annotated[
 ]
 AnyQueue: TypeAlias = Annotated[int, Queues(frozenset(FIFO_SEL))]
 
-HANDLE: TypeAlias = Annotated[IMC_HANDLE, Pointer("IMC_HANDLE", None, IMC_INVALID_HANDLE)]
+HANDLE: TypeAlias = Annotated[IMC_HANDLE, Opaque("IMC_HANDLE", IMC_INVALID_HANDLE)]
 Adapters: TypeAlias = Annotated[NIC_INFO, _pointer("NIC_INFO *", NIC_INFO), OUT]
 Descriptions: TypeAlias = Annotated[Elements[WR_MUL_DES], _pointer("pWR_MUL_DES", of=WR_MUL_DES)]
 Filled: TypeAlias = Annotated[Descriptions, INOUT]
@@ -146,8 +148,10 @@ Points: TypeAlias = Annotated[Elements[int], _pointer("short *", of=int)]
 SegmentData: TypeAlias = Annotated[PFIFOSegData, _pointer("PFIFOSegData *", PFIFOSegData)]
 SegmentInfo: TypeAlias = Annotated[PFIFOSegInfo, _pointer("PFIFOSegInfo *", PFIFOSegInfo)]
 
-Opened: TypeAlias = Annotated[IMC_HANDLE | None, Out("Handle", "netcardsel", "IMC_HANDLE *")]
-Found: TypeAlias = Annotated[int, Out("num", c="int *")]
+Opened: TypeAlias = Annotated[
+    IMC_HANDLE | None, Opaque("IMC_HANDLE", IMC_INVALID_HANDLE), Out("Handle", "netcardsel")
+]
+Found: TypeAlias = Annotated[int, Number("int", _INT), Out("num")]
 Data16: TypeAlias = Annotated[IMC16, Out("pdata", "axis", "PVOID")]
 Data32: TypeAlias = Annotated[IMC32, Out("pdata", "axis", "PVOID")]
 Data48: TypeAlias = Annotated[INT48, Out("pdata", "axis", "PVOID")]

@@ -1,0 +1,53 @@
+"""Which blocks come next on a path, from what is queued there; and a path that a refusal leaves as it was."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from polycnc.cnc._program_run import ProgramRun
+from polycnc.cnc._refusal import ControlError
+from polycnc.errors import UsageError
+from polycnc.kernel import READY
+from polycnc.machine import Machine
+from polycnc.nc import BlockRecord
+
+
+def next_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
+    """Return the block that comes next where a path stands between two blocks; None where none is known."""
+    if machine.state.paths.row[run.path]["state"] != READY:
+        return None
+    tag = run.feed.next_tag()
+    return None if tag is None else run.channel.records.block(tag)
+
+
+def prepared_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
+    """Return the block that was prepared last of those whose motion is queued; the executed one where none is."""
+    row = machine.state.paths.row[run.path]
+    if row["tail"] <= row["head"]:
+        return run.executed
+    last = int(row["base"]) + (int(row["tail"]) - 1) % int(row["capacity"])
+    return run.channel.records.block(int(machine.state.seg.row[last]["tag"])) or run.executed
+
+
+@contextmanager
+def unless_refused(machine: Machine, path: int, run: ProgramRun | None) -> Iterator[None]:
+    """Let a refusal within leave a run and its path as they were."""
+    state = machine.state
+    arrays = (state.owner, *(each[path] for each in (state.paths.position, state.paths.queued)))
+    kept = [each.copy() for each in arrays]
+    row = state.paths.row[path : path + 1]
+    kept_row = row.copy()
+    try:
+        saved = None if run is None else run.snapshot()
+    except UsageError:  # a language has executed it: it stands at its beginning then
+        saved = None
+    try:
+        yield
+    except ControlError:
+        row[:] = kept_row
+        for each, content in zip(arrays, kept, strict=True):
+            each[:] = content
+        if run is not None and saved is not None:
+            run.restore(saved)
+        raise

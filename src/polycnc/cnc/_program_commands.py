@@ -1,0 +1,183 @@
+"""Commands about programs: select, search, start, hold, reset, and what breaks them off."""
+
+from __future__ import annotations
+
+from polycnc.cnc._alarms import Alarm
+from polycnc.cnc._control_checks import (
+    check_hands_off,
+    check_over,
+    check_ready,
+    check_referenced,
+    text_to_begin,
+    wrong_mode,
+)
+from polycnc.cnc._control_data import Mode, Search
+from polycnc.cnc._control_parts import ControlParts
+from polycnc.cnc._control_time import ControlEvent, ControlTime
+from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.cnc._status import Emergency
+from polycnc.cnc._stopping import PROGRAM_MESSAGE, break_off, stop_for
+from polycnc.cnc._stops import Step
+from polycnc.nc import ProgramText
+
+_PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
+_MDI_NAME = "MDI"
+
+
+class ProgramCommands:
+    """Carry out the commands about programs; `time` notes what they begin and end."""
+
+    def __init__(self, of: ControlParts, time: ControlTime) -> None:
+        self._of = of
+        self._time = time
+
+    def select_program(self, program: str | ProgramText, *, channel: int = 0) -> None:
+        """Select what a start in AUTO executes: a program of the memory, or a text of the outside.
+
+        Raises:
+            ControlError: There is no such program or channel, or the channel executes one.
+        """
+        chosen = self._of.channel(channel)
+        check_over(chosen)
+        text = self._of.programs.text(program) if isinstance(program, str) else program
+        chosen.select(text)
+
+    def set_mdi(self, text: str, *, channel: int = 0) -> None:
+        """Put in the text that a start in MDI executes.
+
+        Raises:
+            ControlError: Not in MDI, no text, no such channel, or the channel executes a program.
+        """
+        chosen = self._of.channel(channel)
+        if chosen.mode is not Mode.MDI:
+            raise wrong_mode(chosen.mode, "a text can be put in", Mode.MDI)
+        check_over(chosen)
+        if not text.strip():
+            raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
+        chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
+
+    def search(
+        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+    ) -> int:
+        """Let the next start begin the selected program at a block; return its line.
+
+        It is the block on `line`, or the first one with a sequence number. With `calculate` everything before is
+        carried out without moving, and with the start the axes go straight at rapid to where that block begins; else
+        modal state and position are what they are. A reset, another selection and the start itself end the search.
+
+        Raises:
+            ControlError: Not in AUTO, nothing is selected, there is no such block, the program cannot begin there, or
+                something is being executed or moves.
+        """
+        chosen = self._of.channel(channel)
+        if chosen.mode is not Mode.AUTO:
+            raise wrong_mode(chosen.mode, "a block can be searched", Mode.AUTO)
+        check_over(chosen)
+        check_hands_off(chosen, self._of.manual)
+        check_ready(self._of.emergency, self._of.alarms.of(channel))
+        text = text_to_begin(chosen, self._of.programs, is_mdi=False)
+        return chosen.seek(text, Search(line, sequence, calculate))
+
+    def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
+        """Begin the selected program or the MDI text, or go on where a program is interrupted.
+
+        `step` says how far. It begins at `line`; with 1, at the block that was searched.
+
+        Raises:
+            ControlError: The emergency stop or an alarm is on, the mode has no programs, nothing is selected, axes
+                move or are not referenced, or a program is being executed.
+        """
+        chosen = self._of.channel(channel)
+        check_ready(self._of.emergency, self._of.alarms.of(channel))
+        if chosen.mode not in _PROGRAM_MODES:
+            raise wrong_mode(chosen.mode, "a program can start", *sorted(_PROGRAM_MODES))
+        if chosen.active:
+            raise ControlError(
+                Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
+            )
+        check_hands_off(chosen, self._of.manual)
+        is_mdi = chosen.mode is Mode.MDI
+        if chosen.interrupted:
+            if chosen.is_mdi is not is_mdi:
+                raise ControlError(
+                    Refusal.MODE,
+                    f"the program that is interrupted was started in {Mode.MDI if chosen.is_mdi else Mode.AUTO}",
+                    hint="Go on in that mode, or reset it.",
+                )
+            chosen.go_on(self._of.data.after_manual, step)
+            self._of.messages.withdraw(PROGRAM_MESSAGE + chosen.path)
+        else:
+            text = text_to_begin(chosen, self._of.programs, is_mdi=is_mdi)
+            if self._of.data.reference_required:
+                check_referenced(chosen, self._of.manual)
+            if not 1 <= line <= text.content.count(b"\n") + 1:
+                raise ControlError(
+                    Refusal.NOT_FOUND, f"there is no line {line}", hint="Give one that there is."
+                )
+            search = Search(line) if line > 1 else None if is_mdi else chosen.search
+            chosen.begin(text, mdi=is_mdi, step=step, search=search)
+            self._of.timers.start_cycle()
+        self._time.note_start(chosen)
+
+    def feed_hold(self, *, channel: int | None = None) -> None:
+        """Brake the axes of executed programs (None: of all channels) and let them stand; manual motion ends.
+
+        Raises:
+            ControlError: Nothing moves or is being executed.
+        """
+        chosen = self._of.channels if channel is None else (self._of.channel(channel),)
+        running = [each for each in chosen if each.active]
+        axes = [axis for each in chosen for axis in each.axes]
+        if not running and not self._of.manual.moves(axes):
+            raise ControlError(Refusal.IDLE, "nothing is being executed", hint="There is nothing to hold.")
+        for each in running:
+            each.hold()
+        self._of.manual.stop_all(axes)
+        self._time.raised |= ControlEvent.RUN_STATE
+
+    def reset(self, *, channel: int | None = None) -> None:
+        """Break off everything, and take away the alarms whose causes are gone; the axes brake.
+
+        The reset of one channel takes away its own alarms; those of the whole control, and what an emergency stop
+        leaves behind, need a reset of all.
+        """
+        chosen = self._of.chosen(channel)
+        break_off(self._of, chosen)
+        if self._of.data.reset_stops_spindle and any(each.data.spindle for each in chosen):
+            self._of.spindle.stop()
+        if self._of.emergency is Emergency.RESET_NEEDED and channel is None:
+            self._of.emergency = Emergency.OFF
+        self._of.alarms.reset(channel)
+        names = self._of.machine.config.axis_names
+        for axis in (axis for each in chosen for axis in each.axes):
+            self._of.machine.state.servo.error_tripped[names.index(axis)] = 0
+        self._of.manual.check_limit_switches()
+        self._time.note_running()
+        self._time.raised |= ControlEvent.RUN_STATE
+
+    def emergency_stop(self, on: bool = True) -> None:
+        """Press or release the emergency stop: everything brakes and is broken off; the spindle stops."""
+        if on and self._of.emergency is not Emergency.ON:
+            self._of.emergency = Emergency.ON
+            self._of.alarms.put("emergency_stop")
+            self._time.raised |= ControlEvent.ALARM
+            break_off(self._of, self._of.channels)
+            self._of.spindle.stop()
+            self._time.note_running()
+        elif not on and self._of.emergency is Emergency.ON:
+            self._of.alarms.cause_gone("emergency_stop")
+            self._of.clock.changes += 1
+            needed = self._of.data.emergency_needs_reset
+            self._of.emergency = Emergency.RESET_NEEDED if needed else Emergency.OFF
+
+    def put_alarm(self, name: str, *, axis: str | None = None, detail: str = "") -> Alarm:
+        """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is.
+
+        With an axis it is an alarm of the channel that the axis belongs to.
+        """
+        if self._of.alarms.has(name, axis):
+            return self._of.alarms.put(name, axis=axis)
+        alarm = self._of.alarms.put(name, axis=axis, detail=detail)
+        stop_for(self._of, (alarm,))
+        self._time.raised |= ControlEvent.ALARM
+        return alarm

@@ -1,0 +1,127 @@
+"""What body a program is cut from: said in a text, or found from the course of the tool."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from polycnc.errors import UsageError
+from polycnc.stock._cutting import Rows
+from polycnc.stock._solid import solid_stock
+from polycnc.stock._stock import Box, Stock
+from polycnc.stock._tool import Tool
+
+MARGIN_MM = 1.0
+"""Of an `auto` body around what is cut."""
+CELLS_ACROSS = 1000
+"""How many cells there are along the longer side where no resolution is given."""
+_FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """Say what body to cut: its text, and the resolution (mm) if one was given."""
+
+    text: str
+    cell_mm: float | None = None
+
+    def __post_init__(self) -> None:
+        kind, _, numbers = self.text.partition("=")
+        if kind in ("box", "cylinder"):
+            _numbers(self.text, numbers, 6 if kind == "box" else 3)
+        elif self.text != "auto" and not self.text.lower().endswith(".stl"):
+            raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
+        if self.cell_mm is not None and not 0.0 < self.cell_mm < math.inf:
+            raise UsageError(f"a resolution of {self.cell_mm:g} mm", hint="Give more than 0 mm.")
+
+    def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
+        """Return the body for a course of the tool.
+
+        Raises:
+            UsageError: nothing is cut, no such file, or a body that cannot be told.
+        """
+        kind, _, numbers = self.text.partition("=")
+        if kind == "box":
+            x0, y0, z0, x1, y1, z1 = _numbers(self.text, numbers, 6)
+            box = Box((x0, y0, z0), (x1, y1, z1))
+        elif kind == "cylinder":
+            diameter, low, high = _numbers(self.text, numbers, 3)
+            return Stock.cylinder(diameter, low, high, self.cell_mm or _cell_mm(diameter))
+        elif self.text == "auto":
+            box = around(course, tools)
+        else:
+            return solid_stock(Path(self.text), self.cell_mm, _cell_mm)
+        return Stock(
+            box, self.cell_mm or _cell_mm(max(b - a for a, b in zip(box.low[:2], box.high, strict=False)))
+        )
+
+
+def _cell_mm(size_mm: float) -> float:
+    """Return a resolution for a body of this size: 1, 2 or 5 times a power of ten."""
+    wanted = max(size_mm, 1e-3) / CELLS_ACROSS
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return float(
+        f"{next(step for step in (1.0, 2.0, 5.0, 10.0) if step * power >= wanted * 0.999) * power:.3g}"
+    )
+
+
+def _numbers(text: str, numbers: str, count: int) -> list[float]:
+    found = re.split(r"\s*,\s*", numbers.strip())
+    try:
+        values = [float(each) for each in found]
+    except ValueError:
+        values = []
+    if len(values) != count or not all(map(math.isfinite, values)):
+        raise UsageError(f"'{text}' is no stock", hint=f"Write {_FORMS}, with {count} numbers (mm) here.")
+    return values
+
+
+def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
+    """Return the box that holds what is cut, with a margin beside and below it.
+
+    Its top is program zero where the tool cuts below that, else the highest cut across. Where the tool gets down at
+    rapid, close to a side, the box ends beside it.
+
+    Raises:
+        UsageError: nothing is cut.
+    """
+    begin, end = course.tip[:-1], course.tip[1:]
+    cuts = ~course.rapid[1:] & np.any(begin != end, axis=1)
+    if not cuts.any():
+        raise UsageError(
+            "the program cuts nothing: no stock can be told", hint="Give one, like box=0,0,-10,90,60,0."
+        )
+    radius = np.zeros(len(course.tool))
+    for number in np.unique(course.tool).tolist():
+        if (tool := tools.get(number)) is not None:
+            radius[course.tool == number] = tool.radius_mm
+    places, reach = np.concatenate((begin[cuts], end[cuts])), np.tile(radius[1:][cuts], 2)[:, None]
+    low_xy, high_xy = (
+        (places[:, :2] - reach).min(axis=0) - MARGIN_MM,
+        (places[:, :2] + reach).max(axis=0) + MARGIN_MM,
+    )
+    across = cuts & np.any(begin[:, :2] != end[:, :2], axis=1)
+    lowest = float(places[:, 2].min())
+    top = 0.0 if lowest < 0.0 else float(end[across if across.any() else cuts][:, 2].max())
+    below = lowest - MARGIN_MM
+    low, high = [*low_xy.tolist(), below], [*high_xy.tolist(), max(top, below + 2.0 * MARGIN_MM)]
+    deep = course.rapid[1:] & (end[:, 2] < high[2])
+    for (x, y), away in zip(end[deep, :2].tolist(), radius[1:][deep].tolist(), strict=True):
+        _leave_out((x, y), away, low, high)
+    return Box((low[0], low[1], low[2]), (high[0], high[1], high[2]))
+
+
+def _leave_out(place: tuple[float, float], radius: float, low: list[float], high: list[float]) -> None:
+    """Draw one side of a box in, so that a tool that came to a place at rapid, beside what it cuts, is beside it."""
+    if any(not low[i] - radius < place[i] < high[i] + radius for i in range(2)):
+        return
+    sides = [(place[i] + radius - low[i], i, low) for i in range(2)]
+    sides += [(high[i] - place[i] + radius, i, high) for i in range(2)]
+    drawn, i, side = min(sides, key=lambda each: each[0])
+    if drawn <= 2.0 * (radius + MARGIN_MM):
+        side[i] = place[i] + radius if side is low else place[i] - radius

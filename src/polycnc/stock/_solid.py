@@ -1,0 +1,119 @@
+"""Bodies from files of triangles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.errors import UsageError
+from polycnc.kernel import entry
+from polycnc.stock._mesh import Mesh
+from polycnc.stock._stock import Box, Stock
+
+MOST_TRIANGLES = 20_000_000
+_ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_HEADER = 84
+
+
+def read_stl(path: Path) -> Mesh:
+    """Return the surface in a binary or text STL file.
+
+    Raises:
+        UsageError: no such file, no STL, too many triangles, or numbers that are none.
+    """
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise UsageError(
+            f"cannot read '{path}': {error.strerror}", hint="Check the name and the folder."
+        ) from None
+    count = int(np.frombuffer(content[80:_HEADER], "<u4")[0]) if len(content) >= _HEADER else -1
+    if count > MOST_TRIANGLES:
+        raise UsageError(f"'{path}' has {count:,} triangles", hint=f"At most {MOST_TRIANGLES:,} are read.")
+    if count >= 0 and len(content) == _HEADER + count * _ROW.itemsize:
+        corners = np.frombuffer(content, _ROW, offset=_HEADER)["corners"].reshape(-1, 3).astype(np.float64)
+    else:
+        corners = _text_corners(path, content)
+    if not len(corners) or not np.isfinite(corners).all():
+        raise UsageError(f"'{path}' has no triangles or wrong numbers", hint="Export it anew.")
+    vertices, faces = np.unique(corners, axis=0, return_inverse=True)
+    return Mesh(vertices, faces.reshape(-1, 3).astype(np.int64))
+
+
+def _text_corners(path: Path, content: bytes) -> npt.NDArray[np.float64]:
+    words = content.split()
+    at = [n for n, word in enumerate(words) if word.lower() == b"vertex"]
+    try:
+        numbers = [[float(each) for each in words[n + 1 : n + 4]] for n in at]
+        corners = np.array(numbers, np.float64).reshape(-1, 3)
+    except ValueError:
+        corners = np.zeros((1, 3))
+    if not words or words[0].lower() != b"solid" or len(corners) % 3:
+        raise UsageError(f"'{path}' is no STL file", hint="Binary and text STL are read.")
+    return corners
+
+
+def check_closed(path: Path, surface: Mesh) -> None:
+    """Refuse a surface that is open or inside out.
+
+    Raises:
+        UsageError: it is.
+    """
+    edges = np.sort(surface.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    _, uses = np.unique(edges, axis=0, return_counts=True)
+    if np.any(uses % 2):
+        gaps = int(np.count_nonzero(uses % 2))
+        raise UsageError(
+            f"the surface in '{path}' is open: {gaps} edges have one side", hint="Repair it, then export it."
+        )
+    if surface.volume_mm3 <= 0.0:
+        raise UsageError(f"the surface in '{path}' is inside out", hint="Turn its normals, then export it.")
+
+
+def solid_stock(path: Path, cell_mm: float | None, default_mm: Callable[[float], float]) -> Stock:
+    """Return the body in an STL file, seen from above: what lies under an overhang counts as full.
+
+    Raises:
+        UsageError: no such file, no closed surface, or too many cells.
+    """
+    surface = read_stl(path)
+    check_closed(path, surface)
+    low, high = surface.vertices.min(axis=0), surface.vertices.max(axis=0)
+    stock = Stock(
+        Box((float(low[0]), float(low[1]), float(low[2])), (float(high[0]), float(high[1]), float(high[2]))),
+        cell_mm or default_mm(float(max(high[:2] - low[:2]))),
+    )
+    stock.heights[...] = stock.grid.bottom
+    grid = stock.grid
+    draw(np.ascontiguousarray(surface.vertices[surface.faces]), grid.x0, grid.y0, grid.cell_mm, grid.z)
+    return stock
+
+
+@entry(steps=lambda triangles, *_: 50 * len(triangles))
+def draw(
+    triangles: npt.NDArray[np.float64], x0: float, y0: float, cell_mm: float, z: npt.NDArray[np.float64]
+) -> None:
+    """Raise each cell of a field to the highest of the triangles [n, 3, 3] over its middle."""
+    for n in range(triangles.shape[0]):
+        ax, ay, az = triangles[n, 0, 0], triangles[n, 0, 1], triangles[n, 0, 2]
+        bx, by, bz = triangles[n, 1, 0], triangles[n, 1, 1], triangles[n, 1, 2]
+        cx, cy, cz = triangles[n, 2, 0], triangles[n, 2, 1], triangles[n, 2, 2]
+        area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+        if area <= 0.0:  # upright, or seen from below
+            continue
+        first_x = max(0, int(np.ceil((min(ax, bx, cx) - x0) / cell_mm - 1e-9)))
+        last_x = min(z.shape[1] - 1, int(np.floor((max(ax, bx, cx) - x0) / cell_mm + 1e-9)))
+        first_y = max(0, int(np.ceil((min(ay, by, cy) - y0) / cell_mm - 1e-9)))
+        last_y = min(z.shape[0] - 1, int(np.floor((max(ay, by, cy) - y0) / cell_mm + 1e-9)))
+        for iy in range(first_y, last_y + 1):
+            y = y0 + iy * cell_mm
+            for ix in range(first_x, last_x + 1):
+                x = x0 + ix * cell_mm
+                u = ((bx - x) * (cy - y) - (cx - x) * (by - y)) / area
+                v = ((cx - x) * (ay - y) - (ax - x) * (cy - y)) / area
+                w = 1.0 - u - v
+                if u >= -1e-12 and v >= -1e-12 and w >= -1e-12:
+                    z[iy, ix] = max(z[iy, ix], u * az + v * bz + w * cz)

@@ -1,0 +1,113 @@
+"""A body of material seen from above: a height field on a bottom."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.errors import UsageError
+from polycnc.stock._mesh import Mesh, mesh
+from polycnc.stock._sweep import Grid
+
+Floats = npt.NDArray[np.float64]
+
+MOST_CELLS = 64_000_000
+"""Of a field: half a gigabyte."""
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box between two corners (mm)."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+
+    def __str__(self) -> str:
+        size = " x ".join(f"{b - a:g}" for a, b in zip(self.low, self.high, strict=True))
+        return f"box of {size} mm"
+
+
+class Stock:
+    """Hold what is left of a body above its bottom: one height for each cell of a grid.
+
+    `box` is what the field covers (mm), `cell_mm` the width of a cell. Undercuts cannot be told.
+
+    Raises:
+        UsageError: a body without volume, or a grid that would need too much memory.
+    """
+
+    def __init__(self, box: Box, cell_mm: float) -> None:
+        sizes = tuple(high - low for low, high in zip(box.low, box.high, strict=True))
+        if not all(0.0 < size < math.inf for size in sizes):
+            raise UsageError(
+                f"a {box} has no volume", hint="Give its lower corner first, then its upper one."
+            )
+        if not 0.0 < cell_mm < math.inf:
+            raise UsageError(f"cells of {cell_mm:g} mm", hint="Give a resolution above 0 mm.")
+        counts = [max(1, math.ceil(size / cell_mm - 1e-9)) for size in sizes[:2]]
+        if counts[0] * counts[1] > MOST_CELLS:
+            enough = math.sqrt(sizes[0] * sizes[1] / MOST_CELLS)
+            raise UsageError(
+                f"a {box} at {cell_mm:g} mm has {counts[0] * counts[1]:,} cells "
+                f"({counts[0] * counts[1] * 8 / 1e9:,.1f} GB)",
+                hint=f"Choose a resolution of {math.ceil(enough * 1000.0) / 1000.0:g} mm or more.",
+            )
+        self.box = box
+        x0, y0 = (
+            0.5 * (low + high - (count - 1) * cell_mm)
+            for low, high, count in zip(box.low, box.high, counts, strict=False)
+        )
+        heights = np.full((counts[1], counts[0]), float(box.high[2]))
+        self.grid = Grid(float(x0), float(y0), float(cell_mm), float(box.low[2]), heights)
+
+    @classmethod
+    def cylinder(cls, diameter_mm: float, low_z: float, high_z: float, cell_mm: float) -> Stock:
+        """Return an upright cylinder about the origin of x and y.
+
+        Raises:
+            UsageError: no volume, or too many cells.
+        """
+        radius = 0.5 * diameter_mm
+        stock = cls(Box((-radius, -radius, low_z), (radius, radius, high_z)), cell_mm)
+        x, y = stock.grid.x, stock.grid.y
+        stock.grid.z[x**2 + y[:, None] ** 2 > radius**2] = low_z
+        return stock
+
+    @property
+    def cell_mm(self) -> float:
+        """The width of a cell."""
+        return self.grid.cell_mm
+
+    @property
+    def heights(self) -> Floats:
+        """The height of each cell, [along y, along x]; those without material have that of the bottom."""
+        return self.grid.z
+
+    @property
+    def volume_mm3(self) -> float:
+        """What is left."""
+        return float(np.sum(self.grid.z - self.grid.bottom) * self.grid.cell_mm**2)
+
+    def height(self, x: float, y: float) -> float:
+        """Return the height of the cell at a place, that of the bottom outside."""
+        grid = self.grid
+        ix, iy = (
+            round((x - grid.x0) / grid.cell_mm),
+            round((y - grid.y0) / grid.cell_mm),
+        )
+        inside = 0 <= iy < grid.z.shape[0] and 0 <= ix < grid.z.shape[1]
+        return float(grid.z[iy, ix]) if inside else grid.bottom
+
+    def copy(self) -> Stock:
+        """Return a body of its own that is equal."""
+        other = Stock.__new__(Stock)
+        other.box = self.box
+        other.grid = self.grid._replace(z=self.grid.z.copy())
+        return other
+
+    def mesh(self) -> Mesh:
+        """Return the surface as triangles."""
+        return mesh(self.grid)

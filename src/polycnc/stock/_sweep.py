@@ -1,0 +1,260 @@
+"""Sweep a rotating body along chords over a height field: cut what is in its way, or measure how deep it would be in.
+
+All lengths are mm. A field is a grid of heights [rows along y, columns along x] at the middle of its cells.
+Over one cell the lowest point of the body is the least of `slope * s + h(distance)` along the chord, which each piece
+of the outline has in closed form; only a rounded corner on a slope is found by halving.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from polycnc.kernel import compiled, entry
+from polycnc.stock._chords import chord
+from polycnc.stock._profile import ARC_R, BEGIN_Z, CENTRE_R, CENTRE_Z, FROM_R, SLOPE, TO_R
+
+Floats = npt.NDArray[np.float64]
+
+_FAR = 1e300
+_BISECTIONS = 24
+_BOUNDS = 1024
+_REACH_CELLS = 0.6  # half the length of what is a short way
+
+
+class Grid(NamedTuple):
+    """A height field: the middle of its first cell, the width of a cell, the bottom, and the heights (mm)."""
+
+    x0: float
+    y0: float
+    cell_mm: float
+    bottom: float
+    z: Floats  # [ny, nx]
+
+    @property
+    def x(self) -> Floats:
+        """X of the columns: the middles of the cells."""
+        return self.x0 + self.cell_mm * np.arange(self.z.shape[1], dtype=np.float64)
+
+    @property
+    def y(self) -> Floats:
+        """Y of the rows."""
+        return self.y0 + self.cell_mm * np.arange(self.z.shape[0], dtype=np.float64)
+
+
+VOLUME_MM3, DEPTH_MM, WIDTH_LOW_MM, WIDTH_HIGH_MM, AT_X, AT_Y = range(6)
+"""Columns of what a chord has done: volume, greatest depth, how far left and right of the way, where it was deepest."""
+FIGURES = 6
+
+
+@compiled
+def _outline(row: Floats, r: float) -> float:
+    """Return the height of a piece of an outline at radius `r`."""
+    if row[ARC_R] > 0.0:
+        left = row[ARC_R] * row[ARC_R] - (r - row[CENTRE_R]) ** 2
+        return float(row[CENTRE_Z] - math.sqrt(max(0.0, left)))
+    return float(row[BEGIN_Z] + row[SLOPE] * (r - row[FROM_R]))
+
+
+@compiled
+def _level(rows: Floats, r: float) -> float:
+    """Return the height of an outline at radius `r`."""
+    for i in range(rows.shape[0]):
+        if r <= rows[i, TO_R]:
+            return _outline(rows[i], r)
+    return _FAR
+
+
+@compiled
+def _at(row: Floats, r2: float) -> float:
+    """Return the height of a piece of an outline at the square of a radius; a ball needs no root more."""
+    if row[ARC_R] > 0.0 and row[CENTRE_R] <= 0.0:
+        return float(row[CENTRE_Z] - math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - r2)))
+    return _outline(row, math.sqrt(r2))
+
+
+@compiled
+def _gradient(row: Floats, q2: float, slope: float, w: float) -> float:
+    """Return how fast `slope * w + outline` of a rounded corner rises with `w`."""
+    d = math.sqrt(q2 + w * w)
+    over = d - row[CENTRE_R]
+    if over <= 0.0:
+        return slope
+    root = math.sqrt(max(1e-12, row[ARC_R] * row[ARC_R] - over * over))
+    return float(slope + over / root * w / d)
+
+
+@compiled
+def _on_corner(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
+    """Return where from `low` to `high` a rounded corner is lowest over a cell on a slope."""
+    if _gradient(row, q2, slope, low) >= 0.0:
+        return low
+    if _gradient(row, q2, slope, high) <= 0.0:
+        return high
+    w = 0.5 * (low + high)
+    for _ in range(_BISECTIONS):
+        if _gradient(row, q2, slope, w) > 0.0:
+            high = w
+        else:
+            low = w
+        w = 0.5 * (low + high)
+    return w
+
+
+@compiled
+def _stationary(row: Floats, q2: float, slope: float) -> float:
+    """Return where along the way, from the foot of the cell, a cone or ball is lowest over it, were it not to end."""
+    if row[ARC_R] <= 0.0:
+        steep = row[SLOPE] * row[SLOPE] - slope * slope
+        if steep > 0.0:
+            return -slope * math.sqrt(q2 / steep)
+        return -_FAR if slope > 0.0 else _FAR
+    return -slope * math.sqrt(max(0.0, row[ARC_R] * row[ARC_R] - q2) / (1.0 + slope * slope))
+
+
+@compiled
+def _least(row: Floats, q2: float, slope: float, low: float, high: float) -> float:
+    """Return the least of `slope * w + outline` for `w` from `low` to `high`; far if there is none."""
+    if low > high:
+        return _FAR
+    if row[ARC_R] > 0.0 and row[CENTRE_R] > 0.0:
+        w = _on_corner(row, q2, slope, low, high)
+    else:
+        w = min(max(_stationary(row, q2, slope), low), high)
+    return slope * w + _at(row, q2 + w * w)
+
+
+@compiled
+def _lowest(rows: Floats, q2: float, slope: float, before: float, after: float) -> float:
+    """Return how low a body gets over a cell, against its tip at the foot of the cell.
+
+    The way leads from `before` to `after` about that foot, which lies `sqrt(q2)` beside it.
+    """
+    if slope == 0.0:
+        w = min(max(0.0, before), after)
+        return _level(rows, math.sqrt(q2 + w * w))
+    found = _FAR
+    for i in range(rows.shape[0]):
+        outer2 = rows[i, TO_R] * rows[i, TO_R] - q2
+        if outer2 < 0.0:
+            continue
+        outer = math.sqrt(outer2)
+        inner2 = rows[i, FROM_R] * rows[i, FROM_R] - q2
+        if inner2 <= 0.0:
+            found = min(found, _least(rows[i], q2, slope, max(before, -outer), min(after, outer)))
+        else:
+            inner = math.sqrt(inner2)
+            found = min(found, _least(rows[i], q2, slope, max(before, -outer), min(after, -inner)))
+            found = min(found, _least(rows[i], q2, slope, max(before, inner), min(after, outer)))
+    return found
+
+
+@compiled
+def _bounds(rows: Floats, reach: float, bounds: Floats) -> None:
+    """Write heights that the outline does not get below, by the square of the distance in equal steps.
+
+    The distance is that from the middle of a short way, whose ends are not farther than `reach` from it.
+    """
+    outer = rows[rows.shape[0] - 1, TO_R]
+    for i in range(bounds.shape[0]):
+        bounds[i] = _level(rows, max(0.0, (outer + reach) * math.sqrt(i / bounds.shape[0]) - reach))
+
+
+@compiled
+def _span(begin: Floats, end: Floats, ux: float, uy: float, radius: float, y: float) -> tuple[float, float]:
+    """Return from where to where along x a body of this radius covers the line `y` on its way."""
+    low, high = _FAR, -_FAR
+    for place in (begin, end):
+        left = radius * radius - (y - place[1]) ** 2
+        if left >= 0.0:
+            reach = math.sqrt(left)
+            low, high = min(low, place[0] - reach), max(high, place[0] + reach)
+    for side in (-radius, radius):
+        from_y, to_y = begin[1] + side * ux, end[1] + side * ux
+        if from_y != to_y and min(from_y, to_y) <= y <= max(from_y, to_y):
+            share = (y - from_y) / (to_y - from_y)
+            x = begin[0] + share * (end[0] - begin[0]) - side * uy
+            low, high = min(low, x), max(high, x)
+    return low, high
+
+
+@compiled
+def _sweep_chord(
+    grid: Grid, begin: Floats, end: Floats, rows: Floats, bounds: Floats, cuts: bool, figures: Floats
+) -> None:
+    length, ux, uy, slope = chord(begin, end)
+    radius = rows[rows.shape[0] - 1, TO_R]
+    lowest_tip = min(begin[2], end[2])
+    reach = _REACH_CELLS * grid.cell_mm
+    per_bound, last_bound = bounds.shape[0] / (radius + reach) ** 2, bounds.shape[0] - 1
+    middle_x, middle_y = 0.5 * (begin[0] + end[0]), 0.5 * (begin[1] + end[1])
+    ny, nx = grid.z.shape
+    first_y = max(0, math.ceil((min(begin[1], end[1]) - radius - grid.y0) / grid.cell_mm))
+    last_y = min(ny - 1, math.floor((max(begin[1], end[1]) + radius - grid.y0) / grid.cell_mm))
+    volume, depth, left, right = 0.0, 0.0, _FAR, -_FAR
+    for iy in range(first_y, last_y + 1):
+        y = grid.y0 + iy * grid.cell_mm
+        low, high = _span(begin, end, ux, uy, radius, y)
+        if low > high:
+            continue
+        first_x = max(0, math.ceil((low - grid.x0) / grid.cell_mm))
+        last_x = min(nx - 1, math.floor((high - grid.x0) / grid.cell_mm))
+        row = grid.z[iy]
+        dy = y - begin[1]
+        for ix in range(first_x, last_x + 1):
+            here = row[ix]
+            if here <= lowest_tip or here <= grid.bottom:
+                continue
+            x = grid.x0 + ix * grid.cell_mm
+            if length <= 2.0 * reach:
+                mx, my = x - middle_x, y - middle_y
+                if here <= lowest_tip + bounds[min(int((mx * mx + my * my) * per_bound), last_bound)]:
+                    continue
+            dx = x - begin[0]
+            along = dx * ux + dy * uy
+            beside = dy * ux - dx * uy
+            if length > 0.0:
+                z = begin[2] + slope * along + _lowest(rows, beside * beside, slope, -along, length - along)
+            else:
+                z = lowest_tip + _level(rows, math.sqrt(dx * dx + dy * dy))
+            z = max(z, grid.bottom)
+            if z >= here:
+                continue
+            missed = here - z
+            volume += missed
+            left, right = min(left, beside), max(right, beside)
+            if missed > depth:
+                depth = missed
+                figures[AT_X], figures[AT_Y] = x, y
+            if cuts:
+                row[ix] = z
+    figures[VOLUME_MM3] = volume * grid.cell_mm * grid.cell_mm
+    figures[DEPTH_MM] = depth
+    figures[WIDTH_LOW_MM], figures[WIDTH_HIGH_MM] = (left, right) if depth > 0.0 else (0.0, 0.0)
+
+
+def _steps(grid: Grid, places: Floats, *_: object) -> int:
+    """Return about how many cells are looked at, where the radius is not known."""
+    return 50 * len(places)
+
+
+@entry(steps=_steps)
+def sweep(grid: Grid, places: Floats, cutter: Floats, holder: Floats, cut: Floats, touched: Floats) -> None:
+    """Move a tool from each of `places` [n + 1, 3] (its tip) to the next: lower the field to what is left.
+
+    `cutter` and `holder` are outlines, of which either may be empty; the holder follows the cutter and lowers nothing.
+    `cut` and `touched` [n, 6] get a row of figures for each way.
+    """
+    bounds, holder_bounds = np.empty(_BOUNDS), np.empty(_BOUNDS)
+    if cutter.shape[0]:
+        _bounds(cutter, _REACH_CELLS * grid.cell_mm, bounds)
+    if holder.shape[0]:
+        _bounds(holder, _REACH_CELLS * grid.cell_mm, holder_bounds)
+    for n in range(places.shape[0] - 1):
+        if cutter.shape[0]:
+            _sweep_chord(grid, places[n], places[n + 1], cutter, bounds, True, cut[n])
+        if holder.shape[0]:
+            _sweep_chord(grid, places[n], places[n + 1], holder, holder_bounds, False, touched[n])

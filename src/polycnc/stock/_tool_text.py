@@ -1,0 +1,78 @@
+"""Tools from what programs say about them in remarks."""
+
+from __future__ import annotations
+
+import re
+
+from polycnc.errors import UsageError
+from polycnc.stock._tool import Tool, ToolKind
+
+MM_PER_INCH = 25.4
+_NUMBERED = re.compile(r"\bT\s*0*(\d+)\b", re.IGNORECASE)
+_NUMBER = r"(\d+(?:\.\d*)?|\.\d+)"
+_DIAMETER = re.compile(rf"\bD(?:IA(?:METER)?)?\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
+_CORNER = re.compile(rf"\bCR\s*[=:]\s*{_NUMBER}", re.IGNORECASE)
+_ANGLE = re.compile(
+    rf"\b(?:TAPER|TIP|ANGLE)\s*[=:]?\s*{_NUMBER}\s*(?:DEG|°)|{_NUMBER}\s*(?:DEG\w*|°)", re.IGNORECASE
+)
+_SIZE = re.compile(rf"{_NUMBER}\s*(mm\b|inch\b|in\b|\")", re.IGNORECASE)
+_POINT_DEG = 118.0
+_CHAMFER_DEG = 90.0
+_KINDS = (
+    (re.compile(r"\bball|\bspherical", re.IGNORECASE), ToolKind.BALL),
+    (re.compile(r"\bbull|\bcorner radius|\btoroid", re.IGNORECASE), ToolKind.BULL),
+    (re.compile(r"chamfer|v-?bit|engrav|countersink|spot", re.IGNORECASE), ToolKind.CHAMFER),
+    (re.compile(r"drill|\btap\b|\bream", re.IGNORECASE), ToolKind.DRILL),
+    (re.compile(r"taper", re.IGNORECASE), ToolKind.TAPER),
+    (re.compile(r"\bmill|cutter|\bflat|\bslot", re.IGNORECASE), ToolKind.FLAT),
+    (re.compile(r"\bholes?\b", re.IGNORECASE), ToolKind.DRILL),
+)
+
+
+def tool_number(remark: str) -> int | None:
+    """Return the number of the tool that a remark is about, None if it names none."""
+    found = _NUMBERED.search(remark)
+    return int(found[1]) if found else None
+
+
+def tool_of_remark(remark: str, *, inch: bool = False) -> Tool | None:
+    """Return the tool that a remark describes, None if that cannot be told.
+
+    Read are `T1 D=10. CR=0. - ZMIN=-12. - flat end mill` and the like, and a size beside a word for a kind: `end mill
+    10 mm`, `drill 8.5 mm`. With `inch` numbers without a unit are inches.
+    """
+    kind = next((kind for pattern, kind in _KINDS if pattern.search(remark)), None)
+    size = _diameter_mm(remark, inch)
+    if size is None or (kind is None and not _DIAMETER.search(remark)):
+        return None
+    corner = float(found[1]) * (MM_PER_INCH if inch else 1.0) if (found := _CORNER.search(remark)) else 0.0
+    angle = float(found[1] or found[2]) if (found := _ANGLE.search(remark)) else 0.0
+    kind = kind or ToolKind.FLAT
+    if kind is ToolKind.FLAT and corner > 0.0:
+        kind = ToolKind.BALL if corner >= 0.5 * size else ToolKind.BULL
+    try:
+        return _tool(kind, size, corner, angle)
+    except UsageError:
+        return None
+
+
+def _tool(kind: ToolKind, size: float, corner: float, angle: float) -> Tool | None:
+    match kind:
+        case ToolKind.BULL:
+            return Tool(kind, size, corner_mm=corner) if corner > 0.0 else None
+        case ToolKind.DRILL:
+            return Tool(kind, size, angle_deg=angle or _POINT_DEG)
+        case ToolKind.CHAMFER:
+            return Tool(kind, size, angle_deg=2.0 * angle if 0.0 < angle <= 60.0 else angle or _CHAMFER_DEG)
+        case ToolKind.TAPER:
+            return Tool(kind, size, angle_deg=angle) if angle > 0.0 else None
+        case _:
+            return Tool(kind, size)
+
+
+def _diameter_mm(remark: str, inch: bool) -> float | None:
+    if found := _DIAMETER.search(remark):
+        return float(found[1]) * (MM_PER_INCH if inch else 1.0)
+    if found := _SIZE.search(remark):
+        return float(found[1]) * (1.0 if found[2].lower() == "mm" else MM_PER_INCH)
+    return None

@@ -1,0 +1,90 @@
+"""What random programs leave of a block, against exact bodies: a convex tool on a straight way sweeps their hull."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from polycnc.stock import Box, Cutting, Rows, Stock, Tool, ToolKind
+
+manifold3d = pytest.importorskip("manifold3d")
+
+LOW, HIGH = (-3.0, -2.0, -12.0), (47.0, 33.0, 1.5)
+CELL_MM = 0.1
+FACETS = 180
+
+
+def solid(tool: Tool) -> Any:
+    """Return a tool as a convex body from its tip up to 40 mm."""
+    profile = tool.cutting_profile()
+    radii = np.linspace(0.0, tool.radius_mm, 2 if tool.kind in (ToolKind.FLAT, ToolKind.DRILL) else 48)
+    # More rings where the outline is steep, and as much area as the circle has.
+    radii = tool.radius_mm * np.sin(0.5 * math.pi * radii / tool.radius_mm)
+    wider = math.sqrt(2.0 * math.pi / FACETS / math.sin(2.0 * math.pi / FACETS))
+    angle = np.linspace(0.0, 2.0 * math.pi, FACETS, endpoint=False)
+    rings = [(r * wider, profile.height(float(min(r, tool.radius_mm)))) for r in radii]
+    rings.append((tool.radius_mm * wider, 40.0))
+    points = [np.column_stack((r * np.cos(angle), r * np.sin(angle), np.full(FACETS, z))) for r, z in rings]
+    return manifold3d.Manifold.hull_points(np.concatenate(points))
+
+
+def exact_mm3(tool: Tool, places: list[np.ndarray[Any, np.dtype[np.float64]]]) -> float:
+    """Return the volume that a tool removes of the block on its way."""
+    body = solid(tool)
+    block = manifold3d.Manifold.cube([b - a for a, b in zip(LOW, HIGH, strict=True)]).translate(LOW)
+    left = block
+    for begin, end in pairwise(places):
+        both = [body.translate(begin.tolist()), body.translate(end.tolist())]
+        left = left - manifold3d.Manifold.batch_hull(both)
+    return float(block.volume() - left.volume())
+
+
+def random_tool(rng: np.random.Generator) -> Tool:
+    diameter = float(rng.uniform(4.0, 12.0))
+    return [
+        Tool(ToolKind.FLAT, diameter),
+        Tool(ToolKind.BALL, diameter),
+        Tool(ToolKind.BULL, diameter, corner_mm=diameter * float(rng.uniform(0.1, 0.4))),
+        Tool(ToolKind.DRILL, diameter, angle_deg=float(rng.uniform(90.0, 140.0))),
+    ][int(rng.integers(4))]
+
+
+def compare(number: int) -> float:
+    """Return by how much two volumes of a random program differ, as a part of what is removed."""
+    rng = np.random.default_rng(number)
+    tool = random_tool(rng)
+    places = [rng.uniform((0.0, 0.0, -9.0), (44.0, 30.0, 0.5)) for _ in range(int(rng.integers(2, 6)))]
+    if rng.random() < 0.5:  # level ways, as in most programs
+        for place in places:
+            place[2] = places[0][2]
+    stock = Stock(Box(LOW, HIGH), CELL_MM)
+    cutting = Cutting(stock, {4: tool})
+    n = len(places)
+    cutting.add(
+        Rows(
+            np.arange(1.0, n + 1.0),
+            np.array(places),
+            np.arange(n),
+            np.full(n, 4),
+            np.zeros(n, np.bool_),
+            np.ones(n, np.bool_),
+        )
+    )
+    exact = exact_mm3(tool, places)
+    return abs(cutting.removed_mm3 - exact) / max(exact, 50.0)
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_volumes_of_random_programs(number: int) -> None:
+    assert compare(number) < 1.5e-3
+
+
+@pytest.mark.long
+def test_volumes_of_two_hundred_random_programs() -> None:
+    worst = [compare(number) for number in range(100, 300)]
+    assert max(worst) < 3e-3
+    assert sum(worst) / len(worst) < 5e-4

@@ -1,0 +1,50 @@
+"""Twenty served machines whose programs all wait: every door answers at once, and SIGTERM ends the process."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+
+from support.focas_line import Line, free_port, serve
+
+MACHINES = 20
+MEDIAN_S, END_S = 0.5, 10.0  # 0.02 s and 0.6 s on a computer of its own; they never answered, nor ended
+PROGRAMS = {
+    "a signal": "O0001\nWHILE[#1000EQ0]DO1\nEND1\nM30\n",
+    "functions": "O0001\nWHILE[1EQ1]DO1\nM50\nEND1\nM30\n",
+}
+
+
+@pytest.mark.parametrize("kind", PROGRAMS)
+def test_machines_that_wait_answer_and_end(kind: str, tmp_path: Path) -> None:
+    program = tmp_path / "wait.nc"
+    program.write_text(PROGRAMS[kind])
+    process, port = serve(
+        "--count",
+        str(MACHINES),
+        "--program",
+        program,
+        port=free_port(),
+        said=f"serving {MACHINES} FANUC 31i on",
+    )
+    lines: list[Line] = []
+    try:
+        lines += [Line(port, address=f"127.0.0.{k}") for k in range(1, MACHINES + 1)]
+        took_s = []
+        for _ in range(2):
+            for line in lines:
+                begun_s = time.perf_counter()
+                assert line.payload(0x19)
+                took_s.append(time.perf_counter() - begun_s)
+        took_s.sort()
+    finally:
+        for line in lines:
+            line.close()
+        begun_s = time.perf_counter()
+        process.terminate()
+        _, error = process.communicate(timeout=20)
+    assert time.perf_counter() - begun_s < END_S
+    assert "Traceback" not in error
+    assert took_s[len(took_s) // 2] < MEDIAN_S

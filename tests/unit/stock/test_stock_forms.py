@@ -1,0 +1,173 @@
+"""What body is cut, and with what tools: said in texts, remarks and files, or found from the course of the tool."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from polycnc.errors import UsageError
+from polycnc.stock import (
+    Box,
+    Course,
+    Cutting,
+    Form,
+    Rows,
+    Stock,
+    Tool,
+    ToolKind,
+    tool_number,
+    tool_of_remark,
+)
+
+TOOLS = {3: Tool(ToolKind.FLAT, 8.0)}
+
+
+def circle(rows: int = 700, level: float = -2.5) -> Rows:
+    angle = np.linspace(-1.5, 5.0, rows)
+    tip = np.column_stack((31.0 + 11.0 * np.cos(angle), 17.0 + 11.0 * np.sin(angle), np.full(rows, level)))
+    tip[:40, 2] = np.linspace(6.0, level, 40)
+    tip[:40, :2] = tip[40, :2]
+    rapid = np.zeros(rows, np.bool_)
+    rapid[:20] = True
+    whole = np.arange(rows) // 90
+    return Rows(
+        0.004 * np.arange(1.0, rows + 1.0), tip, whole, np.full(rows, 3), rapid, np.ones(rows, np.bool_)
+    )
+
+
+@given(at=st.lists(st.integers(1, 699), max_size=5))
+def test_a_course_is_the_same_however_its_record_is_cut(at: list[int]) -> None:
+    record = circle()
+    whole, parts = Course(), Course()
+    whole.add(record)
+    bounds = [0, *sorted(at), 700]
+    for first, last in pairwise(bounds):
+        parts.add(record.at(np.arange(first, last)))
+    for one, other in zip(whole.rows().columns(), parts.rows().columns(), strict=True):
+        assert np.array_equal(one, other)
+    assert 10 < len(whole.rows().t_s) < 350
+
+
+def test_a_course_cuts_what_its_record_cuts() -> None:
+    record, course = circle(), Course()
+    course.add(record)
+    volumes = []
+    for rows in (record, course.rows()):
+        cutting = Cutting(Stock(Box((0.0, 0.0, -10.0), (60.0, 40.0, 0.0)), 0.2), TOOLS)
+        cutting.add(rows)
+        volumes.append(cutting.removed_mm3)
+    assert volumes[1] == pytest.approx(volumes[0], rel=1e-3)
+
+
+def test_an_auto_body_holds_what_is_cut() -> None:
+    stock = Form("auto").body(circle(), TOOLS)
+    assert stock.box.low == pytest.approx((31.0 - 11.0 - 5.0, 1.0, -3.5), abs=0.01)
+    assert stock.box.high == pytest.approx((31.0 + 11.0 + 5.0, 33.0, 0.0), abs=0.01)
+    assert stock.cell_mm == 0.05
+    above = Form("auto", 0.5).body(circle(level=4.0), TOOLS)
+    assert above.box.high[2] == 4.0 + 1.0 or above.box.high[2] == 5.0
+    assert above.cell_mm == 0.5
+
+
+def test_forms_in_texts() -> None:
+    box = Form("box=-3,-2,-12,57,38,1.5", 0.25).body(circle(), TOOLS)
+    assert box.box == Box((-3.0, -2.0, -12.0), (57.0, 38.0, 1.5))
+    cylinder = Form("cylinder=30,-8,2", 0.05).body(circle(), TOOLS)
+    assert cylinder.volume_mm3 == pytest.approx(np.pi * 225.0 * 10.0, rel=2e-3)
+
+
+def test_a_body_goes_to_a_file_and_comes_back(tmp_path: Path) -> None:
+    stock = Stock(Box((-3.0, -2.0, -12.0), (57.0, 38.0, 1.5)), 0.25)
+    Cutting(stock, TOOLS).add(circle())
+    file = tmp_path / "first side.stl"
+    stock.mesh().write_stl(file)
+    back = Form(str(file), 0.25).body(circle(), TOOLS)
+    assert back.volume_mm3 == pytest.approx(stock.volume_mm3, rel=2e-3)
+    assert back.box.high == (57.0, 38.0, 1.5)
+
+
+@pytest.mark.parametrize(
+    ("text", "wrong"),
+    [
+        ("ball=3", "no stock"),
+        ("box=1,2,3", "6 numbers"),
+        ("box=1,2,3,4,5,nan", "6 numbers"),
+        ("cylinder=a,1,2", "3 numbers"),
+        ("", "no stock"),
+        ("cylinder=-5,0,2", "no volume"),
+        ("missing.stl", "cannot read"),
+    ],
+)
+def test_wrong_forms_are_refused(text: str, wrong: str) -> None:
+    with pytest.raises(UsageError) as refused:
+        Form(text).body(circle(), TOOLS)
+    assert wrong in f"{refused.value} {refused.value.hint}"
+    assert refused.value.hint
+
+
+@pytest.mark.parametrize(
+    ("content", "wrong"),
+    [
+        (b"", "no STL"),
+        (b"solid x\nvertex 1 2\n", "no STL|wrong numbers"),
+        (b"solid x\nvertex 1 2 a\nvertex 1 2 3\nvertex 4 5 6\n", "no STL"),
+        (b"solid x\nvertex 1 2 nan\nvertex 1 2 3\nvertex 4 5 6\n", "wrong numbers"),
+        (b"solid x\nvertex 1 2 7\nvertex 1 8 3\nvertex 4 5 6\n", "is open"),
+        (b"\0" * 80 + b"\xff\xff\xff\xff" + b"\0" * 50, "4,294,967,295 triangles"),
+    ],
+)
+def test_wrong_files_are_refused(tmp_path: Path, content: bytes, wrong: str) -> None:
+    file = tmp_path / "body.stl"
+    file.write_bytes(content)
+    with pytest.raises(UsageError, match=wrong):
+        Form(str(file)).body(circle(), TOOLS)
+
+
+def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
+    file = tmp_path / "body.stl"
+    surface = Stock(Box((0.0, 0.0, 0.0), (3.0, 4.0, 5.0)), 1.0).mesh()
+    type(surface)(surface.vertices, surface.faces[:, ::-1]).write_stl(file)
+    with pytest.raises(UsageError, match="inside out"):
+        Form(str(file)).body(circle(), TOOLS)
+
+
+@pytest.mark.parametrize(
+    ("remark", "tool"),
+    [
+        ("T1 D=10. CR=0. - ZMIN=-12. - flat end mill", Tool(ToolKind.FLAT, 10.0)),
+        ("T12 D=6. CR=3. - ZMIN=-12. - ball end mill", Tool(ToolKind.BALL, 6.0)),
+        ("T2 D=8. CR=0.5 - bullnose end mill", Tool(ToolKind.BULL, 8.0, corner_mm=0.5)),
+        ("T4 D=8.5 CR=0. TAPER=118deg - ZMIN=-20.6 - drill", Tool(ToolKind.DRILL, 8.5, angle_deg=118.0)),
+        ("T5 D=9. CR=0. TAPER=45deg - chamfer mill", Tool(ToolKind.CHAMFER, 9.0, angle_deg=90.0)),
+        ("Outline, end mill 10 mm, two depths", Tool(ToolKind.FLAT, 10.0)),
+        ("Four holes, drill 5.5 mm, chip breaking", Tool(ToolKind.DRILL, 5.5, angle_deg=118.0)),
+        ("T7 V-Bit 90 deg 12 mm", Tool(ToolKind.CHAMFER, 12.0, angle_deg=90.0)),
+        ('1/4 inch end mill 0.25"', Tool(ToolKind.FLAT, 6.35)),
+        ("Four holes of 6.6 mm through the corners", Tool(ToolKind.DRILL, 6.6, angle_deg=118.0)),
+        ("Hole, end mill 8 mm on a helix", Tool(ToolKind.FLAT, 8.0)),
+        ("T1 D=0. - flat end mill", None),
+        ("Pocket 32 mm wide", None),
+        ("Finish everything", None),
+    ],
+)
+def test_tools_in_remarks(remark: str, tool: Tool | None) -> None:
+    if remark.startswith("1/4"):
+        remark = remark[3:]
+    assert tool_of_remark(remark) == tool
+
+
+def test_remarks_in_inches() -> None:
+    assert tool_of_remark("T3 D=0.5 CR=0. - flat end mill", inch=True) == Tool(ToolKind.FLAT, 12.7)
+    assert tool_number("T03 D=0.5") == 3
+    assert tool_number("finish") is None
+
+
+@given(st.text(max_size=60))
+def test_any_remark_is_a_tool_or_none(remark: str) -> None:
+    found = tool_of_remark(f"T1 D=6 {remark} mill")
+    assert found is None or found.diameter_mm > 0.0

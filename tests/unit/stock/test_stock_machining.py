@@ -1,0 +1,167 @@
+"""Whole programs cut whole bodies: volumes by closed forms, and each planted fault at its block, none without it."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from polycnc import runner
+from polycnc.errors import UsageError
+from polycnc.machine import ToolConfig, load_machine
+from polycnc.stock import ContactKind, Form, Tool, ToolKind
+
+BRACKET = Path(__file__).resolve().parents[3] / "examples" / "bracket.nc"
+PLATE = """(T1 D=10. CR=0. - flat end mill)
+G21 G90 G17 G94 G54
+T1 M6
+S5000 M3
+G43 H1 G0 X-10 Y12 Z20
+Z-4
+G1 X70 F1500
+G0 Z20
+X-10 Y30
+Z-4
+G1 X70
+G0 Z20
+M30
+"""
+TOOLS = {1: Tool(ToolKind.FLAT, 10.0, flute_mm=12.0, holder=((30.0, 25.0),))}
+
+
+def machined(
+    text: str, tools: dict[int, Tool] | None = None, form: str = "box=0,0,-20,60,42,0"
+) -> runner.Machined:
+    config = load_machine("mill3")
+    collector = runner.MachiningCollector(config)
+    runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
+    found = tools if tools is not None else runner.tools_of(config, collector.texts)
+    return collector.machined(Form(form, 0.25), found)
+
+
+def test_two_slots_in_a_plate() -> None:
+    found = machined(PLATE)
+    assert found.volume_mm3 == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
+    assert found.collisions == []
+    lines = {
+        found.blocks[n].line: volume for n, volume in enumerate(found.removed_mm3.tolist()) if volume > 0.0
+    }
+    assert sorted(lines) == [7, 11]
+    assert found.by_tool_mm3 == {1: pytest.approx(found.volume_mm3)}
+    assert found.messages == ["stock: box of 60 x 42 x 20 mm, 0.25 mm a cell"]
+
+
+FAULTS = {
+    "a rapid across the plate": ("G0 Z20\nX-10 Y30", "G0 X-10 Y30", ContactKind.RAPID, 8),
+    "a rapid down into the plate": ("Z-4\nG1 X70 F1500", "X30 Z-4\nG1 X70 F1500", ContactKind.RAPID, 6),
+    "no spindle": ("S5000 M3\n", "S5000\n", ContactKind.SPINDLE, 7),
+    "the spindle stopped too early": ("Z-4\nG1 X70\n", "Z-4 M5\nG1 X70\n", ContactKind.SPINDLE, 11),
+    "short flutes": ("Z-4\nG1 X70 F1500", "Z-12.5\nG1 X70 F1500", ContactKind.FLUTES, 7),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_planted_fault_is_found_at_its_block(fault: str) -> None:
+    right, wrong, kind, line = FAULTS[fault]
+    assert PLATE.count(right) == 1
+    found = machined(PLATE.replace(right, wrong), TOOLS)
+    first = found.collisions[0]
+    assert (first.kind, first.line) == (kind, line)
+    assert {each.kind for each in found.collisions} == {kind}
+
+
+def test_an_auto_body_begins_where_the_tool_comes_down_at_rapid() -> None:
+    found = machined(PLATE, TOOLS, "auto")
+    assert found.collisions == []
+    assert found.stock.box.low == pytest.approx((-5.0, 6.0, -5.0))
+    assert found.stock.box.high == pytest.approx((76.0, 36.0, 0.0))
+    wrong = machined(PLATE.replace("G0 Z20\nX-10 Y30", "G0 X-10 Y30"), TOOLS, "auto")
+    assert [(each.kind, each.line) for each in wrong.collisions] == [(ContactKind.RAPID, 8)]
+
+
+def test_a_low_holder_is_found_and_a_long_tool_is_right() -> None:
+    low = {1: Tool(ToolKind.FLAT, 10.0, holder=((3.5, 25.0),))}
+    found = machined(PLATE, low)
+    assert {each.kind for each in found.collisions} == {ContactKind.HOLDER}
+    assert found.collisions[0].line == 6
+    assert machined(PLATE, TOOLS).collisions == []
+
+
+def test_another_work_offset_cuts_elsewhere() -> None:
+    text = PLATE.replace("X-10 Y30\nZ-4", "G55 X-10 Y10\nZ-4")
+    config = load_machine("mill3").model_copy(
+        update={"offsets": {"G54": {"X": 5.0}, "G55": {"X": 5.0, "Y": 20.0}}}
+    )
+    collector = runner.MachiningCollector(config)
+    runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
+    found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), TOOLS)
+    assert found.volume_mm3 == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
+    assert found.stock.height(30.0, 30.0) == -4.0
+    assert found.stock.height(30.0, 36.0) == 0.0
+
+
+def test_the_bracket() -> None:
+    """Outline 10 mm deep, a pocket of 32 mm and two slots 6 mm deep, as its remarks say."""
+    config = load_machine("mill3")
+    collector = runner.MachiningCollector(config)
+    runner.run(BRACKET, config, tagged_rows=collector.add)
+    found = collector.machined(Form("box=0,0,-12,90,60,0", 0.1), runner.tools_of(config, collector.texts))
+    assert found.stock.height(45.0, 30.0) == -6.0
+    pocket = math.pi * 16.0**2 * 6.0
+    by_line = {found.blocks[n].line: v for n, v in enumerate(found.removed_mm3.tolist()) if v > 0.0}
+    in_pocket = sum(v for line, v in by_line.items() if found.blocks.names and 20 <= line <= 27)
+    assert in_pocket == pytest.approx(pocket, rel=0.02)
+    assert found.collisions == []
+    assert found.stock.height(10.0, 10.0) == -12.0  # a hole through a corner
+    assert found.messages[1:] == []
+
+
+def test_a_table_that_turns_is_refused() -> None:
+    program = Path(__file__).resolve().parents[3] / "examples" / "five_axis.nc"
+    with pytest.raises(UsageError, match="turns the part or the tool"):
+        runner.run(program, "mill5", stock="auto", check=False)
+
+
+def test_a_longer_tool_does_not_come_along_the_way_of_the_one_before() -> None:
+    change = "T2 M6\nG43 H2\nG0 X30 Y21\nM30"
+    config = load_machine("mill3").model_copy(
+        update={
+            "tools": {1: ToolConfig(length_mm=40.0), 2: ToolConfig(length_mm=75.0)},
+            "offsets": {"G54": {"Z": -130.0}},
+        }
+    )
+    text = PLATE.replace("M30", change).replace("G0 Z20\nT2", "G0 Z40\nX30 Y21\nT2")
+    collector = runner.MachiningCollector(config)
+    runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
+    tools = {**TOOLS, 2: Tool(ToolKind.FLAT, 4.0)}
+    found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), tools)
+    assert found.collisions == []
+    assert found.by_tool_mm3[1] == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
+    assert found.stock.height(30.0, 21.0) == 0.0
+
+
+def test_the_length_of_another_tool_is_a_crash() -> None:
+    """H is not T: the tool is longer than what is compensated."""
+    config = load_machine("mill3").model_copy(
+        update={
+            "tools": {1: ToolConfig(length_mm=62.0), 2: ToolConfig(length_mm=40.0)},
+            "offsets": {"G54": {"Z": -130.0}},
+        }
+    )
+    collector = runner.MachiningCollector(config)
+    runner.run(PLATE.replace("H1", "H2"), config, "fanuc", tagged_rows=collector.add, check=False)
+    found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), TOOLS)
+    kinds = {(each.kind, each.line) for each in found.collisions}
+    assert (ContactKind.FLUTES, 7) in kinds
+    assert (ContactKind.RAPID, 9) in kinds  # 20 mm above the part is 2 mm within it
+
+
+def test_a_lathe_is_refused() -> None:
+    with pytest.raises(UsageError, match="has no axis Y"):
+        runner.MachiningCollector(load_machine("lathe2"))
+
+
+def test_a_program_that_cuts_nothing_tells_no_stock() -> None:
+    with pytest.raises(UsageError, match="cuts nothing"):
+        machined("G0 X10\nM30\n", TOOLS, "auto")
