@@ -53,7 +53,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
         "cnc/_run_conduct.py Conduct",
-        "controllers/bosch/ncs/_partner.py Partner",
         "controllers/fanuc/device/_power_mate.py",
         "controllers/fanuc/device/_power_mate.py PowerMate",
         "controllers/fanuc/device/_power_mate.py PowerMate.__init__",
@@ -74,7 +73,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "nc/macro/_system.py SystemVariables._modal",
     ),
     "a table, a line for each row": (
-        "controllers/bosch/ncs/_data_services.py _rows",
         "controllers/fanuc/device/_signals.py Signals",
         "controllers/fanuc/device/_signals.py Signals.f",
     ),
