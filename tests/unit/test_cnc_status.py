@@ -233,6 +233,7 @@ def test_the_public_commands_are_all_tried() -> None:
         "snapshot",
         "advance",
         "be_watched",
+        "be_shared",
         "waiting_functions",
         "tool_in_use",
     }

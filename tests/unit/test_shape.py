@@ -55,7 +55,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_run_conduct.py Conduct",
         "controllers/fanuc/device/_power_mate.py",
         "controllers/fanuc/device/_power_mate.py PowerMate",
-        "controllers/fanuc/device/_power_mate.py PowerMate.__init__",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (
         "nc/cpl/_blocks.py",
@@ -71,10 +70,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "nc/macro/_reader.py _Statements",
         "nc/macro/_shape.py shape",
         "nc/macro/_system.py SystemVariables._modal",
-    ),
-    "a table, a line for each row": (
-        "controllers/fanuc/device/_signals.py Signals",
-        "controllers/fanuc/device/_signals.py Signals.f",
     ),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",

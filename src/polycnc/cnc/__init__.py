@@ -40,7 +40,8 @@ if TYPE_CHECKING:
     from polycnc.cnc._control_snapshot import ControlSnapshot
     from polycnc.cnc._control_time import ControlEvent
     from polycnc.cnc._inventory import AxisLimits, Identity, Inventory, PastMessage, SetBreakpoint
-    from polycnc.cnc._manual import AxisMotion, Handwheel, ManualData, ManualKind, ManualMotion, ManualState
+    from polycnc.cnc._manual import ManualMotion
+    from polycnc.cnc._manual_data import AxisMotion, Handwheel, ManualData, ManualKind, ManualState
     from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
     from polycnc.cnc._program_edit import ProgramEdit
     from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment

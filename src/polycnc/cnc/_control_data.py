@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from polycnc.cnc._alarms import ALARMS, AlarmTable
-from polycnc.cnc._manual import ManualData
+from polycnc.cnc._manual_data import ManualData
 from polycnc.cnc._program_memory import MemoryData
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.errors import UsageError

@@ -59,26 +59,16 @@ def make_parts(
     spindle = Spindle(clock, config)
     plc = PlcModel(clock, config.times, script, limit_s=data.answer_limit_s)
     manual = ManualMotion(machine, alarms, data.manual, referenced=data.referenced_at_start)
-    live = live_config(config, tools, offsets)
-    channels = tuple(
-        ControlChannel(
-            machine,
-            path,
-            share,
-            manual,
-            RunMaker(
-                machine,
-                path,
-                dialect,
-                live,
-                share.axes,
-                library=library,
-                dry_run_mm_s=data.dry_run_mm_min / 60.0,
-                on_event=partial(on_event, path),
-                language=languages[path] if path < len(languages) else language_for(dialect),
-            ),
-        )
-        for path, share in enumerate(shares)
+    channels = _channels(
+        machine,
+        shares,
+        data,
+        dialect,
+        manual,
+        live_config(config, tools, offsets),
+        languages=languages,
+        library=library,
+        on_event=on_event,
     )
     return ControlParts(
         machine=machine,
@@ -99,4 +89,38 @@ def make_parts(
         functions=AuxiliaryFunctions(clock, config.times, spindle, plc, end_stops=data.end_stops_spindle),
         manual=manual,
         relative_zero=[0.0] * len(config.axes),
+    )
+
+
+def _channels(
+    machine: Machine,
+    shares: Sequence[ChannelData],
+    data: ControlData,
+    dialect: Dialect,
+    manual: ManualMotion,
+    live: MachineConfig,
+    *,
+    languages: Sequence[Language | None],
+    library: Library,
+    on_event: Callable[[int, Event], bool],
+) -> tuple[ControlChannel, ...]:
+    return tuple(
+        ControlChannel(
+            machine,
+            path,
+            share,
+            manual,
+            RunMaker(
+                machine,
+                path,
+                dialect,
+                live,
+                share.axes,
+                library=library,
+                dry_run_mm_s=data.dry_run_mm_min / 60.0,
+                on_event=partial(on_event, path),
+                language=languages[path] if path < len(languages) else language_for(dialect),
+            ),
+        )
+        for path, share in enumerate(shares)
     )

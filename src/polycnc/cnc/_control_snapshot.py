@@ -9,7 +9,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from polycnc.cnc._alarms import Alarm, OperatorMessage
 from polycnc.cnc._control_data import Mode, Overrides, Search, Switches
-from polycnc.cnc._manual import ManualState
+from polycnc.cnc._manual_data import ManualState
 from polycnc.cnc._plc import PlcState
 from polycnc.cnc._run_snapshot import RunSnapshot
 from polycnc.cnc._spindle import SpindleMotion

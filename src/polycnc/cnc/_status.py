@@ -10,7 +10,7 @@ from typing import NamedTuple
 from polycnc.cnc._alarms import Alarm, OperatorMessage
 from polycnc.cnc._control_data import Mode, Overrides, Switches
 from polycnc.cnc._frozen import row
-from polycnc.cnc._manual import Handwheel
+from polycnc.cnc._manual_data import Handwheel
 from polycnc.cnc._run_state import INTERRUPTED, RunState
 from polycnc.cnc._spindle import SpindleState
 from polycnc.cnc._timers import Parts, Timer

@@ -13,7 +13,7 @@ import numpy as np
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._frozen import FrozenDict
-from polycnc.cnc._manual import AxisMotion, ManualKind
+from polycnc.cnc._manual_data import AxisMotion, ManualKind
 from polycnc.cnc._run_state import RunState
 from polycnc.cnc._status import (
     AxisStatus,
