@@ -69,7 +69,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "nc/macro/_shape.py shape",
         "nc/macro/_system.py SystemVariables._modal",
     ),
-    "a table, a line for each row": ("controllers/bosch/ncs/_data_services.py _rows",),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
         "post/output/_motion.py Motion",
