@@ -249,3 +249,70 @@ def test_tables_are_usable_without_set_up(root: Root) -> None:
     assert [found[name] for name in ("#A", "#B", "#C%", "#D%")] == [31.75, 82.0, 20000, 0]
     assert found["#E"] == pytest.approx(50.8)
     assert root.error('1 A=FXC("Q",54,1)') == "1: INVALID PARAMETER"
+
+
+# ---------------------------------------------------------------------- variables that statements set
+
+PERMANENT = "DEF INT @WHOLE;\nDEF REAL @REAL;\nDEF CHAR @TEXT(20);\nDEF INT @ROWS(4,5);\nDEF INT @LIST(6);\n"
+NUMBERS = {
+    "V%": "", "#V%": "", "F%(2)": "1 DIM F%(3)", "F%(1,2)": "1 DIM F%(3,4)", "@7": "", "@WHOLE%": "",
+    "@ROWS%(2,3)": "", "@LIST%(5)": "", "R": "", "D!": "",
+}  # fmt: skip
+STRINGS = {
+    "A$": "1 DIM A$(20)", "#A$": "1 DIM #A$(20)", "R$(1)": "1 DIM R$(3,20)", "@TEXT$": "",
+}  # fmt: skip
+SETS_NUMBERS = {
+    "INP#": ('2 OPENW(1,"P1") : PRN#(1,17) : CLOSE(1) : OPENR(2,"P1")', "INP#(2,{})", (), 17),
+    "SFK": ("", 'SFK({},"A","B","C")', ("SOFTKEY3",), 3),
+    "WAIT": ("", "WAIT(,20,{})", (), 1),
+    "MCODS": ("2 W%=0", "#E%=MCODS(31,1,W%,{},1)", (), 5),
+}
+SETS_STRINGS = {
+    "INP#": ('2 OPENW(1,"P1") : PRN#(1,"TEXT") : CLOSE(1) : OPENR(2,"P1")', "INP#(2,{})", (), "TEXT"),
+    "SFK": ("", 'SFK({},"A","TEXT","C")', ("SOFTKEY2",), "TEXT"),
+}
+
+
+@pytest.mark.parametrize("statement", SETS_NUMBERS)
+@pytest.mark.parametrize("variable", NUMBERS)
+def test_what_sets_a_number_sets_every_kind_of_variable(root: Root, variable: str, statement: str) -> None:
+    root.write("wmhperm.dat", PERMANENT.encode())
+    before, text, keys, value = SETS_NUMBERS[statement]
+    if statement == "WAIT" and variable in ("R", "D!"):
+        assert "WAIT is INTEGER" in root.error(f"3 {text.format(variable)}")
+        return
+    lines = (
+        NUMBERS[variable],
+        before,
+        f"3 {text.format(variable)}",
+        f"4 #NUL?={variable}=NUL",
+        f"5 #R!={variable}",
+    )
+    found = root.run("\n".join(filter(None, lines)), keys=keys).variables
+    assert found["#NUL?"] is (value is None)
+    assert found["#R!"] == value
+
+
+@pytest.mark.parametrize("statement", SETS_STRINGS)
+@pytest.mark.parametrize("variable", STRINGS)
+def test_what_sets_a_text_sets_every_kind_of_variable(root: Root, variable: str, statement: str) -> None:
+    root.write("wmhperm.dat", PERMANENT.encode())
+    before, text, keys, value = SETS_STRINGS[statement]
+    lines = (STRINGS[variable], before, f"3 {text.format(variable)}", f'4 #L%=INSTR({variable},"XTEXT")')
+    assert root.run("\n".join(filter(None, lines)), keys=keys).variables["#L%"] == 2
+    assert value == "TEXT"
+
+
+def test_permanent_fields_are_buffers_too(root: Root) -> None:
+    root.write("wmhperm.dat", PERMANENT.encode())
+    assert root.run("1 #A%=GETERR(1,,@ROWS%,2)").variables["#A%"] == 0
+    assert root.run("1 V%=0 : #A%=MCODS(31,1,V%,@LIST%,1)").variables["#A%"] == 0
+
+
+def test_a_permanent_variable_without_a_value_stays_so_where_nothing_sets_it(root: Root) -> None:
+    found = root.run('1 SFK(@7,"A")\n2 DLG : PRN(2,3,"X ##",@8) : ENDDLG', keys=("LEVEL_RETURN",)).variables
+    assert (found["@7"], found["@8"]) == (None, None)
+
+
+def test_ncf_needs_a_string_with_room(root: Root) -> None:
+    assert root.error('1 A$=NCF("G1")').startswith("1: inadmissible assignment")

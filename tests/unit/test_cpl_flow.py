@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from polycnc.errors import ProgramError
+from polycnc.nc import load_dialect
 from polycnc.nc.cpl import (
     BLOCKED,
     OMITTED,
     PAUSE,
     BlockWord,
+    CodeCalls,
     Lines,
     Linker,
     NcValues,
@@ -162,6 +164,24 @@ def test_what_brackets_do_not_take_is_refused_where_it_stands() -> None:
     assert errors("N10 X[2] (\xe4) \xe4") == ["1:14 'byte 0xC3' may not stand in a block"]
     assert errors("N10 (\xe4) X[2] AB=3") == ["1:14 'A' begins no word"]
     assert errors("N10 (\xe4) X[2] ]") == ["1:14 ']' begins no word"]
+
+
+LOST = [
+    "B%=2", "#B$=A$", "@7=1", "DIM A$(3)", "GOTO 10", "IF B%=2 THEN", "ENDIF", "FOR I%=1 TO 3", "NEXT", "CALL SP",
+    "AB=2", "OPENW(1)", "CLS", "REM x", "A$(1)=A$", '"A"',
+]  # fmt: skip
+
+
+@pytest.mark.covers("cpl.cplblock")
+@pytest.mark.parametrize("head", ["", "  ", "N20 "])
+@pytest.mark.parametrize("statement", LOST)
+def test_a_block_that_has_lost_its_number_is_refused_where_it_stands(statement: str, head: str) -> None:
+    linker = Linker(RecordingHost().program, codes=CodeCalls(rules=load_dialect("bosch").text_rules()))
+    _, found = linker.link(f"10 A%=1\nN15 X5 (A=B) Y1=3\n{head}{statement}\n30 A%=3", "main.cpl")
+    (error,) = found
+    assert error.position is not None
+    assert (error.position.line, error.position.column) == (3, len(head) + 1)
+    assert error.what.endswith("is no NC block, and has no number")
 
 
 def test_remarks_of_nc_blocks_stay_with_the_control() -> None:

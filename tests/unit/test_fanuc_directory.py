@@ -186,9 +186,10 @@ def test_the_program_in_execution() -> None:
     control.select_program(7)
     assert fwlib.cnc_rdexecprog(handle, 9) == (OK, 9, 0, b"O0007\nN10")
     running(control, 7, lambda: control.execution.sequence == 20)
+    control.advance(1)  # the next block is read in the cycle after one has begun
     code, count, ahead, text = fwlib.cnc_rdexecprog(handle, 100)
     assert (code, text, count) == (OK, b"N20Y5.\nN30X0\nM30\n", 17)
-    assert ahead in (1, 2)
+    assert ahead == 1
     assert fwlib.cnc_rdexecprog(handle, 4)[1:] == (4, ahead, b"N20Y")
     assert fwlib.cnc_rdexecprog(handle, 0) == (EW.EW_LENGTH, 0, 0, b"")
 

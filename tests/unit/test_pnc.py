@@ -626,7 +626,7 @@ def test_an_oriented_spindle_is_told(tmp_path: Path) -> None:
     machine.write_text(
         MACHINE + "[spindle]\nmax_rpm = 6000\norientation_deg = 37.5\n[times]\nspindle_start_s = 0.25\n"
     )
-    ask = f'DIM B%(8) : V=0 : E%=MCODS(63,-1,V,B%,8) : #M%=B%(1) : {SENSES} : #T$=NCF("M5")'
+    ask = f'DIM B%(8) : DIM #T$(4) : V=0 : E%=MCODS(63,-1,V,B%,8) : #M%=B%(1) : {SENSES} : #T$=NCF("M5")'
     pnc = Pnc(tmp_path, machine)
     try:
         for before, sense, movement, oriented in (

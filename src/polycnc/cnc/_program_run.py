@@ -279,8 +279,7 @@ class ProgramRun:
 
     def answered(self) -> None:
         """Let the path go on from the auxiliary function at which it stands."""
-        self._moment.unanswered = False
-        self._conduct.set_hold()
+        self._conduct.answered()
 
     def reset(self) -> None:
         """Break the program off: the axes brake on the path, then the rest of it is dropped.

@@ -329,6 +329,9 @@ class Conduct:
         if event.word and self.on_event is not None:
             self.moment.unanswered = bool(self.on_event(event)) and not self.moment.suppressed.answers
             self.set_hold()
+        if event.barrier:
+            self.moment.barrier = True
+            self._pass_barrier()
         if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
             self.moment.probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
         elif event.stop is Stop.DRAIN:
@@ -342,6 +345,18 @@ class Conduct:
             self.moment.state = _STOP_STATES[event.stop]
             self.set_hold()
         elif event.stop is not None and self.options.stands_at_stops:
+            self._go_on()
+
+    def answered(self) -> None:
+        """Let the path, and preparation, go on from an auxiliary function."""
+        self.moment.unanswered = False
+        self._pass_barrier()
+        self.set_hold()
+
+    def _pass_barrier(self) -> None:
+        """Let preparation go on behind functions that have been answered: what they change counts for what follows."""
+        if self.moment.barrier and not self.moment.unanswered:
+            self.moment.barrier = False
             self._go_on()
 
     def _go_on(self) -> None:
@@ -418,7 +433,7 @@ class Conduct:
         self.moment.dropping = False
         self.moment.hold = False
         self.moment.stop = None
-        self.moment.unanswered = False
+        self.moment.unanswered = self.moment.barrier = False
         self.moment.probing = None
         self.moment.met = None
         self.set_hold()

@@ -15,10 +15,11 @@ class RunMoment:
     """What a run is doing, what is switched on for it, and what it has met on the path.
 
     `hold` is a feed hold; a stop holds the path as well. `held_back` is one that comes when the program lets it.
-    `stop` is the stop at which the program stands, `met` the segment count and the tag of the event at which the path
-    rests, `unanswered` an auxiliary function at which it stands. `approach` is where a searched block begins, and its
-    line, `searched` where a calculated search has come to. `suppressed` is what the program keeps from acting now.
-    `rests` is the last cycle in which points of rest were left at once and how many, `enough_at` one that has no more.
+    `stop` is the stop at which the program stands, `met` the segment count and the tag of the event at which the
+    path rests, `unanswered` an auxiliary function at which it stands, `barrier` that preparation waits for it.
+    `approach` is where a searched block begins, and its line, `searched` where a calculated search has come to.
+    `suppressed` is what the program keeps from acting now. `rests` is the last cycle in which points of rest were
+    left at once and how many, `enough_at` one that has no more.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -33,6 +34,7 @@ class RunMoment:
     stop: Event | None = None
     met: tuple[int, int] | None = None
     unanswered: bool = False
+    barrier: bool = False
     dropping: bool = False
     suppressed: Suppressed = field(default_factory=Suppressed)
     tool_times: ToolTimes = field(default_factory=ToolTimes)

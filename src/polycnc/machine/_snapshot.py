@@ -26,7 +26,7 @@ Plain: TypeAlias = Mapping[str, Any]
 """Text, numbers, booleans, None, bytes, arrays of numbers, and lists and dictionaries of these."""
 
 MAGIC = b"polycnc snapshot\n"
-VERSION = 1
+VERSION = 2
 _HEAD = struct.Struct("<I32sQ")  # version, SHA-256 of the rest, its length
 
 

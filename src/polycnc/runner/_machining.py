@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from polycnc.errors import SourcePosition, UsageError
 from polycnc.kernel import IS_RAPID, LEADING, TIME_S
-from polycnc.machine import MachineConfig
+from polycnc.machine import MachineConfig, RotaryAxis, ToolConfig
 from polycnc.nc import CONTEXT_SHIFT, BlockRecords, ProgramText
 from polycnc.runner._blocks import Blocks, BlockTable, ExecutedBlock
 from polycnc.stock import (
@@ -107,7 +107,9 @@ class Machined:
 
 
 class MachiningCollector:
-    """Collect the course of the tool's end over a run, in the work coordinates of the first work offset.
+    """Collect the course of the tool's tip over a run, in the coordinates of the first work offset.
+
+    A tool hangs from the spindle by its length in the machine file, whatever compensation does.
 
     Raises:
         UsageError: a machine without X, Y and Z.
@@ -121,16 +123,25 @@ class MachiningCollector:
                 hint="Stock is cut on machines with X, Y and Z.",
             )
         self._config = config
-        self._columns = [LEADING + config.axis_names.index(name) for name in _PLACES]
+        self._turning = [
+            (LEADING + index, axis.name)
+            for index, axis in enumerate(config.axes)
+            if isinstance(axis, RotaryAxis) and axis.carries != "nothing"
+        ]
+        self._turned = ""
+        self._axes = [config.axis_names.index(name) for name in _PLACES]
         self._table = BlockTable()
         self._course = Course()
-        self._origin: Floats | None = None
+        self._zero: list[float] | None = None
         self.texts = self._table.texts
 
     def add(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
         """Take a piece of the record."""
         if not len(rows):
             return
+        for column, name in self._turning:
+            if not self._turned and np.any(rows[:, column] != 0.0):
+                self._turned = name
         contexts = tags >> CONTEXT_SHIFT
         begins = np.flatnonzero(np.diff(contexts, prepend=~contexts[:1]))
         lengths = np.diff(begins, append=len(tags))
@@ -140,27 +151,22 @@ class MachiningCollector:
         )
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
-        tip = rows[:, self._columns] - shift
+        tip = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes] - shift
         self._course.add(
             Rows(rows[:, TIME_S].copy(), tip, block, tool, rows[:, IS_RAPID] != 0.0, turns.astype(np.bool_))
         )
 
     def _context(self, tag: int, records: BlockRecords) -> tuple[list[float], int, bool]:
-        """Return where program zero lies with a block, its tool, and whether the spindle turns."""
+        """Return where the stock's zero lies for the tip of a block's tool, the tool, and whether the spindle turns."""
         words = records.lasting_words(tag)
         if words is None:
             return [0.0, 0.0, 0.0], 0, False
-        names = self._config.axis_names
-        zero = np.array([words.zero[names.index(name)] for name in _PLACES])
-        offset = np.array(
-            [
-                sum(self._config.work_offset(each)[names.index(name)] for each in words.work)
-                for name in _PLACES
-            ]
-        )
-        if self._origin is None:
-            self._origin = offset
-        return (zero - offset + self._origin).tolist(), words.tool, words.spindle_direction != 0
+        if self._zero is None:
+            offsets = [self._config.work_offset(name) for name in words.work]
+            self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
+        x, y, z = self._zero
+        tool = self._config.tools.get(words.tool, ToolConfig())
+        return [x, y, z + tool.length_mm + tool.wear_length_mm], words.tool, words.spindle_direction != 0
 
     def _place(self, block: ExecutedBlock) -> SourcePosition | None:
         text = self.texts.get(block.program)
@@ -172,6 +178,11 @@ class MachiningCollector:
         Raises:
             UsageError: a body that cannot be told, or none that can be cut.
         """
+        if self._turned:
+            raise UsageError(
+                f"axis {self._turned} turns the part or the tool: stock is cut on three axes only",
+                hint="Run the program without stock.",
+            )
         if tools is None:
             tools = tools_of(self._config, self.texts)
         course = self._course.rows()

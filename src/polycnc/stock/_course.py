@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
 from polycnc.stock._chords import find_chords
-from polycnc.stock._cutting import Rows
+from polycnc.stock._cutting import Rows, joined
 
 Floats = npt.NDArray[np.float64]
 
@@ -45,11 +43,3 @@ class Course:
         ends = np.zeros(len(self._held.t_s), np.int64)
         count = find_chords(self._held.tip, self._held.keys(), self._tolerance_mm, ends)
         return joined([*self._pieces, self._held.at(np.concatenate(([0], ends[:count])))])
-
-
-def joined(pieces: list[Rows]) -> Rows:
-    """Return pieces of a record as one."""
-    whole, flags = np.zeros(0, np.int64), np.zeros(0, np.bool_)
-    empty = Rows(np.zeros(0), np.zeros((0, 3)), whole, whole, flags, flags)
-    columns: Any = zip(*(each.columns() for each in [empty, *pieces]), strict=True)
-    return Rows(*(np.concatenate(column) for column in columns))

@@ -21,6 +21,8 @@ Integers = npt.NDArray[np.int64]
 
 CHORD_SHARE = 0.02
 """How far a chord may be from where the tool was, as a part of a cell."""
+RIM_SHARE = 0.5
+"""How much narrower bodies are that must not touch, as a part of a cell: a tool leaves the wall that it has cut."""
 LEAST_DEPTH_SHARE = 0.5
 """How deep something must be in the material to count as a collision, as a part of a cell."""
 
@@ -69,7 +71,33 @@ class Rows:
         changed = np.zeros(len(self.block), np.bool_)
         for column in (self.block, self.tool, self.rapid, self.turns):
             changed[1:] |= column[1:] != column[:-1]
+        changed[2:] |= self.tool[1:-1] != self.tool[:-2]  # where another tool is first is the end of a chord
         return np.cumsum(changed)
+
+
+def joined(pieces: list[Rows]) -> Rows:
+    """Return pieces of a record as one."""
+    whole, flags = np.zeros(0, np.int64), np.zeros(0, np.bool_)
+    empty = Rows(np.zeros(0), np.zeros((0, 3)), whole, whole, flags, flags)
+    columns: Any = zip(*(each.columns() for each in [empty, *pieces]), strict=True)
+    return Rows(*(np.concatenate(column) for column in columns))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Outlines:
+    """Hold the outlines of a tool: of what cuts, the same without its rim, of what must not touch, and of nothing."""
+
+    cutter: Floats
+    core: Floats
+    holder: Floats
+    none: Floats
+
+    @classmethod
+    def of(cls, tool: Tool, rim_mm: float) -> _Outlines:
+        cutting, holder = tool.cutting_profile(), tool.holder_profile()
+        core = cutting.within(max(cutting.radius_mm - rim_mm, 0.5 * cutting.radius_mm))
+        clear = holder.within(max(holder.radius_mm - rim_mm, 0.5 * holder.radius_mm))
+        return cls(cutting.rows, core.rows, clear.rows, holder.rows[:0])
 
 
 class Cutting:
@@ -81,15 +109,13 @@ class Cutting:
     def __init__(self, stock: Stock, tools: Mapping[int, Tool]) -> None:
         self.stock = stock
         self.unknown_tools: set[int] = set()
-        self._outlines = {
-            number: (tool.cutting_profile().rows, tool.holder_profile().rows)
-            for number, tool in tools.items()
-        }
+        rim = RIM_SHARE * stock.cell_mm
+        self._outlines = {number: _Outlines.of(tool, rim) for number, tool in tools.items()}
         self._tools = tools
         self._removed = np.zeros(0)
         self._by_tool: dict[int, float] = {}
         self._contacts: dict[tuple[ContactKind, int], Contact] = {}
-        self._last: Floats | None = None
+        self._last: Rows | None = None  # one row
 
     @property
     def removed_mm3(self) -> float:
@@ -115,40 +141,45 @@ class Cutting:
         """Take the next rows; the tool comes from where the last ones ended."""
         if not len(rows.t_s):
             return
-        tip = rows.tip if self._last is None else np.concatenate((self._last[None], rows.tip))
-        ahead = len(tip) - len(rows.tip)
-        keys = rows.keys()
-        keys = np.concatenate((keys[:1], keys)) if ahead else keys
-        ends = np.zeros(len(tip), np.int64)
-        count = find_chords(tip, keys, CHORD_SHARE * self.stock.cell_mm, ends)
+        rows = rows if self._last is None else joined([self._last, rows])
+        self._last = rows.at(np.array([len(rows.t_s) - 1]))
+        ends = np.zeros(len(rows.t_s), np.int64)
+        count = find_chords(rows.tip, rows.keys(), CHORD_SHARE * self.stock.cell_mm, ends)
         nodes = np.concatenate(([0], ends[:count]))
-        self._last = tip[-1].copy()
-        for first, last in _runs(rows.tool[np.maximum(nodes[1:] - ahead, 0)]):
-            self._sweep(
-                tip[nodes[first : last + 1]], np.maximum(nodes[first + 1 : last + 1] - ahead, 0), rows
-            )
+        tool, rapid = rows.tool[nodes], rows.rapid[nodes]
+        way = np.where(
+            tool[1:] == tool[:-1], 2 * tool[1:] + rapid[1:], -1
+        )  # another tool has not come that way
+        for first, last in _runs(way):
+            if way[first] >= 0:
+                self._sweep(rows.tip[nodes[first : last + 1]], nodes[first + 1 : last + 1], rows)
 
     def _sweep(self, places: Floats, ends: Integers, rows: Rows) -> None:
-        """Sweep the ways between places with one tool; `ends` are the rows at their ends."""
+        """Sweep the ways between places with one tool, all at rapid or none; `ends` are the rows at their ends."""
         number = int(rows.tool[ends[0]])
         outlines = self._outlines.get(number)
         if outlines is None:
             self.unknown_tools.add(number)
             return
-        cut, touched = np.zeros((len(ends), FIGURES)), np.zeros((len(ends), FIGURES))
-        sweep(self.stock.grid, np.ascontiguousarray(places), *outlines, cut, touched)
+        cut, touched, met = (np.zeros((len(ends), FIGURES)) for _ in range(3))
+        places = np.ascontiguousarray(places)
+        rapid = bool(rows.rapid[ends[0]])
+        if rapid:
+            sweep(self.stock.grid, places, outlines.none, outlines.core, cut, met)
+        sweep(self.stock.grid, places, outlines.cutter, outlines.holder, cut, touched)
         blocks, volume, depth = rows.block[ends], cut[:, VOLUME_MM3], cut[:, DEPTH_MM]
         if len(self._removed) <= blocks.max():
             self._removed = np.concatenate((self._removed, np.zeros(int(blocks.max()) + 1)))
         np.add.at(self._removed, blocks, volume)
         self._by_tool[number] = self._by_tool.get(number, 0.0) + float(volume.sum())
-        deep = depth > LEAST_DEPTH_SHARE * self.stock.cell_mm
+        least = LEAST_DEPTH_SHARE * self.stock.cell_mm
+        deep = depth > least
         flutes = self._tools[number].flute_mm
         for kind, wrong, figures in (
-            (ContactKind.RAPID, deep & rows.rapid[ends], cut),
-            (ContactKind.SPINDLE, deep & ~rows.rapid[ends] & ~rows.turns[ends], cut),
+            (ContactKind.RAPID, met[:, DEPTH_MM] > least, met),
+            (ContactKind.SPINDLE, deep & ~rows.turns[ends] & (not rapid), cut),
             (ContactKind.FLUTES, depth > flutes, cut),
-            (ContactKind.HOLDER, touched[:, DEPTH_MM] > LEAST_DEPTH_SHARE * self.stock.cell_mm, touched),
+            (ContactKind.HOLDER, touched[:, DEPTH_MM] > least, touched),
         ):
             for way in np.flatnonzero(wrong).tolist():
                 self._note(kind, int(ends[way]), figures[way], places[way : way + 2], rows)

@@ -50,6 +50,12 @@ class Profile:
         """The largest radius, 0 of a body without any piece."""
         return float(self.rows[-1, TO_R]) if len(self.rows) else 0.0
 
+    def within(self, radius_mm: float) -> Profile:
+        """Return the outline up to a radius."""
+        rows = self.rows[self.rows[:, FROM_R] < radius_mm].copy()
+        rows[:, TO_R] = np.minimum(rows[:, TO_R], radius_mm)
+        return Profile(rows)
+
     def height(self, radius_mm: float) -> float:
         """Return the height of the outline (mm) at a radius; infinite outside."""
         for row in self.rows:

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from polycnc.errors import UsageError
 from polycnc.stock import Arc, Box, ContactKind, Cutting, Line, Rows, Stock, Tool, ToolKind, make_profile
@@ -68,6 +70,35 @@ def test_short_flutes_and_a_low_holder_are_found() -> None:
     assert [(each.kind, each.block, each.depth_mm) for each in low.contacts] == [
         (ContactKind.HOLDER, 12, 1.5)
     ]
+
+
+@given(
+    x=st.integers(-20, 100),
+    y=st.integers(0, 140),
+    radius=st.integers(2, 20),
+    along=st.integers(-60, 60),
+    cell=st.sampled_from([0.25, 0.2, 0.1]),
+)
+@settings(max_examples=40)
+def test_a_tool_leaves_what_it_has_cut_without_touching(
+    x: int, y: int, radius: int, along: int, cell: float
+) -> None:
+    """Whatever cells its rim falls on: up at rapid, and back at rapid along the slot that it came by."""
+    begin, end = (x * 0.25, y * 0.25), ((x + along) * 0.25, y * 0.25 + 0.05 * along)
+    places = [(*begin, 4.0), (*begin, -3.0), (*end, -3.0), (*begin, -3.0), (*end, -3.0), (*end, 4.0)]
+    rows = Rows(
+        np.arange(1.0, 7.0),
+        np.array(places),
+        np.arange(6),
+        np.full(6, 7),
+        np.array([True, False, False, True, True, True]),
+        np.ones(6, np.bool_),
+    )
+    found = Cutting(
+        Stock(Box((0.0, 0.0, -20.0), (30.0, 40.0, 0.0)), cell), {7: Tool(ToolKind.FLAT, 0.5 * radius)}
+    )
+    found.add(rows)
+    assert found.contacts == []
 
 
 def test_the_holder_follows_the_cutter() -> None:

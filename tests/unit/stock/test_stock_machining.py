@@ -9,7 +9,7 @@ import pytest
 
 from polycnc import runner
 from polycnc.errors import UsageError
-from polycnc.machine import load_machine
+from polycnc.machine import ToolConfig, load_machine
 from polycnc.stock import ContactKind, Form, Tool, ToolKind
 
 BRACKET = Path(__file__).resolve().parents[3] / "examples" / "bracket.nc"
@@ -115,6 +115,46 @@ def test_the_bracket() -> None:
     assert found.collisions == []
     assert found.stock.height(10.0, 10.0) == -12.0  # a hole through a corner
     assert found.messages[1:] == []
+
+
+def test_a_table_that_turns_is_refused() -> None:
+    program = Path(__file__).resolve().parents[3] / "examples" / "five_axis.nc"
+    with pytest.raises(UsageError, match="turns the part or the tool"):
+        runner.run(program, "mill5", stock="auto", check=False)
+
+
+def test_a_longer_tool_does_not_come_along_the_way_of_the_one_before() -> None:
+    change = "T2 M6\nG43 H2\nG0 X30 Y21\nM30"
+    config = load_machine("mill3").model_copy(
+        update={
+            "tools": {1: ToolConfig(length_mm=40.0), 2: ToolConfig(length_mm=75.0)},
+            "offsets": {"G54": {"Z": -130.0}},
+        }
+    )
+    text = PLATE.replace("M30", change).replace("G0 Z20\nT2", "G0 Z40\nX30 Y21\nT2")
+    collector = runner.MachiningCollector(config)
+    runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
+    tools = {**TOOLS, 2: Tool(ToolKind.FLAT, 4.0)}
+    found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), tools)
+    assert found.collisions == []
+    assert found.by_tool_mm3[1] == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
+    assert found.stock.height(30.0, 21.0) == 0.0
+
+
+def test_the_length_of_another_tool_is_a_crash() -> None:
+    """H is not T: the tool is longer than what is compensated."""
+    config = load_machine("mill3").model_copy(
+        update={
+            "tools": {1: ToolConfig(length_mm=62.0), 2: ToolConfig(length_mm=40.0)},
+            "offsets": {"G54": {"Z": -130.0}},
+        }
+    )
+    collector = runner.MachiningCollector(config)
+    runner.run(PLATE.replace("H1", "H2"), config, "fanuc", tagged_rows=collector.add, check=False)
+    found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), TOOLS)
+    kinds = {(each.kind, each.line) for each in found.collisions}
+    assert (ContactKind.FLUTES, 7) in kinds
+    assert (ContactKind.RAPID, 9) in kinds  # 20 mm above the part is 2 mm within it
 
 
 def test_a_lathe_is_refused() -> None:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Action, Family, of_family
 from polycnc.nc.text._program import ProgramText, TextRules
+from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import Block, scan_block
 
 MOST_CONTOUR_BLOCKS = 10_000
@@ -41,13 +42,18 @@ def contour_blocks(
     if begin is None:
         return ContourTrouble(f"there is no block N{first}", "P names the first block of the contour.")
     blocks = [begin]
-    while not _is_numbered(blocks[-1], last):
+    while not (blocks[-1].flags & STATEMENT or _is_numbered(blocks[-1], last)):
         block = blocks[-1]
         if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
             return ContourTrouble(
                 f"there is no block N{last} behind N{first}", "Q names the last block of the contour."
             )
         blocks.append(scan_block(text, block.end, block.line + 1, rules))
+    if blocks[-1].flags & STATEMENT:
+        return ContourTrouble(
+            "a contour that is cut apart by statements is not supported yet",
+            "Write the contour in plain words.",
+        )
     return blocks
 
 

@@ -64,7 +64,7 @@ def moves(block: BlockContext) -> list[QueueItem]:
         return [line(block, end, True)]
     if block.after.spindle.surface_speed:
         limits.check(block, end)
-        cuts = list(cut(block, start(block), end))
+        cuts = list(cut(block, block.start, end))
     else:
         cuts = [line(block, end, False)]
     return held(block, cuts) if block.dialect.corner_words else [*cuts]
@@ -182,15 +182,10 @@ def line(block: BlockContext, end: Point, rapid: bool) -> Line:
     rules, whole = block.rules, block.after.modal.whole
     if any(not low <= value <= high for value, low, high in zip(end, rules.low, rules.high, strict=True)):
         limits.check(block, end)
-    begin = start(block)
+    begin: Point = tuple(block.after.modal.position.tolist())
     feed = Feed() if rapid else feeds.feed(block, begin, end)
     stop = block.exact_stop or (rapid and bool(whole[RAPID_STOP]))
     return Line(begin, end, feed, rapid, stop, block.line)
-
-
-def start(block: BlockContext) -> Point:
-    """Return the programmed position, in machine coordinates."""
-    return tuple(block.after.modal.position.tolist())
 
 
 def note_position(block: BlockContext) -> None:

@@ -35,7 +35,7 @@ class Event:
 
     `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
     that the function takes, where the queue does not wait for it (`QueueWriter.answers`). `message` is what the
-    operator is told there.
+    operator is told there. Preparation goes on behind a `barrier` when it has been answered.
     """
 
     word: str
@@ -44,6 +44,7 @@ class Event:
     default_s: float = 0.0
     tag: int = field(default=0, compare=False)
     message: str = ""
+    barrier: bool = False
 
 
 class WriterSnapshot(NamedTuple):
@@ -61,8 +62,8 @@ class QueueWriter:
     """Append items to path `path` of the kernel; what finds no room waits in `backlog`.
 
     `events` holds what the path has yet to come to, by number. `stops` counts those among them behind which
-    preparation waits: drains, and with `stands_at_stops` program stops. With `answers` the path does not wait at
-    auxiliary functions by itself: whoever runs it holds it until they are answered. `marks` takes the blocks that
+    preparation waits: drains, with `stands_at_stops` program stops, and with `answers` auxiliary functions, at which
+    the path does not wait by itself: whoever runs it holds it until they are answered. `marks` takes the blocks that
     leave nothing in the queue: the segment count that they stand before, and their tag.
     """
 
@@ -214,13 +215,16 @@ class QueueWriter:
     def _put_wait(self, item: Wait) -> None:
         words = item.events or (("",) if item.stop is not None else ())
         answered = self.answers and bool(item.events)
+        stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
+        stops = item.stop is Stop.DRAIN or stands
         for word in words:
             self._append_wait(0.0, self._next_event, item.tag)
             time_s = item.duration_s if answered and word is words[-1] else 0.0
-            self.events[self._next_event] = Event(word, item.line, item.stop, time_s, item.tag, item.message)
+            barrier = answered and not stops and word is words[-1]
+            event = Event(word, item.line, item.stop, time_s, item.tag, item.message, barrier)
+            self.events[self._next_event] = event
             self._next_event += 1
-        stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)
-        if item.stop is Stop.DRAIN or stands:
+        if stops or answered:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)

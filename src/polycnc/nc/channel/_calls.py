@@ -78,6 +78,7 @@ class Calls:
                 running.source = language.source(begin.text, begin.offset, begin.line, running.arguments)
             except ProgramError as error:
                 self._errors.note(error)
+        self._reader.word_values = running.word_values
         if running.source is not None:
             self._reader.jump(begin, begin.offset)  # no text for now
         elif self.depth or language is not None:
@@ -108,6 +109,7 @@ class Calls:
                 running.source = self._language.source_at(begin.text, begin.offset, begin.line, place.offset)
             except ProgramError as error:
                 raise UsageError(error.what, hint=error.hint) from error
+            self._reader.word_values = running.word_values
             if running.source is not None:
                 self._reader.jump(begin, begin.offset)  # no text for now
                 return
@@ -172,6 +174,7 @@ class Calls:
 
     def _note_calls(self) -> None:
         self.running = self._all[-1]
+        self._reader.word_values = self.running.word_values
         calls: list[Call] = []
         for running in self._all[1:]:
             back = running.back
@@ -270,6 +273,7 @@ class Calls:
         if returning is not None:
             for running, (arguments, source) in zip(self._all, returning(), strict=True):
                 running.arguments, running.source = arguments, source
+        self._reader.word_values = self.running.word_values
 
     def restore(
         self, saved: tuple[SavedCall, ...], within: tuple[Call, ...], texts: Iterable[ProgramText]

@@ -303,5 +303,5 @@ class Channel:
         self.writer.restore(saved.writer)
         self.records.restore(saved.records)
         self.interpreter.restore(saved.interpreter)
+        take_up()  # before anything is read: words may have variables for their numbers
         self._reader.jump(saved.place, saved.text_end)
-        take_up()

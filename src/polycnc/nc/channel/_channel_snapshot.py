@@ -28,7 +28,7 @@ from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement
 from polycnc.nc.modal._suppressed import Suppressed
-from polycnc.nc.records._block_records import Call, SavedRecords
+from polycnc.nc.records._block_records import Call, RunBegin, SavedRecords
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 
@@ -56,9 +56,9 @@ class ChannelSnapshot(NamedTuple):
 
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Coordinates, Corner, Cycle, CycleWords, Event, Family, Feed, Frame, Leg, Line,
-    Message, ModalSnapshot, Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, SavedCall, SavedCompensation,
-    SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop, Suppressed, TipShift,
-    Turning, Wait, WriterSnapshot,
+    Message, ModalSnapshot, Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, RunBegin, SavedCall,
+    SavedCompensation, SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop,
+    Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""
 

@@ -15,7 +15,7 @@ from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.fast._plain_blocks import RESERVE, make_fast_work, marked, run_plain
 from polycnc.nc.modal._modal import ORDINARY
-from polycnc.nc.records._block_records import BlockRecords, Call
+from polycnc.nc.records._block_records import BlockRecords, Call, Feeds, RunBegin
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, WordColumns
 
@@ -88,10 +88,14 @@ class Prepared:
         after: int,
         text: ProgramText,
         calls: tuple[Call, ...],
+        feeds: Feeds | None,
     ) -> tuple[int, int]:
-        """Let the compiled kernel prepare blocks `first` up to `after`; return the next one, and why it stopped."""
+        """Let the compiled kernel prepare blocks `first` up to `after`; return the next one, and why it stopped.
+
+        `feeds` are the numbers of F words that have a variable for theirs; None where no words have.
+        """
         self.state.take_changes()
-        begin = int(words.offset[first]), int(words.line[first])
+        begin = RunBegin(int(words.offset[first]), int(words.line[first]), feeds)
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel
         stopped: tuple[int, int] = run_plain(

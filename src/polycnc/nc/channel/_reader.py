@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
+from polycnc.nc.channel._open_words import OpenWords
 from polycnc.nc.channel._prepared import CHUNK_BLOCKS, Prepared
 from polycnc.nc.channel._running import Running
 from polycnc.nc.records._block_records import Call
-from polycnc.nc.sources._block_source import EndSource
+from polycnc.nc.sources._block_source import EndSource, WordValues
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText, TextRules
-from polycnc.nc.text._scan import COMMENT, LABEL, PERCENT, ScanRules, WordColumns, scan, word_columns
+from polycnc.nc.text._scan import (
+    COMMENT,
+    LABEL,
+    OPEN_VALUE,
+    PERCENT,
+    ScanRules,
+    WordColumns,
+    scan,
+    word_columns,
+)
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
 _JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are short, and jumps many
@@ -38,6 +50,9 @@ class Reader:
         self._after = 0  # the last block of the piece
         self._text_rules = text_rules
         self._rules = rules
+        self.word_values: WordValues | None = None
+        """What words without a number stand for in the text that is read from now on."""
+        self._open: OpenWords | None = None
 
     @property
     def text(self) -> ProgramText:
@@ -102,7 +117,11 @@ class Reader:
         """Let the compiled kernel prepare what it can, up to block number `most`; return why it stopped."""
         words, first = self._words, self._next
         after = self._after if most is None else min(self._after, first + most - self.blocks)
-        self._next, reason = prepared.plain_blocks(words, first, after, self.text, calls)
+        feeds = None
+        if self._open is not None:
+            self._open.fill()
+            feeds = self._open.feeds
+        self._next, reason = prepared.plain_blocks(words, first, after, self.text, calls, feeds)
         self.at_end = self._next >= self._after
         self.blocks += self._next - first
         if words.first_word[self._next] > words.first_word[first]:
@@ -117,6 +136,9 @@ class Reader:
         if flags & ~_WORDS_ONLY:
             return scan_block(text, offset, line, self._text_rules)
         span = slice(columns.first_word[index], columns.first_word[index + 1])
+        if self._open is not None and OPEN_VALUE in columns.point[span]:
+            words = tuple(self._words_of(span.start, span.stop))
+            return Block(words, flags, int(columns.skip_level[index]), offset, text.next_line(offset), line)
         words = tuple(
             map(
                 Word,
@@ -128,12 +150,31 @@ class Reader:
         )
         return Block(words, flags, int(columns.skip_level[index]), offset, text.next_line(offset), line)
 
+    def _words_of(self, first: int, after: int) -> Iterator[Word]:
+        """Yield the words of a block that has some without a number, but those that do not count."""
+        columns = self._words
+        assert self._open is not None
+        for word in range(first, after):
+            place = int(columns.place[word])
+            if columns.point[word] != OPEN_VALUE:
+                letter = chr(columns.letter[word])
+                yield Word(letter, float(columns.value[word]), place, bool(columns.point[word]))
+                continue
+            letter, value = self._open.value(word)
+            if value is not None:
+                yield Word(letter, value, place, True)
+
     def _scan(self, columns: WordColumns) -> None:
         """Scan the blocks that follow the present place; the place moves behind them."""
         place = self.place
         self._words = columns
         data = place.text.data[: self.end]
-        offset = scan(data, place.offset, place.line, self._rules, columns)
+        rules = self._rules if self.word_values is None else self._rules._replace(open_words=True)
+        offset = scan(data, place.offset, place.line, rules, columns)
+        self._open = None
+        if self.word_values is not None:
+            opened = OpenWords(self.word_values, place.text, columns)
+            self._open = opened if opened.any else None
         self.place = Place(place.text, offset, columns.next_line)
         self._next, self._after = 0, columns.n_blocks
         self.at_end = self._after == 0

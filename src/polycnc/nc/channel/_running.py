@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from polycnc.nc.records._block_records import Call
-from polycnc.nc.sources._block_source import BlockSource
+from polycnc.nc.sources._block_source import BlockSource, OpenSource, WordValues
 from polycnc.nc.text._place import Place
 
 
@@ -38,6 +38,11 @@ class Running:
     round: int = 1
     arguments: object = None
     source: BlockSource | None = None
+
+    @property
+    def word_values(self) -> WordValues | None:
+        """What words without a number stand for in its text."""
+        return self.source.word_values if isinstance(self.source, OpenSource) else None
 
 
 class SavedCall(NamedTuple):

@@ -192,11 +192,12 @@ class Compiler:
             place, index = self._values.element(name)
             now = f"{place}[{index}]" if index else place
             variable = name.variable
-            self._out.put(f"{python} = Box({variable.name!r}, {variable.kind!r}, {now})")
+            self._out.put(f"{python} = handed({variable.name!r}, {variable.kind!r}, {now})")
 
     def _close_boxes(self, boxes: list[tuple[str, Name]]) -> None:
         for python, name in boxes:
-            self._store(name, Typed(Python(f"{python}.value"), "X", leaf=True))
+            with self._out.block(f"if {python}.__class__ is Box and {python}.is_set:"):
+                self._store(name, Typed(Python(f"{python}.value"), "X", leaf=True))
 
     # Statements
 

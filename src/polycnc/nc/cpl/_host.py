@@ -6,7 +6,7 @@ A program is a generator. It yields what the control has to do before it can go 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, MutableMapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple, Protocol, TypeAlias, runtime_checkable
 
 from polycnc.nc.cpl._variables import Kind
@@ -48,6 +48,15 @@ class Box:
     name: str
     kind: Kind
     value: object
+    _given: object = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        self._given = self.value
+
+    @property
+    def is_set(self) -> bool:
+        """Whether the function has set it."""
+        return self.value is not self._given
 
 
 class Lines(NamedTuple):

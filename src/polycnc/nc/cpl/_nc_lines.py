@@ -10,7 +10,8 @@ from polycnc.language import Flaw
 from polycnc.nc.cpl._reader import Reader
 from polycnc.nc.cpl._syntax import Expression, NcBlock, NcLine, NcWord, SubCall, Wait
 from polycnc.nc.text._program import ProgramText, TextRules
-from polycnc.nc.text._scan_plain import scan_words
+from polycnc.nc.text._scan import STATEMENT
+from polycnc.nc.text._scan_plain import scan_block, scan_words
 from polycnc.units import whole
 
 _HEAD = re.compile(r"[ \t]*(?:/[ \t]*([1-9]?)[ \t]*)?(?:[Nn][ \t]*([0-9]+)[ \t]*)?")
@@ -24,6 +25,7 @@ _ADDRESS = r"(?<![A-Za-z])([A-Za-z])(?:([0-9]{1,2})[ \t]*=|[ \t]*=)?[ \t]*"
 _HOLES = re.compile(rf"{_REMARK.pattern}|(?:{_ADDRESS}|([+-])[ \t]*)?({_BRACKET.pattern})")
 _HOLES_WITH_SEMICOLONS = re.compile(rf";.*|{_HOLES.pattern}", re.DOTALL)
 _AFTER = re.compile(r"[ \t]*[0-9.]")
+_NO_WORDS = re.compile(r"[^A-Za-z0-9 \t\r.+():/-]|[A-Za-z][A-Za-z]")
 _CALLING = frozenset("GMP")
 PLAIN_RULES = TextRules()
 _DIN = re.compile(r"[ \t]*(?:[Nn][ \t]*[0-9]+)?[ \t]*\([ \t]*DIN[ \t]*\)", re.IGNORECASE)
@@ -84,8 +86,30 @@ def read_nc_line(
         told = _read_words(text, remarks, end, line, rules) if text[remarks:end].strip() else None
         return [NcBlock(at, line, None, level, (), told.message), call] if told and told.message else [call]
     if not has_bracket(text[at:end]):
+        _refuse_statement(text, at, end, rules)
         return [NcLine(begin, line, line)]
     return [_read_words(text, begin, end, line, rules)]
+
+
+def _refuse_statement(text: str, at: int, end: int, rules: TextRules) -> None:
+    """Refuse a block of CPL that has lost its number; what else is wrong with words is said when they are read.
+
+    Raises:
+        Flaw: It is one.
+    """
+    code = _REMARK.sub("", text[at:end])
+    if not _NO_WORDS.search(code):
+        return
+    try:
+        block = scan_block(ProgramText("", code.encode("utf-8")), 0, 1, rules)
+    except ProgramError:
+        return
+    if block.flags & STATEMENT:
+        raise Flaw(
+            at,
+            f"'{block.statement[:20]}' is no NC block, and has no number",
+            "a CPL block begins with one: 20 A%=1",
+        )
 
 
 def _is_call(code: re.Match[str], alone: frozenset[str]) -> bool:

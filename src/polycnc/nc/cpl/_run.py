@@ -12,7 +12,7 @@ from polycnc.language import Flaw, Traced, frame_of, inner_of, line_of, names_of
 from polycnc.machine import SnapshotError
 from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
-from polycnc.nc.cpl._fields import dimension_field
+from polycnc.nc.cpl._fields import Field, dimension_field
 from polycnc.nc.cpl._functions import OWN
 from polycnc.nc.cpl._host import (
     OMITTED,
@@ -294,6 +294,11 @@ def _parameter_field(arguments: Arguments, name: str, size: int) -> object:
     return field
 
 
+def _handed(name: str, kind: Kind, value: object) -> object:
+    """Return a variable as a function sets it: one with room of its own as it is, another one in a box."""
+    return value if isinstance(value, _strings.CharacterField | Field) else Box(name, kind, value)
+
+
 def _kept(value: object) -> object:
     if value is None:
         raise Fault("INVALID ASSIGNMENT", "a permanent variable cannot be deleted: the value is NUL")
@@ -336,9 +341,9 @@ def _duration(value: object) -> int:
 
 
 _SCOPE: dict[str, object] = {
-    "OMITTED": OMITTED, "PAUSE": PAUSE, "Box": Box, "Item": Item, "BlockWord": BlockWord, "Lines": Lines,
-    "NcValues": NcValues, "Step": Step, "SubProgram": SubProgram, "Waiting": Waiting, "wait_for": wait_for,
-    **OWN, "OverflowError": OverflowError, "cell": _cell, "single": _numbers.single_rounder(),
+    "OMITTED": OMITTED, "PAUSE": PAUSE, "Box": Box, "handed": _handed, "Item": Item, "BlockWord": BlockWord,
+    "Lines": Lines, "NcValues": NcValues, "Step": Step, "SubProgram": SubProgram, "Waiting": Waiting,
+    "wait_for": wait_for, **OWN, "OverflowError": OverflowError, "cell": _cell, "single": _numbers.single_rounder(),
     "to_integer": _numbers.to_integer, "to_real": _numbers.to_real, "to_double": _numbers.to_double,
     "to_boolean": _numbers.to_boolean, "text_of": _strings.text_of, "put": _strings.put,
     "put_new": _strings.put_new, "put_part": _strings.put_part, "dimension": _strings.dimension,

@@ -14,6 +14,7 @@ from polycnc.nc.macro._host import Host
 from polycnc.nc.macro._macro_source import Compiled, MacroSource, error_at, standing
 from polycnc.nc.macro._macro_state import MACRO_CLASSES, ModalCall, SavedLanguage, SavedSource
 from polycnc.nc.macro._output import OutputDevice
+from polycnc.nc.macro._plain_lines import OpenLines
 from polycnc.nc.macro._reader import LineReader
 from polycnc.nc.macro._shape import (
     Special,
@@ -177,13 +178,12 @@ class MacroLanguage:
         if id(text) not in self._latin:
             self._latin[id(text)] = (text, text.content.decode("latin-1"), text.content.upper())
         _, whole, folded = self._latin[id(text)]
-        if not force and next(wanted.lines(whole, folded, offset, len(whole)), None) is None:
-            return None
         begin, first_line, end = extent(whole, offset, line)
         if not force and next(wanted.lines(whole, folded, begin, end), None) is None:
             return None
         reader = LineReader(whole, calls, repeats=self.main_repeats)
-        parts, flaws = parse(whole, wanted.lines(whole, folded, begin, end), begin, first_line, end, reader)
+        lines = wanted.lines(whole, folded, begin, end, OpenLines(wanted.codes, self._is_stored))
+        parts, flaws = parse(whole, lines, begin, first_line, end, reader)
         name = f"<macro {id(text)} {offset} {plain}>"
         code = None
         if not flaws:
@@ -194,6 +194,9 @@ class MacroLanguage:
         errors = [error_at(text, flaw) for flaw in flaws]
         number = _program_number(whole, offset)
         return Compiled(text, offset, line, plain, start, code, errors, name, number)
+
+    def _is_stored(self, number: int) -> bool:
+        return self.variables.kind(number) not in (None, "null")
 
     def _is_returned_into(self, text: ProgramText, calls: MacroCalls) -> bool:
         """Tell whether a program of a text, or one that it calls, returns to a block of its caller (M99 P)."""

@@ -7,10 +7,12 @@ from __future__ import annotations
 
 from polycnc.nc.macro._calls import ARGUMENTS_EACH, Arguments
 from polycnc.nc.macro._macro_state import ModalCall, SavedItems
+from polycnc.nc.macro._plain_lines import line_words
 from polycnc.nc.macro._run_state import RunState
 from polycnc.nc.macro._variables import LEVELS, MacroError, MacroVariables, Value
-from polycnc.nc.sources._block_source import CallProgram, Drain, SourceItem, TextSpan
+from polycnc.nc.sources._block_source import CallProgram, Drain, SourceItem, TextSpan, WordValues
 from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import scan_block
 
 _NOT_A_MOVE = (4.0, 10.0, 28.0, 29.0, 30.0, 52.0, 65.0, 66.0, 67.0, 68.0, 50.0, 51.0, 92.0, 50.1, 51.1)
@@ -120,7 +122,10 @@ class LineItems:
 class SpanItems:
     """The items of plain text line by line, with the call behind every move; `number` is the span's in its program."""
 
-    def __init__(self, language: RunState, text: ProgramText, whole: TextSpan, number: int) -> None:
+    def __init__(
+        self, language: RunState, text: ProgramText, whole: TextSpan, number: int, values: WordValues
+    ) -> None:
+        self._values = values
         self._language = language
         self._text = text
         self._end = whole.end
@@ -150,7 +155,9 @@ class SpanItems:
         offset, line = self._offset, self._line
         end = min(text.next_line(offset), self._end)
         block = scan_block(text, offset, line, channel.dialect.text_rules())
-        letters = tuple((word.letter, word.value) for word in block.words)
+        opened = block.flags & STATEMENT
+        words = line_words(text, offset, end, self._values) if opened else block.words
+        letters = tuple((word.letter, word.value) for word in words)
         self._items = LineItems(self._language, TextSpan(offset, line, end), letters, line, offset)
         self._offset, self._line = end, line + 1
         if block.skip_level and block.skip_level in channel.skip_levels:

@@ -13,6 +13,7 @@ from polycnc.nc.macro._calls import Arguments
 from polycnc.nc.macro._compile import Code
 from polycnc.nc.macro._line_items import LineItems, SpanItems, check_level, is_stage, items_of
 from polycnc.nc.macro._macro_state import ModalCall, SavedItems, SavedSource
+from polycnc.nc.macro._plain_lines import VariableWords
 from polycnc.nc.macro._run_state import RunState
 from polycnc.nc.macro._statement_values import (
     alarm,
@@ -147,6 +148,11 @@ class MacroSource:
         items = self.span(saved.span[0])
         items.go_to(saved)
         return items
+
+    @property
+    def word_values(self) -> VariableWords:
+        """What words with variables in its plain text are worth."""
+        return VariableWords(self._local, self._language.variables.common, self.increment)
 
     @property
     def _code(self) -> Code:
@@ -296,7 +302,7 @@ class MacroSource:
         """Return plain text line by line, with the call behind every move."""
         whole = self._code.spans[index]
         assert isinstance(whole, TextSpan)
-        return SpanItems(self._language, self._compiled.text, whole, index)
+        return SpanItems(self._language, self._compiled.text, whole, index, self.word_values)
 
     def _call(self, index: int, program: float, repeats: float, values: tuple[Value, ...]) -> CallProgram:
         code = self._code

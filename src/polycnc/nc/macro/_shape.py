@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 from polycnc.language import Flaw
 from polycnc.nc.macro._calls import MacroCalls
+from polycnc.nc.macro._plain_lines import OpenLines
 from polycnc.nc.macro._reader import LineReader
 from polycnc.nc.macro._syntax import End, Goto, If, Line, Number, Part, Span, While
 from polycnc.units import whole
@@ -28,13 +29,19 @@ _NUMBER_LINE = re.compile(r"[ \t]*[Oo:][ \t]*[0-9]+[ \t]*(?:\([^)\r\n]*\)[ \t]*)
 
 @dataclass(frozen=True, slots=True)
 class Special:
-    """What is found in lines that are more than plain words: a pattern, and texts without which it is not there."""
+    """What is found in lines that are more than plain words: a pattern, and texts without which it is not there.
+
+    `codes` are patterns of the words among it.
+    """
 
     pattern: re.Pattern[str]
     needles: tuple[bytes, ...]
+    codes: list[str]
 
-    def lines(self, text: str, folded: bytes, begin: int, end: int) -> Iterator[tuple[int, int]]:
-        """Yield begin and end of such lines; `folded` is the text in capitals."""
+    def lines(
+        self, text: str, folded: bytes, begin: int, end: int, without: OpenLines | None = None
+    ) -> Iterator[tuple[int, int]]:
+        """Yield begin and end of such lines but those that `without` tells; `folded` is the text in capitals."""
         places = dict.fromkeys(self.needles, -1)
         at = begin
         while at < end:
@@ -46,6 +53,9 @@ class Special:
             if first >= end:
                 return
             start = max(text.rfind("\n", at, first) + 1, text.rfind("\r", at, first) + 1, at)
+            if without is not None and (behind := without.end(text, start, end)) > start:
+                at = behind
+                continue
             newline = _NEWLINE.search(text, first, end)
             stop = newline.start() if newline else end
             bare = without_comments(text[start:stop])
@@ -56,7 +66,7 @@ class Special:
 
 def special(calls: MacroCalls, *, restarts: bool = False, returns: bool = False) -> Special:
     """Return what makes a line special; with `returns` callers are to be returned into."""
-    codes = [_ANYWHERE, _MACRO_CODES]
+    codes = [_MACRO_CODES]
     needles = ["#", "[", "=", "O", "D", "G6", "G06", "G006", "G 6", "G\t6", *_RETURNS, "M96", "M096", "M 96"]
     needles += ["M97", "M097", "M 97"]
     for code in calls.g:
@@ -73,8 +83,8 @@ def special(calls: MacroCalls, *, restarts: bool = False, returns: bool = False)
     if returns:
         codes.append(_SUB_CALL)
         needles += _written("M", 98)
-    pattern = re.compile("|".join(codes), re.IGNORECASE)
-    return Special(pattern, tuple(dict.fromkeys(needle.encode() for needle in needles)))
+    pattern = re.compile("|".join((_ANYWHERE, *codes)), re.IGNORECASE)
+    return Special(pattern, tuple(dict.fromkeys(needle.encode() for needle in needles)), codes)
 
 
 def _written(letter: str, code: float) -> list[str]:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple, TypeAlias
 
@@ -37,7 +37,7 @@ from polycnc.nc.modal._modal import (
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan import ScanRules, scan, word_columns
+from polycnc.nc.text._scan import OPEN_VALUE, ScanRules, WordColumns, open_text, scan, word_columns
 
 LINE_MASK = (1 << 31) - 1
 AGAIN = 1 << 31  # told apart from the execution just before
@@ -115,7 +115,19 @@ class _Replay(NamedTuple):
     feed: tuple[list[int], list[float]]
 
 
-_Key: TypeAlias = tuple[ProgramText, tuple[Call, ...], ModalSnapshot, tuple[int, int] | None]
+Feeds: TypeAlias = tuple[tuple[str, float], ...]
+"""What F words mean that have a variable for their number: how that is written, and its value."""
+
+
+class RunBegin(NamedTuple):
+    """Where a run of plain blocks begins, and the `feeds` in it; None where every word has a number."""
+
+    offset: int
+    line: int
+    feeds: Feeds | None = None
+
+
+_Key: TypeAlias = tuple[ProgramText, tuple[Call, ...], ModalSnapshot, RunBegin | None]
 
 
 class SavedRecords(NamedTuple):
@@ -131,7 +143,7 @@ class _Context:
     text: ProgramText
     stack: tuple[Call, ...]
     modal: ModalSnapshot
-    begin: tuple[int, int] | None  # of a run of plain blocks: byte offset and line
+    begin: RunBegin | None  # of a run of plain blocks
     replay: _Replay | None = None
 
     def key(self) -> _Key:
@@ -163,7 +175,7 @@ class BlockRecords:
         return self._base((text, stack, modal, None)) | line
 
     def run_base(
-        self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, begin: tuple[int, int]
+        self, text: ProgramText, stack: tuple[Call, ...], modal: ModalSnapshot, begin: RunBegin
     ) -> int:
         """Return what is added to a line for its reference, for a run of plain blocks from `begin` on."""
         return self._base((text, stack, modal, begin))
@@ -328,14 +340,15 @@ class BlockRecords:
             spindle_oriented=spindle.oriented,
         )
 
-    def _replay(self, context: _Context, begin: tuple[int, int]) -> _Replay:
+    def _replay(self, context: _Context, begin: RunBegin) -> _Replay:
         if context.replay is None:
             context.replay = self._read_run(context.text, begin)
         return context.replay
 
-    def _read_run(self, text: ProgramText, begin: tuple[int, int]) -> _Replay:
+    def _read_run(self, text: ProgramText, begin: RunBegin) -> _Replay:
         columns = word_columns(self._columns)
-        scan(text.data, begin[0], begin[1], self._rules, columns)
+        rules = self._rules if begin.feeds is None else self._rules._replace(open_words=True)
+        scan(text.data, begin.offset, begin.line, rules, columns)
         words, blocks = columns.n_words, columns.n_blocks
         letter, value = columns.letter[:words], columns.value[:words]
         block = np.searchsorted(columns.first_word[: blocks + 1], np.arange(words), side="right") - 1
@@ -346,12 +359,26 @@ class BlockRecords:
         actions = np.where(inside, actions, 0)
         g_block = block[is_g]
         is_f = letter == _F
+        if begin.feeds:
+            is_f = _with_feeds(text, columns, is_f, dict(begin.feeds))
         return _Replay(
             lines=columns.line[:blocks].tolist(),
             motion=_said(g_block, actions, _PLAIN_MOTIONS),
             absolute=_said(g_block, actions, _DISTANCES),
             feed=(block[is_f].tolist(), value[is_f].tolist()),
         )
+
+
+def _with_feeds(
+    text: ProgramText, columns: WordColumns, is_f: npt.NDArray[np.bool_], feeds: Mapping[str, float]
+) -> npt.NDArray[np.bool_]:
+    """Give F words that have a variable for their number its value; return which F words count."""
+    counts = is_f.copy()
+    for word in np.flatnonzero(is_f & (columns.point[: len(is_f)] == OPEN_VALUE)).tolist():
+        value = feeds.get(open_text(text.content, int(columns.value[word])))
+        counts[word] = value is not None
+        columns.value[word] = value or 0.0
+    return counts
 
 
 def _said(

@@ -8,7 +8,7 @@ block is prepared:
   of it, and its record points at the line of the source.
 - `TextSpan`: some lines of plain NC text. They are read by the channel as if there were no language, through the
   compiled kernel where they are long; so a language hands over what holds no expression, in pieces as long as
-  possible.
+  possible. A source that knows `word_values` may leave words in there whose numbers are single variables.
 - `Drain`: preparation stops until everything before it has been executed; then `next` is called again. What a
   language reads in that next call (positions, system variables, answers of the PLC) is read behind the drain.
   Radius compensation gives out the move that it holds back.
@@ -142,6 +142,30 @@ class BlockSource(Protocol):
 
     def close(self) -> None:
         """Take note that the program has been left."""
+        ...
+
+
+class WordValues(Protocol):
+    """What words stand for whose numbers are variables or expressions, in the text spans of one program."""
+
+    def value(self, letter: str, text: str, place: int) -> float | None:
+        """Return the number of a word, written as `text` behind the letter at byte `place`; None: it does not count.
+
+        Nothing that it reads may be changed by the blocks of a span, but by the programs that they call.
+
+        Raises:
+            ProgramError: it has none now.
+        """
+        ...
+
+
+@runtime_checkable
+class OpenSource(Protocol):
+    """A source whose text spans may hold words like F#101 or X[A]."""
+
+    @property
+    def word_values(self) -> WordValues:
+        """What such words stand for."""
         ...
 
 

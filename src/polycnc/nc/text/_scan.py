@@ -6,6 +6,7 @@ only flagged, and the ordinary scanner (`_scan_plain`) or a language front end r
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
 
 import numpy as np
@@ -32,12 +33,16 @@ OVERSIZE = 64
 
 NO_TROUBLE = -1
 
+OPEN_VALUE = 2
+"""In the place of a point: a language knows the number; `value` is the byte offset at which its text begins."""
+
 # What a byte can be; everything else is OTHER.
 OTHER, BLANK, NEWLINE, LETTER, DIGIT, SIGN, POINT, OPEN, SEMICOLON, SLASH, COLON, PERCENT_SIGN = range(12)
 
 BLANK_BYTES = b" \t\v\f\0\x03\x11\x12\x13\x14\x1a\x7f"
 """Blanks, and the tape and transmission controls that machines skip: NUL, ETX, DC1 to DC4, SUB, DEL."""
 
+_OPEN_TEXT = re.compile(rb"[+-]?(?:#(?:[0-9]+|<[^>\r\n]*>)|\[[^\]\r\n]*\])")
 _LIMIT = 1 << 53  # whole numbers up to here are exact doubles
 _EASY_DIGITS = 15  # so many digits stay below that limit whatever they are
 _MAX_PLACES = 22  # 10 ** 22 is the last power of ten that is an exact double
@@ -50,26 +55,31 @@ _UPPER = 0xDF  # clears the bit that tells small letters from capitals
 _MINUS, _POINT, _SPACE = ord("-"), ord("."), ord(" ")
 _COMMA = ord(",")
 _A, _Z, _N = ord("A"), ord("Z"), ord("N")
+_MARK, _BRACKET, _CLOSING, _ANGLE, _CLOSING_ANGLE = ord("#"), ord("["), ord("]"), ord("<"), ord(">")
 _M, _S, _G = ord("M"), ord("S"), ord("G")
 
 
 class ScanRules(NamedTuple):
-    """What each byte is: `classes` uint8[256], `statement` uint8[256] (1: hands the block on); switches."""
+    """What each byte is: `classes` uint8[256], `statement` uint8[256] (1: hands the block on); switches.
+
+    With `open_words` a word may have a variable or an expression in brackets for its number: see `OPEN_VALUE`.
+    """
 
     classes: npt.NDArray[np.uint8]
     statement: npt.NDArray[np.uint8]
     powers: npt.NDArray[np.float64]
     unclosed_comments: bool
     line_numbers: bool
+    open_words: bool
 
 
 class WordColumns(NamedTuple):
     """Hold the words and blocks of one piece of a program, column by column.
 
     Words of block b are `first_word[b]` up to `first_word[b + 1]`. `letter` is upper-case ASCII, `place` the
-    byte offset of the letter, `point` 1 for a number with a decimal point. `offset` is where the line of a
-    block begins, `line` its 1-based number, `skip_level` 0 without a slash, 1 for '/', else its digit;
-    `trouble` is NO_TROUBLE or the byte offset of an error.
+    byte offset of the letter, `point` 1 for a number with a decimal point, or OPEN_VALUE. `offset` is where the line
+    of a block begins, `line` its 1-based number, `skip_level` 0 without a slash, 1 for '/', else its digit; `trouble`
+    is NO_TROUBLE or the byte offset of an error.
     `counts` is words, blocks and the line number at the offset that `scan` returned.
     """
 
@@ -119,7 +129,7 @@ def word_columns(blocks: int = 65536, words: int = 0) -> WordColumns:
     )
 
 
-def scan_rules(rules: TextRules) -> ScanRules:
+def scan_rules(rules: TextRules, *, open_words: bool = False) -> ScanRules:
     """Turn the text rules of a dialect into the tables of the compiled scanner."""
     classes = np.full(256, OTHER, dtype=np.uint8)
     for members, kind in (
@@ -139,7 +149,13 @@ def scan_rules(rules: TextRules) -> ScanRules:
     statement = np.zeros(256, dtype=np.uint8)
     statement[list(rules.statement_characters.encode("ascii") + b"=")] = 1
     powers = np.array([float(10**exponent) for exponent in range(_MAX_PLACES + 1)])
-    return ScanRules(classes, statement, powers, rules.unclosed_comments, rules.line_numbers)
+    return ScanRules(classes, statement, powers, rules.unclosed_comments, rules.line_numbers, open_words)
+
+
+def open_text(content: bytes, begin: int) -> str:
+    """Return what stands in a text from byte `begin` on for the number of a word."""
+    found = _OPEN_TEXT.match(content, begin)
+    return "" if found is None else found[0].decode("latin-1")
 
 
 @entry(steps=lambda data, offset, *_: (len(data) - offset) // 16 + 1)
@@ -343,6 +359,10 @@ def _scan_value(data: npt.NDArray[np.uint8], letter: int, rules: ScanRules) -> t
     after, value, point, found = _scan_number(data, position, rules)
     if found != BAD:
         return after, value, point, found
+    if rules.open_words and after < end:
+        behind = _find_open_end(data, after)
+        if behind > after:
+            return behind, float(position), OPEN_VALUE, PLAIN
     if after < end:
         kind = rules.classes[data[after]]
         if rules.statement[data[after]] or (kind == LETTER and after == letter + 1):
@@ -350,6 +370,33 @@ def _scan_value(data: npt.NDArray[np.uint8], letter: int, rules: ScanRules) -> t
         if kind == OTHER:
             return after, 0.0, 0, BAD
     return letter, 0.0, 0, BAD
+
+
+@compiled
+def _find_open_end(data: npt.NDArray[np.uint8], begin: int) -> int:
+    """Return the offset behind #12, #<name> or [...]; `begin` where none of them is complete on its line."""
+    end = len(data)
+    position = begin + 1
+    if data[begin] == _BRACKET:
+        depth = 1
+        while position < end and depth > 0 and data[position] != _FEED and data[position] != _RETURN:
+            if data[position] == _BRACKET:
+                depth += 1
+            elif data[position] == _CLOSING:
+                depth -= 1
+            position += 1
+        return begin if depth > 0 else position
+    if data[begin] != _MARK or position == end:
+        return begin
+    if data[position] == _ANGLE:
+        while position < end and data[position] != _FEED and data[position] != _RETURN:
+            position += 1
+            if data[position - 1] == _CLOSING_ANGLE:
+                return position
+        return begin
+    while position < end and _ZERO <= data[position] <= _NINE:
+        position += 1
+    return begin if position == begin + 1 else position
 
 
 @compiled

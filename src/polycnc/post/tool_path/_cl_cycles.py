@@ -7,7 +7,7 @@ place the numbers are the depth, the feed with its unit, and the clearance.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from polycnc.post.tool_path._cl_statement import Statement
 from polycnc.post.tool_path._records import LARGEST_MM, Cycle, CycleKind
@@ -41,18 +41,7 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
         ProgramError: an unknown cycle, or one without a depth.
     """
     words = statement.words()
-    # NX writes CYCLE/DRILL,DEEP: the more special word counts.
-    named = [_KINDS[word] for word in _KINDS if word in words]
-    if not named:
-        first = statement.peek()
-        raise statement.fail(
-            f"the cycle '{first.text}' is not known" if first else "a cycle without a kind",
-            _PASSES if first and first.text in _TURNING else f"Known are {', '.join(_KINDS)}.",
-            first,
-        )
-    kind = "tap" if "tap" in named else named[-1] if named[0] == "drill" else named[0]
-    if "BACK" in words:
-        raise statement.fail("a cycle that cuts from below", "Let the CAM system write its moves as points.")
+    kind = _kind_in(statement, words)
     values, bare, feed, per_revolution = _split(statement, scale, units)
     depth = values.get("DEPTH", values.get("FEDTO"))
     if depth is None and bare:
@@ -74,17 +63,49 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
     dwell = values.get("DWELL", 0.0)
     if kind == "drill" and dwell > 0.0:
         kind = "dwell"
+    kind, peck = _pecks_of(statement, kind, values, bare)
+    if any(abs(value) > LARGEST_MM for value in (depth, start, out, peck)):
+        raise statement.fail("a level further than any machine", "Check the numbers of the cycle.")
+    _check_pecks(statement, kind, peck, bare, scale)
+    bottom = abs(depth)
+    if not start > -bottom:
+        raise statement.fail("a cycle whose feed begins below its depth", "Check CLEAR, RAPTO and DEPTH.")
+    leave = None if (out == 0.0 and "RETURN" in values) or "AUTO" in words else max(out, start)
+    return Cycle(statement.line, kind, bottom, start, leave, feed, per_revolution, peck, dwell)
+
+
+def _kind_in(statement: Statement, words: Collection[str]) -> CycleKind:
+    """Return which cycle the words of a statement name."""
+    # NX writes CYCLE/DRILL,DEEP: the more special word counts.
+    named = [_KINDS[word] for word in _KINDS if word in words]
+    if not named:
+        first = statement.peek()
+        raise statement.fail(
+            f"the cycle '{first.text}' is not known" if first else "a cycle without a kind",
+            _PASSES if first and first.text in _TURNING else f"Known are {', '.join(_KINDS)}.",
+            first,
+        )
+    if "BACK" in words:
+        raise statement.fail("a cycle that cuts from below", "Let the CAM system write its moves as points.")
+    return "tap" if "tap" in named else named[-1] if named[0] == "drill" else named[0]
+
+
+def _pecks_of(
+    statement: Statement, kind: CycleKind, values: Mapping[str, float], bare: list[float]
+) -> tuple[CycleKind, float]:
+    """Return the kind of a cycle that may peck, and the depth of a peck, 0 without."""
     pecks = [values[word] for word in _PECKS if word in values]
-    # A control pecks by one depth: of several the smallest takes no more than any.
-    peck = min(pecks) if pecks else bare.pop(0) if bare else 0.0
-    if kind == "drill" and any(word in values for word in _PECKS):
-        kind = "deep"
-    elif kind == "tap" and any(word in values for word in _PECKS):
+    if pecks and kind == "tap":
         raise statement.fail(
             "a thread tapped in pecks", "Let the CAM system write a tap that goes down at once."
         )
-    if any(abs(value) > LARGEST_MM for value in (depth, start, out, peck)):
-        raise statement.fail("a level further than any machine", "Check the numbers of the cycle.")
+    if pecks:  # a control pecks by one depth: of several the smallest takes no more than any
+        return "deep" if kind == "drill" else kind, min(pecks)
+    return kind, bare.pop(0) if bare else 0.0
+
+
+def _check_pecks(statement: Statement, kind: CycleKind, peck: float, bare: list[float], scale: float) -> None:
+    """Refuse pecks without a depth, and numbers that are left over."""
     if kind in ("deep", "chip_break") and not peck > 0.0:
         raise statement.fail(
             "a cycle with pecks that does not say how deep they are", "Write STEP and a length."
@@ -94,11 +115,6 @@ def read_cycle(statement: Statement, scale: float, units: Mapping[str, tuple[flo
             f"the numbers of the cycle from {bare[0] / scale:g} on are not known by their places",
             "Let the CAM system write them by name, like CYCLE/DRILL,DEPTH,10,MMPM,100,CLEAR,2.",
         )
-    bottom = abs(depth)
-    if not start > -bottom:
-        raise statement.fail("a cycle whose feed begins below its depth", "Check CLEAR, RAPTO and DEPTH.")
-    leave = None if (out == 0.0 and "RETURN" in values) or "AUTO" in words else max(out, start)
-    return Cycle(statement.line, kind, bottom, start, leave, feed, per_revolution, peck, dwell)
 
 
 def _is_kind(word: str) -> bool:
@@ -121,15 +137,7 @@ def _split(
             bare.append(number * scale)
         elif token.text in known:
             factor, per_revolution = known[token.text]
-            if len(bare) >= 2:  # by place the feed comes before its unit
-                feed = bare.pop() / scale * factor
-                if len(bare) > 1 and not per_revolution and feed < _SLOW_MM_MIN < bare[1]:
-                    raise statement.fail(
-                        f"which of the numbers {bare[1] / scale:g} and {feed / factor:g} is the feed is not clear",
-                        "Let the CAM system write them by name, like CYCLE/DRILL,DEPTH,10,MMPM,100,CLEAR,2.",
-                    )
-            else:
-                feed = statement.number("a feed") * factor
+            feed = _feed(statement, bare, scale, factor, per_revolution=per_revolution)
         elif token.text == "TPI":
             feed, per_revolution = MM_PER_INCH / statement.number("threads per inch"), True
         elif token.text == "RTRCTO" and (after := statement.peek()) is not None and after.text == "AUTO":
@@ -150,3 +158,18 @@ def _split(
     if feed is not None and not feed > 0.0:
         raise statement.fail(f"a cycle with a feed of {feed:g}", "Give a feed above 0.")
     return values, bare, feed, per_revolution
+
+
+def _feed(
+    statement: Statement, bare: list[float], scale: float, factor: float, *, per_revolution: bool
+) -> float:
+    """Return the feed that a unit stands by: before it by place, else after it."""
+    if len(bare) < 2:
+        return statement.number("a feed") * factor
+    feed = bare.pop() / scale * factor
+    if len(bare) > 1 and not per_revolution and feed < _SLOW_MM_MIN < bare[1]:
+        raise statement.fail(
+            f"which of the numbers {bare[1] / scale:g} and {feed / factor:g} is the feed is not clear",
+            "Let the CAM system write them by name, like CYCLE/DRILL,DEPTH,10,MMPM,100,CLEAR,2.",
+        )
+    return feed

@@ -217,6 +217,18 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
         reading.is_lathe = kind.text in ("TURN", "LATHE")
         return
     reading.announced = None
+    change = _change(reading, statement, int(number))
+    if reading.tool is None or change != reading.tool._replace(line=change.line):
+        reading.tool = change
+        reading.threads = False
+        yield change
+    elif reading.cycle_on:
+        yield CycleOff(statement.line)
+    reading.cycle_on = False
+
+
+def _change(reading: Reading, statement: Statement, number: int) -> Tool:
+    """Return the change to a tool, with the length and the offsets that stand behind its number."""
     length = statement.value_of("LENGTH", "a length")
     more = statement.numbers()
     offset = statement.value_of("ADJUST", "an offset number")
@@ -227,21 +239,14 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
     if len(more) == 3 and statement.peek() is None:  # of ISO 4343: pocket, length, number of the offset
         length = more[1] if length is None else length
         offset = more[2] if offset is None else offset
-    change = Tool(
+    return Tool(
         statement.line,
-        int(number),
+        number,
         None,
         None if length is None else length * reading.scale,
         statement.whole(offset, "the number of an offset"),
         statement.whole(radius, "the number of an offset"),
     )
-    if reading.tool is None or change != reading.tool._replace(line=change.line):
-        reading.tool = change
-        reading.threads = False
-        yield change
-    elif reading.cycle_on:
-        yield CycleOff(statement.line)
-    reading.cycle_on = False
 
 
 def _set(reading: Reading, statement: Statement) -> Iterator[Record]:

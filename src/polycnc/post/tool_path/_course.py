@@ -120,14 +120,7 @@ class Course:
             case Retract():
                 return self._up(record)
             case From():
-                before, self.here = self.here, (record.x, record.y, record.z)
-                self._home = self.here
-                elsewhere = (
-                    before is not None and math.dist(before, self.here) > _SAME_MM and not self._changed
-                )
-                self._jumped = record.line if elsewhere else 0
-                self._changed |= elsewhere
-                self.axis = record.axis or self.axis
+                self._start_from(record)
             case Axis():
                 self.axis = record.axis
             case Cycle():
@@ -148,6 +141,15 @@ class Course:
             case _:
                 pass
         return None
+
+    def _start_from(self, record: From) -> None:
+        """Begin at a point; elsewhere than the tool stands, it has changed."""
+        before, self.here = self.here, (record.x, record.y, record.z)
+        self._home = self.here
+        elsewhere = before is not None and math.dist(before, self.here) > _SAME_MM and not self._changed
+        self._jumped = record.line if elsewhere else 0
+        self._changed |= elsewhere
+        self.axis = record.axis or self.axis
 
     def plain(self, end: Vector) -> Vector | None:
         """Go straight with the feed, and return from where; None, going nowhere, where it is not as plain as that."""

@@ -244,7 +244,7 @@ class Partner:
         if at_once and active and Selection.EXIT_BEFORE not in how and Selection.REPLACE not in how:
             how |= Selection.MACHINE_FUNCTION
         if Selection.MACHINE_FUNCTION in how and at_once:
-            self._machine_function(station, text)
+            _machine_function(self.image, station, text)
             return
         if shown.mode != Mode.MDI:
             raise NcsError(NcsCode.WRONG_MODE)
@@ -287,16 +287,6 @@ class Partner:
         station.job.extend(blocks)
         if shown.sav == Sav.BUFFER_EMPTY:
             shown.sav, shown.ipo = Sav.ACTIVE, Ipo.RUNNING
-
-    def _machine_function(self, station: Station, text: str) -> None:
-        words = read_block(text)
-        alone = {axis.name: axis for axis in self.image.feed_axes() if axis.channel is None}
-        moves = [] if words is None else [word for word in words.values if word[0] in alone]
-        if words is None or any(name[0] not in "MSTHF" and name not in alone for name, _ in words.values):
-            raise NcsError(NcsCode.BLOCK_ERROR)
-        for name, value in moves:
-            alone[name].setpoint = alone[name].actual = value
-        station.functions.append(text)
 
     def _make_room(self, shown: Channel, station: Station, how: Selection, refusal: NcsCode) -> None:
         if station.job is None and shown.sav != Sav.ERROR:
@@ -355,11 +345,21 @@ class Partner:
         if (wrong := self._runner.cycle(shown, job)) is not None:
             station.errors.append(wrong)
             shown.sav, shown.ipo = Sav.ERROR, Ipo.STOPPED
+        elif job.over and job.buffered:
+            shown.sav, shown.ipo = Sav.BUFFER_EMPTY, Ipo.STOPPED
         elif job.over:
-            if job.buffered:
-                shown.sav, shown.ipo = Sav.BUFFER_EMPTY, Ipo.STOPPED
-            else:
-                self._exit(shown, station, reselect=True)
+            self._exit(shown, station, reselect=True)
+
+
+def _machine_function(image: Image, station: Station, text: str) -> None:
+    words = read_block(text)
+    alone = {axis.name: axis for axis in image.feed_axes() if axis.channel is None}
+    moves = [] if words is None else [word for word in words.values if word[0] in alone]
+    if words is None or any(name[0] not in "MSTHF" and name not in alone for name, _ in words.values):
+        raise NcsError(NcsCode.BLOCK_ERROR)
+    for name, value in moves:
+        alone[name].setpoint = alone[name].actual = value
+    station.functions.append(text)
 
 
 def _search(job: Job, start: str, end: str, *, quiet: bool = False) -> None:

@@ -64,9 +64,28 @@ from polycnc.nc import Dialect, load_dialect
 MOST_AXES = {"H": 6, "D": 2}
 _STATE = "fanuc.state"
 _MM_PER_MIN = 60.0
-_BLOCKS_AHEAD = 5
+_BLOCKS_AHEAD = 1  # Manual 000, cnc_modal: the next block, and the next but one at the most
 _ACT_ON_MOTION = frozenset({0, 1320, 1321, 1420, 1423, 1620, 1825, 1828, 3401})
 _ALL_KEYS = frozenset({1, 2, 3, 4})
+
+
+def _axes_of(model: str, increment: str, axes: int | None) -> tuple[int, int]:
+    """Return how many axes a model has at the most, and how many it gets.
+
+    Raises:
+        UsageError: There is no such model, increment system, or number of axes.
+    """
+    if model not in MOST_AXES:
+        raise UsageError(f"there is no Power Mate-{model}", hint="Models are H and D.")
+    if increment not in set(Increment):
+        raise UsageError(
+            f"there is no increment system '{increment}'", hint=f"There are {', '.join(Increment)}."
+        )
+    most = MOST_AXES[model]
+    given = min(3, most) if axes is None else axes
+    if not 1 <= given <= most:
+        raise UsageError(f"a Power Mate-{model} has no {given} axes", hint=f"Give 1 to {most}.")
+    return most, given
 
 
 class PowerMate:
@@ -99,19 +118,8 @@ class PowerMate:
         characters: int = 128_000,
         most_programs: int = 125,
     ) -> None:
-        if model not in MOST_AXES:
-            raise UsageError(f"there is no Power Mate-{model}", hint="Models are H and D.")
-        if increment not in set(Increment):
-            raise UsageError(
-                f"there is no increment system '{increment}'", hint=f"There are {', '.join(Increment)}."
-            )
         self.model = model
-        self.max_axis = MOST_AXES[model]
-        self.axes = min(3, self.max_axis) if axes is None else axes
-        if not 1 <= self.axes <= self.max_axis:
-            raise UsageError(
-                f"a Power Mate-{model} has no {self.axes} axes", hint=f"Give 1 to {self.max_axis}."
-            )
+        self.max_axis, self.axes = _axes_of(model, increment, axes)
         self.options = options if isinstance(options, bool) else frozenset(options)
         self.store = memory if isinstance(memory, Store) else Store(memory)
         self.transfer: Transfer | None = None

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
-from polycnc.cnc import ControlError, Emergency, Mode, Motion, Overrides, RunState
-from polycnc.controllers.fanuc.device._alarms import shown
+from polycnc.cnc import ControlError, Emergency, Mode, Overrides
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
+from polycnc.controllers.fanuc.device._output_signals import Seen, output_byte
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
@@ -39,21 +39,6 @@ _MOST_FEED = 200
 _INCREMENTS = (1, 10, 100, 1000)
 _FIN, _ST, _SP, _ESP, _ERS = 1 << 3, 1 << 2, 1 << 5, 1 << 4, 1 << 7
 _RT = 1 << 7
-_MODE_LAMPS = {
-    _M.INC: 0,
-    _M.HND: 1,
-    _M.T_HND: 1,
-    _M.JOG: 2,
-    _M.T_JOG: 2,
-    _M.MDI: 3,
-    _M.RMT: 4,
-    _M.MEM: 5,
-    _M.EDIT: 6,
-}
-_TEACHES = frozenset({_M.T_JOG, _M.T_HND})
-_FUNCTION_BITS = {"M": 0, "S": 2, "T": 3, "B": 7}
-_FUNCTION_BYTES = {"M": 10, "S": 22, "T": 26, "B": 30}
-_INTERRUPTED = frozenset({RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP})
 _MLK = 2
 _UINT = 8
 
@@ -352,56 +337,14 @@ class Signals:
         panel = power_mate.panel.image(address)
         if panel is not None:
             return panel
-        control, mode = power_mate.control, power_mate.mode
-        channel, switches = control.channel_status(), control.switches
-        moving = channel.motion is Motion.MOVING
-        match address:
-            case 0:
-                active, held = channel.run_state is RunState.ACTIVE, channel.run_state is RunState.HOLD
-                ready = control.emergency is Emergency.OFF
-                return _bits(
-                    {4: held, 5: active, 6: ready, 7: active or held or channel.run_state in _INTERRUPTED}
-                )
-            case 1:
-                alarm, low = bool(shown(control.alarms.active)), self.state.battery_low
-                return _bits({0: alarm, 1: self.reset_is_on, 2: low, 7: True})
-            case 2:
-                rapid = moving and channel.feed.rapid
-                cut = moving and channel.run_state is RunState.ACTIVE and not rapid
-                return _bits({0: power_mate.inch_input, 1: rapid, 6: cut, 7: switches.dry_run})
-            case 3:
-                lamp = _MODE_LAMPS.get(mode)
-                return (0 if lamp is None else 1 << lamp) | (mode in _TEACHES) << 7
-            case 4:
-                lock = bool(self.g(44) & _MLK)
-                return _bits(
-                    {0: 1 in switches.block_delete, 1: lock, 3: switches.single_block, 5: mode is _M.REF}
-                )
-            case 7:
-                return _bits({_FUNCTION_BITS[each[0]]: True for each in channel.functions})
-            case 54 | 55:
-                return power_mate.custom_macros.state.user_outputs >> 8 * (address - 54) & 0xFF
-            case 94:
-                at = [power_mate.positions.read()[k].machine == 0 for k in range(power_mate.axes)]
-                return _bits(dict(enumerate(at)))
-            case 102:
-                return _bits({k: axis.velocity != 0.0 for k, axis in enumerate(control.axes().values())})
-            case 106:
-                return _bits({k: axis.velocity < 0.0 for k, axis in enumerate(control.axes().values())})
-            case 120:
-                return _bits({k: axis.referenced for k, axis in enumerate(control.axes().values())})
-            case _:
-                return self._function_byte(address, channel.functions)
-
-    @staticmethod
-    def _function_byte(address: int, functions: tuple[str, ...]) -> int:
-        """Return a byte of the number of a function that waits for its answer."""
-        for each in functions:
-            first = _FUNCTION_BYTES[each[0]]
-            if first <= address < first + 4:
-                return int(each[1:]) >> 8 * (address - first) & 0xFF
-        return 0
-
-
-def _bits(bits: dict[int, bool]) -> int:
-    return sum(1 << bit for bit, on in bits.items() if on)
+        seen = Seen(
+            power_mate.status(),
+            power_mate.mode,
+            power_mate.inch_input,
+            self.reset_is_on,
+            bool(self.g(44) & _MLK),
+            self.state.battery_low,
+            power_mate.custom_macros.state.user_outputs,
+            lambda: [each.machine == 0 for each in power_mate.positions.read()[: power_mate.axes]],
+        )
+        return output_byte(address, seen)
