@@ -46,7 +46,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "runner/comparison/_distance.py in_one_order",
     ),
     "commands and readings of one control, a few lines each: what they do lies in its parts": (
-        "cnc/_control_channel.py ControlChannel",
         "cnc/_path_feed.py PathFeed",
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",

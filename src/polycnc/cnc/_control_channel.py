@@ -9,7 +9,7 @@ from polycnc.cnc._block_search import block_line
 from polycnc.cnc._channel_axes import ChannelAxes
 from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
 from polycnc.cnc._manual import ManualMotion
-from polycnc.cnc._path_blocks import next_block, prepared_block, unless_refused
+from polycnc.cnc._path_blocks import find_block, next_block, prepared_block, stands_searched, unless_refused
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_making import RunMaker
@@ -132,22 +132,15 @@ class ControlChannel:
         run = self.run
         try:
             with unless_refused(self._machine, self.path, run):
-                self._load(text, mdi=False)
+                loaded = self._load(text, mdi=False)
                 self.set_switches(self.switches)  # statements may ask for them
-                line = self._find(search)
+                line = find_block(loaded, search)
         except ControlError:
             self.run = run
             raise
         self.search = search
         self._clock.changes += 1
         return line
-
-    def _find(self, search: Search) -> int:
-        assert self.run is not None
-        try:
-            return self.run.search(line=search.line, sequence=search.sequence, calculate=search.calculate)
-        except UsageError as error:
-            raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
 
     def begin(self, text: ProgramText, *, mdi: bool, step: Step, search: Search | None) -> None:
         """Begin to execute a text, from where the axes stand.
@@ -157,9 +150,9 @@ class ControlChannel:
         """
         self.check_rest()
         if not self._has_found(text, search):
-            self._load(text, mdi=mdi)
+            loaded = self._load(text, mdi=mdi)
             if search is not None:
-                self._find(search)
+                find_block(loaded, search)
         assert self.run is not None
         self.search = None
         self.is_mdi = mdi
@@ -173,17 +166,16 @@ class ControlChannel:
 
     def _has_found(self, text: ProgramText, search: Search | None) -> bool:
         """Tell whether the run stands before the block of a search; its statements are not executed a second time."""
-        run = self.run
-        if run is None or self.runs.stale or search is None or search != self.search:
-            return False
-        return run.program is text and run.state is RunState.READY and run.channel.holds_searched
+        is_sought = not self.runs.stale and search is not None and search == self.search
+        return is_sought and self.run is not None and stands_searched(self.run, text)
 
-    def _load(self, text: ProgramText, *, mdi: bool) -> None:
+    def _load(self, text: ProgramText, *, mdi: bool) -> ProgramRun:
         if self.run is None or self.runs.stale:
             self.runs.stale = False
             self.run = self.runs.make(text)
         else:
             self.run.load(text, keeps_modal=mdi)
+        return self.run
 
     def go_on(self, after_manual: AfterManual, step: Step) -> None:
         """Let an interrupted program go on; axes that were moved by hand go back first, if the control does that.
@@ -299,8 +291,6 @@ class ControlChannel:
         if self.run is not None:
             self.run.feed_override = overrides.feed
             self.run.rapid_override = overrides.rapid
-
-    # ------------------------------------------------------------------ lent axes
 
     def check_rest(self) -> None:
         """Refuse while the axes brake.

@@ -1,16 +1,18 @@
-"""Which blocks come next on a path, from what is queued there; and a path that a refusal leaves as it was."""
+"""Blocks on a path: the next one, the last prepared one, one that is searched; a refusal leaves the path as it was."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from polycnc.cnc._control_data import Search
 from polycnc.cnc._program_run import ProgramRun
-from polycnc.cnc._refusal import ControlError
+from polycnc.cnc._refusal import ControlError, Refusal
+from polycnc.cnc._run_state import RunState
 from polycnc.errors import UsageError
 from polycnc.kernel import READY
 from polycnc.machine import Machine
-from polycnc.nc import BlockRecord
+from polycnc.nc import BlockRecord, ProgramText
 
 
 def next_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
@@ -28,6 +30,23 @@ def prepared_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
         return run.executed
     last = int(row["base"]) + (int(row["tail"]) - 1) % int(row["capacity"])
     return run.channel.records.block(int(machine.state.seg.row[last]["tag"])) or run.executed
+
+
+def find_block(run: ProgramRun, search: Search) -> int:
+    """Let a run begin at the block of a search; return its line.
+
+    Raises:
+        ControlError: There is none, or the program cannot begin there.
+    """
+    try:
+        return run.search(line=search.line, sequence=search.sequence, calculate=search.calculate)
+    except UsageError as error:
+        raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
+
+
+def stands_searched(run: ProgramRun, text: ProgramText) -> bool:
+    """Tell whether a run of a text stands before a block that was searched, and nothing was executed since."""
+    return run.program is text and run.state is RunState.READY and run.channel.holds_searched
 
 
 @contextmanager
