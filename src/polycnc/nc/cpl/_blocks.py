@@ -24,6 +24,7 @@ from polycnc.nc.cpl._cpl_state import (
 from polycnc.nc.cpl._host import Host, KeepingHost, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._link_table import LinkTables
 from polycnc.nc.cpl._loops import LoopWatch, WatchedHost
+from polycnc.nc.cpl._open_lines import BracketWords, line_words
 from polycnc.nc.cpl._program import Linker, Program, holds_cpl
 from polycnc.nc.cpl._run import Arguments, Execution, undeclared
 from polycnc.nc.sources._block_source import (
@@ -38,6 +39,7 @@ from polycnc.nc.sources._block_source import (
     WordsBlock,
 )
 from polycnc.nc.text._program import ProgramText
+from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import Word, scan_block
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
@@ -84,7 +86,7 @@ class CplLanguage:
         self.codes = codes
         self.modal: SubProgram | None = None
         """The call that is made behind every move."""
-        self.linker = Linker(host.program, stepping=stepping, tables=tables, codes=codes)
+        self.linker = Linker(host.program, stepping=stepping, opened=True, tables=tables, codes=codes)
         self.running: list[CplSource] = []
         """The sources under way, that of the main program first."""
         self.hasty = False
@@ -272,6 +274,17 @@ class CplSource:
         self._statements = 0  # that were handed over, of a program linked for stepping
         self._waiting: _Wait | None = None
         self._answer: object = None
+        self._names: dict[str, Any] | None = None  # of the program's Python, where it stands
+
+    @property
+    def word_values(self) -> BracketWords:
+        """What words with variables in the plain blocks that come next are worth."""
+        return BracketWords(self._local, self._language.globals, self.execution.program.source, self._starts)
+
+    def _local(self) -> dict[str, Any]:
+        if self._names is None:
+            self._names = self.execution.names()
+        return self._names
 
     @property
     def waits(self) -> bool:
@@ -298,6 +311,7 @@ class CplSource:
                     return Pause.PAUSE
                 self._waiting = None
             answer, self._answer = self._answer, None
+            self._names = None
             match self.execution.step(answer):
                 case None:
                     return None
@@ -414,10 +428,17 @@ class CplSource:
         self._left = (line + 1, last) if line < last else None
         try:
             block = scan_block(self._text, self._starts[line - 1], line, self._language.codes.rules)
+            words = [CodeWord(word.letter, word.index, word.value) for word in block.words]
+            if block.flags & STATEMENT:
+                text, place = self.execution.program.source.line(line), self._starts[line - 1]
+                words = [
+                    CodeWord(letter, None, value)
+                    for letter, value in line_words(text, self.word_values, place)
+                ]
         except ProgramError:
             return self._span(line, line)  # the channel says what is wrong
         if not (block.skip_level and self._language.skips(block.skip_level)):
-            self._behind = tuple(CodeWord(word.letter, word.index, word.value) for word in block.words)
+            self._behind = tuple(words)
         return self._span(line, line)
 
     def _call_behind(self, words: Sequence[CodeWord]) -> SourceItem | None:

@@ -265,6 +265,8 @@ class Compiler:
         )
 
     def _lines(self, statement: NcLine) -> None:
+        for name in statement.names.values():
+            self._values.value(name)
         if self._stepping:
             for line in range(statement.line, statement.last + 1):
                 self._out.put(f"yield Step({line})", f"yield Lines({line}, {line})")

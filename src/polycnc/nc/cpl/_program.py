@@ -55,6 +55,7 @@ def compile_program(
     file: str,
     *,
     stepping: bool = False,
+    opened: bool = False,
     alone: frozenset[str] = frozenset(),
     rules: TextRules = PLAIN_RULES,
 ) -> tuple[Program | None, list[ProgramError]]:
@@ -63,13 +64,13 @@ def compile_program(
     The codes of `alone` ("G322") call programs where they stand alone in a block; `rules` say how blocks are read.
     """
     with without_collection():
-        return _compiled(_source(text, file), text, stepping, alone, rules)
+        return _compiled(_source(text, file), text, stepping, alone, rules, opened)
 
 
 def _compiled(
-    source: Source, text: str, stepping: bool, alone: frozenset[str], rules: TextRules
+    source: Source, text: str, stepping: bool, alone: frozenset[str], rules: TextRules, opened: bool
 ) -> tuple[Program | None, list[ProgramError]]:
-    statements, flaws = read_program(source, alone, rules)
+    statements, flaws = read_program(source, alone, rules, in_text=opened)
     whole = list(every(statements))
     flaws += target_flaws(whole)
     compiler = Compiler(source, stepping=stepping)
@@ -82,7 +83,7 @@ def _compiled(
         for each in whole
         if isinstance(each, SubCall)
     )
-    plain = all(isinstance(each, NcLine) for each in statements)
+    plain = all(isinstance(each, NcLine) and not each.names for each in statements)
     return Program(source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text), []
 
 
@@ -98,6 +99,7 @@ class Linker:
         find: Find,
         *,
         stepping: bool = False,
+        opened: bool = False,
         tables: LinkTables | None = None,
         codes: CodeCalls = NO_CODES,
     ) -> None:
@@ -106,6 +108,7 @@ class Linker:
         self.alone: frozenset[str] = frozenset()
         """The codes that call programs where they stand alone, as they were when `look_again` was called."""
         self._stepping = stepping
+        self._opened = opened
         self._tables = tables or NoTables()
         self._faulty: dict[str, str] = {}  # texts by file
         self._programs: dict[str, Program] = {}
@@ -180,7 +183,12 @@ class Linker:
         known = self._programs.get(file)
         if known is None or known.text != text:
             program, found = compile_program(
-                text, file, stepping=self._stepping, alone=self.alone, rules=self._codes.rules
+                text,
+                file,
+                stepping=self._stepping,
+                opened=self._opened,
+                alone=self.alone,
+                rules=self._codes.rules,
             )
             errors += found
             if program is None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import replace
 
 from polycnc.language import END, Flaw, Source, whole_value
 from polycnc.nc.cpl._faults import NESTING_TOO_DEEP, Fault
@@ -12,6 +11,7 @@ from polycnc.nc.cpl._fields import check_sizes
 from polycnc.nc.cpl._functions import FUNCTIONS
 from polycnc.nc.cpl._lexicon import RESERVED
 from polycnc.nc.cpl._nc_lines import PLAIN_RULES, read_nc_line, sequence_number
+from polycnc.nc.cpl._open_lines import open_line
 from polycnc.nc.cpl._reader import Reader, assignment_missing
 from polycnc.nc.cpl._syntax import (
     Assign,
@@ -48,13 +48,17 @@ Structure = If | For | While | Repeat | Case
 
 
 def read_program(
-    source: Source, alone: frozenset[str] = frozenset(), rules: TextRules = PLAIN_RULES
+    source: Source,
+    alone: frozenset[str] = frozenset(),
+    rules: TextRules = PLAIN_RULES,
+    *,
+    in_text: bool = False,
 ) -> tuple[list[Statement], list[Flaw]]:
     """Return the statements of a program, and all that is wrong with its lines.
 
     The codes of `alone` call programs where they stand alone in a block; `rules` say how blocks are read.
     """
-    reader = _ProgramReader(source, alone, rules)
+    reader = _ProgramReader(source, alone, rules, in_text)
     for line in range(1, source.line_count + 1):
         reader.line(line, source.begin(line), source.end(line))
     for opened in (
@@ -66,7 +70,8 @@ def read_program(
 
 
 class _ProgramReader:
-    def __init__(self, source: Source, alone: frozenset[str], rules: TextRules) -> None:
+    def __init__(self, source: Source, alone: frozenset[str], rules: TextRules, opened: bool) -> None:
+        self._opened = opened
         self._rules = rules
         self._alone = alone
         self.top: list[Statement] = []
@@ -115,10 +120,14 @@ class _ProgramReader:
             self._body.append(Target(at, name))
 
     def _nc(self, begin: int, end: int, number: int) -> None:
-        for statement in read_nc_line(self._text, begin, end, number, self._alone, self._rules):
+        opened = open_line(self._text, begin, end, number) if self._opened else None
+        read = [opened] if opened else read_nc_line(self._text, begin, end, number, self._alone, self._rules)
+        for statement in read:
             before = self._body[-1] if self._body else None
             if isinstance(statement, NcLine) and isinstance(before, NcLine) and before.last == number - 1:
-                self._body[-1] = replace(before, last=number)
+                before.last = number
+                for variable, name in statement.names.items():
+                    before.names.setdefault(variable, name)
             else:
                 self._body.append(statement)
 

@@ -190,11 +190,15 @@ class Repeat:
 
 @dataclass(slots=True)
 class NcLine:
-    """NC blocks without CPL in them, from line `line` to `last`: the control reads them where they stand."""
+    """NC blocks that the control reads where they stand, from line `line` to `last`.
+
+    There is no CPL in them but the variables `names`, each where it stands first.
+    """
 
     at: int
     line: int
     last: int
+    names: dict[Variable, Name] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
