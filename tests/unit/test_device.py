@@ -320,7 +320,7 @@ def test_damaged_files_are_refused() -> None:
 def test_a_newer_file_says_so() -> None:
     content = bytearray(moving_machine().snapshot().to_bytes())
     content[len(b"polycnc snapshot\n")] = 9
-    with pytest.raises(SnapshotError, match="has version 9, and this polycnc knows version 1"):
+    with pytest.raises(SnapshotError, match="has version 9, and this polycnc knows version 2"):
         Snapshot.from_bytes(bytes(content))
 
 
@@ -336,7 +336,7 @@ def test_a_newer_file_says_so() -> None:
 )
 def test_a_file_with_the_right_check_sum_and_nothing_in_it_is_damaged(body: bytes) -> None:
     packed = zlib.compress(body)
-    head = b"\x01\0\0\0" + hashlib.sha256(packed).digest() + len(packed).to_bytes(8, "little")
+    head = b"\x02\0\0\0" + hashlib.sha256(packed).digest() + len(packed).to_bytes(8, "little")
     with pytest.raises(SnapshotError, match="the snapshot is damaged"):
         Snapshot.from_bytes(b"polycnc snapshot\n" + head + packed)
 
