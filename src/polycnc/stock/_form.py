@@ -13,7 +13,7 @@ import numpy as np
 from polycnc.errors import UsageError
 from polycnc.stock._cutting import Rows
 from polycnc.stock._solid import solid_stock
-from polycnc.stock._stock import Box, Stock
+from polycnc.stock._stock import Box, Stock, check_cell
 from polycnc.stock._tool import Tool
 
 MARGIN_MM = 1.0
@@ -36,8 +36,8 @@ class Form:
             _numbers(self.text, numbers, 6 if kind == "box" else 3)
         elif self.text != "auto" and not self.text.lower().endswith(".stl"):
             raise UsageError(f"'{self.text}' is no stock", hint=f"Write {_FORMS}.")
-        if self.cell_mm is not None and not 0.0 < self.cell_mm < math.inf:
-            raise UsageError(f"a resolution of {self.cell_mm:g} mm", hint="Give more than 0 mm.")
+        if self.cell_mm is not None:
+            check_cell(self.cell_mm)
 
     def body(self, course: Rows, tools: Mapping[int, Tool]) -> Stock:
         """Return the body for a course of the tool.

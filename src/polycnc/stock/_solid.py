@@ -14,6 +14,7 @@ from polycnc.stock._mesh import Mesh
 from polycnc.stock._stock import Box, Stock
 
 MOST_TRIANGLES = 20_000_000
+MOST_BYTES = 2_000_000_000
 _ROW = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEADER = 84
 
@@ -25,6 +26,10 @@ def read_stl(path: Path) -> Mesh:
         UsageError: no such file, no STL, too many triangles, or numbers that are none.
     """
     try:
+        if path.exists() and not path.is_file():
+            raise UsageError(f"'{path}' is no file", hint="Name an STL file.")
+        if (size := path.stat().st_size) > MOST_BYTES:
+            raise UsageError(f"'{path}' has {size:,} bytes", hint=f"At most {MOST_BYTES:,} are read.")
         content = path.read_bytes()
     except OSError as error:
         raise UsageError(

@@ -16,18 +16,44 @@ Floats = npt.NDArray[np.float64]
 
 MOST_CELLS = 64_000_000
 """Of a field: half a gigabyte."""
+FARTHEST_MM = 1e6
+"""That a corner of a body may be from zero."""
+CELLS_MM = (1e-4, 1e4)
+"""Narrowest and widest cell."""
 
 
 @dataclass(frozen=True, slots=True)
 class Box:
-    """A box between two corners (mm)."""
+    """A box between two corners (mm).
+
+    Raises:
+        UsageError: a corner farther away than any machine reaches.
+    """
 
     low: tuple[float, float, float]
     high: tuple[float, float, float]
 
+    def __post_init__(self) -> None:
+        if not all(abs(place) <= FARTHEST_MM for place in (*self.low, *self.high)):
+            raise UsageError(
+                f"a body with a corner at {max((*self.low, *self.high), key=abs):g} mm",
+                hint=f"Corners are at most {FARTHEST_MM:,.0f} mm from zero.",
+            )
+
     def __str__(self) -> str:
         size = " x ".join(f"{b - a:g}" for a, b in zip(self.low, self.high, strict=True))
         return f"box of {size} mm"
+
+
+def check_cell(cell_mm: float) -> None:
+    """Refuse a width that no cell has.
+
+    Raises:
+        UsageError: it is none.
+    """
+    least, most = CELLS_MM
+    if not least <= cell_mm <= most:
+        raise UsageError(f"a resolution of {cell_mm:g} mm", hint=f"Give {least:g} to {most:g} mm.")
 
 
 class Stock:
@@ -45,8 +71,7 @@ class Stock:
             raise UsageError(
                 f"a {box} has no volume", hint="Give its lower corner first, then its upper one."
             )
-        if not 0.0 < cell_mm < math.inf:
-            raise UsageError(f"cells of {cell_mm:g} mm", hint="Give a resolution above 0 mm.")
+        check_cell(cell_mm)
         counts = [max(1, math.ceil(size / cell_mm - 1e-9)) for size in sizes[:2]]
         if counts[0] * counts[1] > MOST_CELLS:
             enough = math.sqrt(sizes[0] * sizes[1] / MOST_CELLS)

@@ -101,6 +101,9 @@ def test_a_body_goes_to_a_file_and_comes_back(tmp_path: Path) -> None:
         ("", "no stock"),
         ("cylinder=-5,0,2", "no volume"),
         ("missing.stl", "cannot read"),
+        ("box=0,0,0,1e308,1,1", "corner at"),
+        ("cylinder=1e308,0,1", "corner at"),
+        ("cylinder=30,-1e308,1e308", "corner at"),
     ],
 )
 def test_wrong_forms_are_refused(text: str, wrong: str) -> None:
@@ -126,6 +129,20 @@ def test_wrong_files_are_refused(tmp_path: Path, content: bytes, wrong: str) -> 
     file.write_bytes(content)
     with pytest.raises(UsageError, match=wrong):
         Form(str(file)).body(circle(), TOOLS)
+
+
+@pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no endless device")
+def test_a_device_is_no_body(tmp_path: Path) -> None:
+    link = tmp_path / "endless.stl"
+    link.symlink_to("/dev/zero")
+    with pytest.raises(UsageError, match="is no file"):
+        Form(str(link)).body(circle(), TOOLS)
+
+
+@pytest.mark.parametrize("width", [1e308, 1e-308, float("inf"), float("nan"), 0.0, -1.0])
+def test_a_width_that_no_cell_has_is_refused(width: float) -> None:
+    with pytest.raises(UsageError, match="a resolution of"):
+        Form("auto", width)
 
 
 def test_a_body_inside_out_is_refused(tmp_path: Path) -> None:
