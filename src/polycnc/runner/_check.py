@@ -105,5 +105,16 @@ def inspect(
 
 
 def _collisions(text: ProgramText, settings: RunSettings) -> list[Remark]:
-    found = run_program(text, settings, check=False).collisions
-    return [Remark(each.kind.name.lower(), str(each), each.position) for each in found if each.position]
+    from polycnc.stock import NoStockError
+
+    begin = text.line_position(1)
+    try:
+        machined = run_program(text, settings, check=False).machined
+    except NoStockError as error:
+        return [Remark("no_stock", error.what, begin)]
+    if machined is None:
+        return []
+    unknown = [Remark("unknown_tool", each, begin) for each in machined.messages[1:]]
+    return unknown + [
+        Remark(each.kind.name.lower(), str(each), each.position or begin) for each in machined.collisions
+    ]

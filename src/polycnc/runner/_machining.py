@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,7 @@ from polycnc.stock import (
     Course,
     Cutting,
     Form,
+    NoStockError,
     Rows,
     Stock,
     Tool,
@@ -107,7 +108,7 @@ class Machined:
 
 
 class MachiningCollector:
-    """Collect the course of the tool's tip over a run, in the coordinates of the first work offset.
+    """Collect the course of the tool's tip over a run, in the coordinates of the work offset of the first cut.
 
     A tool hangs from the spindle by its length in the machine file, whatever compensation does.
 
@@ -151,22 +152,24 @@ class MachiningCollector:
         )
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1]))
         block = np.repeat(self._table.numbers(tags[starts], records), np.diff(starts, append=len(tags)))
-        tip = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes] - shift
-        self._course.add(
-            Rows(rows[:, TIME_S].copy(), tip, block, tool, rows[:, IS_RAPID] != 0.0, turns.astype(np.bool_))
-        )
+        place = rows[:, LEADING : LEADING + len(self._config.axes)][:, self._axes]
+        rapid = rows[:, IS_RAPID] != 0.0
+        if self._zero is None:
+            cuts = np.flatnonzero(~rapid[1:] & np.any(place[1:] != place[:-1], axis=1))
+            words = records.lasting_words(int(tags[cuts[0] + 1])) if len(cuts) else None
+            if words is not None:
+                offsets = [self._config.work_offset(name) for name in words.work]
+                self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
+        tip = place - shift
+        self._course.add(Rows(rows[:, TIME_S].copy(), tip, block, tool, rapid, turns.astype(np.bool_)))
 
     def _context(self, tag: int, records: BlockRecords) -> tuple[list[float], int, bool]:
-        """Return where the stock's zero lies for the tip of a block's tool, the tool, and whether the spindle turns."""
+        """Return how a block's tool hangs from the spindle, its number, and whether the spindle turns."""
         words = records.lasting_words(tag)
         if words is None:
             return [0.0, 0.0, 0.0], 0, False
-        if self._zero is None:
-            offsets = [self._config.work_offset(name) for name in words.work]
-            self._zero = [sum(offset[axis] for offset in offsets) for axis in self._axes]
-        x, y, z = self._zero
         tool = self._config.tools.get(words.tool, ToolConfig())
-        return [x, y, z + tool.length_mm + tool.wear_length_mm], words.tool, words.spindle_direction != 0
+        return [0.0, 0.0, tool.length_mm + tool.wear_length_mm], words.tool, words.spindle_direction != 0
 
     def _place(self, block: ExecutedBlock) -> SourcePosition | None:
         text = self.texts.get(block.program)
@@ -179,13 +182,14 @@ class MachiningCollector:
             UsageError: a body that cannot be told, or none that can be cut.
         """
         if self._turned:
-            raise UsageError(
+            raise NoStockError(
                 f"axis {self._turned} turns the part or the tool: stock is cut on three axes only",
                 hint="Run the program without stock.",
             )
         if tools is None:
             tools = tools_of(self._config, self.texts)
         course = self._course.rows()
+        course = replace(course, tip=course.tip - (self._zero or [0.0, 0.0, 0.0]))
         stock = form.body(course, tools)
         cutting = Cutting(stock, tools)
         messages = [f"stock: {stock.box}, {stock.cell_mm:g} mm a cell"]

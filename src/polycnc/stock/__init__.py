@@ -2,7 +2,7 @@
 
 from polycnc.stock._course import Course
 from polycnc.stock._cutting import Contact, ContactKind, Cutting, Rows
-from polycnc.stock._form import Form, around
+from polycnc.stock._form import Form, NoStockError, around
 from polycnc.stock._mesh import Mesh
 from polycnc.stock._profile import Arc, Line, Profile, make_profile
 from polycnc.stock._solid import read_stl
@@ -20,6 +20,7 @@ __all__ = [
     "Form",
     "Line",
     "Mesh",
+    "NoStockError",
     "Profile",
     "Rows",
     "Stock",

@@ -23,6 +23,10 @@ CELLS_ACROSS = 1000
 _FORMS = "auto, box=X0,Y0,Z0,X1,Y1,Z1, cylinder=D,Z0,Z1 or the name of an STL file"
 
 
+class NoStockError(UsageError):
+    """A program that leaves nothing to say about stock: it cuts nothing, or in a way that is not simulated."""
+
+
 @dataclass(frozen=True, slots=True)
 class Form:
     """Say what body to cut: its text, and the resolution (mm) if one was given."""
@@ -93,7 +97,7 @@ def around(course: Rows, tools: Mapping[int, Tool]) -> Box:
     begin, end = course.tip[:-1], course.tip[1:]
     cuts = ~course.rapid[1:] & np.any(begin != end, axis=1)
     if not cuts.any():
-        raise UsageError(
+        raise NoStockError(
             "the program cuts nothing: no stock can be told", hint="Give one, like box=0,0,-10,90,60,0."
         )
     radius = np.zeros(len(course.tool))

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 
+import jsonschema
 import pytest
+from typer.testing import CliRunner
 
 from polycnc import runner
+from polycnc.cli._app import app
 from polycnc.errors import UsageError
 from polycnc.machine import ToolConfig, load_machine
 from polycnc.stock import ContactKind, Form, Tool, ToolKind
@@ -155,6 +159,45 @@ def test_the_length_of_another_tool_is_a_crash() -> None:
     kinds = {(each.kind, each.line) for each in found.collisions}
     assert (ContactKind.FLUTES, 7) in kinds
     assert (ContactKind.RAPID, 9) in kinds  # 20 mm above the part is 2 mm within it
+
+
+def test_stock_lies_in_the_offset_of_the_first_cut() -> None:
+    config = load_machine("mill3").model_copy(
+        update={"offsets": {"G54": {"X": 300.0}, "G55": {"X": 50.0, "Y": 7.0}}}
+    )
+    collector = runner.MachiningCollector(config)
+    text = "G4 P2\nG0 X1\n" + PLATE.replace("G43 H1", "G55 G43 H1")
+    runner.run(text, config, "fanuc", tagged_rows=collector.add, check=False)
+    found = collector.machined(Form("box=0,0,-20,60,42,0", 0.25), TOOLS)
+    assert found.volume_mm3 == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
+
+
+def test_a_check_says_what_it_could_not_look_at() -> None:
+    wrong = PLATE.replace("G0 Z20\nX-10 Y30", "G0 X-10 Y30")
+    form = "box=0,0,-20,60,42,0"
+
+    def keys(text: str, machine: str = "mill3", stock: str = form) -> list[str]:
+        return [each.key for each in runner.inspect(text, machine, "fanuc", stock=stock).remarks]
+
+    assert keys(PLATE) == []
+    assert "rapid" in keys(wrong)
+    assert keys(PLATE.replace("(T1 D=10. CR=0. - flat end mill)\n", "")) == ["unknown_tool"]
+    assert "no_stock" in keys("G0 X10\nM30\n", stock="auto")
+    turned = (Path(__file__).resolve().parents[3] / "examples" / "five_axis.nc").read_text()
+    assert "no_stock" in keys(turned, "mill5", "auto")
+
+
+@pytest.mark.parametrize(("text", "status"), [(PLATE, 0), (PLATE.replace("S5000 M3\n", "S5000\n"), 1)])
+def test_the_command_reports_stock_as_its_schema_says(tmp_path: Path, text: str, status: int) -> None:
+    program = tmp_path / "plate.nc"
+    program.write_text(text)
+    words = ["run", str(program), "-d", "fanuc", "--stock", "box=0,0,-20,60,42,0", "--json"]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == status
+    printed = json.loads(done.stdout)
+    jsonschema.validate(printed, runner.json_schema("run"))
+    assert printed["stock"]["removed_mm3"] == pytest.approx(2 * 60.0 * 10.0 * 4.0, rel=0.01)
+    assert [each["kind"] for each in printed["stock"]["collisions"]] == ["spindle", "spindle"][: 2 * status]
 
 
 def test_a_lathe_is_refused() -> None:
