@@ -46,29 +46,28 @@ def test_a_line_is_answered_when_it_is_taken_and_executed_after() -> None:
     assert (bench.state(), bench.x()) == ("Idle", 20.0)
 
 
-@pytest.mark.parametrize(
-    ("line", "number"),
-    [
-        ("1", 1), ("X", 2), ("X1.2.3", 1), ("X-", 2), ("$Q", 3), ("F-1", 4), ("T-1", 4), ("$0=1", 8), ("$H", 8),
-        ("G99", 20), ("G43.1 Z1", 20), ("Q1", 20), ("M6", 20), ("G0 G1 X1", 21), ("M3 M4", 21), ("G17 G18", 21),
-        ("G1 X1", 22), ("G93 G1 X1", 22), ("M3.5", 23), ("G28 G1 X1 F100", 24), ("X1 X2", 25), ("G92", 26),
-        ("G10 L2 P1", 26), ("G2 F100", 26), ("N99999999", 27), ("G4", 28), ("G10 X1 L2", 28), ("G10 L2 P7 X1", 29),
-        ("G2 F100 X1 G53 I1", 30), ("G80 X1", 31), ("G2 Z1 F100", 32), ("G2 X20 Y5 I99 F100", 33),
-        ("G2 X30 R1 F100", 34), ("G2 X20 Y5 F100", 35), ("G0 X1 I5", 36), ("G1 X1 P3 F100", 36),
-        ("G0" + "X1" * 60, 11),
-    ],
+WRONG = (
+    ("1", 1), ("X", 2), ("X1.2.3", 1), ("X-", 2), ("$Q", 3), ("F-1", 4), ("T-1", 4), ("$0=1", 8), ("$H", 8),
+    ("G99", 20), ("G43.1 Z1", 20), ("Q1", 20), ("M6", 20), ("G0 G1 X1", 21), ("M3 M4", 21), ("G17 G18", 21),
+    ("G1 X1", 22), ("G93 G1 X1", 22), ("M3.5", 23), ("G28 G1 X1 F100", 24), ("X1 X2", 25), ("G92", 26),
+    ("G10 L2 P1", 26), ("G2 F100", 26), ("N99999999", 27), ("G4", 28), ("G10 X1 L2", 28), ("G10 L2 P7 X1", 29),
+    ("G2 F100 X1 G53 I1", 30), ("G80 X1", 31), ("G2 Z1 F100", 32), ("G2 X20 Y5 I99 F100", 33),
+    ("G2 X30 R1 F100", 34), ("G2 X20 Y5 F100", 35), ("G0 X1 I5", 36), ("G1 X1 P3 F100", 36),
+    ("G0" + "X1" * 60, 11),
 )  # fmt: skip
-def test_a_wrong_line_has_its_number_and_stops_nothing(line: str, number: int) -> None:
+
+
+def test_a_wrong_line_has_its_number_and_stops_nothing() -> None:
     bench = Bench()
-    bench.send(UNIT + "G0 X30\nG10 L20 P2 X0\n", 1000)
-    bench.send("G0 X40\n", 10)
-    answers = bench.send(line + "\n", 10)
-    assert [each for each in answers if not each.startswith("[MSG")] == [f"error:{number}"]
-    assert bench.state() == "Run"
-    bench.send("", 1500)
-    assert (bench.state(), bench.x()) == ("Idle", 40.0)
-    assert bench.send("G0 X41\n", 500) == ["ok"]
-    assert bench.x() == 41.0
+    bench.send(UNIT + "G10 L20 P2 X0\n", 100)
+    for place, (line, number) in enumerate(WRONG):
+        target = 30.0 + 10.0 * (place % 2)
+        bench.send(f"G53 G0 X{target}\n", 10)
+        answers = [each for each in bench.send(line + "\n", 10) if not each.startswith("[MSG")]
+        assert (line, answers) == (line, [f"error:{number}"])
+        assert (line, bench.state()) == (line, "Run")
+        bench.send("", 1000)
+        assert (line, bench.state(), bench.x()) == (line, "Idle", target)
 
 
 @pytest.mark.parametrize(
@@ -238,7 +237,7 @@ def test_homing_references_every_axis_and_answers_then() -> None:
     assert bench.state() == "Idle"
     assert bench.send("G0 X5\n", 2000) == ["ok"]
     assert bench.x() == 5.0
-    assert bench.send("$22=0\n$H\n", 50) == ["ok", "error:5"]
+    assert bench.send("$22=0\n$H\n", 200) == ["ok", "error:5"]
     bench.send("$22=1\n$H\n", 20)
     assert bench.state() == "Home"
     assert bench.send("\x18")[0] == "ALARM:6"
@@ -365,7 +364,7 @@ def _answers(
 
 
 @pytest.mark.parametrize(
-    "seed", [*range(12), *(pytest.param(n, marks=pytest.mark.long) for n in range(12, 400))]
+    "seed", [*range(8), *(pytest.param(n, marks=pytest.mark.long) for n in range(8, 400))]
 )
 def test_bytes_cut_anywhere_have_the_same_answers(seed: int) -> None:
     conversation = _conversation(random.Random(seed))

@@ -171,21 +171,19 @@ class Commands:
         if control.alarms.active:
             raise RefusedError(GrblError.LOCKED, control.alarms.active[0].text)
         self._state.locked, self._state.homing = False, True
-        try:
-            while not control.channels[0].at_rest:
+        while not control.channels[0].at_rest:
+            yield
+        self._sending.begin()
+        control.select_mode(Mode.REF)
+        for name in sorted(self._settings.names, key=_HOMING_ORDER.find):
+            control.reference(name)
+            while control.manual.moves((name,)):
                 yield
-            self._sending.begin()
-            control.select_mode(Mode.REF)
-            for name in sorted(self._settings.names, key=_HOMING_ORDER.find):
-                control.reference(name)
-                while control.manual.moves((name,)):
-                    yield
-                if not control.axes()[name].referenced:
-                    self._state.alarm_to_say = GrblAlarm.HOMING_FAILED
-                    break
-        finally:
-            self._state.homing = False
-            control.select_mode(Mode.MDI)
+            if not control.axes()[name].referenced:
+                self._state.alarm_to_say = GrblAlarm.HOMING_FAILED
+                break
+        self._state.homing = False
+        control.select_mode(Mode.MDI)
 
     def _jog(self, text: str) -> Iterator[None]:
         if self._name() not in ("Idle", "Jog"):
@@ -199,7 +197,7 @@ class Commands:
 
     def _write(self, number: int, value: float) -> Iterator[None]:
         self._settings.check(number, value)
-        if self._settings.changes_axes(number):
+        if self._settings.changes_axes(number) or number == HOMING:
             yield from self._sending.free()
         try:
             self._settings.write(number, value)

@@ -134,6 +134,7 @@ class GrblCore:
             self._refuse(refused)
             return
         except PolycncError as error:  # of the control: something else uses it
+            self._commands.abandon()
             self._refuse(RefusedError(GrblError.NOT_IDLE, error.what))
             return
         for message in self._sending.take_messages():
