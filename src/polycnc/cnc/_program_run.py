@@ -26,8 +26,10 @@ from polycnc.nc import (
     Channel,
     ChannelOptions,
     Dialect,
+    IncomingText,
     Language,
     Library,
+    LineCheck,
     ModalWords,
     ProgramText,
     Stop,
@@ -434,6 +436,24 @@ class ProgramRun:
         return self.channel.error
 
     @property
+    def starved(self) -> bool:
+        """Whether the path rests because nothing more of a program that is still coming has come."""
+        row = self._conduct.row
+        rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
+        return self.active and rests and self.channel.starved
+
+    def line_check(self) -> LineCheck:
+        """Return a check of blocks that would come after what has been prepared."""
+        check = self.channel.line_check()
+        if self._moment.state is RunState.READY:  # a start begins where the axes are
+            check.state.modal.position[:] = self.machine.state.base
+        return check
+
+    def has_come(self) -> None:
+        """Take note that more has come of a program that is still coming."""
+        self.feed.wake()
+
+    @property
     def executed_tag(self) -> int:
         """The tag of the block that is executed, or was last."""
         return self._conduct.executed_tag
@@ -522,8 +542,16 @@ class ProgramRun:
         Raises:
             SnapshotError: a language executes the program, and cannot tell where it stands.
         """
+        program = self.program
+        if isinstance(program, IncomingText):
+            if not self.channel.done:
+                raise SnapshotError(
+                    "a program that is still coming is under way",
+                    hint="Take the snapshot before or after it.",
+                )
+            program = ProgramText(program.name, b"")
         saved = SavedRun(
-            self.program,
+            program,
             self.channel.snapshot(),
             self.feed.snapshot(),
             self.stopper.step,
