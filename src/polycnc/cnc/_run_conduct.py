@@ -69,6 +69,7 @@ class Conduct:
             self.feed.replan,
             dry_run_mm_s=options.dry_run_mm_s,
             rapid_f0_mm_s=options.rapid_f0_mm_s,
+            most_feed=options.most_feed_override,
         )
 
     @property

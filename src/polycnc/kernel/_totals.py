@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from polycnc.kernel._jit import compiled
+from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._path import (
     FEED_LENGTH,
     FEED_S,
     RAPID_LENGTH,
     RAPID_S,
+    RUNNING,
     SEGMENTS,
     TOP_SPEED,
     WAIT_S,
@@ -31,6 +32,20 @@ def account_time(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
         totals[FEED_S] += passed_s
         if not row["flags"] & TURN:
             totals[TOP_SPEED] = max(totals[TOP_SPEED], paths.ramps[g, SPEED_PEAK])
+
+
+@entry
+def feed_time_s(seg: Segments, paths: Paths, dt: float) -> float:
+    """Return how long all paths have moved at feed so far, the part of the running segment included."""
+    total = 0.0
+    for g in range(len(paths.row)):
+        path = paths.row[g]
+        total += paths.totals[g, FEED_S]
+        if path["state"] == RUNNING:
+            row = seg.row[slot(paths, g, path["head"])]
+            if row["kind"] != WAIT and not row["flags"] & RAPID:
+                total += path["lead"] + path["cycles"] * dt
+    return float(total)
 
 
 @compiled
