@@ -41,8 +41,8 @@ def numbers(control: PowerMate) -> list[int]:
     return [alarm.number for alarm in control.status().alarms]
 
 
-# By hand: half of the first line is X12. The arc about 0 with radius 14 begins at Y-14 and passes X12 at -sqrt(196 - 144);
-# the circle about 0 goes the other way and passes X-8 at Y -sqrt(196 - 64).
+# By hand: half of the first line is X12. The arc about 0 with radius 14 begins at Y-14 and passes X12 at Y
+# -sqrt(196 - 144); the circle about 0 goes the other way and passes X-8 at Y -sqrt(196 - 64).
 CASES = {
     "line": ("G1 X24. Y8. F3000", (12.0, 4.0), [500]),
     "line down": ("G1 X4. Y-30. F3000", (2.0, -15.0), [501]),

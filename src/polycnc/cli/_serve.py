@@ -51,6 +51,12 @@ def serve_command(
         Path | None,
         typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
     ] = None,
+    characters: Annotated[
+        int | None,
+        typer.Option(
+            help="Size of the program memory; absent: as of the series.", min=1, max=10**9, metavar="N"
+        ),
+    ] = None,
     faults: Annotated[
         Path | None,
         typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
@@ -74,6 +80,7 @@ def serve_command(
         axes,
         rate,
         memory,
+        characters,
         () if faults is None else load_faults(faults),
     )
     asyncio.run(_serve(wanted, _addresses(address, count)))
@@ -105,6 +112,7 @@ class _Wanted:
     axes: int
     rate: float
     memory: Path | None
+    characters: int | None
     faults: tuple[Fault, ...]
 
 
@@ -157,9 +165,8 @@ async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
     late = _Late()
     try:
         for address in addresses:
-            control = PowerMate(
-                wanted.axes, memory=wanted.memory, characters=wanted.profile.program_characters
-            )
+            characters = wanted.characters or wanted.profile.program_characters
+            control = PowerMate(wanted.axes, memory=wanted.memory, characters=characters)
             controls.append(control)
             if content is not None:
                 number, text = _numbered(content)

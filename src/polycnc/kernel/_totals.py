@@ -60,3 +60,5 @@ def leave_segment(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
     path["entry_share"] = 0.0
     path["entry_zone"] = 0.0
     path["head"] += 1
+    if path["head"] >= path["tail"] or seg.row[slot(paths, g, path["head"])]["tag"] != row["tag"]:
+        path["blocks"] += 1

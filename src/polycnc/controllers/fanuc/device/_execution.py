@@ -87,6 +87,11 @@ class Execution:
             return [block.encode() for block in power_mate.mdi.state.blocks]
         return power_mate.programs.read(number).split(b"\n") if number in power_mate.programs else []
 
+    @property
+    def count(self) -> int:
+        """How many blocks have been executed since the program began, of those that move, dwell or have functions."""
+        return self._power_mate.control.channels[0].blocks_done
+
     # ------------------------------------------------------------------ texts
 
     @property
