@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _SHARE_S = 0.01  # of the wall clock that all controls together may take before a door answers
 _NUMBER = re.compile(rb"\s*O(\d{1,4})\b")
 _MOST = 4000
+_CHARACTERS = "Size of the program memory; absent: as of the series."
 
 
 def serve_command(
@@ -51,12 +52,7 @@ def serve_command(
         Path | None,
         typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
     ] = None,
-    characters: Annotated[
-        int | None,
-        typer.Option(
-            help="Size of the program memory; absent: as of the series.", min=1, max=10**9, metavar="N"
-        ),
-    ] = None,
+    characters: Annotated[int | None, typer.Option(help=_CHARACTERS, min=1, max=10**9, metavar="N")] = None,
     faults: Annotated[
         Path | None,
         typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),

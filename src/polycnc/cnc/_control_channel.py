@@ -91,11 +91,6 @@ class ControlChannel:
         return None if self.run is None else self.run.executed
 
     @property
-    def blocks_done(self) -> int:
-        """How many blocks have been executed since the program began, of those that leave anything to do."""
-        return 0 if self.run is None else self.run.blocks_done
-
-    @property
     def next_block(self) -> BlockRecord | None:
         """The block that comes next where the path stands between two blocks; None where none is known."""
         return None if self.run is None else next_block(self._machine, self.run)

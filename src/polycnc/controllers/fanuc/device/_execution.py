@@ -90,7 +90,8 @@ class Execution:
     @property
     def count(self) -> int:
         """How many blocks have been executed since the program began, of those that move, dwell or have functions."""
-        return self._power_mate.control.channels[0].blocks_done
+        run = self._power_mate.control.channels[0].run
+        return 0 if run is None else run.blocks_done
 
     # ------------------------------------------------------------------ texts
 
