@@ -311,6 +311,7 @@ class ProgramRun:
             return
         self._moment.single_block = on
         self.stopper.step = self._conduct.step_of_switch
+        self._conduct.take_switch()
         if self._moment.state in _GOING:
             self.feed.look_again()
 
@@ -574,6 +575,7 @@ class ProgramRun:
         conduct.stopper.step, conduct.stopper.depth = saved.step, saved.depth
         conduct.overrides.kept = saved.override_kept
         conduct.moment = saved.moment.copy()
+        conduct.take_switch()
 
     @property
     def _made_from(self) -> str:
