@@ -313,6 +313,7 @@ class ProgramRun:
             return
         self._moment.single_block = on
         self.stopper.step = self._conduct.step_of_switch
+        self._conduct.take_switch()
         if self._moment.state in _GOING:
             self.feed.look_again()
 
@@ -459,6 +460,11 @@ class ProgramRun:
         return self._conduct.executed_tag
 
     @property
+    def blocks_done(self) -> int:
+        """How many blocks have been executed since the start, of those that move, dwell or hand out functions."""
+        return int(self._conduct.row["blocks"])
+
+    @property
     def executed(self) -> BlockRecord | None:
         """The block that is executed, or was last; None before the first."""
         return self.channel.records.block(self.executed_tag)
@@ -597,6 +603,7 @@ class ProgramRun:
         conduct.stopper.step, conduct.stopper.depth = saved.step, saved.depth
         conduct.overrides.kept = saved.override_kept
         conduct.moment = saved.moment.copy()
+        conduct.take_switch()
 
     @property
     def _made_from(self) -> str:
@@ -631,7 +638,7 @@ class ProgramRun:
         kernel.start_path(state.paths, path)
         self._moment.hold = self._moment.held_back = False
         self._conduct.row["limit"] = kernel.NO_LIMIT
-        self._conduct.row["tag"] = 0
+        self._conduct.row["tag"] = self._conduct.row["blocks"] = 0
         if self._moment.approach is not None:
             self.channel.begin_at(*self._moment.approach)
             self._moment.approach = None

@@ -178,6 +178,13 @@ class Channel:
         return self.writer.stops > 0
 
     @property
+    def text_is_over(self) -> bool:
+        """Whether all blocks of the main program's text have been taken, and no language has more."""
+        reader, calls = self._reader, self._calls
+        read = reader.at_end and reader.place.offset >= reader.end
+        return read and calls.depth == 0 and calls.running.source is None
+
+    @property
     def paused(self) -> bool:
         """Whether preparation has done what it may in one control cycle, and goes on in the next."""
         return self._preparation.turns.paused and not self._preparation.over

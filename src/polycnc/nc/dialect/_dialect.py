@@ -241,6 +241,10 @@ class Dialect(StrictModel):
         default="error",
         description='Two codes of one group in a block: "error" refuses them, "last" takes the last and says so.',
     )
+    soft_limits: Literal["before", "at_limit"] = Field(
+        default="before",
+        description='A move past a soft limit: "before" refuses its block, "at_limit" carries it out up to the limit.',
+    )
     tool_word: Literal["select", "turret"] = Field(
         default="select",
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
