@@ -11,7 +11,7 @@ from typing import Protocol
 
 from polycnc.language import Chain, Flaw, Python, Unary, infix, prefix
 from polycnc.nc.macro._reader import COMPARISONS
-from polycnc.nc.macro._syntax import Expression, Function, Number, Variable
+from polycnc.nc.macro._syntax import Expression, Function, Name, Number, Variable
 
 _ARITHMETIC = "+-*/"
 _SMALL = 1e6  # adding so little at a time never gets a variable out of range
@@ -81,6 +81,8 @@ class Expressions:
                 return self.variable(tree)
             case Function():
                 return self.function(tree)
+            case Name():
+                return Value(Python(f"H.named({tree.text!r})"))
             case Unary():
                 operand = self.expression(tree.operand)
                 if operand.truth:
@@ -135,7 +137,7 @@ class Expressions:
             return Value(Python(f"H.increments({values})"))
         return Value(Python(f"f_{name}({values})"))
 
-    def chain(self, tree: Chain[Number | Variable | Function]) -> Value:
+    def chain(self, tree: Chain[Number | Variable | Function | Name]) -> Value:
         left = self.expression(tree.first)
         for link in tree.links:
             right = self.expression(link.operand)
