@@ -9,7 +9,8 @@ from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._sub_programs import Library
-from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
+from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
 from polycnc.nc.modal._placement import Placement
@@ -59,6 +60,7 @@ __all__ = [
     "ChannelOptions",
     "ChannelSnapshot",
     "ChannelState",
+    "ChosenDialect",
     "Dialect",
     "Drain",
     "EndSource",
@@ -85,6 +87,7 @@ __all__ = [
     "Texts",
     "Word",
     "WordsBlock",
+    "choose_dialect",
     "dialect_for",
     "line_of",
     "load_dialect",
