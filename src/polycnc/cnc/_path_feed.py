@@ -100,15 +100,11 @@ class PathFeed:
             self.prepare()
         if self.channel.done or self.channel.waits or self._met_at is not None:
             row["low_water"] = _NEVER
-<<<<<<< HEAD
         elif (
             self.channel.starved
         ):  # a line is held back while the path may yet leave its end by a rounded corner
             row["low_water"] = 0 if row["prepared"] < row["tail"] else _NEVER
-        elif self._ahead is not None or self.stopper.has_conditions:
-=======
         elif self._ahead is not None or self.stopper.has_conditions or self.stopper.alone:
->>>>>>> ready-fan-3
             row["low_water"] = row["planned"] - row["head"] - 1
         else:
             row["low_water"] = row["planned"] - self.target()
