@@ -181,10 +181,18 @@ class Control:
         self._programs.set_mdi(text, channel=channel)
 
     def search(
-        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+        self,
+        *,
+        line: int = 0,
+        sequence: int | None = None,
+        calculate: bool = False,
+        last: int = 0,
+        channel: int = 0,
     ) -> int:
         """Let the next start begin the selected program at a block; return its line."""
-        return self._programs.search(line=line, sequence=sequence, calculate=calculate, channel=channel)
+        return self._programs.search(
+            line=line, sequence=sequence, calculate=calculate, last=last, channel=channel
+        )
 
     def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
         """Begin the selected program or the MDI text, or go on where a program is interrupted."""

@@ -204,21 +204,31 @@ class Pnc:
         self._control.cycle_start(channel=self._path(channel))
         self.system.reset_signal(channel, False)
 
-    def search_block(self, start: str, *, channel: int = 1) -> int:
+    def search_block(self, start: str = "", end: str = "", *, channel: int = 1) -> int:
         """Let the selected program begin at the first block that begins with `start`; return its line.
 
         What stands before is carried out without moving, statements too, and the next start goes straight to where the
-        block begins (Manual 003, 4.14.2: MCOPS(3)).
+        block begins. The program ends with the first block from there that begins with `end`. Without one of them it
+        begins, or ends, as it would (Manual 003, 4.14.2: MCOPS(3)).
 
         Raises:
             ControlError: There is no such block, or the program does not come to it; see `Control.search`.
         """
         program = self._control.channels[self._path(channel)].program
-        blocks = [] if program is None else program.content.decode("latin-1").splitlines()
-        found = find_block(blocks, start)
-        if found is None:
-            raise ControlError(Refusal.NOT_FOUND, f"there is no block {start}", hint="Give its beginning.")
-        return self._control.search(line=found + 1, calculate=True, channel=self._path(channel))
+        lines = [] if program is None else program.content.splitlines()
+        blocks = [line.decode("latin-1") for line in lines]
+        first = find_block(blocks, start) if start else 0
+        last = find_block(blocks, end, first or 0) if end else -1
+        for sought, found in ((start, first), (end, last)):
+            if found is None:
+                raise ControlError(
+                    Refusal.NOT_FOUND, f"there is no block {sought}", hint="Give its beginning."
+                )
+        assert first is not None
+        assert last is not None
+        return self._control.search(
+            line=first + 1, calculate=first > 0, last=last + 1, channel=self._path(channel)
+        )
 
     @property
     def dialogs(self) -> tuple[str, ...]:

@@ -14,6 +14,7 @@ from polycnc.nc.channel._sub_programs import SubPrograms
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.sources._block_source import (
+    BoundedLanguage,
     BoundLanguage,
     CallProgram,
     Language,
@@ -48,6 +49,8 @@ class Calls:
         self._errors = errors
         self._refused: dict[tuple[str, int], Trouble] = {}
         self._all = [Running(Place(main))]
+        self.main_end = len(main)
+        """The byte of the main program behind the last one that is executed."""
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
         self.within: tuple[Call, ...] = ()
@@ -68,6 +71,31 @@ class Calls:
 
     # ------------------------------------------------------------------ beginning and ending
 
+    def bound(self, first: int, last: int) -> None:
+        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
+
+        Raises:
+            UsageError: a language executes it that cannot end there.
+        """
+        text = self.running.begin.text
+        if last:
+            self.main_end = text.next_line(text.line_start(last))
+            if self._language is not None and not isinstance(self._language, BoundedLanguage):
+                self._refuse_source(text)
+        if isinstance(self._language, BoundedLanguage):
+            self._language.begin_between(first, last)
+
+    def _refuse_source(self, text: ProgramText) -> None:
+        assert self._language is not None
+        try:
+            source = self._language.source(text, 0, 1, None)
+        except ProgramError:
+            return  # said when it begins
+        if source is not None:
+            source.close()
+            hint = "Search its beginning alone."
+            raise UsageError("a program with statements cannot end at a block that is given", hint=hint)
+
     def begin(self) -> None:
         """Begin the present program, or its next round."""
         self.go_within(())
@@ -81,8 +109,8 @@ class Calls:
         self._reader.word_values = running.word_values
         if running.source is not None:
             self._reader.jump(begin, begin.offset)  # no text for now
-        elif self.depth or language is not None:
-            self._reader.jump(begin, len(begin.text))
+        elif self.depth or language is not None or self.main_end < len(begin.text):
+            self._reader.jump(begin, len(begin.text) if self.depth else self.main_end)
 
     def target(self, line: int) -> Place:
         """Return the place of a line of the main program, to begin there.
@@ -102,9 +130,12 @@ class Calls:
             UsageError: a language executes the program, and cannot begin there.
         """
         running = self.running
+        begin = running.begin
+        if place.offset == begin.offset:
+            self.begin()
+            return
         running.begun = True
         if isinstance(self._language, SearchingLanguage):
-            begin = running.begin
             try:
                 running.source = self._language.source_at(begin.text, begin.offset, begin.line, place.offset)
             except ProgramError as error:
@@ -113,7 +144,7 @@ class Calls:
             if running.source is not None:
                 self._reader.jump(begin, begin.offset)  # no text for now
                 return
-        self._reader.jump(place, len(place.text))
+        self._reader.jump(place, self.main_end)
 
     def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
         """Begin a sub-program that `trouble` had nothing against, called on `line`; nothing for no repeats."""
