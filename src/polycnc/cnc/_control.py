@@ -214,8 +214,6 @@ class Control:
         """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
         return self._programs.put_alarm(name, axis=axis, detail=detail)
 
-    # ------------------------------------------------------------------ editing
-
     def edit(self, name: str, *, background: bool = False) -> ProgramEdit:
         """Open a program for editing: in EDIT in the foreground, in any mode in the background; one of each."""
         if not background and all(channel.mode is not Mode.EDIT for channel in self.channels):
@@ -287,8 +285,6 @@ class Control:
             if (found := name.format(number=number)) in self.programs:
                 return self.programs.text(found)
         return None
-
-    # ------------------------------------------------------------------ auxiliary functions
 
     def _meet(self, path: int, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""
