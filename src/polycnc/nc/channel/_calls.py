@@ -22,6 +22,7 @@ from polycnc.nc.sources._block_source import (
     Returning,
     SearchingLanguage,
 )
+from polycnc.nc.text._incoming import IncomingText
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 
@@ -43,14 +44,14 @@ class Calls:
         errors: Errors,
     ) -> None:
         self._dialect = dialect
+        self._incoming = main if isinstance(main, IncomingText) else None
         self._programs = programs
         self._language = language
         self._reader = reader
         self._errors = errors
         self._refused: dict[tuple[str, int], Trouble] = {}
-        self._all = [Running(Place(main))]
-        self.main_end = len(main)
-        """The byte of the main program behind the last one that is executed."""
+        self._all = [Running(Place(main.opening))]
+        self._main_end: int | None = None  # behind the last block that is executed, if one was given
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
         self.within: tuple[Call, ...] = ()
@@ -71,6 +72,11 @@ class Calls:
 
     # ------------------------------------------------------------------ beginning and ending
 
+    @property
+    def main_end(self) -> int:
+        """The byte of the main program behind the last one that is executed."""
+        return len(self._all[0].begin.text) if self._main_end is None else self._main_end
+
     def bound(self, first: int, last: int) -> None:
         """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
 
@@ -79,7 +85,7 @@ class Calls:
         """
         text = self.running.begin.text
         if last:
-            self.main_end = text.next_line(text.line_start(last))
+            self._main_end = text.next_line(text.line_start(last))
             if self._language is not None and not isinstance(self._language, BoundedLanguage):
                 self._refuse_source(text)
         if isinstance(self._language, BoundedLanguage):
@@ -109,8 +115,46 @@ class Calls:
         self._reader.word_values = running.word_values
         if running.source is not None:
             self._reader.jump(begin, begin.offset)  # no text for now
-        elif self.depth or language is not None or self.main_end < len(begin.text):
+        elif self.depth or language is not None or self._main_end is not None:
             self._reader.jump(begin, len(begin.text) if self.depth else self.main_end)
+
+    @property
+    def has_language(self) -> bool:
+        """Whether a language may execute programs."""
+        return self._language is not None
+
+    @property
+    def is_coming(self) -> bool:
+        """Whether more of the main program, which is the present one, waits or may still come."""
+        return self._incoming is not None and self.depth == 0 and not self._incoming.over
+
+    @property
+    def has_come(self) -> bool:
+        """Whether a piece of the main program waits to be read."""
+        return self._incoming is not None and self._incoming.waiting > 0
+
+    def take_piece(self) -> bool:
+        """Go on with what has come of the main program; False while nothing has.
+
+        Where a language or a cycle might look beyond its line, each line is a piece: how the program was cut when it
+        came makes no difference then.
+        """
+        incoming, running = self._incoming, self.running
+        assert incoming is not None
+        by_line = self._language is not None or self._dialect.reads_contours
+        piece = incoming.take(one_line=by_line)
+        if piece is None:
+            return False
+        running.begin = Place(piece, 0, piece.first_line)
+        self.begin()
+        if running.source is None:
+            self._reader.jump(running.begin, len(piece))
+        return True
+
+    def end_piece(self) -> None:
+        """Leave the source of a piece of the main program that has come to its end."""
+        _close(self.running)
+        self._reader.word_values = None
 
     def target(self, line: int) -> Place:
         """Return the place of a line of the main program, to begin there.
@@ -202,6 +246,8 @@ class Calls:
         """End all programs."""
         for running in reversed(self._all):
             _close(running)
+        if self._incoming is not None:
+            self._incoming.close()
 
     def _note_calls(self) -> None:
         self.running = self._all[-1]
