@@ -230,8 +230,6 @@ class Control:
         """Whether a program is open for editing."""
         return self._parts.edits.any_open
 
-    # ------------------------------------------------------------------ axes by hand
-
     def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:
         """Press a jog key (1 or -1), or let it go (None)."""
         self._hands.jog(axis, direction, rapid=rapid)
@@ -256,8 +254,6 @@ class Control:
     def relative_zero(self) -> tuple[float, ...]:
         """Where the relative positions count from (machine coordinates)."""
         return tuple(self._parts.relative_zero)
-
-    # ------------------------------------------------------------------ time
 
     @property
     def raised(self) -> ControlEvent:

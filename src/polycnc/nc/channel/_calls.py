@@ -8,13 +8,13 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import SnapshotError
 from polycnc.nc.blocks._outcomes import Trouble
 from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._main_bounds import MainBounds
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._running import Back, Running, SavedCall
 from polycnc.nc.channel._sub_programs import SubPrograms
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.sources._block_source import (
-    BoundedLanguage,
     BoundLanguage,
     CallProgram,
     Language,
@@ -51,9 +51,9 @@ class Calls:
         self._errors = errors
         self._refused: dict[tuple[str, int], Trouble] = {}
         self._all = [Running(Place(main.opening))]
-        self._main_end: int | None = None  # behind the last block that is executed, if one was given
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
+        self.bounds = MainBounds(self.running, language)
         self.within: tuple[Call, ...] = ()
         self.stack: tuple[Call, ...] = ()
 
@@ -70,38 +70,6 @@ class Calls:
             return None
         return None if place is None else place.text
 
-    # ------------------------------------------------------------------ beginning and ending
-
-    @property
-    def main_end(self) -> int:
-        """The byte of the main program behind the last one that is executed."""
-        return len(self._all[0].begin.text) if self._main_end is None else self._main_end
-
-    def bound(self, first: int, last: int) -> None:
-        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
-
-        Raises:
-            UsageError: a language executes it that cannot end there.
-        """
-        text = self.running.begin.text
-        if last:
-            self._main_end = text.next_line(text.line_start(last))
-            if self._language is not None and not isinstance(self._language, BoundedLanguage):
-                self._refuse_source(text)
-        if isinstance(self._language, BoundedLanguage):
-            self._language.begin_between(first, last)
-
-    def _refuse_source(self, text: ProgramText) -> None:
-        assert self._language is not None
-        try:
-            source = self._language.source(text, 0, 1, None)
-        except ProgramError:
-            return  # said when it begins
-        if source is not None:
-            source.close()
-            hint = "Search its beginning alone."
-            raise UsageError("a program with statements cannot end at a block that is given", hint=hint)
-
     def begin(self) -> None:
         """Begin the present program, or its next round."""
         self.go_within(())
@@ -115,8 +83,8 @@ class Calls:
         self._reader.word_values = running.word_values
         if running.source is not None:
             self._reader.jump(begin, begin.offset)  # no text for now
-        elif self.depth or language is not None or self._main_end is not None:
-            self._reader.jump(begin, len(begin.text) if self.depth else self.main_end)
+        elif self.depth or language is not None or self.bounds.is_cut:
+            self._reader.jump(begin, len(begin.text) if self.depth else self.bounds.end)
 
     @property
     def has_language(self) -> bool:
@@ -188,7 +156,7 @@ class Calls:
             if running.source is not None:
                 self._reader.jump(begin, begin.offset)  # no text for now
                 return
-        self._reader.jump(place, self.main_end)
+        self._reader.jump(place, self.bounds.end)
 
     def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
         """Begin a sub-program that `trouble` had nothing against, called on `line`; nothing for no repeats."""
@@ -259,8 +227,6 @@ class Calls:
             calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
         self._entered = tuple(calls)
         self.stack = self._entered + self.within
-
-    # ------------------------------------------------------------------ what is against a call
 
     def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Trouble | None:
         """Return what is against a call that stands at byte `offset` of `text`, None if nothing is.

@@ -235,7 +235,7 @@ class Channel:
         Raises:
             UsageError: a language executes it that cannot end there.
         """
-        self._calls.bound(first, last)
+        self._calls.bounds.set(first, last)
 
     def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
         """Carry out all blocks before a line of the main program; False if the program ends before.
@@ -267,7 +267,7 @@ class Channel:
                 hint="Search a block before G41 or G42, or behind G40.",
             )
         if search.held is None:
-            self._reader.jump(place, self._calls.main_end)
+            self._reader.jump(place, self._calls.bounds.end)
         return True
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:
