@@ -223,11 +223,14 @@ class ProgramRun:
         self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
         self.start()
 
-    def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
+    def search(
+        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, last: int = 0
+    ) -> int:
         """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
 
         With `calculate` everything before is carried out without moving, and with the start the axes go straight at
-        rapid to where that block begins; else modal state and position are what they are. Return the line.
+        rapid to where that block begins; else modal state and position are what they are. The program ends behind the
+        block on line `last`, if one is given. Return the line.
 
         Raises:
             UsageError: there is no such block, or the program cannot begin there; it stands at its beginning then.
@@ -236,6 +239,7 @@ class ProgramRun:
         target = block_line(self.program, line, sequence)
         self._replace_channel(self.program, keeps_modal=False)
         self._moment.state = RunState.READY
+        self.channel.bound(target, last)
         if not calculate:
             self.channel.go_to(target)
             return target
@@ -313,6 +317,7 @@ class ProgramRun:
             return
         self._moment.single_block = on
         self.stopper.step = self._conduct.step_of_switch
+        self._conduct.take_switch()
         if self._moment.state in _GOING:
             self.feed.look_again()
 
@@ -464,6 +469,11 @@ class ProgramRun:
         return self._conduct.executed_tag
 
     @property
+    def blocks_done(self) -> int:
+        """How many blocks have been executed since the start, of those that move, dwell or hand out functions."""
+        return int(self._conduct.row["blocks"])
+
+    @property
     def executed(self) -> BlockRecord | None:
         """The block that is executed, or was last; None before the first."""
         return self.channel.records.block(self.executed_tag)
@@ -602,6 +612,7 @@ class ProgramRun:
         conduct.stopper.step, conduct.stopper.depth = saved.step, saved.depth
         conduct.overrides.kept = saved.override_kept
         conduct.moment = saved.moment.copy()
+        conduct.take_switch()
 
     @property
     def _made_from(self) -> str:
@@ -636,7 +647,7 @@ class ProgramRun:
         kernel.start_path(state.paths, path)
         self._moment.hold = self._moment.held_back = False
         self._conduct.row["limit"] = kernel.NO_LIMIT
-        self._conduct.row["tag"] = 0
+        self._conduct.row["tag"] = self._conduct.row["blocks"] = 0
         if self._moment.approach is not None:
             self.channel.begin_at(*self._moment.approach)
             self._moment.approach = None

@@ -178,6 +178,13 @@ class Channel:
         return self.writer.stops > 0
 
     @property
+    def text_is_over(self) -> bool:
+        """Whether all blocks of the main program's text have been taken, and no language has more."""
+        reader, calls = self._reader, self._calls
+        read = reader.at_end and reader.place.offset >= reader.end
+        return read and calls.depth == 0 and calls.running.source is None
+
+    @property
     def paused(self) -> bool:
         """Whether preparation has done what it may in one control cycle, and goes on in the next."""
         return self._preparation.turns.paused and not self._preparation.over
@@ -222,6 +229,14 @@ class Channel:
         self._preparation.begun = True
         self._calls.begin_at(place)
 
+    def bound(self, first: int, last: int) -> None:
+        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
+
+        Raises:
+            UsageError: a language executes it that cannot end there.
+        """
+        self._calls.bounds.set(first, last)
+
     def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
         """Carry out all blocks before a line of the main program; False if the program ends before.
 
@@ -252,7 +267,7 @@ class Channel:
                 hint="Search a block before G41 or G42, or behind G40.",
             )
         if search.held is None:
-            self._reader.jump(place, len(place.text))
+            self._reader.jump(place, self._calls.bounds.end)
         return True
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:

@@ -241,6 +241,10 @@ class Dialect(StrictModel):
         default="error",
         description='Two codes of one group in a block: "error" refuses them, "last" takes the last and says so.',
     )
+    soft_limits: Literal["before", "at_limit"] = Field(
+        default="before",
+        description='A move past a soft limit: "before" refuses its block, "at_limit" carries it out up to the limit.',
+    )
     tool_word: Literal["select", "turret"] = Field(
         default="select",
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
@@ -419,18 +423,3 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
         f"there is no dialect '{source}'",
         hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
     )
-
-
-def dialect_for(program: str, explicit: str | Path | Dialect | None = None) -> Dialect:
-    """Return the dialect of a program: the explicit one, else by the file's extension, else the default.
-
-    Raises:
-        UsageError: there is no such dialect.
-    """
-    if explicit is not None:
-        return load_dialect(explicit)
-    extension = Path(program).suffix.lower()
-    for name in _SHIPPED:
-        if extension and extension in _shipped(name).extensions:
-            return _shipped(name)
-    return _shipped(DEFAULT_DIALECT)

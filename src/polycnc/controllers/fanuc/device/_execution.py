@@ -90,6 +90,12 @@ class Execution:
             return [block.encode() for block in power_mate.mdi.state.blocks]
         return power_mate.programs.read(number).split(b"\n") if number in power_mate.programs else []
 
+    @property
+    def count(self) -> int:
+        """How many blocks have been executed since the program began, of those that move, dwell or have functions."""
+        run = self._power_mate.control.channels[0].run
+        return 0 if run is None else run.blocks_done
+
     # ------------------------------------------------------------------ texts
 
     @property
