@@ -14,8 +14,8 @@ grbl's own, as its project documents it; where a machine is more than a grbl, th
 Each line is answered with `ok` or `error:n`, in the order in which lines came. A line is checked before its `ok`,
 after everything that was sent before; a wrong one changes nothing and stops nothing. The receive buffer is 128 bytes
 for those who count characters, the planner takes 15 blocks. A dwell, M words, G10 and probing are answered when they
-have been executed. G and M codes are those of the dialect `grbl`, with G38.2 and G38.3; G28.1, G30.1, G38.4, G38.5, G43.1
-are answered with `error:20`.
+have been executed. G and M codes are those of the dialect `grbl`, with G38.2 and G38.3; G28.1, G30.1, G38.4, G38.5
+and G43.1 are answered with `error:20`.
 
 | line | what it does |
 | --- | --- |
