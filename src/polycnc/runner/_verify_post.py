@@ -159,7 +159,7 @@ def verify_post(
     if tolerance_mm is None:
         tolerance_mm = max(SMALLEST_TOLERANCE_MM, _ROUNDING_UNITS * last_decimal_mm(parameters))
     config = load_machine(machine)
-    read = dialect_for(program.name, dialect)
+    read = dialect_for(program, dialect)
     tangency = Tangency()
     carried = _carried(program, block_map, read)
     sweeps: Iterator[Sweep | Ways] = sweep_in_runs(tool_path.runs())

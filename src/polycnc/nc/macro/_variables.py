@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final, Literal, NamedTuple, TypeAlias
 
+from polycnc.language import Fault
 from polycnc.machine import Store
 
 Value: TypeAlias = float | None
@@ -28,14 +29,8 @@ _SIZE = 1000
 _AREA = "nc.macro_variables"
 
 
-class MacroError(Exception):
+class MacroError(Fault):
     """A statement that cannot be executed: what is wrong, what to do, and the control's alarm number."""
-
-    def __init__(self, what: str, hint: str = "", code: str = "") -> None:
-        super().__init__(what)
-        self.what = what
-        self.hint = hint
-        self.code = code
 
 
 class SavedVariables(NamedTuple):
@@ -166,6 +161,17 @@ class MacroVariables:
                     self._area.pop(number, None)
         for number, value in values.items():
             self._kept[number - _FIRST_PERMANENT] = value
+
+    def named(self, name: str) -> float:
+        """Return the number of the variable that has a name, in capitals.
+
+        Raises:
+            MacroError: None has it.
+        """
+        for number, each in self.names.items():
+            if each.upper() == name:
+                return float(number)
+        raise MacroError(f"no variable is named {name}", f"Name it first: SETVN 500[{name}].", "PS0115")
 
     def set_names(self, first: int, names: Sequence[str]) -> None:
         """Name variables from a number on.
