@@ -19,6 +19,7 @@ from polycnc.cnc import (
     Refusal,
     Script,
     Status,
+    Step,
 )
 from polycnc.controllers.fanuc.data._bindings import bind
 from polycnc.controllers.fanuc.data._configuration import Configuration
@@ -256,7 +257,7 @@ class PowerMate:
         """Let the next start in MEM begin at a line of the selected program, from 0."""
         self.state.cursor = line
 
-    def cycle_start(self) -> None:
+    def cycle_start(self, step: Step = Step.RUN) -> None:
         """Start the selected program in MEM, the MDI program in MDI, or go on where one is interrupted.
 
         Raises:
@@ -270,7 +271,7 @@ class PowerMate:
             self.custom_macros.begin()
             self.signals.apply_lock()
         start = self.mdi.state.start if self.state.mode is PowerMateMode.MDI else self.state.cursor
-        self.control.cycle_start(line=start + 1)
+        self.control.cycle_start(step=step, line=start + 1)
         self.state.cursor = 0
 
     def feed_hold(self) -> None:
