@@ -6,84 +6,39 @@ import contextlib
 import ipaddress
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
+from polycnc.cli import _serve_options as _options
 from polycnc.cli._output import say, say_error
 
 if TYPE_CHECKING:
     from polycnc.servers.setup import Plan
 
-_MOST = 4000
 _MOST_LINES = 20  # of doors that are named one by one
 
 
 def serve_command(
-    file: Annotated[
-        Path | None, typer.Argument(help="A TOML file of machines and their doors.", metavar="[FILE.toml]")
-    ] = None,
-    fanuc: Annotated[bool, typer.Option("--fanuc", help="Serve a FANUC control: FOCAS over TCP.")] = False,
-    plain: Annotated[
-        str | None, typer.Option(help="Serve a control without a vendor on this machine.", metavar="MACHINE")
-    ] = None,
-    bosch: Annotated[
-        str | None, typer.Option(help="Serve a Bosch control; --memory is its folder.", metavar="MACHINE")
-    ] = None,
-    apci: Annotated[
-        Path | None, typer.Option(help="Serve an APCI board with this system file.", metavar="MACHINE")
-    ] = None,
-    imc: Annotated[
-        Path | None, typer.Option(help="Serve an iMC card with this card file.", metavar="MACHINE")
-    ] = None,
-    doors: Annotated[
-        str | None,
-        typer.Option(
-            help="Doors to open, separated by commas; 0 takes a free port.", metavar="NAME[=PORT],..."
-        ),
-    ] = None,
-    expose: Annotated[
-        str | None, typer.Option(help="Listen for other computers on this address.", metavar="ADDRESS")
-    ] = None,
-    token: Annotated[
-        Path | None, typer.Option(help="The secret that clients of HTTP have to show.", metavar="FILE")
-    ] = None,
-    insecure: Annotated[
-        str | None, typer.Option(help="Doors without a secret that may be exposed.", metavar="NAME,...")
-    ] = None,
-    log: Annotated[
-        Path | None, typer.Option(help="Append events and requests to this file, as JSON.", metavar="FILE")
-    ] = None,
-    profile: Annotated[
-        str, typer.Option(help="The series that clients see: power-mate, 16i, 0i-d or 31i.", metavar="NAME")
-    ] = "31i",
-    port: Annotated[int, typer.Option(help="TCP port of FOCAS, 0 for a free one.", min=0, max=65535)] = 8193,
-    address: Annotated[
-        str, typer.Option(help="Address to listen on; only those of this computer.")
-    ] = "127.0.0.1",
-    count: Annotated[
-        int,
-        typer.Option(
-            help="So many controls, each at an address of its own: 127.0.0.1, 127.0.0.2, ...",
-            min=1,
-            max=_MOST,
-        ),
-    ] = 1,
-    program: Annotated[
-        Path | None, typer.Option(help="A program that runs again and again.", metavar="FILE")
-    ] = None,
-    axes: Annotated[int, typer.Option(help="How many axes the control has.", min=1, max=6)] = 3,
-    rate: Annotated[
-        float, typer.Option(help="Machine seconds that pass in a second.", min=0.0, max=1000.0, metavar="X")
-    ] = 1.0,
-    memory: Annotated[
-        Path | None,
-        typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
-    ] = None,
-    faults: Annotated[
-        Path | None,
-        typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
-    ] = None,
+    file: _options.File = None,
+    fanuc: _options.Fanuc = False,
+    plain: _options.Plain = None,
+    bosch: _options.Bosch = None,
+    apci: _options.Apci = None,
+    imc: _options.Imc = None,
+    doors: _options.Doors = None,
+    expose: _options.Expose = None,
+    token: _options.Token = None,
+    insecure: _options.Insecure = None,
+    log: _options.Log = None,
+    profile: _options.Profile = "31i",
+    port: _options.Port = 8193,
+    address: _options.Address = "127.0.0.1",
+    count: _options.Count = 1,
+    program: _options.Program = None,
+    axes: _options.Axes = 3,
+    rate: _options.Rate = 1.0,
+    memory: _options.Memory = None,
+    characters: _options.Characters = None,
+    faults: _options.Faults = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
     import asyncio
@@ -105,6 +60,7 @@ def serve_command(
             log=log,
             program=program,
             axes=axes,
+            characters=characters,
             rate=rate,
             memory=memory,
             faults=faults,

@@ -97,6 +97,8 @@ class Preparation:
             return self._from_source()
         if self._search.in_main_program:
             return False
+        if self._calls.is_coming:
+            return self._calls.take_piece()
         self._leave()
         return True
 
@@ -149,6 +151,8 @@ class Preparation:
                 self._calls.call(text, item)
             case EndSource.END:
                 self._end()
+            case None if self._calls.is_coming:
+                self._calls.end_piece()
             case _:
                 self._leave()
 
@@ -215,6 +219,13 @@ class Preparation:
             self._interpreter.finish()
         except ProgramError as error:
             self._note(error)
+
+    @property
+    def starved(self) -> bool:
+        """Whether everything that has come of a program that is still coming has been prepared."""
+        reader, calls = self._reader, self._calls
+        read = reader.at_end and reader.place.offset >= reader.end and calls.running.source is None
+        return read and calls.is_coming and not calls.has_come and not self.over
 
     @property
     def over(self) -> bool:

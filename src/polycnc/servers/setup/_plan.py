@@ -35,6 +35,7 @@ class Flags:
     log: Path | None = None
     program: Path | None = None
     axes: int = 3
+    characters: int | None = None
     rate: float = 1.0
     memory: Path | None = None
     faults: Path | None = None
@@ -142,7 +143,7 @@ def _of_flags(
     own = [(row, at if at.port is not None else replace(at, port=flags.port))
            if row.name == "focas" else (row, at) for row, at in doors if not row.shared]  # fmt: skip
     several = len(flags.addresses) > 1
-    characters = load_profile(flags.profile).program_characters
+    characters = flags.characters or load_profile(flags.profile).program_characters
     machines = [
         MachineWanted(
             kind,
