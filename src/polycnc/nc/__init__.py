@@ -21,6 +21,7 @@ from polycnc.nc.records._block_records import (
     BlockRecords,
     Call,
     ModalWords,
+    Zero,
     line_of,
 )
 from polycnc.nc.sources._block_source import (
@@ -85,6 +86,7 @@ __all__ = [
     "Texts",
     "Word",
     "WordsBlock",
+    "Zero",
     "dialect_for",
     "line_of",
     "load_dialect",
