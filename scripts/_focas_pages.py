@@ -58,17 +58,29 @@ Read, and held to each other; bytes of captures are in the tests.
 The maker's own library was never run against this server, and no control was at hand. Where sources contradict each other
 the one that shows captured bytes was followed.
 
-## What is refused, and how
+## What clients ask, and what is answered
 
-| asked | answer | source |
-| --- | --- | --- |
-| a command that the series does not know | 1 (EW_FUNC) | diohpix/pyfanuc, `sample_with_error.md`: a 160i |
-| another path than the first | 11 (EW_PATH) | Manual 000, return values |
-| a range whose end is before its begin, or with a number that is not there | 3 (EW_NUMBER) | Manual 000, return values |
-| a range that no frame of the series holds | 2 (EW_LENGTH) | Manual 000, return values; sizes of frames as the maker's library takes them |
-| `cnc_rdsvmeter` of kinds 0, 2 and 3 (3: amperes, which this control does not know) | 1 (EW_FUNC) | none |
-| `cnc_rdsvmeter` of any other kind | 4 (EW_ATTRIB) | Manual 000, return values |
-| `cnc_rdtimer` 0 to 4 | power on, operating, cutting, cycle, external signal (6755, 6756); others 3 (EW_NUMBER) | requests of collectors to controls |
+| client | call | answer | source |
+| --- | --- | --- | --- |
+| all | a command that the series does not know | 1 (EW_FUNC) | diohpix/pyfanuc, `sample_with_error.md`: a 160i |
+| all | another path than the first | 11 (EW_PATH) | Manual 000, return values |
+| all | a range whose end is before its begin, or with a number that is not there | 3 (EW_NUMBER) | Manual 000, return values |
+| all | a range that no frame of the series holds | 2 (EW_LENGTH) | Manual 000, return values; sizes of frames as the maker's library takes them |
+| Ladder99, mtconnect | `cnc_rdalmmsg2` of a type beyond the last group (15, on 0i-D and 31i 19), or another form of text than 0 to 2 | 4 (EW_ATTRIB) | Manual 000, return values; groups as public headers name them |
+| Ladder99, mtconnect, Hsl | `cnc_rdsvmeter` of kind 1 | load of each axis in percent | diohpix/pyfanuc, `sample_multipacket.md` |
+| `cnc_rdaxisdata` of amperes | `cnc_rdsvmeter` of kinds 0, 2 and 3 (3: amperes, which this control does not know) | 1 (EW_FUNC) | none |
+| | `cnc_rdsvmeter` of any other kind | 4 (EW_ATTRIB) | Manual 000, return values |
+| Ladder99, node-red-contrib-fanuc-focas | `cnc_rdtimer` 0 to 4 | power on, operating, cutting, cycle, external signal (6755, 6756); others 3 (EW_NUMBER) | requests of collectors to controls |
+| Ladder99 | `cnc_rdblkcount` | blocks executed since the program began, of those that move, dwell or have functions | layout as clients read it; what counts: none |
+| Ladder99 | `cnc_rdparainfo3`, `cnc_rddiaginfo` | number, bytes of a value (0: bits), 0 one value, 3 one for each axis, 4 for each spindle, type word; nothing else is known | layout as clients read it; values: none |
+| Ladder99 | `cnc_diagnoss` 308, 309, 403 | 25 degrees Celsius: motors have no temperature here | numbers as public manuals of the series name them; value: none |
+| Ladder99 | `cnc_diagnoss` 410, 411 | load (%) and speed of the spindle | as above; the load is that of `cnc_rdspmeter` |
+| Ladder99 | `cnc_diagnoss` 400, 408, 418, 425, 710, 712 | 0: no serial spindle, no errors, no lag | as above; value: none |
+| Ladder99 | `cnc_diagnoss` 417, 445, 1520, 1521, 4901, 4902 | 3 (EW_NUMBER): no position coder, revolutions and power are not counted | none |
+| Ladder99 | `cnc_rdparam` 3281 (language of the display) | 0, English, or what was written | numbers as public manuals of the series name them |
+| pyfanuc, Hsl | `cnc_rdmacro` of #4001 to #4022 as one range | the codes of each group, 0 for groups without codes | requests of collectors to controls |
+| Hsl | `cnc_wrmacro` of tool offsets (#2001, #10001 on) and work offsets (#5201, #7001 on) | they are set, within their range (else 5, EW_DATA) | macros of the series write them |
+| | `cnc_wrmacro` of other system variables | 3 (EW_NUMBER) | none |
 
 What is this control's own and not proven by anybody: the flags of commanded words (those of `cnc_modal`), the type of the
 tool offset memory, and sizes of the reply that accepts a session on old series.

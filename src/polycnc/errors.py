@@ -63,10 +63,11 @@ class ConfigurationError(UsageError):
 class ProgramError(PolycncError):
     """A part program that cannot be run as written.
 
-    `limit` is the axis whose soft limit a move would pass, and whether that is the upper one.
+    `limit` is the axis whose soft limit a move would pass, whether that is the upper one, and whether the move is
+    carried out up to it.
     """
 
-    limit: tuple[str, bool] | None = None
+    limit: tuple[str, bool, bool] | None = None
 
     def __init__(
         self, what: str, *, code: str = "", position: SourcePosition | None = None, hint: str = ""

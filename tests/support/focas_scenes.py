@@ -94,6 +94,8 @@ SCENES: tuple[tuple[str, tuple[Request, ...]], ...] = (
     ),
     ("parameter of the old series", (r(0x0E, 6711, 6711, 0), r(0x0E, 1320, 1320, ALL), r(0x10, 6711, 2))),
     ("parameter of the new series", (r(0x8D, 6711, 6711, 0), r(0x8D, 1320, 1320, 2))),
+    ("what parameters and diagnosis data are", (r(0xA0, 6711, 2), r(0xA2, 300, 2), r(0xA2, 9000, 1))),
+    ("executed blocks", (r(0x35),)),
     ("settings", (r(0x29, 6711, 6711, 0), r(0x90, 6711, 6711, 0))),
     ("diagnosis", (r(0x30, 300, 300, ALL), r(0x93, 300, 301, 2))),
     (
@@ -132,7 +134,7 @@ SCENES: tuple[tuple[str, tuple[Request, ...]], ...] = (
     ),
     (
         "what no layout is known of",
-        (r(0x21), r(0x22), r(0x61), r(0x63), r(0x8E), r(0xA0, 6711, 1), r(0xFD), r(0x8003, target=PMC)),
+        (r(0x21), r(0x22), r(0x61), r(0x63), r(0x8E), r(0xFD), r(0x8003, target=PMC)),
     ),
 )
 

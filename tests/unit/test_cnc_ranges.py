@@ -98,8 +98,10 @@ def test_an_error_of_a_program_has_a_row_of_its_own_where_the_table_has_one() ->
     assert alarms.of_program(ProgramError("a")) == ("program", None)
     for upper, expected in ((True, ("program soft_limit_high", "X")), (False, ("program", None))):
         error = ProgramError("a", code="travel")
-        error.limit = ("X", upper)
+        error.limit = ("X", upper, False)
         assert alarms.of_program(error) == expected
+        error.limit = ("X", upper, True)  # the axis was moved up to it, as by hand
+        assert alarms.of_program(error) == (f"soft_limit_{'high' if upper else 'low'}", "X")
 
 
 def test_histories_keep_the_last_hundred() -> None:

@@ -259,7 +259,7 @@ def test_example_stroke_limits_act_on_the_machine() -> None:
     running(control, 8)
     control.advance(3000)
     assert [(each.number, each.text) for each in control.status().alarms] == [(501, "OVER TRAVEL : -Y")]
-    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == 12_500
+    assert fwlib.cnc_machine(handle, 2, 8)[1].data[0] == -7_250  # it runs up to the limit
     control.reset()
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 2, ldata=-8_000)) == OK  # below 1321: no limits
     running(control, 7)

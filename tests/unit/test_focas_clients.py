@@ -163,7 +163,14 @@ def test_a_program_past_a_limit_is_an_overtravel_of_its_axis(profile: str) -> No
         (r(0x15, 100, 533), 2),  # more than any frame holds
         (r(0x15, 500, 999), 2),
         (r(0x15, 533, 532), 3),
+        (r(0x23, 20, 10, 2, 64), 4),
+        (r(0x23, -2, 10, 2, 64), 4),
+        (r(0x23, ALL, 10, 3, 64), 4),
+        (r(0x23, ALL, -1, 2, 64), 2),
+        (r(0x23, ALL, 10, 2, 65), 2),
+        (r(0x56, 0), 1),
         (r(0x56, 2), 1),
+        (r(0x56, 3), 1),
         (r(0x56, 4), 4),
         (r(0x56, -1), 4),
         (r(0x120, 5), 3),
@@ -205,3 +212,117 @@ def test_a_later_series_holds_more_programs() -> None:
         128_000,
         1_000_000,
     ]
+
+
+@pytest.mark.parametrize("profile", LATER)
+def test_modal_codes_are_read_as_one_range(profile: str) -> None:
+    control, session = served(profile, PROGRAM)
+    alone = [macros(session, number)[0] for number in range(4001, 4023)]
+    (together,) = ask(session, r(0x15, 4001, 4022))
+    assert together.status == 0
+    assert [Value8.from_wire(together.payload[at : at + 8]).number for at in range(0, 8 * 22, 8)] == alone
+    control.cycle_start()
+    control.advance(200)
+    (together,) = ask(session, r(0x15, 4001, 4022))
+    found = [Value8.from_wire(together.payload[at : at + 8]).number for at in range(0, 8 * 22, 8)]
+    assert found[:3] == [1.0, 17.0, 90.0]
+    assert (found[13], found[3], found[21]) == (55.0, 0.0, 0.0)
+
+
+_FIELDS = "number size array unit dimension input display others"
+
+
+@pytest.mark.parametrize("profile", ["0i-d", "31i"])
+def test_what_parameters_and_diagnosis_data_are(profile: str) -> None:
+    _, session = served(profile, PROGRAM)
+    (found,) = ask(session, r(0xA0, 1319, 3))
+    before, behind, *rows = struct.unpack(">2i" + "i7h2x" * 3, found.payload)
+    assert (before, behind) == (1301, 1402)
+    assert [rows[k : k + 3] for k in (0, 8, 16)] == [[1320, 4, 3], [1321, 4, 3], [1401, 0, 0]]
+    numbers = [rows[k] for k in (0, 8, 16)]
+    types = ask(session, *(r(0x8D, number, number, ALL) for number in numbers))
+    assert [struct.unpack_from(">ih", each.payload)[0] for each in types] == numbers
+    (found,) = ask(session, r(0xA2, 302, 3))
+    before, behind, *rows = struct.unpack(">2i" + "i7h2x" * 3, found.payload)
+    assert (before, behind) == (301, 403)
+    assert [rows[k : k + 3] for k in (0, 8, 16)] == [[308, 1, 3], [309, 1, 3], [400, 0, 0]]
+    refused = ask(session, r(0xA0, 1, 0), r(0xA0, 32_000, 1), r(0xA2, 1, -1), r(0xA2, 32_000, 1))
+    assert [each.status for each in refused] == [2, 3, 2, 3]
+    old, _ = ask(served("16i", PROGRAM)[1], r(0xA0, 1, 1), r(0xA2, 1, 1))
+    assert old.status == 1
+
+
+@pytest.mark.parametrize("profile", ["power-mate", *LATER])
+def test_executed_blocks_are_counted(profile: str) -> None:
+    def count() -> int:
+        (found,) = ask(session, r(0x35))
+        return int.from_bytes(found.payload, "big")
+
+    program = (
+        "O0077\nN1G1X1.F6000\nN2X2.\nX2.\n#1=3\nWHILE[#1GT0]DO1\nG91Y1.\n#1=#1-1\nEND1\nG4X0.01\nM8\nM30\n"
+    )
+    control, session = served(profile, program)
+    assert count() == 0
+    control.cycle_start()
+    seen = []
+    while control.control.channels[0].active:
+        control.advance(1)
+        seen.append(count())
+    assert seen == sorted(seen)
+    assert seen[-1] == len(["N1", "N2", "Y", "Y", "Y", "G4", "M8", "M30"])
+    control.cycle_start()
+    control.advance(3)
+    assert count() == 0
+
+
+def test_the_language_of_the_display_and_data_of_spindle_and_motors() -> None:
+    control, session = served("31i", "O0077\nS1500M3\nG4X60.\nM30\n")
+    (language,) = ask(session, r(0x8D, 3281, 3281))
+    assert struct.unpack_from(">ihh", language.payload) == (3281, 0, 1)
+    control.cycle_start()
+    control.advance(4000)
+    rows = {}
+    for number in (308, 309, 400, 403, 408, 410, 411, 418, 425, 710, 712):
+        (found,) = ask(session, r(0x93, number, number, ALL))
+        assert found.status == 0, number
+        rows[number] = Value8.from_wire(found.payload[8:16]).number
+    assert (rows[308], rows[309], rows[403], rows[410], rows[411]) == (25.0, 25.0, 25.0, 25.0, 1500.0)
+    assert not any(rows[number] for number in (400, 408, 418, 425, 710, 712))
+    assert [each.status for each in ask(session, r(0x93, 417, 417, ALL), r(0x93, 4901, 4901, ALL))] == [3, 3]
+
+
+@pytest.mark.parametrize("profile", LATER)
+def test_offsets_that_are_written_as_variables_act(profile: str) -> None:
+    control, session = served(profile, "O0077\nG55G43H2G1Z1.F6000\nX0\nM30\n")
+    values = {2002: 2.5, 5241: 7.25, 5243: -1.0, 500: 4.0}
+    for number, value in values.items():
+        (found,) = ask(session, r(0x16, number, number, data=bytes(Value8.of(value, 3))))
+        assert found.status == 0, number
+    assert macros(session, *values) == list(values.values())
+    assert control.tool_offsets.get(2) == 2500
+    control.cycle_start()
+    control.advance(3000)
+    assert control.machine.actual == {"X": 7.25, "Y": 0.0, "Z": 2.5}
+
+
+@pytest.mark.parametrize("profile", LATER)
+@pytest.mark.parametrize(
+    ("first", "values", "status"),
+    [
+        (2001, (1.0, 1e6), 5),
+        (5221, (1.0, 2.0, 1e6), 5),
+        (5221, (1.0, 2.0, 3.0, 4.0), 3),  # there are three axes
+        (5041, (1.0,), 3),
+        (4001, (1.0,), 3),
+        (2099, (1.0, 2.0), 3),  # there are 99
+    ],
+)
+def test_offsets_that_are_refused_change_nothing(
+    profile: str, first: int, values: tuple[float, ...], status: int
+) -> None:
+    control, session = served(profile, PROGRAM)
+    data = b"".join(bytes(Value8.of(value, 3)) for value in values)
+    (found,) = ask(session, r(0x16, first, first + len(values) - 1, data=data))
+    assert found.status == status
+    assert not len(control.control.tools)
+    assert not control.control.offsets.get("G54", {})

@@ -424,7 +424,7 @@ def test_feed_override_is_the_percentage_itself() -> None:
         give(library, handle, 10, value)
         control.advance(200)
         seen.append((control.signals.feed_override, round(control.status().axes["X"].velocity * 60.0, 6)))
-    assert seen == [(0, 0), (1, 6), (64, 384), (100, 600), (173, 1038), (254, 1200), (0, 0)]
+    assert seen == [(0, 0), (1, 6), (64, 384), (100, 600), (173, 1038), (254, 1524), (0, 0)]
     give(library, handle, 10, 254)
     assert control.pmc.read("G", 12, 12) == b"\1"
 

@@ -234,6 +234,24 @@ def test_variables_get_names() -> None:
     assert language.variables.names == {510: "DEPTH", 511: "HEIGHT", 512: "TURN", 517: "ANGLE"}
 
 
+def test_variables_are_read_and_written_by_their_names() -> None:
+    language = ended(
+        "SETVN 510[DEPTH, WIDTH]\n#[DEPTH]=3\n#[ WIDTH ]=#[depth]*2+#[#514+510]\n#1=511\n"
+        "G1X#[DEPTH]F600\nIF[#[WIDTH]EQ9]THEN #520=-#[DEPTH]\nSETVN 510[OLD,DEPTH]\n#[DEPTH]=#[DEPTH]+1\nM30\n"
+    )
+    read = language.variables.get
+    assert (read(510), read(511), read(520)) == (3.0, 10.0, -3.0)
+
+
+@pytest.mark.parametrize("block", ["#[DEPTH]=1", "#500=#[DEPTH]", "G1X#[DEPTH]F100", "IF[#[DEPTH]EQ1]GOTO1"])
+def test_a_name_that_no_variable_has_is_refused(block: str) -> None:
+    run, _ = made(f"SETVN 500[WIDTH]\n{block}\nN1M30\n")
+    run.advance(10)
+    assert run.error is not None
+    assert run.error.code == "PS0115"
+    assert "no variable is named DEPTH" in str(run.error)
+
+
 def test_a_power_mate_keeps_what_was_put_out() -> None:
     control, _ = attached()
     registered(control, O1="\n#1=-2.5\nPOPEN\nDPRNT[X#1[22]]\nPCLOS\nM30\n")

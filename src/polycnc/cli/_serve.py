@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _SHARE_S = 0.01  # of the wall clock that all controls together may take before a door answers
 _NUMBER = re.compile(rb"\s*O(\d{1,4})\b")
 _MOST = 4000
+_CHARACTERS = "Size of the program memory; absent: as of the series."
 
 
 def serve_command(
@@ -51,6 +52,7 @@ def serve_command(
         Path | None,
         typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
     ] = None,
+    characters: Annotated[int | None, typer.Option(help=_CHARACTERS, min=1, max=10**9, metavar="N")] = None,
     faults: Annotated[
         Path | None,
         typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
@@ -74,6 +76,7 @@ def serve_command(
         axes,
         rate,
         memory,
+        characters,
         () if faults is None else load_faults(faults),
     )
     asyncio.run(_serve(wanted, _addresses(address, count)))
@@ -105,6 +108,7 @@ class _Wanted:
     axes: int
     rate: float
     memory: Path | None
+    characters: int | None
     faults: tuple[Fault, ...]
 
 
@@ -157,9 +161,8 @@ async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
     late = _Late()
     try:
         for address in addresses:
-            control = PowerMate(
-                wanted.axes, memory=wanted.memory, characters=wanted.profile.program_characters
-            )
+            characters = wanted.characters or wanted.profile.program_characters
+            control = PowerMate(wanted.axes, memory=wanted.memory, characters=characters)
             controls.append(control)
             if content is not None:
                 number, text = _numbered(content)

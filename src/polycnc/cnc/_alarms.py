@@ -155,8 +155,8 @@ class AlarmList:
     def of_program(self, error: ProgramError) -> tuple[str, str | None]:
         """Return name and axis of the alarm for an error of a program: a row of its own in the table, or "program"."""
         if error.limit is not None:
-            axis, upper = error.limit
-            name = f"program soft_limit_{'high' if upper else 'low'}"
+            axis, upper, reached = error.limit
+            name = f"{'' if reached else 'program '}soft_limit_{'high' if upper else 'low'}"
             if name in self._table:
                 return name, axis
         name = f"program {error.code}"

@@ -19,6 +19,7 @@ from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime, CycleWatch
 from polycnc.cnc._inventory import Inventory, InventoryReader
 from polycnc.cnc._manual_commands import ManualCommands
+from polycnc.cnc._open_program import OpenProgram
 from polycnc.cnc._plc import Script
 from polycnc.cnc._program_commands import ProgramCommands
 from polycnc.cnc._program_edit import ProgramEdit
@@ -28,7 +29,7 @@ from polycnc.cnc._status_reading import StatusReader
 from polycnc.cnc._stopping import PROGRAM_MESSAGE, stop_for
 from polycnc.cnc._stops import Step
 from polycnc.machine import AnyAxis, Machine, MachineConfig, Snapshot, Store, load_machine
-from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
+from polycnc.nc import ROOM_BYTES, Dialect, Event, Language, ProgramText, load_dialect
 
 
 class Control:
@@ -179,6 +180,10 @@ class Control:
     def set_mdi(self, text: str, *, channel: int = 0) -> None:
         """Put in the text that a start in MDI executes."""
         self._programs.set_mdi(text, channel=channel)
+
+    def open_program(self, name: str = "", *, room_bytes: int = ROOM_BYTES, channel: int = 0) -> OpenProgram:
+        """Open a program that comes while it is executed (AUTO or MDI); the next start begins it."""
+        return self._programs.open_program(name, room_bytes=room_bytes, channel=channel)
 
     def search(
         self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0

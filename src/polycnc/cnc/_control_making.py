@@ -118,6 +118,7 @@ def _channels(
                 share.axes,
                 library=library,
                 dry_run_mm_s=data.dry_run_mm_min / 60.0,
+                most_feed_override=data.most_feed_override,
                 on_event=partial(on_event, path),
                 language=languages[path] if path < len(languages) else language_for(dialect),
             ),

@@ -11,7 +11,7 @@ from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._run_state import RunState
-from polycnc.kernel import FEED_S
+from polycnc.kernel import feed_time_s
 from polycnc.machine import Reason
 
 Condition: TypeAlias = Callable[[], bool]
@@ -173,7 +173,8 @@ class ControlTime:
             self.raised |= ControlEvent.FUNCTION
 
     def _cut_s(self) -> float:
-        return float(self._of.machine.state.paths.totals[:, FEED_S].sum())
+        state = self._of.machine.state
+        return float(feed_time_s(state.seg, state.paths, self._of.clock.cycle_s))
 
     def _tool(self) -> int:
         turning = next(

@@ -95,9 +95,16 @@ class PathFeed:
         self._find_stop()
         self.prepare()
         row = self.row
+        if self.channel.starved and row["state"] == READY and row["head"] >= row["prepared"] < row["tail"]:
+            row["closed"] = 1  # the path rests before a line that was held back until the next one is known
+            self.prepare()
         if self.channel.done or self.channel.waits or self._met_at is not None:
             row["low_water"] = _NEVER
-        elif self._ahead is not None or self.stopper.has_conditions:
+        elif (
+            self.channel.starved
+        ):  # a line is held back while the path may yet leave its end by a rounded corner
+            row["low_water"] = 0 if row["prepared"] < row["tail"] else _NEVER
+        elif self._ahead is not None or self.stopper.has_conditions or self.stopper.alone:
             row["low_water"] = row["planned"] - row["head"] - 1
         else:
             row["low_water"] = row["planned"] - self.target()
@@ -105,14 +112,13 @@ class PathFeed:
     def _fill(self) -> None:
         channel, row = self.channel, self.row
         conditions = self.stopper.has_conditions
-        if self._ahead is None and not conditions:
+        if self._ahead is None and not conditions and not self.stopper.alone:
             channel.fill()
         else:
             head = int(row["head"])
             while self._ends and self._ends[0] <= head:
                 self._ends.popleft()
-            ahead = _PIECE if self._ahead is None else self._ahead
-            while len(self._ends) <= ahead and not channel.done and not channel.waits:
+            while self._wants_block() and not channel.done and not channel.waits:
                 if self._met_at is not None:
                     break  # variables stay as they are
                 blocks, tail = channel.blocks, int(row["tail"])
@@ -124,6 +130,13 @@ class PathFeed:
                 if conditions and self.stopper.condition_met(channel.interpreter.last_tag):
                     self._met_at = int(row["tail"])
         row["closed"] = channel.done
+
+    def _wants_block(self) -> bool:
+        """Tell whether one more block is to be prepared; alone it is the one with which the path has just gone on."""
+        if self.stopper.alone:
+            row, over = self.row, self.channel.text_is_over
+            return over or (bool(row["head"] == row["tail"] == self._left) and not self.at_mark)
+        return len(self._ends) <= (_PIECE if self._ahead is None else self._ahead)
 
     def prepare(self) -> None:
         """Take what was appended into the look-ahead."""
@@ -293,6 +306,8 @@ class PathFeed:
         """
         row = self.row
         head, tail = int(row["head"]), int(row["tail"])
+        if head >= tail and self._stops_at_end and row["state"] == READY and head != self._left:
+            return head
         if self.stopper.idle or head >= tail:
             return None
         if row["state"] == READY and head != self._left:
@@ -312,7 +327,24 @@ class PathFeed:
                 if boundary.count >= earliest or boundary.count == limit:
                     return boundary.count
         self._seen = tail
-        return None
+        return tail if self._stops_at_end else None
+
+    @property
+    def begins_with_mark(self) -> bool:
+        """Whether the block that has just been prepared alone leaves nothing in the queue."""
+        row = self.row
+        return self.stopper.alone and bool(row["head"] == row["tail"] == self._left) and self.at_mark
+
+    @property
+    def stops_here(self) -> bool:
+        """Whether the path stands where what is prepared ends, and the next block waits for its start."""
+        return self._stops_at_end and bool(self.row["head"] >= self.row["tail"]) and not self.at_mark
+
+    @property
+    def _stops_at_end(self) -> bool:
+        """Whether the path stops where what is prepared ends: the next block waits for its start."""
+        channel = self.channel
+        return self.stopper.alone and not (channel.done or channel.waits or channel.text_is_over)
 
     def _earliest(self) -> int:
         state = self.machine.state

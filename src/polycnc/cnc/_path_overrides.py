@@ -10,33 +10,39 @@ import numpy as np
 from polycnc.errors import UsageError
 from polycnc.machine import LEAST_OVERRIDE
 
-HIGHEST_OVERRIDE = 2.0
-
 
 class PathOverrides:
     """Hold the overrides in the row of a path; `replan` lets the path take over what has changed.
 
-    `dry_run_mm_s` is the feed of a dry run, 0 without one, `rapid_f0_mm_s` the lowest speed of rapids, 0 to stand.
+    `dry_run_mm_s` is the feed of a dry run, 0 without one, `rapid_f0_mm_s` the lowest speed of rapids, 0 to stand,
+    `most_feed` the largest factor of the feeds.
     While a program suppresses the feed override, `kept` is what acts again behind it.
     """
 
     def __init__(
-        self, row: np.void, replan: Callable[[], None], *, dry_run_mm_s: float, rapid_f0_mm_s: float
+        self,
+        row: np.void,
+        replan: Callable[[], None],
+        *,
+        dry_run_mm_s: float,
+        rapid_f0_mm_s: float,
+        most_feed: float,
     ) -> None:
         self._row = row
         self._replan = replan
         self._dry_run_mm_s = dry_run_mm_s
         self._rapid_f0_mm_s = rapid_f0_mm_s
+        self._most_feed = most_feed
         self.kept: float | None = None
 
     @property
     def feed(self) -> float:
-        """Factor of the programmed feeds, 0 to 2."""
+        """Factor of the programmed feeds, 0 to the largest."""
         return float(self._row["override"]) if self.kept is None else self.kept
 
     @feed.setter
     def feed(self, factor: float) -> None:
-        _check_factor(factor, HIGHEST_OVERRIDE, "the feed override")
+        _check_factor(factor, self._most_feed, "the feed override")
         if self.kept is not None:
             self.kept = factor
             return

@@ -26,8 +26,10 @@ from polycnc.nc import (
     Channel,
     ChannelOptions,
     Dialect,
+    IncomingText,
     Language,
     Library,
+    LineCheck,
     ModalWords,
     ProgramText,
     Stop,
@@ -311,6 +313,7 @@ class ProgramRun:
             return
         self._moment.single_block = on
         self.stopper.step = self._conduct.step_of_switch
+        self._conduct.take_switch()
         if self._moment.state in _GOING:
             self.feed.look_again()
 
@@ -434,9 +437,32 @@ class ProgramRun:
         return self.channel.error
 
     @property
+    def starved(self) -> bool:
+        """Whether the path rests because nothing more of a program that is still coming has come."""
+        row = self._conduct.row
+        rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
+        return self.active and rests and self.channel.starved
+
+    def line_check(self) -> LineCheck:
+        """Return a check of blocks that would come after what has been prepared."""
+        check = self.channel.line_check()
+        if self._moment.state is RunState.READY:  # a start begins where the axes are
+            check.state.modal.position[:] = self.machine.state.base
+        return check
+
+    def has_come(self) -> None:
+        """Take note that more has come of a program that is still coming."""
+        self.feed.wake()
+
+    @property
     def executed_tag(self) -> int:
         """The tag of the block that is executed, or was last."""
         return self._conduct.executed_tag
+
+    @property
+    def blocks_done(self) -> int:
+        """How many blocks have been executed since the start, of those that move, dwell or hand out functions."""
+        return int(self._conduct.row["blocks"])
 
     @property
     def executed(self) -> BlockRecord | None:
@@ -522,8 +548,16 @@ class ProgramRun:
         Raises:
             SnapshotError: a language executes the program, and cannot tell where it stands.
         """
+        program = self.program
+        if isinstance(program, IncomingText):
+            if not self.channel.done:
+                raise SnapshotError(
+                    "a program that is still coming is under way",
+                    hint="Take the snapshot before or after it.",
+                )
+            program = ProgramText(program.name, b"")
         saved = SavedRun(
-            self.program,
+            program,
             self.channel.snapshot(),
             self.feed.snapshot(),
             self.stopper.step,
@@ -569,6 +603,7 @@ class ProgramRun:
         conduct.stopper.step, conduct.stopper.depth = saved.step, saved.depth
         conduct.overrides.kept = saved.override_kept
         conduct.moment = saved.moment.copy()
+        conduct.take_switch()
 
     @property
     def _made_from(self) -> str:
@@ -603,7 +638,7 @@ class ProgramRun:
         kernel.start_path(state.paths, path)
         self._moment.hold = self._moment.held_back = False
         self._conduct.row["limit"] = kernel.NO_LIMIT
-        self._conduct.row["tag"] = 0
+        self._conduct.row["tag"] = self._conduct.row["blocks"] = 0
         if self._moment.approach is not None:
             self.channel.begin_at(*self._moment.approach)
             self._moment.approach = None

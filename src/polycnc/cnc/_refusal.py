@@ -15,6 +15,7 @@ class Refusal(StrEnum):
     IDLE = "idle"  # nothing is running that could be stopped or continued
     ALARM = "alarm"  # an alarm must be cleared first
     EMERGENCY = "emergency"  # the emergency stop is on
+    HELD = "held"  # a signal of feed hold is given
     TRAVEL = "travel"  # the axis stands at the end of its travel in that direction
     DISPLACED = "displaced"  # an axis is not where the program was interrupted
     NOT_REFERENCED = "not_referenced"

@@ -69,6 +69,7 @@ class Conduct:
             self.feed.replan,
             dry_run_mm_s=options.dry_run_mm_s,
             rapid_f0_mm_s=options.rapid_f0_mm_s,
+            most_feed=options.most_feed_override,
         )
 
     @property
@@ -238,6 +239,7 @@ class Conduct:
         """Go on from where the program stands, as far as `step` says."""
         within = self.moment.state is RunState.HOLD and self.row["state"] in (kernel.RUNNING, kernel.HELD)
         record = self.executed_tag
+        self.take_switch()
         self._pass_stop()
         self.moment.hold = False
         self.moment.state = RunState.ACTIVE
@@ -259,6 +261,10 @@ class Conduct:
     def _step_from(self, step: Step, tag: int) -> None:
         """Go as far as `step` says, from the block of a tag."""
         self.stopper.step, self.stopper.depth = step, self.channel.records.depth(tag)
+
+    def take_switch(self) -> None:
+        """Let blocks be prepared alone, or ahead, as the switch of single blocks says."""
+        self.stopper.alone = self.step_of_switch is Step.INTO
 
     @property
     def step_of_switch(self) -> Step:
@@ -291,10 +297,10 @@ class Conduct:
                 break
             self.moment.met = int(self.row["head"]), tag
             following = self.feed.next_tag()
-            if following is None:
+            if following is None and not self.feed.stops_here:
                 self.feed.feed()
                 following = self.feed.next_tag()
-            if following is not None and self.stopper.stops_before(following):
+            if self.feed.stops_here or (following is not None and self.stopper.stops_before(following)):
                 self.moment.state = RunState.STOPPED_AT_BLOCK
                 return True
         return False
@@ -326,6 +332,10 @@ class Conduct:
         self.moment.tool_times = self.moment.tool_times.changed(
             self.channel.records.tool(event.tag), self.path_times
         )
+        if event.stop is Stop.REFUSED:
+            if self.on_event is not None:
+                self.on_event(event)
+            return
         if event.word and self.on_event is not None:
             self.moment.unanswered = bool(self.on_event(event)) and not self.moment.suppressed.answers
             self.set_hold()
@@ -339,6 +349,8 @@ class Conduct:
                 self.moment.probing = None
                 self.feed.keep_box()
                 self.set_hold()
+            if self.stopper.alone:
+                self.feed.let_pass()  # what is read behind it belongs to it
             self._go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self.moment.stop = event
@@ -388,6 +400,7 @@ class Conduct:
             return
         self.moment.suppressed = now
         self.overrides.suppress_feed(now.override)
+        self.take_switch()
         if now.single_block is not was.single_block and self.moment.single_block:
             self.stopper.step = self.step_of_switch
             self.feed.let_pass()
@@ -409,6 +422,8 @@ class Conduct:
         ):
             if row["head"] >= row["limit"]:
                 self._stop_at_block()
+            elif self.feed.begins_with_mark and self._stand_at_marks():
+                self.set_hold()
             elif row["head"] >= row["tail"] and self.channel.done:
                 self.moment.state = RunState.COMPLETED if self.channel.error is None else RunState.ALARM
 

@@ -27,13 +27,16 @@ class RunMaker:
         *,
         library: Library,
         dry_run_mm_s: float,
+        most_feed_override: float,
         on_event: Callable[[Event], bool],
         language: Language | None,
     ) -> None:
         self._machine = machine
         self._path = path
         self._library = library
-        self._dry_run_mm_s = dry_run_mm_s
+        self._options = RunOptions(
+            answers=True, dry_run_mm_s=dry_run_mm_s, most_feed_override=most_feed_override
+        )
         self._on_event = on_event
         self.language = language
         self.names: Sequence[str] | None = None
@@ -61,7 +64,7 @@ class RunMaker:
             text,
             self._dialect,
             path=self._path,
-            options=RunOptions(answers=True, dry_run_mm_s=self._dry_run_mm_s),
+            options=self._options,
             config=self._config,
             library=self._library,
             language=self.language,

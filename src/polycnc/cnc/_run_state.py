@@ -35,7 +35,7 @@ class RunOptions:
     move nor wait. `blocks_ahead` is how many blocks are prepared beyond the executed one, None as the dialect says.
     `single_block` stops at the end of every block. With `answers` the path waits at an auxiliary function only for the
     answer of `on_event`, not for the machine file's times. `rapid_f0_mm_s` is the path speed of a rapid override of 0
-    (0: it stands), `dry_run_mm_s` that of a dry run.
+    (0: it stands), `dry_run_mm_s` that of a dry run. `most_feed_override` is the largest factor of the feeds.
     """
 
     block_delete: frozenset[int] = frozenset()
@@ -46,6 +46,7 @@ class RunOptions:
     answers: bool = False
     rapid_f0_mm_s: float = 0.0
     dry_run_mm_s: float = 0.0
+    most_feed_override: float = 2.0
     collect_errors: bool = False
 
 

@@ -24,7 +24,7 @@ from polycnc.cnc._status import (
     ToolInUse,
     WorkOffset,
 )
-from polycnc.kernel import RAPID, RUNNING, WAIT, planned_s
+from polycnc.kernel import OTHER_SOURCE, RAPID, RUNNING, WAIT, planned_s
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecord, Group
 
@@ -124,6 +124,7 @@ class StatusReader:
                 kinds[index] = motion.kind.value
                 to_go[index] = _left(motion, float(of.machine.state.base[index]))
         actual, velocity, setpoint, lag = (each.tolist() for each in self._arrays)
+        shown = actual if (locked := self._of_locked(actual)) is None else locked
         rows: list[AxisStatus] = []
         for index, name in enumerate(self._names):
             at, speed = actual[index], velocity[index]
@@ -132,8 +133,8 @@ class StatusReader:
                     name,
                     self._units[index],
                     at,
-                    at - zero[index],
-                    at - of.relative_zero[index],
+                    shown[index] - zero[index],
+                    shown[index] - of.relative_zero[index],
                     to_go[index],
                     setpoint[index],
                     at,
@@ -148,6 +149,18 @@ class StatusReader:
             )
         self._axes = FrozenDict(zip(self._names, rows, strict=True))
         return self._axes
+
+    def _of_locked(self, actual: list[float]) -> list[float] | None:
+        """Return what positions of programs show where a machine lock lets paths run without their axes."""
+        state, shown = self._of.machine.state, None
+        for channel in self._of.channels:
+            if channel.run is None or not channel.run.machine_lock:
+                continue
+            shown = shown or list(actual)
+            for column, axis in enumerate(state.paths.axis[channel.path]):
+                if axis >= 0 and state.owner[axis] == OTHER_SOURCE:
+                    shown[axis] = float(state.paths.position[channel.path, column])
+        return shown
 
     def _of_blocks(self) -> tuple[list[float], list[float]]:
         """Return where program zero is, and what is left of the executed block, for each axis in its channel."""
@@ -213,6 +226,7 @@ class StatusReader:
             channel.overrides,
             channel.switches,
             channel.axes,
+            run is not None and not channel.broken and run.starved,
         )
         self._channels[number] = read
         return read

@@ -49,10 +49,14 @@ class Boundary:
 
 @dataclass
 class Stopper:
-    """Decide at which boundaries a run stops."""
+    """Decide at which boundaries a run stops.
+
+    With `alone` (the switch of single blocks) every block is prepared when it is started, not before.
+    """
 
     records: BlockRecords
     step: Step = Step.RUN
+    alone: bool = False
     depth: int = 0  # of the block from which a step began
     breakpoints: frozenset[Breakpoint] = frozenset()
 

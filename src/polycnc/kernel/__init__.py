@@ -89,6 +89,7 @@ from polycnc.kernel._state import (
     make_state,
 )
 from polycnc.kernel._switches import LIMIT_HIGH, LIMIT_LOW, REFERENCE
+from polycnc.kernel._totals import feed_time_s
 
 __all__ = [
     "ADDED",
@@ -170,6 +171,7 @@ __all__ = [
     "drop_queue",
     "earliest_limit",
     "entry",
+    "feed_time_s",
     "follow_cycle",
     "free_slots",
     "give_to_path",

@@ -53,6 +53,7 @@ PATH_ROW = np.dtype(
         ("low_water", np.int64),  # planned segments at which QUEUE_LOW is raised, negative never
         ("depth", np.int64),  # look-ahead in segments, 0 = unlimited
         ("merged", np.int64),  # points of the last line appended while lines may join it, see `_merge`
+        ("blocks", np.int64),  # blocks whose last segment was left since the path began
         ("cycles", np.int64),  # samples taken in the running segment
         ("event", np.int64),  # event last met, -1 none
         ("override", np.float64),  # factor of the programmed feeds; 0 holds moves at feed

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from polycnc.kernel._jit import compiled
+from polycnc.kernel._jit import compiled, entry
 from polycnc.kernel._path import (
     FEED_LENGTH,
     FEED_S,
     RAPID_LENGTH,
     RAPID_S,
+    RUNNING,
     SEGMENTS,
     TOP_SPEED,
     WAIT_S,
@@ -33,6 +34,20 @@ def account_time(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
             totals[TOP_SPEED] = max(totals[TOP_SPEED], paths.ramps[g, SPEED_PEAK])
 
 
+@entry
+def feed_time_s(seg: Segments, paths: Paths, dt: float) -> float:
+    """Return how long all paths have moved at feed so far, the part of the running segment included."""
+    total = 0.0
+    for g in range(len(paths.row)):
+        path = paths.row[g]
+        total += paths.totals[g, FEED_S]
+        if path["state"] == RUNNING:
+            row = seg.row[slot(paths, g, path["head"])]
+            if row["kind"] != WAIT and not row["flags"] & RAPID:
+                total += path["lead"] + path["cycles"] * dt
+    return float(total)
+
+
 @compiled
 def leave_segment(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
     """Go on to the next segment after `passed_s` in this one."""
@@ -45,3 +60,5 @@ def leave_segment(seg: Segments, paths: Paths, g: int, passed_s: float) -> None:
     path["entry_share"] = 0.0
     path["entry_zone"] = 0.0
     path["head"] += 1
+    if path["head"] >= path["tail"] or seg.row[slot(paths, g, path["head"])]["tag"] != row["tag"]:
+        path["blocks"] += 1

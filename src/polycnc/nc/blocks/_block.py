@@ -43,7 +43,8 @@ class ChannelRules:
     """
 
     __slots__ = (
-        "call_trouble", "dialect", "execute", "high", "increment", "low", "modulo", "sorter", "text_rules", "ways",
+        "call_trouble", "dialect", "execute", "high", "increment", "low", "modulo", "sorter", "stops_at_limits",
+        "text_rules", "ways",
     )  # fmt: skip
 
     def __init__(
@@ -56,6 +57,7 @@ class ChannelRules:
         self.dialect = dialect
         self.sorter = WordSorter(dialect)
         self.increment = dialect.increment
+        self.stops_at_limits = dialect.soft_limits == "at_limit"
         self.text_rules: TextRules = dialect.text_rules()
         self.low: list[float] = state.modal.low.tolist()
         self.high: list[float] = state.modal.high.tolist()
@@ -81,7 +83,7 @@ class BlockContext:
     `exact_stop` tells that it comes to rest at its end, `shows` which motion its record shows.
     `speed` is the S word where it is a spindle speed, `holds` a move that waits for its corner. `change` starts or ends
     radius compensation when all else is right; `compensated` tells that moves went through it. A block of a contour
-    that is only `measured` leaves no marks.
+    that is only `measured` leaves no marks. `passed` are soft limits at which its moves stop.
     """
 
     rules: ChannelRules
@@ -102,6 +104,7 @@ class BlockContext:
     holds: Corner | None = None
     change: Callable[[], None] | None = None
     compensated: bool = False
+    passed: list[ProgramError] = field(default_factory=list)
     exact_stop: bool = False
     shows: int = MOTION_NONE
 
@@ -152,6 +155,7 @@ class BlockContext:
             measured,
             notes=self.notes,
             marks=self.marks,
+            passed=self.passed,
         )
 
     def _place(self, word: Word | None) -> int:

@@ -20,6 +20,7 @@ from polycnc.nc.blocks._not_blocks import NotBlocks
 from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Trouble
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._steps import take_steps
+from polycnc.nc.blocks._travel import up_to_limits
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED
@@ -63,7 +64,8 @@ class Interpreter:
         """Execute one block of `text`.
 
         Raises:
-            ProgramError: the block cannot be executed; nothing has been changed or queued for it.
+            ProgramError: the block cannot be executed; nothing has been changed or queued for it, but what leads up to
+                a soft limit at which the dialect lets moves stop.
         """
         self._text = text
         self.messages.line = block.line
@@ -75,7 +77,12 @@ class Interpreter:
         try:
             self._run(context)
         except CompensationError as error:
-            raise self._placed(error, block.line) from None
+            placed = self._placed(error, block.line)
+            if not _stops(placed):
+                raise placed from None
+            context.passed.append(placed)
+        if context.passed:
+            self._stop_at_limit(context)
         self._commit(context)
         if context.goes_on is not None and context.outcome is NEXT:
             return Outcome(Control.GO_ON, place=context.goes_on)
@@ -95,6 +102,26 @@ class Interpreter:
         if corners != (state.path_tolerance_mm, state.merge_mm):
             self._queue.set_tolerance(state.path_tolerance_mm, state.merge_mm)
         self._queue.put_block(block.items)
+
+    def _stop_at_limit(self, block: BlockContext) -> None:
+        """Queue what a block does until an axis is on its soft limit; what compensation holds back comes before.
+
+        Raises:
+            ProgramError: tells of the limit.
+        """
+        held = _tips(block.after, block.after.compensation.flush())
+        block.items, limit = self._up_to_limits([*block.items, *held])
+        self._commit(block)
+        error = next((each for each in block.passed if each.limit == limit), block.passed[0])
+        error.limit = limit or error.limit
+        raise error
+
+    def _up_to_limits(
+        self, items: Iterable[QueueItem]
+    ) -> tuple[list[QueueItem], tuple[str, bool, bool] | None]:
+        """Return what comes before a soft limit, and the one that an axis is on first."""
+        kept, at = up_to_limits(items, self._rules.low, self._rules.high)
+        return kept, None if at is None else (self.state.axis_names[at[0]], at[1], True)
 
     def finish(self) -> None:
         """Give out what radius compensation still holds back, at the end of the program.
@@ -138,17 +165,25 @@ class Interpreter:
             self._queue.put(item)
 
     def _flushed(self) -> list[QueueItem]:
+        items: list[QueueItem] = []
         try:
-            items = list(_tips(self.state, self.state.compensation.flush()))
-            _check_path(self.state, items)
+            items += _tips(self.state, self.state.compensation.flush())
+            self._check_path(self.state, items)
         except CompensationError as error:
-            raise self._placed(error) from None
+            placed = self._placed(error)
+            if _stops(placed):
+                kept, limit = self._up_to_limits(items)
+                self._queue.put_block(kept)
+                placed.limit = limit or placed.limit
+            raise placed from None
         return items
 
     def _placed(self, error: CompensationError, line: int | None = None) -> ProgramError:
         """Add the place to an error of radius compensation, which knows its line only; `line` is that of the block."""
         position = (self._text if error.line == line else self._held_text).line_position(error.line)
-        return ProgramError(error.what, position=position, hint=error.hint, code=error.code)
+        placed = ProgramError(error.what, position=position, hint=error.hint, code=error.code)
+        placed.limit = error.limit
+        return placed
 
     # ------------------------------------------------------------------ one block
 
@@ -193,7 +228,7 @@ class Interpreter:
         if stage.active:
             block.compensated |= any(isinstance(item, (Line, Arc)) for item in block.items)
             block.items = [out for item in block.items for out in _with_tip(state, item, stage.push(item))]
-            _check_path(state, block.items)
+            self._check_path(state, block.items)
         whole = state.modal.whole
         whole[ORDINARY] = (
             stage.active
@@ -204,6 +239,11 @@ class Interpreter:
             or whole[FEED_MODE] != FEED_PER_MINUTE
             or (state.frame is not UNTURNED and state.frame.active)
         )
+
+    def _check_path(self, state: ChannelState, items: Iterable[QueueItem]) -> None:
+        for item in items:
+            if isinstance(item, (Line, Arc)):
+                check_path(state, item, stops_at_limits=self._rules.stops_at_limits)
 
     # ------------------------------------------------------------------ what one block leaves for the next
 
@@ -245,7 +285,6 @@ def _tips(state: ChannelState, pushed: Iterable[QueueItem]) -> Iterator[QueueIte
         yield out
 
 
-def _check_path(state: ChannelState, items: Iterable[QueueItem]) -> None:
-    for item in items:
-        if isinstance(item, (Line, Arc)):
-            check_path(state, item)
+def _stops(error: ProgramError) -> bool:
+    """Tell whether a move is carried out up to the soft limit that it would pass."""
+    return error.limit is not None and error.limit[2]

@@ -20,12 +20,13 @@ LIMIT_ROUNDING = 1e-6
 _SECONDS_PER_DAY = 86_400.0
 _SECONDS_PER_YEAR = 365.25 * _SECONDS_PER_DAY
 _TOO_LONG = "the block would take {}"
+_CHECK_NUMBER = "Check the number."
 _LONGEST_DAYS = LONGEST_BLOCK_S / _SECONDS_PER_DAY
 _TOO_LONG_HINT = f"No block may take longer than {_LONGEST_DAYS:.0f} days: check the feed and the way."
 
 
 def check(block: BlockContext, point: Point, what: str = "would go to") -> None:
-    """Refuse a point outside the soft limits.
+    """Refuse a point outside the soft limits, or note it where the dialect lets moves go up to them.
 
     With radius compensation it is the compensated path that counts in the plane, see `check_path`.
 
@@ -35,15 +36,16 @@ def check(block: BlockContext, point: Point, what: str = "would go to") -> None:
     state, whole = block.after, block.after.modal.whole
     compensated = state.side != 0 or state.compensation.active
     later = (int(whole[AXIS_P]), int(whole[AXIS_Q])) if compensated else ()
-    if trouble := _limit_trouble(state, point, what, later):
-        index, text, hint = trouble
+    for index, text, hint in _limit_troubles(state, point, what, later):
         axis = state.axis_names[index]
         error = block.problem(text, hint, block.words.first(axis))
-        error.limit = axis, point[index] > float(state.modal.high[index])
-        raise error
+        error.limit = _limit(block.rules.stops_at_limits, state, index, point)
+        if not block.rules.stops_at_limits or hint == _CHECK_NUMBER:
+            raise error
+        block.passed.append(error)
 
 
-def check_path(state: ChannelState, item: Move) -> None:
+def check_path(state: ChannelState, item: Move, *, stops_at_limits: bool = False) -> None:
     """Refuse a compensated move that leaves the soft limits.
 
     Raises:
@@ -56,11 +58,16 @@ def check_path(state: ChannelState, item: Move) -> None:
             f"with radius compensation {what}", reason="time", line=item.line, hint=_TOO_LONG_HINT
         )
     for point, what in points(item):
-        if trouble := _limit_trouble(state, point, what):
-            _, text, hint = trouble
-            raise CompensationError(
+        for index, text, hint in _limit_troubles(state, point, what):
+            error = CompensationError(
                 f"with radius compensation {text}", reason="limit", line=item.line, hint=hint
             )
+            error.limit = _limit(stops_at_limits, state, index, point)
+            raise error
+
+
+def _limit(stops: bool, state: ChannelState, index: int, point: Point) -> tuple[str, bool, bool]:
+    return state.axis_names[index], point[index] > float(state.modal.high[index]), stops
 
 
 def check_time(block: BlockContext, item: QueueItem) -> None:
@@ -99,10 +106,10 @@ def _slow_word(block: BlockContext, item: QueueItem) -> Word | None:
     return block.words.first("F") or block.move_word
 
 
-def _limit_trouble(
+def _limit_troubles(
     state: ChannelState, point: Point, what: str, but: tuple[int, ...] = ()
-) -> tuple[int, str, str] | None:
-    """Return the axis whose limit a point passes, what is wrong and what to do; None if all is well."""
+) -> Iterator[tuple[int, str, str]]:
+    """Yield the axes whose limits a point passes, what is wrong and what to do."""
     for index, value in enumerate(point):
         low, high = float(state.modal.low[index]), float(state.modal.high[index])
         if low - LIMIT_ROUNDING <= value <= high + LIMIT_ROUNDING or index in but:
@@ -111,14 +118,14 @@ def _limit_trouble(
         limit = low if value < low else high
         if abs(limit) == LARGEST:
             text = f"axis {axis.name} {what} {value:.6g} {axis.unit}, further than any machine"
-            return index, text, "Check the number."
-        return (
-            index,
-            f"axis {axis.name} {what} {value:.3f} {axis.unit}, past its soft limit of "
-            f"{limit:.3f} {axis.unit}",
-            "Check the program, the work offset and the machine's soft limits (machine coordinates).",
-        )
-    return None
+            yield index, text, _CHECK_NUMBER
+        else:
+            text = f"axis {axis.name} {what} {value:.3f} {axis.unit}, past its soft limit of {limit:.3f} {axis.unit}"
+            yield (
+                index,
+                text,
+                "Check the program, the work offset and the machine's soft limits (machine coordinates).",
+            )
 
 
 def _duration_text(time_s: float) -> str:

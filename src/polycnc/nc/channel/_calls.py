@@ -21,6 +21,7 @@ from polycnc.nc.sources._block_source import (
     Returning,
     SearchingLanguage,
 )
+from polycnc.nc.text._incoming import IncomingText
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 
@@ -42,12 +43,13 @@ class Calls:
         errors: Errors,
     ) -> None:
         self._dialect = dialect
+        self._incoming = main if isinstance(main, IncomingText) else None
         self._programs = programs
         self._language = language
         self._reader = reader
         self._errors = errors
         self._refused: dict[tuple[str, int], Trouble] = {}
-        self._all = [Running(Place(main))]
+        self._all = [Running(Place(main.opening))]
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
         self.within: tuple[Call, ...] = ()
@@ -83,6 +85,44 @@ class Calls:
             self._reader.jump(begin, begin.offset)  # no text for now
         elif self.depth or language is not None:
             self._reader.jump(begin, len(begin.text))
+
+    @property
+    def has_language(self) -> bool:
+        """Whether a language may execute programs."""
+        return self._language is not None
+
+    @property
+    def is_coming(self) -> bool:
+        """Whether more of the main program, which is the present one, waits or may still come."""
+        return self._incoming is not None and self.depth == 0 and not self._incoming.over
+
+    @property
+    def has_come(self) -> bool:
+        """Whether a piece of the main program waits to be read."""
+        return self._incoming is not None and self._incoming.waiting > 0
+
+    def take_piece(self) -> bool:
+        """Go on with what has come of the main program; False while nothing has.
+
+        Where a language or a cycle might look beyond its line, each line is a piece: how the program was cut when it
+        came makes no difference then.
+        """
+        incoming, running = self._incoming, self.running
+        assert incoming is not None
+        by_line = self._language is not None or self._dialect.reads_contours
+        piece = incoming.take(one_line=by_line)
+        if piece is None:
+            return False
+        running.begin = Place(piece, 0, piece.first_line)
+        self.begin()
+        if running.source is None:
+            self._reader.jump(running.begin, len(piece))
+        return True
+
+    def end_piece(self) -> None:
+        """Leave the source of a piece of the main program that has come to its end."""
+        _close(self.running)
+        self._reader.word_values = None
 
     def target(self, line: int) -> Place:
         """Return the place of a line of the main program, to begin there.
@@ -171,6 +211,8 @@ class Calls:
         """End all programs."""
         for running in reversed(self._all):
             _close(running)
+        if self._incoming is not None:
+            self._incoming.close()
 
     def _note_calls(self) -> None:
         self.running = self._all[-1]

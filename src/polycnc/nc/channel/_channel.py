@@ -17,6 +17,7 @@ from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._channel_snapshot import ChannelSnapshot
 from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._preparation import Preparation
 from polycnc.nc.channel._prepared import Prepared
@@ -85,7 +86,7 @@ class Channel:
         self.writer, self.records, self.state = prepared.writer, prepared.records, prepared.state
         self._errors = errors = Errors(self.messages, collects=options.collect_errors)
         self.errors = errors.all
-        self._reader = reader = Reader(program, text_rules, rules, skip_levels)
+        self._reader = reader = Reader(program.opening, text_rules, rules, skip_levels)
         sub_programs = SubPrograms(program, dialect, library)
         self._calls = calls = Calls(program, dialect, sub_programs, language, reader, errors)
         self._search = search = Search(calls, reader, language)
@@ -149,6 +150,17 @@ class Channel:
         return self._preparation.over and not self.writer.backlog
 
     @property
+    def starved(self) -> bool:
+        """Whether all that has come of a program that is still coming has been prepared, and is in the queue."""
+        return self._preparation.starved and not self.writer.backlog
+
+    def line_check(self) -> LineCheck:
+        """Return a check of blocks that would come after what has been prepared."""
+        return LineCheck(
+            self.dialect, self.state, lambda program, text, offset: None, words_only=self._calls.has_language
+        )
+
+    @property
     def error(self) -> ProgramError | None:
         """The first error, if there is one."""
         return self.errors[0] if self.errors else None
@@ -164,6 +176,13 @@ class Channel:
     def waits(self) -> bool:
         """Whether preparation waits until the path has come to a stop, and `go_on`."""
         return self.writer.stops > 0
+
+    @property
+    def text_is_over(self) -> bool:
+        """Whether all blocks of the main program's text have been taken, and no language has more."""
+        reader, calls = self._reader, self._calls
+        read = reader.at_end and reader.place.offset >= reader.end
+        return read and calls.depth == 0 and calls.running.source is None
 
     @property
     def paused(self) -> bool:

@@ -105,7 +105,7 @@ def _taken(error: ProgramError) -> tuple[object, ...]:
 
 
 def _error(
-    what: str, code: str, position: SourcePosition | None, hint: str, limit: tuple[str, bool] | None
+    what: str, code: str, position: SourcePosition | None, hint: str, limit: tuple[str, bool, bool] | None
 ) -> ProgramError:
     made = ProgramError(what, code=code, position=position, hint=hint)
     made.limit = limit

@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
-from polycnc.nc.modal._actions import M_ACTIONS, Action, MAction
+from polycnc.nc.modal._actions import M_ACTIONS, Action, Family, MAction, of_family
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -241,6 +241,10 @@ class Dialect(StrictModel):
         default="error",
         description='Two codes of one group in a block: "error" refuses them, "last" takes the last and says so.',
     )
+    soft_limits: Literal["before", "at_limit"] = Field(
+        default="before",
+        description='A move past a soft limit: "before" refuses its block, "at_limit" carries it out up to the limit.',
+    )
     tool_word: Literal["select", "turret"] = Field(
         default="select",
         description='"select": T chooses the tool of the next change; "turret": T0203 turns to tool 2 with offset 3.',
@@ -283,6 +287,11 @@ class Dialect(StrictModel):
     def has_tool_change(self) -> bool:
         """Whether programs can change the tool."""
         return MAction.TOOL_CHANGE in self._by_m.values() or self.tool_word == "turret"
+
+    @property
+    def reads_contours(self) -> bool:
+        """Whether a cycle can name the blocks of a contour that come after it."""
+        return not of_family(Family.CONTOUR_CYCLE).isdisjoint(self._by_code.values())
 
     @property
     def sets_work_offsets(self) -> bool:
@@ -414,18 +423,3 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
         f"there is no dialect '{source}'",
         hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
     )
-
-
-def dialect_for(program: str, explicit: str | Path | Dialect | None = None) -> Dialect:
-    """Return the dialect of a program: the explicit one, else by the file's extension, else the default.
-
-    Raises:
-        UsageError: there is no such dialect.
-    """
-    if explicit is not None:
-        return load_dialect(explicit)
-    extension = Path(program).suffix.lower()
-    for name in _SHIPPED:
-        if extension and extension in _shipped(name).extensions:
-            return _shipped(name)
-    return _shipped(DEFAULT_DIALECT)

@@ -26,6 +26,7 @@ from polycnc.nc.macro._syntax import (
     Interrupt,
     Line,
     MacroCall,
+    Name,
     Names,
     Number,
     Output,
@@ -548,6 +549,9 @@ class _Compiler:
                 return self.variable(tree)
             case Function():
                 return self.function(tree)
+            case Name():
+                self.texts.append(tree.text)
+                return _Value(Python(f"H.named(T[{len(self.texts) - 1}])"))
             case Unary():
                 operand = self.expression(tree.operand)
                 if operand.truth:
@@ -602,7 +606,7 @@ class _Compiler:
             return _Value(Python(f"H.increments({values})"))
         return _Value(Python(f"f_{name}({values})"))
 
-    def chain(self, tree: Chain[Number | Variable | Function]) -> _Value:
+    def chain(self, tree: Chain[Number | Variable | Function | Name]) -> _Value:
         left = self.expression(tree.first)
         for link in tree.links:
             right = self.expression(link.operand)

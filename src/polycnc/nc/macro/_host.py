@@ -18,6 +18,7 @@ class Host(Protocol):
 
     dialect: Dialect
     machine: Machine
+    path: int
     messages: Messages
     state: ChannelState
     skip_levels: frozenset[int]

@@ -380,6 +380,7 @@ class _Host:
         self.put_out = source.put_out
         self.device = source._language.output.switch
         self.set_names = source._language.variables.set_names
+        self.named = source._language.variables.named
         self._increment = source.increment
 
     @property

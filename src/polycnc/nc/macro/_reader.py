@@ -21,6 +21,7 @@ from polycnc.nc.macro._syntax import (
     Interrupt,
     Line,
     MacroCall,
+    Name,
     Names,
     Number,
     Output,
@@ -72,6 +73,7 @@ _PRINTED_TEXT = re.compile(r"[A-Z0-9*/+\-?@&=. ]", re.IGNORECASE)
 _FORMAT_DIGITS = re.compile(r"[ \t]*\[[ \t]*([0-9])[ \t]*([0-9])?[ \t]*\]")
 _NAME_LIST = re.compile(r"[ \t]*([0-9]+)[ \t]*\[([^\]\r\n]*)\]")
 _LONGEST_NAME = 8
+_NAME = re.compile(r"\[[ \t]*([A-Za-z_][A-Za-z0-9_]*)[ \t]*\]")
 _MOST_DIGITS = 8
 _INTERRUPT_ON, _INTERRUPT_OFF = 96.0, 97.0
 _MACRO_CALL, _MODAL_CALL, _MODAL_CALL_EACH, _CANCEL_MODAL = 65.0, 66.0, 66.1, 67.0
@@ -578,12 +580,15 @@ class _Statements:
             number = real_value(token, _LARGEST_NUMBER)
             tokens.step()
             return Variable(at, int(number))
+        if found := _NAME.match(self._text, token.at, self._end):
+            tokens.jump(found.end())
+            return Variable(at, -1, Name(found.start(1), found[1].upper()))
         if token.word == "[":
             return Variable(at, -1, self._bracket())
         raise Flaw(
             token.at,
             f"the number of the variable is missing before {token}",
-            "Write #1, or #[...] with an expression.",
+            "Write #1, #[...] with an expression, or #[NAME].",
             code=_FORMAT,
         )
 

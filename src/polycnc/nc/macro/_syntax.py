@@ -27,6 +27,14 @@ class Variable:
 
 
 @dataclass(frozen=True, slots=True)
+class Name:
+    """The number of a variable by the name that SETVN gave it, as in `#[DEPTH]`."""
+
+    at: int
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Function:
     """A function and what it is applied to."""
 
@@ -35,7 +43,7 @@ class Function:
     arguments: tuple[Expression, ...]
 
 
-Expression: TypeAlias = Tree[Number | Variable | Function]
+Expression: TypeAlias = Tree[Number | Variable | Function | Name]
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from datetime import datetime
 
+from polycnc.kernel import OTHER_SOURCE
 from polycnc.machine import Clock
 from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
 from polycnc.nc.macro._host import Host
@@ -250,17 +251,21 @@ class SystemVariables:
         length = float(state.coordinates.length[axis])
         zero = float(modal.offset[axis]) - length
         machine = self.channel.machine.state
+        at = float(machine.setpoint[axis])
+        if (
+            base != _MACHINE and machine.owner[axis] == OTHER_SOURCE
+        ):  # a machine lock: the path goes on without it
+            at = float(machine.paths.position[self.channel.path, axis])
         match base:
             case 5001:
                 return (float(modal.position[axis]) - float(modal.offset[axis])) / scale
             case 5021:
-                return float(machine.setpoint[axis]) / scale
+                return at / scale
             case 5041:
-                return (float(machine.setpoint[axis]) - zero) / scale
+                return (at - zero) / scale
             case 5061:
                 skipped = state.skip_position
-                at = float(machine.setpoint[axis]) if skipped is None else skipped[axis]
-                return (at - zero) / scale
+                return ((at if skipped is None else skipped[axis]) - zero) / scale
             case 5081:
                 return length / scale
             case _:

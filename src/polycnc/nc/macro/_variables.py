@@ -167,6 +167,17 @@ class MacroVariables:
         for number, value in values.items():
             self._kept[number - _FIRST_PERMANENT] = value
 
+    def named(self, name: str) -> float:
+        """Return the number of the variable that has a name, in capitals.
+
+        Raises:
+            MacroError: None has it.
+        """
+        for number, each in self.names.items():
+            if each.upper() == name:
+                return float(number)
+        raise MacroError(f"no variable is named {name}", f"Name it first: SETVN 500[{name}].", "PS0115")
+
     def set_names(self, first: int, names: Sequence[str]) -> None:
         """Name variables from a number on.
 

@@ -11,7 +11,7 @@ from polycnc.servers.focas._command import COMMANDS, WRITING, Command
 from polycnc.servers.focas._profile import Profile
 
 _NARROW = frozenset({0x0E, 0x10, 0x29, 0x30})
-_WIDE = frozenset({0x8D, 0x90, 0x93})
+_WIDE = frozenset({0x8D, 0x90, 0x93, 0xA0, 0xA2})
 
 
 def known(profile: Profile, request: Request) -> Command | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
-from polycnc.controllers.fanuc import DIAGNOSIS, Attribute, ParameterRow, pmc
+from polycnc.controllers.fanuc import DIAGNOSIS, Attribute, Kind, ParameterRow, pmc
 from polycnc.controllers.fanuc.wire import PMC, PMC_WIDTHS, Content, Request, Value8, swapped
 from polycnc.servers.focas._command import (
     ATTRIBUTE,
@@ -28,7 +28,7 @@ from polycnc.servers.focas._command import (
     one_number,
     padded,
 )
-from polycnc.servers.focas._system_variables import system_variable
+from polycnc.servers.focas._system_variables import system_variable, write_system_variables
 
 # ---------------------------------------------------------------------- macro variables
 
@@ -70,16 +70,27 @@ def read_macros(view: View, request: Request) -> Content:
 
 
 def _set_macros(view: View, values: dict[int, float | None]) -> None:
-    """Set variables, all or none."""
+    """Set variables, all or none; a system variable that is made vacant is 0, as in a program."""
+    system: dict[int, float] = {}
     for number, value in values.items():
         if number in _LOCALS:
             raise RefusedError(NUMBER)
-        _macro(view, number)
+        if view.profile.system_variables and number not in view.control.macros:
+            system[number] = value or 0.0
+        else:
+            _macro(view, number)
         if value is not None and not abs(value) < 1e12:
             raise RefusedError(DATA)
+    try:
+        write_system_variables(view, system)
+    except KeyError:
+        raise RefusedError(NUMBER) from None
+    except ValueError:
+        raise RefusedError(DATA) from None
     with view.control.store.transaction():
         for number, value in values.items():
-            view.control.macros.set(number, value)
+            if number not in system:
+                view.control.macros.set(number, value)
 
 
 @answers(0x16, writes=True)
@@ -184,6 +195,56 @@ def parameter_types(view: View, request: Request) -> Content:
     behind = min((row.number for row in known if row.number > found[-1].number), default=0)
     each = [{"number": row.number, "type": row.type_word} for row in found]
     return {"before": before, "behind": behind}, each
+
+
+_ONE_VALUE, _EACH_AXIS, _EACH_SPINDLE = 0, 3, 4
+_PLAIN = {"unit": 0, "dimension": 0, "input": 0, "display": 0}
+
+
+def _infos(request: Request, rows: Mapping[int, tuple[Kind, int, int]]) -> Content:
+    """Return what so many rows are, from a number on, with the numbers before and behind.
+
+    A row is its kind, how it is repeated (once, for each axis, for each spindle), and its other attributes.
+    """
+    first, count = request.arguments[:2]
+    if not 0 < count <= MOST_NUMBERS:
+        raise RefusedError(LENGTH)
+    known = sorted(rows)
+    found = [number for number in known if number >= first][:count]
+    if not found:
+        raise RefusedError(NUMBER)
+    before = max((number for number in known if number < found[0]), default=0)
+    behind = min((number for number in known if number > found[-1]), default=0)
+    made = []
+    for number in found:
+        kind, array, others = rows[number]
+        size = 0 if kind is Kind.BIT else kind.size
+        made.append({"number": number, "size": size, "array": array, "others": others, **_PLAIN})
+    return {"before": before, "behind": behind}, made
+
+
+@answers(0xA0)
+def parameter_infos(view: View, request: Request) -> Content:
+    """Return number, size, repetition and type word of so many parameters from one on."""
+    rows = {}
+    for number, row in view.control.parameters.rows.items():
+        if Attribute.NOT_READABLE not in row.attributes:
+            spindle = Attribute.SPINDLE in row.attributes
+            array = _EACH_AXIS if row.per_axis else _EACH_SPINDLE if spindle else _ONE_VALUE
+            rows[number] = row.kind, array, row.type_word
+    return _infos(request, rows)
+
+
+@answers(0xA2)
+def diagnosis_infos(view: View, request: Request) -> Content:
+    """Return number, size and repetition of so many diagnosis data from one on."""
+    return _infos(
+        request,
+        {
+            number: (row.kind, _EACH_AXIS if row.per_axis else _ONE_VALUE, 0)
+            for number, row in DIAGNOSIS.items()
+        },
+    )
 
 
 _OLD_DIAGNOSIS = {0: 3, 1: 0, 2: 1, 3: 2}

@@ -32,6 +32,8 @@ class Profile(StrictModel):
     """Command codes that this series does not know."""
     program_characters: int = Field(default=128_000, gt=0)
     """The size of the program memory of a control that is served."""
+    last_alarm_type: int = 15
+    """The largest number of a group of alarms."""
     most_sessions: int = 5
     most_spindles: int = Field(default=8, ge=1, le=8)
 

@@ -39,6 +39,12 @@ def sequence_number(view: View, request: Request) -> Content:
 _MOST_TEXT = 1400
 
 
+@answers(0x35)
+def block_count(view: View, request: Request) -> Content:
+    """Return how many blocks have been executed since the program began."""
+    return {"blocks": view.control.execution.count}
+
+
 @answers(0x20)
 def executed_text(view: View, request: Request) -> Content:
     """Return the line that is executed and the program from there on."""

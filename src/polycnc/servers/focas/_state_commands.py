@@ -110,6 +110,7 @@ def alarm_bits(view: View, request: Request) -> Content:
 
 
 _ALARM_HEAD = 16
+_TEXTS = range(3)
 
 
 @answers(0x23)
@@ -118,6 +119,8 @@ def alarms(view: View, request: Request) -> Content:
     kind, most, mode, size = request.arguments
     if not (0 <= most <= MOST_NUMBERS and 0 <= size <= 64):
         raise RefusedError(LENGTH)
+    if not (ALL <= kind <= view.profile.last_alarm_type and mode in _TEXTS):
+        raise RefusedError(ATTRIBUTE)
     rows = []
     names = [view.control.axis_name(axis) for axis in range(1, view.control.axes + 1)]
     for alarm in shown(view.control.control.alarms.active):

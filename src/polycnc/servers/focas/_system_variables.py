@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from polycnc.nc.macro import MacroError
 from polycnc.servers.focas._command import View, offset_name
 from polycnc.servers.focas._state_commands import code_of
 
@@ -11,7 +14,7 @@ _LENGTH_AXIS = "Z"
 _MODAL = (4000, 4200)
 _CODES = range(1, 23)
 _INITIAL = {6: "40", 12: "97", 13: "54", 14: "64", 15: "69", 16: "15"}
-"""What holds before the first block, by group from 0."""
+"""What holds before the first block, by group from 0; groups of which this control has no codes are 0."""
 _WORDS = {107: "D", 109: "F", 111: "H", 113: "M", 119: "S", 120: "T"}
 _SEQUENCE, _PROGRAM = 114, 115
 _COMMON_OFFSET, _G59, _EXTRA_OFFSET, _LAST_EXTRA = 5201, 5328, 7001, 7960
@@ -54,7 +57,7 @@ def _position(view: View, base: int, axis: int) -> float:
 def _modal(view: View, number: int) -> float:
     execution = view.control.execution
     if number in _CODES:
-        return float(code_of(view, number - 1) or _INITIAL[number - 1])
+        return float(code_of(view, number - 1) or _INITIAL.get(number - 1, "0"))
     if number == _SEQUENCE:
         return float(execution.sequence)
     if number == _PROGRAM:
@@ -63,8 +66,52 @@ def _modal(view: View, number: int) -> float:
     return float(word.text or 0) if word else 0.0
 
 
+def write_system_variables(view: View, values: Mapping[int, float]) -> None:
+    """Set tool offsets and work offsets by the variables that they are, all or none.
+
+    Raises:
+        KeyError: A variable is none of them.
+        ValueError: A value is out of range.
+    """
+    control = view.control
+    tools, works = {}, []
+    for number, value in values.items():
+        if (place := _offset_place(view, number)) is not None:
+            units = control.input_scale(place[1])
+            counts = round(value * 10.0**units.decimals)
+            if abs(counts) > control.increment.offset_limit:
+                raise ValueError(f"#{number} cannot be {value:g}")
+            works.append((offset_name(place[0]), control.axis_name(place[1]), units.value(counts)))
+            continue
+        try:
+            found = control.custom_macros.tool_offset(number, value)
+        except MacroError as error:
+            raise ValueError(error.what) from None
+        if found is None:
+            raise KeyError(number)
+        tools[found[0]] = found[1]
+    control.tool_offsets.set_all(tools)
+    for name, axis, at in works:
+        control.control.offsets.set(name, {axis: at})
+
+
 def _offset(view: View, number: int) -> float | None:
     """Return a work offset of an axis: #5201 the external one, #5221 G54, #7001 the first extra one."""
+    found = _offset_place(view, number)
+    if found is None:
+        return None
+    control, (place, axis) = view.control, found
+    units = control.input_scale(axis)
+    value = control.control.offsets.get(offset_name(place), {}).get(control.axis_name(axis), 0.0)
+    return units.counts(value) * 10.0**-units.decimals
+
+
+def _offset_place(view: View, number: int) -> tuple[int, int] | None:
+    """Return the work offset that a variable is of, by its number, and the axis (from 1); None for other variables.
+
+    Raises:
+        KeyError: There is no such axis.
+    """
     if _COMMON_OFFSET <= number <= _G59:
         place, axis = divmod(number - _COMMON_OFFSET, _EACH_OFFSET)
     elif _EXTRA_OFFSET <= number <= _LAST_EXTRA:
@@ -72,9 +119,6 @@ def _offset(view: View, number: int) -> float | None:
         place += _FIRST_EXTRA
     else:
         return None
-    control = view.control
-    if axis >= control.axes:
+    if axis >= view.control.axes:
         raise KeyError(number)
-    units = control.input_scale(axis + 1)
-    value = control.control.offsets.get(offset_name(place), {}).get(control.axis_name(axis + 1), 0.0)
-    return units.counts(value) * 10.0**-units.decimals
+    return place, axis + 1

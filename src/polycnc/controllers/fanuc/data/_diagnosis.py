@@ -4,28 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from polycnc.cnc import Emergency, Motion
+from polycnc.controllers.fanuc.data._parameter_rows import Kind
 from polycnc.controllers.fanuc.device._alarms import shown
 
 if TYPE_CHECKING:
     from polycnc.controllers.fanuc.device._power_mate import PowerMate
-
-
-class Kind(IntEnum):
-    """Kinds of diagnosis data, as the type of cnc_diagnosr has them (Manual 000)."""
-
-    BIT = 0
-    BYTE = 1
-    WORD = 2
-    TWO_WORD = 3
-
-    @property
-    def size(self) -> int:
-        """Return the bytes of one value."""
-        return (1, 1, 2, 4)[self]
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +48,27 @@ def _axis_state(power_mate: PowerMate, axis: int) -> int:
     return 0 if not status.moving else 2 if status.manual != "none" else 1
 
 
+def _spindle_rpm(power_mate: PowerMate, axis: int) -> int:
+    return round(abs(power_mate.control.spindle.state().actual_rpm))
+
+
+def _spindle_load(power_mate: PowerMate, axis: int) -> int:
+    most = power_mate.machine.config.spindle.max_rpm
+    return round(100.0 * abs(power_mate.control.spindle.state().actual_rpm) / most)
+
+
+_AMBIENT_C = 25
+"""Ruling: motors of this control stay at one temperature (degree Celsius)."""
+
+
+def _ambient(power_mate: PowerMate, axis: int) -> int:
+    return _AMBIENT_C
+
+
+def _zero(power_mate: PowerMate, axis: int) -> int:
+    return 0
+
+
 # fmt: off
 DIAGNOSIS: dict[int, Diagnosis] = {
     0: Diagnosis(
@@ -86,5 +93,16 @@ DIAGNOSIS: dict[int, Diagnosis] = {
         "distance from the reference position (increments)", Kind.TWO_WORD,
         lambda it, axis: it.positions.read()[axis - 1].machine, True,
     ),
+    308: Diagnosis("temperature of the servo motor (degree Celsius)", Kind.BYTE, _ambient, True),
+    309: Diagnosis("temperature of the pulse coder (degree Celsius)", Kind.BYTE, _ambient, True),
+    400: Diagnosis("spindle control: no serial spindle", Kind.BIT, _zero),
+    403: Diagnosis("temperature of the spindle motor (degree Celsius)", Kind.BYTE, _ambient),
+    408: Diagnosis("errors on the line of the spindle", Kind.BIT, _zero),
+    410: Diagnosis("load of the spindle (%)", Kind.WORD, _spindle_load),
+    411: Diagnosis("speed of the spindle motor (1/min)", Kind.TWO_WORD, _spindle_rpm),
+    418: Diagnosis("position error of the spindle (increments)", Kind.TWO_WORD, _zero),
+    425: Diagnosis("synchronization error of the spindle (increments)", Kind.TWO_WORD, _zero),
+    710: Diagnosis("error of the spindle", Kind.WORD, _zero),
+    712: Diagnosis("warning of the spindle", Kind.WORD, _zero),
 }
 # fmt: on

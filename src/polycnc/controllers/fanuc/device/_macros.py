@@ -92,6 +92,14 @@ class Macros:
             return system.read(number)
         raise KeyError(number)
 
+    def tool_offset(self, number: int, value: float) -> tuple[int, int] | None:
+        """Return the tool offset that a variable is, and the increments of a value; None for other variables.
+
+        Raises:
+            MacroError: The value is out of range.
+        """
+        return PowerMateVariables(self._power_mate, self).offset_counts(number, value)
+
     def switched_on(self) -> None:
         """Begin with the power: what does not outlast it is vacant, timers count from 0."""
         self._variables.clear_common()
@@ -201,16 +209,27 @@ class PowerMateVariables(SystemVariables):
             power_mate.control.parts.set(made=_whole(number, new, 99_999_999))
         elif number == _PARTS_REQUIRED:
             power_mate.control.parts.set(required=_whole(number, new, 99_999_999))
-        elif (offset := self._offset_number(number)) is not None:
-            offsets = power_mate.tool_offsets
-            counts = round(new * 10.0**offsets.decimals)
-            if abs(counts) > offsets.limit:
-                raise _wrong(number, new, "tool offsets in their range")
-            offsets.set_all({offset: counts})
+        elif (offset := self.offset_counts(number, new)) is not None:
+            power_mate.tool_offsets.set_all(dict([offset]))
         elif self.is_signal(number):
             raise MacroError(f"#{number} can only be read", "Write another variable.", "PS0116")
         else:
             super().write(number, value)
+
+    def offset_counts(self, number: int, value: float) -> tuple[int, int] | None:
+        """Return the tool offset that a variable is, and the increments of a value; None for other variables.
+
+        Raises:
+            MacroError: The value is out of range.
+        """
+        offset = self._offset_number(number)
+        if offset is None:
+            return None
+        offsets = self._power_mate.tool_offsets
+        counts = round(value * 10.0**offsets.decimals)
+        if abs(counts) > offsets.limit:
+            raise _wrong(number, value, "tool offsets in their range")
+        return offset, counts
 
     @staticmethod
     def is_signal(number: int) -> bool:

@@ -54,7 +54,8 @@ from polycnc.controllers.fanuc.device._panel import Panel
 from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
-from polycnc.controllers.fanuc.device._signals import Signals, SignalState
+from polycnc.controllers.fanuc.device._remote_program import RemoteProgram
+from polycnc.controllers.fanuc.device._signals import MOST_FEED_PERCENT, Signals, SignalState
 from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
@@ -65,7 +66,7 @@ MOST_AXES = {"H": 6, "D": 2}
 _STATE = "fanuc.state"
 _MM_PER_MIN = 60.0
 _BLOCKS_AHEAD = 1  # Manual 000, cnc_modal: the next block, and the next but one at the most
-_ACT_ON_MOTION = frozenset({0, 1320, 1321, 1420, 1423, 1620, 1825, 1828, 3401})
+_ACT_ON_MOTION = frozenset({0, 1301, 1320, 1321, 1420, 1423, 1620, 1825, 1828, 3401})
 _ALL_KEYS = frozenset({1, 2, 3, 4})
 
 
@@ -141,6 +142,7 @@ class PowerMate:
         self.macros = SharedMacros(self.store, self._common_range())
         self.programs = Programs(self)
         self.mdi = MdiProgram(self, self.state.mdi)
+        self.remote = RemoteProgram(lambda: self.mode, lambda: self.control)
         self.execution = Execution(self)
         self.positions = Positions(self)
         self.tool_offsets = ToolOffsets(self, offsets)
@@ -257,15 +259,18 @@ class PowerMate:
         self.state.cursor = line
 
     def cycle_start(self) -> None:
-        """Start the selected program in MEM, the MDI program in MDI, or go on where one is interrupted.
+        """Start the program of MEM, MDI or RMT (`remote`), or go on where one is interrupted.
 
         Raises:
-            ControlError: As `cnc.Control.cycle_start`; in RMT nothing sends a program.
+            ControlError: As `cnc.Control.cycle_start`; feed hold is given; nothing sends a program in RMT.
         """
         self._take_over()
+        if self.signals.hold_is_on:
+            raise ControlError(
+                Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
+            )
         channel = self.control.channels[0]
-        if self.state.mode is PowerMateMode.RMT and not channel.interrupted:
-            raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
+        self.remote.before_start(name_of(self.selected) if self.selected else None)
         if not channel.interrupted:
             self.custom_macros.begin()
             self.signals.apply_lock()
@@ -514,6 +519,7 @@ class PowerMate:
                 mode_change_while_running=OnModeChange.HOLD,
                 after_manual=AfterManual.RETURN,
                 dry_run_mm_min=float(self.parameters.value(1410)),
+                most_feed_override=MOST_FEED_PERCENT / 100.0,
                 sub_program_names=("O{number:04d}",),
                 manual=ManualData(jog_speeds=self._jog_speeds(axes)),
                 emergency_needs_reset=False,
@@ -536,6 +542,7 @@ class PowerMate:
         data = load_dialect("fanuc").model_dump()
         data["name"] = "power mate"
         data["blocks_ahead"] = _BLOCKS_AHEAD
+        data["soft_limits"] = "before" if self.parameters.bit(1301, 7) else "at_limit"
         data["language"] = "macro" if self.has_option(MACRO_OPTION) else "none"
         data["numbers"] = {
             "decimal_point": "calculator" if self.parameters.bit(3401, 0) else "least_input",

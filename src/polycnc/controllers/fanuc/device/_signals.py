@@ -35,7 +35,8 @@ _HANDLE = 4  # the handle or, where there is none, increments
 _JOGS = frozenset({_M.JOG, _M.T_JOG, _M.INC})
 RAPID_STEPS = {0: 1.0, 1: 0.5, 2: 0.25}
 F0 = 3
-_MOST_FEED = 200
+MOST_FEED_PERCENT = 254
+"""The largest feed override (Manual 000, cnc_opdi: 11111110)."""
 _INCREMENTS = (1, 10, 100, 1000)
 _FIN, _ST, _SP, _ESP, _ERS = 1 << 3, 1 << 2, 1 << 5, 1 << 4, 1 << 7
 _RT = 1 << 7
@@ -140,7 +141,7 @@ class Signals:
 
     @property
     def feed_override(self) -> int:
-        """The feed override that is given (%); the control feeds at most at 200 %."""
+        """The feed override that is given (%)."""
         self._adopt()
         return self.state.feed
 
@@ -183,7 +184,7 @@ class Signals:
         f0 = min(1.0, power_mate.parameters.value(1421, 1) / power_mate.parameters.value(1420, 1))
         rapid = RAPID_STEPS.get(self.state.rapid, f0)
         control.data = replace(control.data, rapid_overrides=(0.0, *RAPID_STEPS.values(), f0))
-        feed = min(self.state.feed, _MOST_FEED) / 100.0
+        feed = self.state.feed / 100.0
         interlock = bool(self.state.given.get(126))
         control.set_overrides(feed=0.0 if interlock else feed, rapid=0.0 if interlock else rapid)
         self._applied = control.overrides
@@ -233,7 +234,7 @@ class Signals:
             self._press(lambda: self._power_mate.control.plc.answer())
 
     def _start(self, old: int, new: int) -> None:
-        if old & ~new & _ST and not self.hold_is_on:
+        if old & ~new & _ST:
             self._press(self._power_mate.cycle_start)
 
     @property
