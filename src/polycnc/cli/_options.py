@@ -121,6 +121,10 @@ Page = Annotated[
         metavar="FILE",
     ),
 ]
+PageUnits = Annotated[
+    Units | None,
+    typer.Option("--units", help="Units of lengths in the page (default: the program's).", metavar="mm|inch"),
+]
 OpenPage = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
 
 # ---------------------------------------------------------------------- of a batch
