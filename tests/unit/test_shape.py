@@ -56,7 +56,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
     "one method or branch for each statement of a language, which share what is known of the program": (
         "nc/cpl/_blocks.py",
         "nc/cpl/_blocks.py CplSource.next",
-        "nc/cpl/_compile.py",
         "nc/cpl/_compile.py Compiler",
         "nc/cpl/_program_reader.py _ProgramReader",
         "nc/cpl/_values.py Values",
