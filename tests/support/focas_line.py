@@ -80,7 +80,7 @@ def values(payload: bytes) -> list[float | None]:
 
 
 def serve(
-    *arguments: str | Path, port: int = 0, said: str = "serving a FANUC"
+    *arguments: str | Path, port: int = 0, said: str = "focas: "
 ) -> tuple[subprocess.Popen[str], int]:
     """Start a process that serves, and return it with its port when it listens."""
     process = subprocess.Popen(
