@@ -205,7 +205,7 @@ class Compiler:
             case NcBlock():
                 self._nc_block(statement)
             case Dim():
-                self._dim(statement)
+                self._stores.dimension(statement)
             case SubCall():
                 self._sub_call(statement)
             case Wait():
@@ -277,16 +277,6 @@ class Compiler:
         value = self._stores.passed(statement.value)
         setter = self._stores.host(target.function, target.at, "setter")
         return f"{setter}({', '.join((value, *self._values.arguments(target)))})"
-
-    def _dim(self, statement: Dim) -> None:
-        variable, sizes = statement.variable, statement.sizes
-        place = self._stores.use(variable, statement.at)
-        if statement.parameter:
-            self._out.put(f"{place} = parameter_field(arguments, {variable.name!r}, {sizes[0]})")
-        elif variable.kind == "S" and len(sizes) == 1:
-            self._out.put(f"{place} = dimension({place}, {sizes[0]})")
-        else:
-            self._out.put(f"{place} = dimension_field({place}, {variable.kind!r}, {sizes!r})")
 
     def _wait(self, statement: Wait) -> None:
         if statement.condition is None and statement.duration_ms is None:

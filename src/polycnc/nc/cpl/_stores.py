@@ -7,7 +7,7 @@ from collections.abc import Callable
 from polycnc.language import Emitter, Flaw, Python
 from polycnc.nc.cpl._faults import INVALID_ASSIGNMENT
 from polycnc.nc.cpl._reader import single
-from polycnc.nc.cpl._syntax import Expression, Name
+from polycnc.nc.cpl._syntax import Dim, Expression, Name
 from polycnc.nc.cpl._values import Typed, Values
 from polycnc.nc.cpl._variables import KIND_NAMES, Variable
 
@@ -124,6 +124,17 @@ class Stores:
             self._out.put(f"{name} = ({text}) * 1.0", f"if {name} - {name}: raise OverflowError")
         if not direct:
             self._out.put(f"{place} = {name}")
+
+    def dimension(self, statement: Dim) -> None:
+        """Write DIM or PDIM."""
+        variable, sizes = statement.variable, statement.sizes
+        place = self.use(variable, statement.at)
+        if statement.parameter:
+            self._out.put(f"{place} = parameter_field(arguments, {variable.name!r}, {sizes[0]})")
+        elif variable.kind == "S" and len(sizes) == 1:
+            self._out.put(f"{place} = dimension({place}, {sizes[0]})")
+        else:
+            self._out.put(f"{place} = dimension_field({place}, {variable.kind!r}, {sizes!r})")
 
     def passed(self, tree: Expression) -> str:
         if self.values.is_text(tree):
