@@ -20,9 +20,7 @@ SEED = 815
 
 
 def test_several_machines_in_one_process_are_machines_of_their_own() -> None:
-    process, port = serve(
-        "--count", "3", "--axes", "2", port=free_port()
-    )
+    process, port = serve("--count", "3", "--axes", "2", port=free_port())
     try:
         lines = [Line(port, address=f"127.0.0.{k}") for k in (1, 2, 3)]
         for k, line in enumerate(lines, 1):

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 import polycnc
 from polycnc.errors import UsageError
-from polycnc.nc import ProgramText, dialect_for
+from polycnc.nc import ProgramText, load_dialect
 from polycnc.runner import Trace, TraceWriter
 from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner.comparison import (
@@ -288,7 +288,7 @@ def test_nothing_moves_anywhere() -> None:
 
 
 def test_first_difference_is_of_words_and_not_of_dress() -> None:
-    read = dialect_for("a.nc", "din")
+    read = load_dialect("din")
 
     def lines(a: str, b: str) -> tuple[int, int] | None:
         found = first_difference(ProgramText.from_text(a), ProgramText.from_text(b), read, read)
@@ -434,10 +434,10 @@ def test_both_paths_in_one_view(mill: Path) -> None:
     other = _about(found.view().html)["other"]
     a, b = other["marks"]
     assert a["text"] == f"A is farthest from B: {found.a_from_b.mm:.4f} mm, line 2"
-    assert a["position"] == [found.a_from_b.position[axis] for axis in "XYZ"]
+    assert a["place"] == [found.a_from_b.position[axis] for axis in "XYZ"]
     assert a["time_s"] == found.a_from_b.time_s
     assert b["text"] == f"B is farthest from A: {found.b_from_a.mm:.4f} mm, line 2"
-    assert b["position"] == [found.b_from_a.position[axis] for axis in "XYZ"]
+    assert b["place"] == [found.b_from_a.position[axis] for axis in "XYZ"]
     assert b["time_s"] is None  # on the view's own clock nobody knows
     assert _about(polycnc.compare(line, line, mill).view().html)["other"]["marks"] == []
 
@@ -535,7 +535,7 @@ def test_progress_is_that_of_both(mill: Path) -> None:
 
 
 def test_differences_in_what_is_no_word() -> None:
-    read = dialect_for("a.nc", "din")
+    read = load_dialect("din")
 
     def found(a: str, b: str) -> BlockDifference | None:
         return first_difference(ProgramText.from_text(a), ProgramText.from_text(b), read, read)

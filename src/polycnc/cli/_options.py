@@ -29,7 +29,8 @@ Dialect = Annotated[
     typer.Option(
         "--dialect",
         "-d",
-        help="The dialect: din, fanuc, haas, ... or a TOML file (default: by the program's extension, else din).",
+        help="The dialect: din, fanuc, haas, linuxcnc, ... or a TOML file "
+        "(default: by the program's extension, else by what it says, else din).",
         metavar="FILE|NAME",
         autocompletion=dialect_names,
     ),
@@ -120,6 +121,10 @@ Page = Annotated[
         metavar="FILE",
     ),
 ]
+PageUnits = Annotated[
+    Units | None,
+    typer.Option("--units", help="Units of lengths in the page (default: the program's).", metavar="mm|inch"),
+]
 OpenPage = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
 
 # ---------------------------------------------------------------------- of a batch
@@ -188,8 +193,14 @@ Verify = Annotated[
     bool, typer.Option("--verify", help="Run the program and compare its path with the tool path.")
 ]
 PostTolerance = Annotated[
-    float,
-    typer.Option(help="Greatest deviation that --verify accepts, in mm.", metavar="MM", min=1e-6, max=10.0),
+    float | None,
+    typer.Option(
+        help="Greatest deviation that --verify accepts, in mm; without it what rounding to the "
+        "decimals of the control file may cost, and at least 0.001.",
+        metavar="MM",
+        min=1e-6,
+        max=10.0,
+    ),
 ]
 PostMachine = Annotated[
     str | None,

@@ -10,7 +10,8 @@ from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapsho
 from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._sub_programs import Library
-from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
+from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
 from polycnc.nc.modal._placement import Placement
@@ -22,6 +23,7 @@ from polycnc.nc.records._block_records import (
     BlockRecords,
     Call,
     ModalWords,
+    Zero,
     line_of,
 )
 from polycnc.nc.sources._block_source import (
@@ -62,6 +64,7 @@ __all__ = [
     "ChannelOptions",
     "ChannelSnapshot",
     "ChannelState",
+    "ChosenDialect",
     "Dialect",
     "Drain",
     "EndSource",
@@ -90,6 +93,8 @@ __all__ = [
     "Texts",
     "Word",
     "WordsBlock",
+    "Zero",
+    "choose_dialect",
     "dialect_for",
     "line_of",
     "load_dialect",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from polycnc.errors import ProgramError
 from polycnc.nc.blocks._interpreter import Interpreter
+from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._outcomes import Control
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._errors import Errors
@@ -242,3 +243,6 @@ class Preparation:
         self._errors.note(error)
         if not self._errors.collects:
             self._calls.failed()
+            return
+        tag = self._interpreter.last_tag
+        self._prepared.writer.put(Wait(0.0, self._reader.line, stop=Stop.REFUSED, tag=tag))

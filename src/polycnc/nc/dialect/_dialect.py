@@ -423,18 +423,3 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
         f"there is no dialect '{source}'",
         hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
     )
-
-
-def dialect_for(program: str, explicit: str | Path | Dialect | None = None) -> Dialect:
-    """Return the dialect of a program: the explicit one, else by the file's extension, else the default.
-
-    Raises:
-        UsageError: there is no such dialect.
-    """
-    if explicit is not None:
-        return load_dialect(explicit)
-    extension = Path(program).suffix.lower()
-    for name in _SHIPPED:
-        if extension and extension in _shipped(name).extensions:
-            return _shipped(name)
-    return _shipped(DEFAULT_DIALECT)

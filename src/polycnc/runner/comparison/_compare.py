@@ -134,11 +134,7 @@ class Comparison:
         )
 
     def view(self) -> View:
-        """Return both paths as one page, to be saved, opened, or shown in a notebook.
-
-        Raises:
-            UsageError: plotly is not installed.
-        """
+        """Return both paths as one page, to be saved, opened, or shown in a notebook."""
         from polycnc.runner.comparison._both import view_of_comparison
 
         return view_of_comparison(self)
@@ -288,7 +284,7 @@ def _taken(
         collector.add(piece, tags, records)
         tracks.add(piece, tags, records)
 
-    read = dialect_for(text.name, dialect)
+    read = dialect_for(text, dialect)
     result = run_program(text, RunSettings(config, read), check=False, tagged_rows=rows, progress=progress)
     seen = Compared(
         text.name,
@@ -317,7 +313,8 @@ def _of_trace(trace: Trace, name: str, result: RunResult | None) -> _Taken:
         result,
     )
     text = None if result is None else result.source
-    read = dialect_for(name if text is None else text.name, None if result is None else result.dialect)
+    named = ProgramText.from_text("", name) if text is None else text
+    read = dialect_for(named, None if result is None else result.dialect)
     return _Taken(seen, path, tracks.track(execution), text, read)
 
 

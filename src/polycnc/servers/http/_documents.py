@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import is_dataclass
 from functools import cache
 from typing import Any
@@ -15,13 +14,13 @@ from polycnc.servers.machines import ServedMachine
 
 
 @cache
-def _adapter(kind: Hashable) -> TypeAdapter[Any]:
+def _adapter(kind: Any) -> TypeAdapter[Any]:
     return TypeAdapter(kind)
 
 
 def as_json(value: object) -> bytes:
     """Return a status or an inventory as JSON; numbers that are none are null."""
-    kind: Hashable = type(value)
+    kind: Any = type(value)
     if isinstance(value, Status | Inventory) or is_dataclass(value):
         return _adapter(kind).dump_json(value)
     return to_json(value, inf_nan_mode="null")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import logging
 import socket
 from collections.abc import Iterator, Sequence
 
@@ -16,6 +17,11 @@ from polycnc.servers.machines import ServedMachine, Wanted
 PORT = 8080
 _MOST_CONNECTIONS = 200
 _END_S = 0.5
+
+
+_LOGGER = logging.getLogger("uvicorn.error")
+_LOGGER.propagate = False  # what goes wrong is in the log of requests, no traceback on the screen
+_LOGGER.addHandler(logging.NullHandler())
 
 
 class _Server(uvicorn.Server):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -19,7 +20,8 @@ from polycnc.servers.http._stream import Stream, rate_of
 from polycnc.servers.machines import Log, ServedMachine
 
 _MOST_SNAPSHOTS = 16
-_MOST_STEP, _MOST_RATE = 10_000_000, 1000.0
+_MOST_STEP, _MOST_RATE = 1_000_000, 1000.0
+_MOST_IDLE = 100  # looks at a device whose time does not pass
 _JSON = "application/json"
 REFUSALS: dict[int | str, dict[str, Any]] = {
     code: {"model": Problem, "description": "Refused."} for code in (400, 403, 404, 409, 413, 422, 503)
@@ -165,7 +167,7 @@ class Api:
         else:
             if not isinstance(value, int) or not 1 <= value <= _MOST_STEP:
                 raise _no_clock(f"{what} is no number of cycles")
-            found.keeper.pace.step(value)
+            await _pass(found, value)
         return await self.clock(machine)
 
     async def snapshots(self, machine: str) -> list[dict[str, Any]]:
@@ -217,6 +219,18 @@ class Api:
                 Refusal.NOT_FOUND, f"machine {machine} has no control", hint="Ask for its status."
             )
         return found, found.find_control
+
+
+async def _pass(machine: ServedMachine, cycles: int) -> None:
+    """Let cycles pass beside the pace, and wait until they have; other clients are answered meanwhile."""
+    clock = machine.served.clock
+    before = await machine.ask(lambda: clock.cycles)
+    machine.keeper.pace.step(cycles)
+    last, idle = before, 0
+    while clock.cycles - before < cycles and idle < _MOST_IDLE:
+        await asyncio.sleep(0)
+        now = await machine.ask(lambda: clock.cycles)
+        last, idle = now, idle + 1 if now == last else 0
 
 
 def _no_clock(what: str) -> ControlError:

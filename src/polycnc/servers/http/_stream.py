@@ -56,9 +56,9 @@ class Stream:
             reading.cancel()
             for axis in tuple(self._held):
                 self._release(axis)
-            with contextlib.suppress(RuntimeError, asyncio.CancelledError, WebSocketDisconnect):
+            with contextlib.suppress(RuntimeError, asyncio.CancelledError, WebSocketDisconnect, PolycncError):
                 await reading
-            with contextlib.suppress(RuntimeError):
+            with contextlib.suppress(RuntimeError, WebSocketDisconnect):
                 await self._socket.close()
 
     def _message(self) -> str:
