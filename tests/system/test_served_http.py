@@ -88,7 +88,8 @@ def test_focas_rest_and_stream_agree_at_random_instants(served: Served) -> None:
     first: list[tuple[str, dict[str, Any]]] = [
         ("select_program", {"program": "O0012"}), ("cycle_start", {}), ("set_overrides", {"feed": 0.5}),
         ("feed_hold", {}), ("cycle_start", {}), ("emergency_stop", {"on": True}), ("emergency_stop", {"on": False}),
-        ("reset", {}), ("select_mode", {"mode": "mdi"}), ("set_mdi", {"text": "G91 G1 X-5 F900\n"}), ("cycle_start", {}),
+        ("reset", {}), ("select_mode", {"mode": "mdi"}), ("set_mdi", {"text": "G91 G1 X-5 F900\n"}),
+        ("cycle_start", {}),
     ]  # fmt: skip
     actions: list[tuple[str, dict[str, Any]]] = [
         ("cycle_start", {}), ("cycle_start", {}), ("feed_hold", {}), ("reset", {}), ("emergency_stop", {"on": True}),
