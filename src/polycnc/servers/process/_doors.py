@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from polycnc.errors import UsageError
 from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
 
 FOCAS_PROFILE = "31i"
@@ -22,5 +23,17 @@ def focas_kind(profile: str = FOCAS_PROFILE) -> DoorKind:
     return DoorKind("focas", 8193, open_door, frozenset({"fanuc"}))
 
 
-DOORS = {row.name: row for row in (focas_kind(),)}
+def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    try:
+        from polycnc.servers.http import HttpDoor
+    except ModuleNotFoundError as error:
+        raise UsageError(
+            f"http needs {error.name}, which is not installed", hint="pip install 'polycnc[serve]'"
+        ) from None
+    return HttpDoor(machines, wanted)
+
+
+_ROWS = (focas_kind(), DoorKind("http", 8080, _http, shared=True, knows_token=True))
+
+DOORS = {row.name: row for row in _ROWS}
 """The doors by name."""
