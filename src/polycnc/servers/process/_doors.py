@@ -22,5 +22,17 @@ def focas_kind(profile: str = FOCAS_PROFILE) -> DoorKind:
     return DoorKind("focas", 8193, open_door, frozenset({"fanuc"}))
 
 
-DOORS = {row.name: row for row in (focas_kind(),)}
+def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, grbl_dialect
+
+    (machine,) = machines
+    control = machine.control
+    assert control is not None
+    control.change_dialect(grbl_dialect())
+    port = PORT if wanted.port is None else wanted.port
+    core = GrblCore(control)
+    return GrblServer(machine.keeper, core, address=wanted.address, port=port, terminal=wanted.path)
+
+
+DOORS = {row.name: row for row in (focas_kind(), DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})))}
 """The doors by name."""
