@@ -33,7 +33,23 @@ def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
     return HttpDoor(machines, wanted)
 
 
-_ROWS = (focas_kind(), DoorKind("http", 8080, _http, shared=True, knows_token=True))
+def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, grbl_dialect
+
+    (machine,) = machines
+    control = machine.control
+    assert control is not None
+    control.change_dialect(grbl_dialect())
+    port = PORT if wanted.port is None else wanted.port
+    core = GrblCore(control)
+    return GrblServer(machine.keeper, core, address=wanted.address, port=port, terminal=wanted.path)
+
+
+_ROWS = (
+    focas_kind(),
+    DoorKind("http", 8080, _http, shared=True, knows_token=True),
+    DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})),
+)
 
 DOORS = {row.name: row for row in _ROWS}
 """The doors by name."""
