@@ -54,8 +54,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (
-        "nc/cpl/_blocks.py",
-        "nc/cpl/_blocks.py CplSource.next",
         "nc/cpl/_program_reader.py _ProgramReader",
         "nc/cpl/_values.py Values",
         "nc/macro/_reader.py",
