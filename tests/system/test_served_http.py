@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import Phase, given, settings
 
 from support.browser import browser
 from support.command import COMMAND, environment
@@ -258,3 +259,22 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, tm
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
         assert wrong == []
         page.close()
+
+
+def test_requests_from_the_description_are_never_an_internal_error(served: Served) -> None:
+    schemathesis = pytest.importorskip("schemathesis", reason="pip install schemathesis")
+    schema = schemathesis.openapi.from_url(f"{served.url}/openapi.json")
+    codes: set[int] = set()
+    for operation in (found.ok() for found in schema.get_all_operations()):
+
+        @settings(max_examples=4, deadline=None, database=None, derandomize=True, phases=[Phase.generate])
+        @given(case=operation.as_strategy())
+        def ask(case: Any) -> None:
+            if "machine" in case.path_parameters:
+                case.path_parameters["machine"] = "machine"
+            answer = case.call()
+            assert answer.status_code < 500, (case.method, case.path, answer.text)
+            codes.add(answer.status_code)
+
+        ask()
+    assert {200, 404, 422} <= codes
