@@ -254,6 +254,7 @@ CHANGES = [
     Change(81, 1, 2, [1, 1], run("N1 G70\nN2 G1 X9 F60\n"), [0, 0], ("81.val.0",)),
     Change(87, 1, 1, [0], run("N1 G4 F5\n"), [1], ("87.bit.0",)),
     Change(87, 1, 1, [0], run("N1 G1 X1 F60000\nN2 M0\nN3 X2\n", 500), [16], ("87.bit.4",)),
+    Change(87, 1, 1, [0], lambda six: six.pnc.control.set_overrides(feed=0.0, channel=0), [8], ("87.bit.3",)),
     Change(87, 1, 1, [0], run("1 WAIT(,5000)\n", 5), [4096], ("87.bit.12",)),
     *(Change(31, 1, 1, [5], mode(which), [int(which)], (f"31.val.{int(which)}",))
       for which in (Mode.JOG, Mode.REFERENCE, Mode.MDI, Mode.PROGRAM_BLOCK, Mode.SINGLE_STEP, Mode.SINGLE_BLOCK,
