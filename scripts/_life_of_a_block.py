@@ -43,7 +43,7 @@ def stations() -> dict[str, str]:
     text = _program()
     config = load_machine("mill3")
     machine = Machine(config, record_cycles=_KEPT_CYCLES)
-    channel = Channel(text, dialect_for(text.name, None), machine, options=ChannelOptions(ordinary_blocks=0))
+    channel = Channel(text, dialect_for(text), machine, options=ChannelOptions(ordinary_blocks=0))
     found = {"word columns": _words(channel)}
     before = _modal(channel)
     channel.fill()

@@ -136,6 +136,7 @@ COMMANDS: dict[str, Callable[[Control], object]] = {
     "select": lambda c: c.select_program("SLOT"),
     "select a text": lambda c: c.select_program(ProgramText.from_text("G1 X2.5 F90\n", "outside")),
     "mdi": lambda c: c.set_mdi("G1 Y3.5 F170\n"),
+    "open": lambda c: c.open_program(),
     "search": lambda c: c.search(line=2),
     "calculated search": lambda c: c.search(sequence=30, calculate=True),
     "start": lambda c: c.cycle_start(),

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 import polycnc
 from polycnc.errors import UsageError
-from polycnc.nc import ProgramText, dialect_for
+from polycnc.nc import ProgramText, load_dialect
 from polycnc.runner import Trace, TraceWriter
 from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner.comparison import (
@@ -288,7 +288,7 @@ def test_nothing_moves_anywhere() -> None:
 
 
 def test_first_difference_is_of_words_and_not_of_dress() -> None:
-    read = dialect_for("a.nc", "din")
+    read = load_dialect("din")
 
     def lines(a: str, b: str) -> tuple[int, int] | None:
         found = first_difference(ProgramText.from_text(a), ProgramText.from_text(b), read, read)
@@ -535,7 +535,7 @@ def test_progress_is_that_of_both(mill: Path) -> None:
 
 
 def test_differences_in_what_is_no_word() -> None:
-    read = dialect_for("a.nc", "din")
+    read = load_dialect("din")
 
     def found(a: str, b: str) -> BlockDifference | None:
         return first_difference(ProgramText.from_text(a), ProgramText.from_text(b), read, read)

@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from polycnc.errors import ConfigurationError, UsageError
-from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+import polycnc
+from polycnc.errors import ConfigurationError, ProgramError, UsageError
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
+from polycnc.nc.dialect._guess import choose_dialect, dialect_for
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
@@ -28,6 +30,7 @@ from polycnc.nc.modal._modal import (
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan import STATEMENT
 from polycnc.nc.text._scan_plain import scan_blocks
+from polycnc.runner import RunSettings
 
 SHORT = 'name = "own"\n[g]\n0 = "rapid"\n"5.1" = "ignored"\n[m]\n30 = "program_end"\n'
 
@@ -264,15 +267,80 @@ def test_an_unknown_dialect_names_those_that_there_are() -> None:
 
 
 def test_the_dialect_of_a_program() -> None:
-    assert dialect_for("part.tap", "bosch").name == "bosch"  # what is said counts first
+    def of(name: str, explicit: str | None = None) -> str:
+        return dialect_for(
+            ProgramText.from_text("%\nO1\n" if "tap" in name else "G0 X1\n", name), explicit
+        ).name
+
+    assert of("part.tap", "bosch") == "bosch"  # what is said counts first
     for name in DIALECTS:
         for extension in load_dialect(name).extensions:
-            assert dialect_for(f"folder/part{extension}").name == name
-            assert dialect_for(f"part{extension.upper()}").name == name
-    for program in ("part", "part.nc", "part.ngc", "part.unheard-of", "<text>"):
-        assert dialect_for(program).name == "din"
+            assert of(f"folder/part{extension}") == name
+            assert of(f"part{extension.upper()}") == name
+    for program in ("part", "part.nc", "part.unheard-of", "<text>"):
+        assert of(program) == "din"
     with pytest.raises(UsageError):
-        dialect_for("part.nc", "nothing")
+        of("part.nc", "nothing")
+
+
+@pytest.mark.parametrize(
+    ("program", "name", "reason"),
+    [
+        ("%\nO1000 (PART)\nG0 X1\n", "fanuc", "O1000 in line 2"),
+        ("G0 X1\nN20 G65 P9010 A1\n", "fanuc", "G65 P9 in line 2"),
+        ("G65 A1. B2 P9010\n", "fanuc", "G65 A1. B2 P9 in line 1"),
+        ("G0 X1\n#101=5\nIF[#101GT3]GOTO10\n", "fanuc", "#101= in line 2"),
+        ("%\nO0002\nT0101\nG0 X20. Z5.\n", "fanuc-lathe", "O0002 in line 2"),
+        ("O2\nT0101 M6\nG0 X20. Y5.\n", "fanuc", "O2 in line 1"),
+        ("(a)\n#<depth> = 5\n", "linuxcnc", "#<d in line 2"),
+        ("#1=2\no100 while [#1 gt 0]\n", "linuxcnc", "o100 while in line 2"),
+        ("G64 P0.01\n", "linuxcnc", "G64 P0 in line 1"),
+        ("N10 G0 X0\n20 IF A%=1 THEN\n", "bosch", "20 IF in line 2"),
+        ("10 A%=5\n", "bosch", "10 A%= in line 1"),
+        ("$32=1\nG0 X1\n", "grbl", "$32= in line 1"),
+        ("G0 X1 (O100 sub, #<a>, G65 P1)\nG1 X2 F100\n", "din", ""),
+        ("N10 G0 X1 O5\n", "din", ""),
+    ],
+)
+def test_the_dialect_is_guessed_and_says_why(program: str, name: str, reason: str) -> None:
+    chosen = choose_dialect(ProgramText.from_text(program, "part.nc"))
+    assert (chosen.dialect.name, chosen.reason, chosen.problem) == (name, reason, None)
+    assert choose_dialect(ProgramText.from_text(program, "part.nc"), "haas").reason == ""
+
+
+@pytest.mark.parametrize(
+    ("program", "language", "line"),
+    [
+        ("BEGIN PGM PLATE MM\n1 L X+10\n", "Heidenhain", 1),
+        ("\n0  BEGIN PGM 12 INCH\n", "Heidenhain", 2),
+        ("N10 G0 X0\nN20 MCALL CYCLE81(10,0,2,-5)\n", "Siemens", 2),
+        ("DEF REAL DEPTH\n", "Siemens", 1),
+        ("N5 R1=3\nG0 X=R1\n", "Siemens", 1),
+        ("%_N_PART_MPF\n", "Siemens", 1),
+    ],
+)
+def test_a_language_that_is_not_read_is_named(program: str, language: str, line: int, tmp_path: Path) -> None:
+    (tmp_path / "part.h").write_text(program)
+    chosen = choose_dialect(ProgramText.from_path(tmp_path / "part.h"))
+    assert chosen.problem is not None
+    assert f"this program is in the {language}" in str(chosen.problem)
+    result = polycnc.runner.run_program(tmp_path / "part.h", RunSettings(), check=False)
+    (alarm,) = result.alarms
+    assert (language in alarm.text, alarm.line, result.blocks, result.time_s) == (True, line, 0, 0.0)
+    with pytest.raises(ProgramError, match=language):
+        dialect_for(ProgramText.from_path(tmp_path / "part.h"))
+    assert [each.what for each in polycnc.check(tmp_path / "part.h")] == [alarm.text]
+    assert choose_dialect(ProgramText.from_text(program), "bosch").problem is None
+
+
+def test_what_can_be_read_beyond_an_error_is_run_on_request() -> None:
+    program = "G0 X10\nG1 X20 F600\nG1 X30 Q1x\nG1 X40\nG1 X50\n"
+    refused = polycnc.runner.run_program(program, RunSettings(), check=False)
+    assert (refused.end_position_mm["X"], refused.refused_s) == (20.0, None)
+    drawn = polycnc.runner.run_program(program, RunSettings(past_errors=True), check=False)
+    assert [alarm.line for alarm in drawn.alarms] == [3]
+    assert drawn.end_position_mm["X"] == 50.0
+    assert drawn.refused_s == pytest.approx(refused.time_s, abs=0.002)
 
 
 def test_no_extension_means_two_dialects() -> None:

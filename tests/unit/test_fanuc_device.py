@@ -99,6 +99,34 @@ def test_nothing_sends_a_program_in_rmt() -> None:
     assert caught.value.reason is Refusal.NOT_FOUND
 
 
+def test_rmt_executes_what_is_sent_and_mem_its_own_program() -> None:
+    control, handle = attached()
+    registered(control, O7="\nG1 X1. F6000\nM30\n", O8="\nG91 G1 X2. F6000\nG90\nM99\n")
+    control.select_program(7)
+    with pytest.raises(ControlError) as caught:
+        control.remote.open()
+    assert caught.value.reason is Refusal.MODE
+    control.select_mode("RMT")
+    sent = control.remote.open()
+    control.cycle_start()
+    for line in ("G1 X10. F6000\n", "M98 P8\n", "N30 G1 X#100\n", "#100=4.\n", "N50 G1 X#100\n"):
+        sent.feed(line)
+        control.advance(10_000, until=lambda: sent.starved)
+    assert control.machine.actual["X"] == 4.0
+    assert control.execution.sequence == 50
+    assert control.execution.text(100) == b"N50 G1 X#100"
+    sent.feed("M30\n")
+    control.advance(100)
+    assert not sent.is_open
+    with pytest.raises(ControlError):
+        control.cycle_start()
+    control.select_mode("MEM")
+    control.cycle_start()
+    control.advance(10_000)
+    assert control.machine.actual["X"] == 1.0
+    assert handle
+
+
 def test_buttons() -> None:
     control, handle = attached(axes=1)
     registered(control, O7="\nG1 X2. F6000\nM1\nX4.\nM30\n")

@@ -79,7 +79,9 @@ def _print(found: _Findings, strict: bool) -> None:
         for remark in report.remarks:
             say_problem(str(remark), lead=bold_red("error: ") if strict else "remark: ")
         if not report.errors and not (strict and report.remarks):
-            say(f"{name}: no errors")
+            say(f"{name}: no errors" + (f" ({report.guessed})" if report.guessed else ""))
+        elif report.guessed:
+            say(f"{name}: {report.guessed}")
     for unreadable in found.unreadable.values():
         say_problem(str(unreadable), lead=bold_red("error: "), error=True)
     total = found.errors + (found.remarks if strict else 0)
@@ -100,6 +102,7 @@ def _as_dict(found: _Findings, strict: bool) -> dict[str, Any]:
             ]
             for name, report in found.reports.items()
         },
+        "guessed": {name: report.guessed for name, report in found.reports.items() if report.guessed},
         "unreadable": {name: {"text": e.what, "hint": e.hint} for name, e in found.unreadable.items()},
     }
 

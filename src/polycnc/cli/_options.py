@@ -29,7 +29,8 @@ Dialect = Annotated[
     typer.Option(
         "--dialect",
         "-d",
-        help="The dialect: din, fanuc, haas, ... or a TOML file (default: by the program's extension, else din).",
+        help="The dialect: din, fanuc, haas, linuxcnc, ... or a TOML file "
+        "(default: by the program's extension, else by what it says, else din).",
         metavar="FILE|NAME",
         autocompletion=dialect_names,
     ),

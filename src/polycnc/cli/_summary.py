@@ -49,9 +49,19 @@ def print_summary(result: RunResult, units: Units = Units.MM) -> None:
     """Print what a run gave."""
     from polycnc.runner import counted, time_text
 
+    for alarm in result.alarms:
+        say_problem(str(alarm), lead=bold_red("alarm: "))
+    if result.alarms and not result.blocks:
+        return
     lengths = _Lengths(units)
+    reason = f": {result.guessed}" if result.guessed else ""
     say(f"program    {result.program}")
-    say(f"           {counted(result.blocks, 'block')}, dialect {result.dialect}, machine {result.machine}")
+    say(
+        f"           {counted(result.blocks, 'block')}, dialect {result.dialect}{reason}, machine {result.machine}"
+    )
+    if result.alarms and result.time_s == 0.0:
+        _print_messages(result)
+        return
     say(lead="time       " + bold(time_text(result.time_s)))
     parts = [
         ("  cutting", time_text(result.cutting_time_s), lengths.length(result.cutting_path_mm)),
@@ -79,15 +89,17 @@ def print_summary(result: RunResult, units: Units = Units.MM) -> None:
     if result.machined is not None:
         removed, left = result.removed_mm3 / 1000.0, result.machined.stock.volume_mm3 / 1000.0
         say(f"removed    {removed:,.3f} cm3 of {removed + left:,.3f} cm3")
+    _print_messages(result)
+    for collision in result.collisions:
+        place = "" if collision.position is None else f"{collision.position}: "
+        say_problem(f"{place}{collision}", lead=bold_red("collision: "))
+
+
+def _print_messages(result: RunResult) -> None:
     for message in result.messages:
         times = f" ({message.count} times)" if message.count > 1 else ""
         place = f"line {message.line}: " if message.line else ""
         say(f"message    {place}{message.text}{times}")
-    for collision in result.collisions:
-        place = "" if collision.position is None else f"{collision.position}: "
-        say_problem(f"{place}{collision}", lead=bold_red("collision: "))
-    for alarm in result.alarms:
-        say_problem(str(alarm), lead=bold_red("alarm: "))
 
 
 def _print_operations(result: RunResult) -> None:

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from polycnc.cnc._inventory import AxisLimits, Identity, Inventory, PastMessage, SetBreakpoint
     from polycnc.cnc._manual import ManualMotion
     from polycnc.cnc._manual_data import AxisMotion, Handwheel, ManualData, ManualKind, ManualState
+    from polycnc.cnc._open_program import OpenProgram
     from polycnc.cnc._plc import Answer, Function, PlcModel, PlcState, Request, Script
     from polycnc.cnc._program_edit import ProgramEdit
     from polycnc.cnc._program_memory import Found, MemoryData, ProgramEntry, ProgramMemory, first_comment
@@ -90,6 +91,7 @@ _LATER = {
     "_control_snapshot": ("ControlSnapshot",),
     "_inventory": ("AxisLimits", "Identity", "Inventory", "PastMessage", "SetBreakpoint"),
     "_manual": ("AxisMotion", "Handwheel", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
+    "_open_program": ("OpenProgram",),
     "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
     "_program_edit": ("ProgramEdit",),
     "_program_memory": ("Found", "MemoryData", "ProgramEntry", "ProgramMemory", "first_comment"),
@@ -149,6 +151,7 @@ __all__ = [
     "Motion",
     "OffsetTable",
     "OnModeChange",
+    "OpenProgram",
     "OperatorMessage",
     "OperatorMessages",
     "Overrides",

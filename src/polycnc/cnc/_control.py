@@ -19,6 +19,7 @@ from polycnc.cnc._control_snapshot import ControlSnapshot
 from polycnc.cnc._control_time import Condition, ControlEvent, ControlTime, CycleWatch
 from polycnc.cnc._inventory import Inventory, InventoryReader
 from polycnc.cnc._manual_commands import ManualCommands
+from polycnc.cnc._open_program import OpenProgram
 from polycnc.cnc._plc import Script
 from polycnc.cnc._program_commands import ProgramCommands
 from polycnc.cnc._program_edit import ProgramEdit
@@ -28,7 +29,7 @@ from polycnc.cnc._status_reading import StatusReader
 from polycnc.cnc._stopping import PROGRAM_MESSAGE, stop_for
 from polycnc.cnc._stops import Step
 from polycnc.machine import AnyAxis, Machine, MachineConfig, Snapshot, Store, load_machine
-from polycnc.nc import Dialect, Event, Language, ProgramText, load_dialect
+from polycnc.nc import ROOM_BYTES, Dialect, Event, Language, ProgramText, load_dialect
 
 
 class Control:
@@ -180,11 +181,23 @@ class Control:
         """Put in the text that a start in MDI executes."""
         self._programs.set_mdi(text, channel=channel)
 
+    def open_program(self, name: str = "", *, room_bytes: int = ROOM_BYTES, channel: int = 0) -> OpenProgram:
+        """Open a program that comes while it is executed (AUTO or MDI); the next start begins it."""
+        return self._programs.open_program(name, room_bytes=room_bytes, channel=channel)
+
     def search(
-        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+        self,
+        *,
+        line: int = 0,
+        sequence: int | None = None,
+        calculate: bool = False,
+        last: int = 0,
+        channel: int = 0,
     ) -> int:
         """Let the next start begin the selected program at a block; return its line."""
-        return self._programs.search(line=line, sequence=sequence, calculate=calculate, channel=channel)
+        return self._programs.search(
+            line=line, sequence=sequence, calculate=calculate, last=last, channel=channel
+        )
 
     def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
         """Begin the selected program or the MDI text, or go on where a program is interrupted."""
@@ -206,8 +219,6 @@ class Control:
         """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
         return self._programs.put_alarm(name, axis=axis, detail=detail)
 
-    # ------------------------------------------------------------------ editing
-
     def edit(self, name: str, *, background: bool = False) -> ProgramEdit:
         """Open a program for editing: in EDIT in the foreground, in any mode in the background; one of each."""
         if not background and all(channel.mode is not Mode.EDIT for channel in self.channels):
@@ -218,8 +229,6 @@ class Control:
     def is_editing(self) -> bool:
         """Whether a program is open for editing."""
         return self._parts.edits.any_open
-
-    # ------------------------------------------------------------------ axes by hand
 
     def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:
         """Press a jog key (1 or -1), or let it go (None)."""
@@ -245,8 +254,6 @@ class Control:
     def relative_zero(self) -> tuple[float, ...]:
         """Where the relative positions count from (machine coordinates)."""
         return tuple(self._parts.relative_zero)
-
-    # ------------------------------------------------------------------ time
 
     @property
     def raised(self) -> ControlEvent:
@@ -279,8 +286,6 @@ class Control:
             if (found := name.format(number=number)) in self.programs:
                 return self.programs.text(found)
         return None
-
-    # ------------------------------------------------------------------ auxiliary functions
 
     def _meet(self, path: int, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""

@@ -9,7 +9,13 @@ from polycnc.cnc._block_search import block_line
 from polycnc.cnc._channel_axes import ChannelAxes
 from polycnc.cnc._control_data import AfterManual, ChannelData, Mode, Overrides, Search, Switches
 from polycnc.cnc._manual import ManualMotion
-from polycnc.cnc._path_blocks import find_block, next_block, prepared_block, stands_searched, unless_refused
+from polycnc.cnc._path_blocks import (
+    find_block,
+    next_block,
+    prepared_block,
+    stands_ready,
+    unless_refused,
+)
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_making import RunMaker
@@ -132,7 +138,7 @@ class ControlChannel:
         run = self.run
         try:
             with unless_refused(self._machine, self.path, run):
-                loaded = self._load(text, mdi=False)
+                loaded = self.load(text, mdi=False)
                 self.set_switches(self.switches)  # statements may ask for them
                 line = find_block(loaded, search)
         except ControlError:
@@ -150,7 +156,7 @@ class ControlChannel:
         """
         self.check_rest()
         if not self._has_found(text, search):
-            loaded = self._load(text, mdi=mdi)
+            loaded = self.load(text, mdi=mdi)
             if search is not None:
                 find_block(loaded, search)
         assert self.run is not None
@@ -165,11 +171,12 @@ class ControlChannel:
         self._go(step)
 
     def _has_found(self, text: ProgramText, search: Search | None) -> bool:
-        """Tell whether the run stands before the block of a search; its statements are not executed a second time."""
-        is_sought = not self.runs.stale and search is not None and search == self.search
-        return is_sought and self.run is not None and stands_searched(self.run, text)
+        """Tell whether the run is where a start begins: statements before a block are not executed a second time."""
+        is_sought = search is not None and search == self.search
+        return self.run is not None and not self.runs.stale and stands_ready(self.run, text, is_sought)
 
-    def _load(self, text: ProgramText, *, mdi: bool) -> ProgramRun:
+    def load(self, text: ProgramText, *, mdi: bool) -> ProgramRun:
+        """Make a run ready to begin a text, where the axes rest."""
         if self.run is None or self.runs.stale:
             self.runs.stale = False
             self.run = self.runs.make(text)
@@ -278,8 +285,7 @@ class ControlChannel:
         self.switches = switches
         self._clock.changes += 1
         if self.run is not None:
-            self.run.single_block = switches.single_block
-            self.run.optional_stop = switches.optional_stop
+            self.run.single_block, self.run.optional_stop = switches.single_block, switches.optional_stop
             self.run.dry_run = switches.dry_run
             self.run.machine_lock = switches.machine_lock
             self.run.block_delete = switches.block_delete

@@ -11,7 +11,7 @@ from polycnc.cnc._manual import ManualMotion
 from polycnc.cnc._program_memory import ProgramMemory
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._status import Emergency
-from polycnc.nc import ProgramText
+from polycnc.nc import IncomingText, ProgramText
 
 
 def check_over(channel: ControlChannel) -> None:
@@ -85,6 +85,10 @@ def text_to_begin(channel: ControlChannel, programs: ProgramMemory, *, is_mdi: b
             "there is no MDI text" if is_mdi else "no program is selected",
             hint="Put in a text." if is_mdi else "Select a program.",
         )
+    if isinstance(text, IncomingText):
+        if text.closed:
+            raise ControlError(Refusal.NOT_FOUND, f"{text.name} has ended", hint="Open another program.")
+        return text
     return programs.text(text.name) if not is_mdi and text.name in programs else text
 
 

@@ -9,7 +9,7 @@ from polycnc.cnc._control_time import ControlEvent, ControlTime
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._run_snapshot import file_text
 from polycnc.machine import Snapshot, SnapshotError, described
-from polycnc.nc import ProgramText
+from polycnc.nc import IncomingText, ProgramText
 
 
 def moment_of(of: ControlParts, raised: int) -> ControlMoment:
@@ -81,7 +81,10 @@ def _put_back_channel(channel: ControlChannel, moment: ChannelMoment, run: Progr
 
 
 def _kept(text: ProgramText | None) -> KeptText | None:
-    return None if text is None else KeptText(text.name, text.content.decode("latin-1"))
+    """Keep a text; a program that was still coming is gone with its end."""
+    if text is None or isinstance(text, IncomingText):
+        return None
+    return KeptText(text.name, text.content.decode("latin-1"))
 
 
 def _text(kept: KeptText | None) -> ProgramText | None:

@@ -12,7 +12,7 @@ from polycnc.cnc._run_state import RunState
 from polycnc.errors import UsageError
 from polycnc.kernel import READY
 from polycnc.machine import Machine
-from polycnc.nc import BlockRecord, ProgramText
+from polycnc.nc import BlockRecord, IncomingText, ProgramText
 
 
 def next_block(machine: Machine, run: ProgramRun) -> BlockRecord | None:
@@ -39,14 +39,18 @@ def find_block(run: ProgramRun, search: Search) -> int:
         ControlError: There is none, or the program cannot begin there.
     """
     try:
-        return run.search(line=search.line, sequence=search.sequence, calculate=search.calculate)
+        return run.search(
+            line=search.line, sequence=search.sequence, calculate=search.calculate, last=search.last
+        )
     except UsageError as error:
         raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
 
 
-def stands_searched(run: ProgramRun, text: ProgramText) -> bool:
-    """Tell whether a run of a text stands before a block that was searched, and nothing was executed since."""
-    return run.program is text and run.state is RunState.READY and run.channel.holds_searched
+def stands_ready(run: ProgramRun, text: ProgramText, is_sought: bool) -> bool:
+    """Tell whether a run has a text, and is before a block that was searched or at the beginning of what comes."""
+    if run.program is not text or run.state is not RunState.READY:
+        return False
+    return isinstance(text, IncomingText) or (is_sought and run.channel.holds_searched)
 
 
 @contextmanager

@@ -14,14 +14,16 @@ from polycnc.cnc._control_checks import (
 from polycnc.cnc._control_data import Mode, Search
 from polycnc.cnc._control_parts import ControlParts
 from polycnc.cnc._control_time import ControlEvent, ControlTime
+from polycnc.cnc._open_program import OpenProgram
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._status import Emergency
 from polycnc.cnc._stopping import PROGRAM_MESSAGE, break_off, stop_for
 from polycnc.cnc._stops import Step
-from polycnc.nc import ProgramText
+from polycnc.nc import ROOM_BYTES, IncomingText, ProgramText
 
 _PROGRAM_MODES = frozenset({Mode.AUTO, Mode.MDI})
 _MDI_NAME = "MDI"
+_OPEN_NAME = "OPEN"
 
 
 class ProgramCommands:
@@ -56,14 +58,54 @@ class ProgramCommands:
             raise ControlError(Refusal.DATA, "there is nothing to execute", hint="Write a block.")
         chosen.mdi = ProgramText.from_text(text, _MDI_NAME)
 
+    def open_program(self, name: str = "", *, room_bytes: int = ROOM_BYTES, channel: int = 0) -> OpenProgram:
+        """Open a program that comes while it is executed; return what feeds it.
+
+        In AUTO it is selected, in MDI it takes the place of the MDI text; the next start begins it.
+
+        Raises:
+            ControlError: Neither in AUTO nor in MDI, a program of the memory has the name, no such channel, the channel
+                executes a program, or its axes are still braking.
+        """
+        chosen = self._of.channel(channel)
+        if chosen.mode not in _PROGRAM_MODES:
+            raise wrong_mode(chosen.mode, "a program can be opened", *sorted(_PROGRAM_MODES))
+        check_over(chosen)
+        is_mdi = chosen.mode is Mode.MDI
+        name = name or (_MDI_NAME if is_mdi else _OPEN_NAME)
+        if name in self._of.programs:
+            raise ControlError(
+                Refusal.EXISTS, f"there is a program {name} in the memory", hint="Choose another name."
+            )
+        if room_bytes < 1:
+            raise ControlError(
+                Refusal.DATA, f"a room of {room_bytes} bytes takes nothing", hint="Give 1 or more."
+            )
+        text = IncomingText(name, room_bytes)
+        chosen.check_rest()
+        chosen.load(text, mdi=is_mdi)
+        if is_mdi:
+            chosen.mdi = text
+        else:
+            chosen.select(text)
+        self._of.clock.changes += 1
+        return OpenProgram(chosen, text, self._of.clock)
+
     def search(
-        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+        self,
+        *,
+        line: int = 0,
+        sequence: int | None = None,
+        calculate: bool = False,
+        last: int = 0,
+        channel: int = 0,
     ) -> int:
         """Let the next start begin the selected program at a block; return its line.
 
         It is the block on `line`, or the first one with a sequence number. With `calculate` everything before is
         carried out without moving, and with the start the axes go straight at rapid to where that block begins; else
-        modal state and position are what they are. A reset, another selection and the start itself end the search.
+        modal state and position are what they are. With `last` the program ends behind the block on
+        that line. A reset, another selection and the start itself end the search.
 
         Raises:
             ControlError: Not in AUTO, nothing is selected, there is no such block, the program cannot begin there, or
@@ -76,7 +118,11 @@ class ProgramCommands:
         check_hands_off(chosen, self._of.manual)
         check_ready(self._of.emergency, self._of.alarms.of(channel))
         text = text_to_begin(chosen, self._of.programs, is_mdi=False)
-        return chosen.seek(text, Search(line, sequence, calculate))
+        if isinstance(text, IncomingText):
+            raise ControlError(
+                Refusal.NOT_FOUND, f"{text.name} is still coming", hint="Search a program of the memory."
+            )
+        return chosen.seek(text, Search(line, sequence, calculate, last))
 
     def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
         """Begin the selected program or the MDI text, or go on where a program is interrupted.

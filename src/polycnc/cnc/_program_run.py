@@ -26,8 +26,10 @@ from polycnc.nc import (
     Channel,
     ChannelOptions,
     Dialect,
+    IncomingText,
     Language,
     Library,
+    LineCheck,
     ModalWords,
     ProgramText,
     Stop,
@@ -221,11 +223,14 @@ class ProgramRun:
         self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
         self.start()
 
-    def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
+    def search(
+        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, last: int = 0
+    ) -> int:
         """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
 
         With `calculate` everything before is carried out without moving, and with the start the axes go straight at
-        rapid to where that block begins; else modal state and position are what they are. Return the line.
+        rapid to where that block begins; else modal state and position are what they are. The program ends behind the
+        block on line `last`, if one is given. Return the line.
 
         Raises:
             UsageError: there is no such block, or the program cannot begin there; it stands at its beginning then.
@@ -234,6 +239,7 @@ class ProgramRun:
         target = block_line(self.program, line, sequence)
         self._replace_channel(self.program, keeps_modal=False)
         self._moment.state = RunState.READY
+        self.channel.bound(target, last)
         if not calculate:
             self.channel.go_to(target)
             return target
@@ -435,6 +441,24 @@ class ProgramRun:
         return self.channel.error
 
     @property
+    def starved(self) -> bool:
+        """Whether the path rests because nothing more of a program that is still coming has come."""
+        row = self._conduct.row
+        rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
+        return self.active and rests and self.channel.starved
+
+    def line_check(self) -> LineCheck:
+        """Return a check of blocks that would come after what has been prepared."""
+        check = self.channel.line_check()
+        if self._moment.state is RunState.READY:  # a start begins where the axes are
+            check.state.modal.position[:] = self.machine.state.base
+        return check
+
+    def has_come(self) -> None:
+        """Take note that more has come of a program that is still coming."""
+        self.feed.wake()
+
+    @property
     def executed_tag(self) -> int:
         """The tag of the block that is executed, or was last."""
         return self._conduct.executed_tag
@@ -528,8 +552,16 @@ class ProgramRun:
         Raises:
             SnapshotError: a language executes the program, and cannot tell where it stands.
         """
+        program = self.program
+        if isinstance(program, IncomingText):
+            if not self.channel.done:
+                raise SnapshotError(
+                    "a program that is still coming is under way",
+                    hint="Take the snapshot before or after it.",
+                )
+            program = ProgramText(program.name, b"")
         saved = SavedRun(
-            self.program,
+            program,
             self.channel.snapshot(),
             self.feed.snapshot(),
             self.stopper.step,

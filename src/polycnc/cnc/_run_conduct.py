@@ -332,6 +332,10 @@ class Conduct:
         self.moment.tool_times = self.moment.tool_times.changed(
             self.channel.records.tool(event.tag), self.path_times
         )
+        if event.stop is Stop.REFUSED:
+            if self.on_event is not None:
+                self.on_event(event)
+            return
         if event.word and self.on_event is not None:
             self.moment.unanswered = bool(self.on_event(event)) and not self.moment.suppressed.answers
             self.set_hold()

@@ -70,7 +70,7 @@ class RunSnapshot(Snapshot):
         """
         texts = Texts()
         run = _values(texts, language).plain(saved)
-        kept = [[text.name, text.content, _is_found(text, find)] for text in texts.all]
+        kept = [[text.name, text.content, _is_found(text, find), text.first_line] for text in texts.all]
         return cls.take(DEVICE, made_from, cycle, (), {"texts": kept, "run": run})
 
     @classmethod
@@ -87,9 +87,9 @@ class RunSnapshot(Snapshot):
         data = self.data()
         try:
             rows: Sequence[Any] = data["texts"]
-            texts = [ProgramText(str(name), bytes(content)) for name, content, _ in rows]
+            texts = [ProgramText(str(name), bytes(content), int(line)) for name, content, _, line in rows]
             changes = [
-                str(name) for name, content, found in rows if found and _is_changed(name, content, find)
+                str(name) for name, content, found, _ in rows if found and _is_changed(name, content, find)
             ]
             plain = data["run"]
         except (LookupError, TypeError, ValueError) as error:

@@ -95,7 +95,7 @@ class ChannelStatus(NamedTuple):
     """One channel: the selected program, the executed block with its calls and modal words, and what it waits for.
 
     `stack` are the names of the programs that led to the block, the outermost first, its own the last. `axes` are those
-    of the channel, in the order of the machine.
+    of the channel, in the order of the machine. `starved`: the path rests until more of the program comes.
     """
 
     run_state: RunState
@@ -113,6 +113,7 @@ class ChannelStatus(NamedTuple):
     overrides: Overrides
     switches: Switches
     axes: tuple[str, ...]
+    starved: bool = False
 
     @property
     def active(self) -> bool:

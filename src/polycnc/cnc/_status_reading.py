@@ -226,6 +226,7 @@ class StatusReader:
             channel.overrides,
             channel.switches,
             channel.axes,
+            run is not None and not channel.broken and run.starved,
         )
         self._channels[number] = read
         return read

@@ -7,9 +7,11 @@ from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._queue import Event
 from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
+from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._sub_programs import Library
-from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, dialect_for, load_dialect
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
+from polycnc.nc.dialect._guess import ChosenDialect, choose_dialect, dialect_for
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal_snapshot import Spindle
 from polycnc.nc.modal._placement import Placement
@@ -38,6 +40,7 @@ from polycnc.nc.sources._block_source import (
     TextSpan,
     WordsBlock,
 )
+from polycnc.nc.text._incoming import ROOM_BYTES, IncomingText
 from polycnc.nc.text._program import ProgramText, TextRules
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
@@ -47,6 +50,7 @@ __all__ = [
     "DEFAULT_DIALECT",
     "DIALECTS",
     "LINE_MASK",
+    "ROOM_BYTES",
     "Action",
     "Block",
     "BlockRecord",
@@ -59,14 +63,17 @@ __all__ = [
     "ChannelOptions",
     "ChannelSnapshot",
     "ChannelState",
+    "ChosenDialect",
     "Dialect",
     "Drain",
     "EndSource",
     "Event",
     "Group",
+    "IncomingText",
     "Language",
     "LastingLanguage",
     "Library",
+    "LineCheck",
     "MAction",
     "Message",
     "ModalWords",
@@ -85,6 +92,7 @@ __all__ = [
     "Texts",
     "Word",
     "WordsBlock",
+    "choose_dialect",
     "dialect_for",
     "line_of",
     "load_dialect",

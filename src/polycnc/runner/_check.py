@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from polycnc.cnc import RunOptions
@@ -24,6 +24,8 @@ class CheckReport:
 
     errors: list[ProgramError]
     remarks: list[Remark]
+    guessed: str = ""
+    """The dialect and why it was guessed, like "dialect fanuc: O1000 in line 2"; empty where it was named."""
 
 
 def check(
@@ -84,8 +86,23 @@ def inspect(
     """
     settings = RunSettings(machine, dialect, root=root, ignore=tuple(ignore), stock=stock)
     text = program_text(program)
-    simulated = Machine(load_machine(machine))
-    chosen = settings.dialect_of(text)
+    read = settings.dialect_of(text)
+    if read.problem is not None:
+        return CheckReport([read.problem], [])
+    report = _inspected(program, text, read.dialect, settings, rehearse=rehearse)
+    return replace(report, guessed=f"dialect {read.dialect.name}: {read.reason}" if read.reason else "")
+
+
+def _inspected(
+    program: str | Path | ProgramText,
+    text: ProgramText,
+    chosen: Dialect,
+    settings: RunSettings,
+    *,
+    rehearse: bool,
+) -> CheckReport:
+    stock = settings.stock
+    simulated = Machine(load_machine(settings.machine))
     control = control_for(chosen, text, simulated, settings.surroundings_of(program))
     if control is not None and control.has_statements(text):
         errors = control.check(text)

@@ -40,7 +40,7 @@ class Debugger:
         root: str | Path | None = None,
     ) -> None:
         self.program = program
-        chosen = dialect_for(program.name, dialect)
+        chosen = dialect_for(program, dialect)
         self._root = root_of(program, root)
         self._statements = statements_for(chosen, program, load_machine(machine), self._root)
         self.control = (

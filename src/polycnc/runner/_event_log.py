@@ -8,14 +8,21 @@ from polycnc.runner._operations import Operation, OperationCollector
 
 
 class EventLog:
-    """Keep the events of a run in `found`, each with its time (s); say what becomes of program stops."""
+    """Keep the events of a run in `found`, each with its time (s); say what becomes of program stops.
+
+    `refused_s` is when the path came to the first refused block.
+    """
 
     def __init__(self, text: ProgramText) -> None:
         self.found: list[tuple[float, Event]] = []
+        self.refused_s: float | None = None
         self._operations = OperationCollector(text)
 
     def note(self, event: Event, run: ProgramRun) -> None:
         """Take an event in the cycle in which the path comes to it."""
+        if event.stop is Stop.REFUSED:
+            self.refused_s = run.machine.time_s if self.refused_s is None else self.refused_s
+            return
         self.found.append((run.machine.time_s, event))
         records = run.channel.records
         record = records.block(event.tag)

@@ -144,6 +144,10 @@ class RunResult:
     operations: list[Operation] = field(default_factory=list, repr=False)
     machined: Machined | None = field(default=None, repr=False, compare=False)
     """What the run has cut from a body, with `stock`."""
+    guessed: str = ""
+    """Why the dialect was guessed, like "O1000 in line 2"; empty where it was named."""
+    refused_s: float | None = None
+    """When the path came to the first refused block, with `past_errors`: what comes later is what could be read."""
 
     def __str__(self) -> str:
         state = "to its end" if self.ok else f"until line {self.alarms[0].line}: {self.alarms[0].text}"
@@ -245,6 +249,7 @@ class RunResult:
         return {
             "program": self.program,
             "dialect": self.dialect,
+            "guessed": self.guessed,
             "machine": self.machine,
             "blocks": self.blocks,
             "cycles": self.cycles,

@@ -174,11 +174,16 @@ def run_program(
         tagged.append(machining.add)
     record = Record(text, config, servo=settings.servo, rows=rows, tagged=tagged, progress=progress)
     simulated = Machine(config, servo=settings.servo, record_cycles=record.cycles)
-    dialect = settings.dialect_of(text)
+    chosen = settings.dialect_of(text)
+    dialect = chosen.dialect
     control = control_for(dialect, text, simulated, settings.surroundings_of(program))
     settings.check_screen(program, text, control)
     log = EventLog(text)
-    options = RunOptions(block_delete=settings.skip_levels, stands_at_stops=settings.stop_at_m0)
+    options = RunOptions(
+        block_delete=settings.skip_levels,
+        stands_at_stops=settings.stop_at_m0,
+        collect_errors=settings.past_errors,
+    )
     execution = run_under(
         control,
         simulated,
@@ -190,12 +195,14 @@ def run_program(
         else None,
         on_event=lambda event: log.note(event, execution),
     )
-    stuck = _to_end(execution, control, settings, record)
+    stuck = chosen.problem or _to_end(execution, control, settings, record)
     if (empty := empty_remark(text)) is not None:
         execution.channel.messages.note(empty.text, 0)
     if remark := times_remark(config, dialect, [event.word for _, event in log.found]):
         execution.channel.messages.note(remark, 0)
-    result = _result(execution, log, collector, stuck)
+    result = replace(
+        _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
+    )
     if form is not None and machining is not None:
         machined = machining.machined(form)
         notes = [RunMessage(text, 0, 1) for text in machined.messages]

@@ -83,6 +83,7 @@ def _result() -> Schema:
         {
             "program": _TEXT,
             "dialect": _TEXT,
+            "guessed": _TEXT,
             "machine": _TEXT,
             "blocks": _COUNT,
             "cycles": _COUNT,
@@ -167,6 +168,7 @@ def _check() -> Schema:
             "errors": _COUNT,
             "programs": _map(_list(error), "The errors of each program."),
             "remarks": _map(_list(remark), "What is no error and seldom meant, for each program."),
+            "guessed": _map(_TEXT, "The dialect of a program and why it was guessed."),
             "unreadable": _map(_object({"text": _TEXT, "hint": _TEXT}), "Files that could not be read."),
         }
     )

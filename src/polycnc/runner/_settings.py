@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
-from polycnc.nc import Dialect, ProgramText, dialect_for
+from polycnc.nc import ChosenDialect, Dialect, ProgramText, choose_dialect
 from polycnc.outputs import keep_inputs
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._program_control import ProgramControl, Surroundings, check_screen_file, root_of
@@ -41,6 +41,8 @@ class RunSettings:
     loop_limit_s: float = LOOP_LIMIT_S
     stock: str | None = None
     resolution_mm: float | None = None
+    past_errors: bool = False
+    """Whether a refused block is left out and the rest is run, so that what can be read is drawn."""
 
     def __post_init__(self) -> None:
         if not self.loop_limit_s > 0.0:
@@ -63,14 +65,16 @@ class RunSettings:
 
         return Form(self.stock, self.resolution_mm)
 
-    def dialect_of(self, text: ProgramText) -> Dialect:
-        """Return the dialect of a program, without the codes that are ignored.
+    def dialect_of(self, text: ProgramText) -> ChosenDialect:
+        """Return the dialect of a program, without the codes that are ignored, and why it was guessed.
 
         Raises:
             UsageError: no such dialect or code.
         """
-        chosen = dialect_for(text.name, self.dialect)
-        return chosen.leaving_out(self.ignore) if self.ignore else chosen
+        chosen = choose_dialect(text, self.dialect)
+        if not self.ignore:
+            return chosen
+        return replace(chosen, dialect=chosen.dialect.leaving_out(self.ignore))
 
     def root_of(self, program: Program) -> Path:
         """Return the folder with the files of the control.

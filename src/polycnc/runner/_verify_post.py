@@ -150,7 +150,7 @@ def verify_post(
         UsageError: no such machine or dialect.
     """
     config = load_machine(machine)
-    read = dialect_for(program.name, dialect)
+    read = dialect_for(program, dialect)
     tangency = Tangency()
     carried = _carried(program, block_map, read)
     sweeps: Iterator[Sweep | Ways] = sweep_in_runs(tool_path.runs())

@@ -31,7 +31,7 @@ def numbered_block(text: ProgramText, number: int, begin: int, end: int, rules: 
     if match is None:
         return None
     offset = match.start()
-    return scan_block(text, offset, text.content.count(b"\n", 0, offset) + 1, rules)
+    return scan_block(text, offset, text.position(offset).line, rules)
 
 
 def contour_blocks(

@@ -20,6 +20,7 @@ class Stop(StrEnum):
     OPTIONAL = "optional stop"
     DRAIN = "preparation waits for execution"
     PROBE = "probing begins"
+    REFUSED = "a block was refused"
     PROBE_IN_PASSING = "measuring in passing begins"
 
 

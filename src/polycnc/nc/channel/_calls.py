@@ -8,6 +8,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import SnapshotError
 from polycnc.nc.blocks._outcomes import Trouble
 from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._main_bounds import MainBounds
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._running import Back, Running, SavedCall
 from polycnc.nc.channel._sub_programs import SubPrograms
@@ -21,6 +22,7 @@ from polycnc.nc.sources._block_source import (
     Returning,
     SearchingLanguage,
 )
+from polycnc.nc.text._incoming import IncomingText
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 
@@ -42,14 +44,16 @@ class Calls:
         errors: Errors,
     ) -> None:
         self._dialect = dialect
+        self._incoming = main if isinstance(main, IncomingText) else None
         self._programs = programs
         self._language = language
         self._reader = reader
         self._errors = errors
         self._refused: dict[tuple[str, int], Trouble] = {}
-        self._all = [Running(Place(main))]
+        self._all = [Running(Place(main.opening))]
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
+        self.bounds = MainBounds(self.running, language)
         self.within: tuple[Call, ...] = ()
         self.stack: tuple[Call, ...] = ()
 
@@ -66,8 +70,6 @@ class Calls:
             return None
         return None if place is None else place.text
 
-    # ------------------------------------------------------------------ beginning and ending
-
     def begin(self) -> None:
         """Begin the present program, or its next round."""
         self.go_within(())
@@ -81,8 +83,46 @@ class Calls:
         self._reader.word_values = running.word_values
         if running.source is not None:
             self._reader.jump(begin, begin.offset)  # no text for now
-        elif self.depth or language is not None:
-            self._reader.jump(begin, len(begin.text))
+        elif self.depth or language is not None or self.bounds.is_cut:
+            self._reader.jump(begin, len(begin.text) if self.depth else self.bounds.end)
+
+    @property
+    def has_language(self) -> bool:
+        """Whether a language may execute programs."""
+        return self._language is not None
+
+    @property
+    def is_coming(self) -> bool:
+        """Whether more of the main program, which is the present one, waits or may still come."""
+        return self._incoming is not None and self.depth == 0 and not self._incoming.over
+
+    @property
+    def has_come(self) -> bool:
+        """Whether a piece of the main program waits to be read."""
+        return self._incoming is not None and self._incoming.waiting > 0
+
+    def take_piece(self) -> bool:
+        """Go on with what has come of the main program; False while nothing has.
+
+        Where a language or a cycle might look beyond its line, each line is a piece: how the program was cut when it
+        came makes no difference then.
+        """
+        incoming, running = self._incoming, self.running
+        assert incoming is not None
+        by_line = self._language is not None or self._dialect.reads_contours
+        piece = incoming.take(one_line=by_line)
+        if piece is None:
+            return False
+        running.begin = Place(piece, 0, piece.first_line)
+        self.begin()
+        if running.source is None:
+            self._reader.jump(running.begin, len(piece))
+        return True
+
+    def end_piece(self) -> None:
+        """Leave the source of a piece of the main program that has come to its end."""
+        _close(self.running)
+        self._reader.word_values = None
 
     def target(self, line: int) -> Place:
         """Return the place of a line of the main program, to begin there.
@@ -102,9 +142,12 @@ class Calls:
             UsageError: a language executes the program, and cannot begin there.
         """
         running = self.running
+        begin = running.begin
+        if place.offset == begin.offset:
+            self.begin()
+            return
         running.begun = True
         if isinstance(self._language, SearchingLanguage):
-            begin = running.begin
             try:
                 running.source = self._language.source_at(begin.text, begin.offset, begin.line, place.offset)
             except ProgramError as error:
@@ -113,7 +156,7 @@ class Calls:
             if running.source is not None:
                 self._reader.jump(begin, begin.offset)  # no text for now
                 return
-        self._reader.jump(place, len(place.text))
+        self._reader.jump(place, self.bounds.end)
 
     def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
         """Begin a sub-program that `trouble` had nothing against, called on `line`; nothing for no repeats."""
@@ -171,6 +214,8 @@ class Calls:
         """End all programs."""
         for running in reversed(self._all):
             _close(running)
+        if self._incoming is not None:
+            self._incoming.close()
 
     def _note_calls(self) -> None:
         self.running = self._all[-1]
@@ -182,8 +227,6 @@ class Calls:
             calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
         self._entered = tuple(calls)
         self.stack = self._entered + self.within
-
-    # ------------------------------------------------------------------ what is against a call
 
     def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Trouble | None:
         """Return what is against a call that stands at byte `offset` of `text`, None if nothing is.

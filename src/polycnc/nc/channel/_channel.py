@@ -17,6 +17,7 @@ from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._channel_snapshot import ChannelSnapshot
 from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._preparation import Preparation
 from polycnc.nc.channel._prepared import Prepared
@@ -85,7 +86,7 @@ class Channel:
         self.writer, self.records, self.state = prepared.writer, prepared.records, prepared.state
         self._errors = errors = Errors(self.messages, collects=options.collect_errors)
         self.errors = errors.all
-        self._reader = reader = Reader(program, text_rules, rules, skip_levels)
+        self._reader = reader = Reader(program.opening, text_rules, rules, skip_levels)
         sub_programs = SubPrograms(program, dialect, library)
         self._calls = calls = Calls(program, dialect, sub_programs, language, reader, errors)
         self._search = search = Search(calls, reader, language)
@@ -147,6 +148,17 @@ class Channel:
     def done(self) -> bool:
         """Whether the program has ended and all of it is in the queue."""
         return self._preparation.over and not self.writer.backlog
+
+    @property
+    def starved(self) -> bool:
+        """Whether all that has come of a program that is still coming has been prepared, and is in the queue."""
+        return self._preparation.starved and not self.writer.backlog
+
+    def line_check(self) -> LineCheck:
+        """Return a check of blocks that would come after what has been prepared."""
+        return LineCheck(
+            self.dialect, self.state, lambda program, text, offset: None, words_only=self._calls.has_language
+        )
 
     @property
     def error(self) -> ProgramError | None:
@@ -217,6 +229,14 @@ class Channel:
         self._preparation.begun = True
         self._calls.begin_at(place)
 
+    def bound(self, first: int, last: int) -> None:
+        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
+
+        Raises:
+            UsageError: a language executes it that cannot end there.
+        """
+        self._calls.bounds.set(first, last)
+
     def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
         """Carry out all blocks before a line of the main program; False if the program ends before.
 
@@ -247,7 +267,7 @@ class Channel:
                 hint="Search a block before G41 or G42, or behind G40.",
             )
         if search.held is None:
-            self._reader.jump(place, len(place.text))
+            self._reader.jump(place, self._calls.bounds.end)
         return True
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from polycnc.errors import ProgramError
 from polycnc.nc.blocks._interpreter import Interpreter
+from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._outcomes import Control
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._errors import Errors
@@ -97,6 +98,8 @@ class Preparation:
             return self._from_source()
         if self._search.in_main_program:
             return False
+        if self._calls.is_coming:
+            return self._calls.take_piece()
         self._leave()
         return True
 
@@ -149,6 +152,8 @@ class Preparation:
                 self._calls.call(text, item)
             case EndSource.END:
                 self._end()
+            case None if self._calls.is_coming:
+                self._calls.end_piece()
             case _:
                 self._leave()
 
@@ -217,6 +222,13 @@ class Preparation:
             self._note(error)
 
     @property
+    def starved(self) -> bool:
+        """Whether everything that has come of a program that is still coming has been prepared."""
+        reader, calls = self._reader, self._calls
+        read = reader.at_end and reader.place.offset >= reader.end and calls.running.source is None
+        return read and calls.is_coming and not calls.has_come and not self.over
+
+    @property
     def over(self) -> bool:
         """Whether nothing more is to be prepared."""
         return self.ended or self._errors.over
@@ -231,3 +243,6 @@ class Preparation:
         self._errors.note(error)
         if not self._errors.collects:
             self._calls.failed()
+            return
+        tag = self._interpreter.last_tag
+        self._prepared.writer.put(Wait(0.0, self._reader.line, stop=Stop.REFUSED, tag=tag))

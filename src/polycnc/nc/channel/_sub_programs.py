@@ -23,7 +23,8 @@ class SubPrograms:
     """Find the sub-programs of a main program; each text is one object, however often it is found."""
 
     def __init__(self, main: ProgramText, dialect: Dialect, library: Library | None) -> None:
-        self._main = main
+        self._main = main.opening
+        self._is_coming = main.opening is not main
         self._extensions = dialect.extensions
         self._library = library
         self._labels: dict[str, dict[int, Place]] = {}
@@ -39,6 +40,8 @@ class SubPrograms:
         if isinstance(program, ProgramText):
             return Place(self._known(program))
         for text in (present, self._main):
+            if self._is_coming and text.name == self._main.name:
+                continue  # nothing of it can be found again
             if text.name not in self._labels:
                 self._labels[text.name] = _labels(text)
             if program in self._labels[text.name]:

@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
-from polycnc.nc.modal._actions import M_ACTIONS, Action, MAction
+from polycnc.nc.modal._actions import M_ACTIONS, Action, Family, MAction, of_family
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -289,6 +289,11 @@ class Dialect(StrictModel):
         return MAction.TOOL_CHANGE in self._by_m.values() or self.tool_word == "turret"
 
     @property
+    def reads_contours(self) -> bool:
+        """Whether a cycle can name the blocks of a contour that come after it."""
+        return not of_family(Family.CONTOUR_CYCLE).isdisjoint(self._by_code.values())
+
+    @property
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""
         return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())
@@ -418,18 +423,3 @@ def load_dialect(source: str | Path | Dialect | None = None) -> Dialect:
         f"there is no dialect '{source}'",
         hint=f"Use {', '.join(_SHIPPED)}, or a TOML file that describes one.",
     )
-
-
-def dialect_for(program: str, explicit: str | Path | Dialect | None = None) -> Dialect:
-    """Return the dialect of a program: the explicit one, else by the file's extension, else the default.
-
-    Raises:
-        UsageError: there is no such dialect.
-    """
-    if explicit is not None:
-        return load_dialect(explicit)
-    extension = Path(program).suffix.lower()
-    for name in _SHIPPED:
-        if extension and extension in _shipped(name).extensions:
-            return _shipped(name)
-    return _shipped(DEFAULT_DIALECT)

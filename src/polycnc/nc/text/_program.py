@@ -41,12 +41,16 @@ class TextRules:
 
 
 class ProgramText:
-    """Hold one part program: its name and its bytes, newlines as they came (LF, CR LF or CR)."""
+    """Hold one part program: its name and its bytes, newlines as they came (LF, CR LF or CR).
 
-    def __init__(self, name: str, content: bytes) -> None:
+    `first_line` is the number of its first line, above 1 for a later piece of a program that comes in pieces.
+    """
+
+    def __init__(self, name: str, content: bytes, first_line: int = 1) -> None:
         if content[:2] in _UTF16_MARKS:
             raise UsageError(f"{name}: the file is UTF-16 text", hint="Save it as ASCII or UTF-8.")
         self.name = name
+        self.first_line = first_line
         self.content = content.removeprefix(_UTF8_MARK)
 
     @classmethod
@@ -73,6 +77,11 @@ class ProgramText:
     def __len__(self) -> int:
         return len(self.content)
 
+    @property
+    def opening(self) -> ProgramText:
+        """The text that a channel begins with: this, or nothing yet where it is still coming."""
+        return self
+
     @cached_property
     def data(self) -> npt.NDArray[np.uint8]:
         """The bytes as a read-only array, without a byte-order mark."""
@@ -82,7 +91,7 @@ class ProgramText:
     def lines(self) -> int:
         """How many lines the program has; what comes after the last newline counts if there is anything."""
         starts = self._line_starts
-        return len(starts) - int(int(starts[-1]) >= len(self.content))
+        return self.first_line - 1 + len(starts) - int(int(starts[-1]) >= len(self.content))
 
     def line(self, offset: int) -> str:
         """Return the line that holds the byte at `offset`, without its newline."""
@@ -94,7 +103,9 @@ class ProgramText:
         number = int(np.searchsorted(self._line_starts, offset, side="right"))
         start, end = self._bounds(offset)
         column = len(_decoded(self.content[start : min(offset, end)])) + 1
-        return SourcePosition(self.name, number, column, _decoded(self.content[start:end]))
+        return SourcePosition(
+            self.name, self.first_line - 1 + number, column, _decoded(self.content[start:end])
+        )
 
     def line_position(self, line: int) -> SourcePosition:
         """Return the place of the first character that is no blank in line number `line` (1-based)."""
@@ -104,7 +115,7 @@ class ProgramText:
 
     def line_start(self, line: int) -> int:
         """Return the offset of the first byte of line number `line` (1-based)."""
-        return int(self._line_starts[line - 1])
+        return int(self._line_starts[line - self.first_line])
 
     def line_end(self, offset: int) -> int:
         """Return the offset of the newline that ends the line of `offset` (the length for the last line)."""

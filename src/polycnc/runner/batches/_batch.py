@@ -12,7 +12,7 @@ from typing import Any
 
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
-from polycnc.nc import Dialect, dialect_for
+from polycnc.nc import Dialect, ProgramText, choose_dialect
 from polycnc.runner._program_control import needs_root
 from polycnc.runner.batches._child import Limits
 from polycnc.runner.batches._job import Job, ProgramReport, Setup, answer_of, blank_report
@@ -211,7 +211,7 @@ class _Run:
         for path in self._programs:
             content, trouble = _read(path)
             for number, (setup, part) in enumerate(zip(self._setups, self._setup_parts, strict=True)):
-                root = None if trouble else self._root_of(path, setup)
+                root = None if trouble else self._root_of(path, content, setup)
                 folder = b"" if root is None else self._digest_of(root)
                 if root is not None and not folder:
                     trouble = f"{path}: its folder {root} is too large to run it on a copy. {_NAME_ROOT}"
@@ -230,10 +230,13 @@ class _Run:
                 else:
                     yield job
 
-    def _root_of(self, path: Path, setup: Setup) -> Path | None:
+    def _root_of(self, path: Path, content: bytes, setup: Setup) -> Path | None:
         """Return the folder with the control's files, where programs of its dialect need one."""
-        needed = needs_root(dialect_for(str(path), setup.dialect))
-        return (self._root or path.parent) if needed else None
+        try:
+            chosen = choose_dialect(ProgramText(str(path), content), setup.dialect)
+        except UsageError:
+            return None  # no text: its job reports it
+        return (self._root or path.parent) if needs_root(chosen.dialect) else None
 
     def _digest_of(self, root: Path) -> bytes:
         if root not in self._roots:

@@ -288,7 +288,7 @@ def _taken(
         collector.add(piece, tags, records)
         tracks.add(piece, tags, records)
 
-    read = dialect_for(text.name, dialect)
+    read = dialect_for(text, dialect)
     result = run_program(text, RunSettings(config, read), check=False, tagged_rows=rows, progress=progress)
     seen = Compared(
         text.name,
@@ -317,7 +317,8 @@ def _of_trace(trace: Trace, name: str, result: RunResult | None) -> _Taken:
         result,
     )
     text = None if result is None else result.source
-    read = dialect_for(name if text is None else text.name, None if result is None else result.dialect)
+    named = ProgramText.from_text("", name) if text is None else text
+    read = dialect_for(named, None if result is None else result.dialect)
     return _Taken(seen, path, tracks.track(execution), text, read)
 
 

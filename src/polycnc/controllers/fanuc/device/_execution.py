@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from polycnc.cnc import ControlError, Refusal, RunState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._programs import number_of
+from polycnc.controllers.fanuc.device._remote_program import REMOTE_NAME
 from polycnc.nc import BlockRecord
 from polycnc.units import whole
 
@@ -69,6 +70,8 @@ class Execution:
             return block.sequence
         places = [(call.program, call.line) for call in block.stack] + [(block.program, block.line)]
         for program, line in reversed(places):
+            if program == REMOTE_NAME:
+                break  # what has been executed of it is not kept
             if found := self._sequence_before(number_of(program), line, mdi=not number_of(program)):
                 return found
         return 0
@@ -112,6 +115,8 @@ class Execution:
         """Return the program from the executed block on, or from the cursor at rest; at most so many characters."""
         block = self._going_on
         power_mate = self._power_mate
+        if block is not None and block.program == REMOTE_NAME:
+            return block.text.encode()[:most]
         if block is not None:
             lines = self._lines(number_of(block.program))
             return b"\n".join(lines[block.line - 1 :])[:most]

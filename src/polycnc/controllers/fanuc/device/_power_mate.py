@@ -54,6 +54,7 @@ from polycnc.controllers.fanuc.device._panel import Panel
 from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
+from polycnc.controllers.fanuc.device._remote_program import RemoteProgram
 from polycnc.controllers.fanuc.device._signals import MOST_FEED_PERCENT, Signals, SignalState
 from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
@@ -141,6 +142,7 @@ class PowerMate:
         self.macros = SharedMacros(self.store, self._common_range())
         self.programs = Programs(self)
         self.mdi = MdiProgram(self, self.state.mdi)
+        self.remote = RemoteProgram(lambda: self.mode, lambda: self.control)
         self.execution = Execution(self)
         self.positions = Positions(self)
         self.tool_offsets = ToolOffsets(self, offsets)
@@ -257,10 +259,10 @@ class PowerMate:
         self.state.cursor = line
 
     def cycle_start(self) -> None:
-        """Start the selected program in MEM, the MDI program in MDI, or go on where one is interrupted.
+        """Start the program of MEM, MDI or RMT (`remote`), or go on where one is interrupted.
 
         Raises:
-            ControlError: As `cnc.Control.cycle_start`; feed hold is given; in RMT nothing sends a program.
+            ControlError: As `cnc.Control.cycle_start`; feed hold is given; nothing sends a program in RMT.
         """
         self._take_over()
         if self.signals.hold_is_on:
@@ -268,8 +270,7 @@ class PowerMate:
                 Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
             )
         channel = self.control.channels[0]
-        if self.state.mode is PowerMateMode.RMT and not channel.interrupted:
-            raise ControlError(Refusal.NOT_FOUND, "nothing sends a program in RMT", hint="Select MEM or MDI.")
+        self.remote.before_start(name_of(self.selected) if self.selected else None)
         if not channel.interrupted:
             self.custom_macros.begin()
             self.signals.apply_lock()

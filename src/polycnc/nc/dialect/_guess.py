@@ -1,0 +1,138 @@
+"""Which dialect a program is written in: named, by its file's extension, or guessed from what it says.
+
+A guess rests on one place of the text, which it names. What the text does not settle is the default dialect.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from polycnc.errors import ProgramError
+from polycnc.nc.dialect._dialect import DEFAULT_DIALECT, DIALECTS, Dialect, load_dialect
+from polycnc.nc.text._program import ProgramText
+
+_LOOKED_AT = 1 << 18  # bytes: what a language is, its programs say early
+_NOTHING = re.compile(rb"\([^)\r\n]*\)|;[^\r\n]*|\"[^\"\r\n]*\"")
+_LINE = rb"(?:\A|(?<=[\r\n]))[ \t]*"
+_NUMBER = _LINE + rb"(?:[Nn][ \t]*[0-9]+)?[ \t]*"
+
+
+@dataclass(frozen=True, slots=True)
+class _Sign:
+    """What tells a dialect, or a language that nobody reads here."""
+
+    name: str
+    pattern: re.Pattern[bytes]
+
+
+def _sign(name: str, pattern: bytes) -> _Sign:
+    return _Sign(name, re.compile(pattern, re.IGNORECASE))
+
+
+_HEIDENHAIN = "Heidenhain conversational language"
+_SIEMENS = "Siemens language of Sinumerik controls"
+_UNREADABLE = (
+    _sign(_HEIDENHAIN, _LINE + rb"(?:[0-9]+[ \t]+)?BEGIN[ \t]+PGM\b"),
+    _sign(_HEIDENHAIN, _LINE + rb"[0-9]+[ \t]+(?:TOOL CALL|CYCL DEF|FN ?[0-9]+:|LBL[ \t])"),
+    _sign(_SIEMENS, rb"(?<![A-Z])(?:CYCLE[0-9]{2,4}|POCKET[1-4]|SLOT[12]|HOLES[12])[ \t]*\("),
+    _sign(_SIEMENS, _NUMBER + rb"DEF[ \t]+(?:REAL|INT|BOOL|STRING|AXIS)\b"),
+    _sign(_SIEMENS, _NUMBER + rb"(?:PROC[ \t]+[A-Z_]|TRANS[ \t]+[XYZ]|MSG[ \t]*\()"),
+    _sign(_SIEMENS, _NUMBER + rb"(?:R[0-9]+[ \t]*=[ \t]*[-+0-9R(.]|(?:IF|WHILE)[ \t]+R[0-9]+|GOTO[BF][ \t])"),
+    _sign(_SIEMENS, rb"%_N_[A-Z0-9_]+_[MS]PF\b"),
+)
+_O_WORDS = b"SUB|ENDSUB|CALL|RETURN|IF|ELSEIF|ELSE|ENDIF|WHILE|ENDWHILE|DO|REPEAT|ENDREPEAT|BREAK|CONTINUE"
+_CPL_WORDS = b"IF|LET|FOR|REPEAT|WHILE|DIM|DEF|CASE|PRN#|DSP|CALL|GOTO|GOSUB|REM"
+_CPL_ASSIGNS = rb"[A-Z_][A-Z0-9_]*[%$?!#]?(?:\([^)\r\n]*\))?[ \t]*="
+_MACRO = rb"WHILE[ \t]*\[|IF[ \t]*\[|GOTO[ \t]*[0-9#\[]|#[ \t]*[0-9]+[ \t]*="
+_SIGNS = (
+    _sign("linuxcnc", rb"#[ \t]*<[ \t]*[A-Z_]"),
+    _sign("linuxcnc", _NUMBER + rb"O[ \t]*(?:[0-9]+|<[^>\r\n]*>)[ \t]*(?:" + _O_WORDS + rb")\b"),
+    _sign("linuxcnc", rb"(?<![A-Z])G[ \t]*64[ \t]*P[ \t]*[0-9.]"),
+    _sign("bosch", _LINE + rb"[0-9]+[ \t]+(?:(?:" + _CPL_WORDS + rb")\b|" + _CPL_ASSIGNS + rb")"),
+    _sign("grbl", _LINE + rb"\$(?:[0-9]+=|[HXCGIN#$]|J=)"),
+    _sign("fanuc", rb"(?<![A-Z])G[ \t]*6[56](?:\.1)?[ \t]*(?:[A-Z][-+0-9. \t]*)*P[ \t]*[0-9]"),
+    _sign("fanuc", _NUMBER + rb"(?:/[0-9]?[ \t]*)?(?:" + _MACRO + rb")"),
+    _sign("fanuc", _LINE + rb"O[ \t]*[0-9]{1,8}(?=[ \t]*(?:[\r\n(;]|\Z))"),
+)
+_TURRET = re.compile(rb"(?<![A-Z])T[0-9]{4}(?![0-9])", re.IGNORECASE)
+_MILL = re.compile(
+    rb"(?<![A-Z])(?:Y[ \t]*[-+.0-9#\[]|M[ \t]*0?6(?![0-9])|G[ \t]*4[34](?![0-9]))", re.IGNORECASE
+)
+_TURNING = {"fanuc": "fanuc-lathe"}
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenDialect:
+    """A dialect, and why it was guessed: like "O1000 in line 2", empty where it was named or is the default one.
+
+    `problem` is the error of a program in a language that nobody reads here.
+    """
+
+    dialect: Dialect
+    reason: str = ""
+    problem: ProgramError | None = None
+
+
+def choose_dialect(text: ProgramText, explicit: str | Path | Dialect | None = None) -> ChosenDialect:
+    """Return the dialect of a program: the explicit one, else by the file's extension, else by what it says.
+
+    Raises:
+        UsageError: there is no such dialect.
+    """
+    if explicit is not None:
+        return ChosenDialect(load_dialect(explicit))
+    extension = Path(text.name).suffix.lower()
+    for name in DIALECTS:
+        if extension and extension in load_dialect(name).extensions:
+            return ChosenDialect(load_dialect(name))
+    words = _words(text)
+    default = load_dialect(DEFAULT_DIALECT)
+    for sign in _UNREADABLE:
+        if found := sign.pattern.search(words):
+            return ChosenDialect(default, problem=_unreadable(text, sign, found))
+    for sign in _SIGNS:
+        if found := sign.pattern.search(words):
+            name = sign.name
+            if (lathe := _TURNING.get(name)) and _TURRET.search(words) and not _MILL.search(words):
+                name = lathe
+            line = text.position(_begin(found)).line
+            return ChosenDialect(load_dialect(name), f"{_shown(text, found)} in line {line}")
+    return ChosenDialect(default)
+
+
+def dialect_for(text: ProgramText, explicit: str | Path | Dialect | None = None) -> Dialect:
+    """Return the dialect of a program as `choose_dialect` does.
+
+    Raises:
+        UsageError: there is no such dialect.
+        ProgramError: it is written in a language that nobody reads here.
+    """
+    chosen = choose_dialect(text, explicit)
+    if chosen.problem is not None:
+        raise chosen.problem
+    return chosen.dialect
+
+
+def _unreadable(text: ProgramText, sign: _Sign, found: re.Match[bytes]) -> ProgramError:
+    return ProgramError(
+        f"this program is in the {sign.name}, which polycnc does not read ({_shown(text, found)})",
+        position=text.position(_begin(found)),
+        hint=f"Post it for one of {', '.join(DIALECTS)}; if it is one of these, name it with --dialect.",
+    )
+
+
+def _words(text: ProgramText) -> bytes:
+    """Return the beginning of a text, blanks in its comments and strings."""
+    return _NOTHING.sub(lambda found: found[0][:1] + b" " * (len(found[0]) - 1), text.content[:_LOOKED_AT])
+
+
+def _begin(found: re.Match[bytes]) -> int:
+    return found.end() - len(found[0].lstrip())
+
+
+def _shown(text: ProgramText, found: re.Match[bytes]) -> str:
+    """Return what has been found as it is written, short."""
+    shown = text.content[_begin(found) : found.end()].decode("utf-8", "replace")
+    return " ".join(shown.split())[:30]
