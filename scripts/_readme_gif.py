@@ -72,7 +72,7 @@ def main() -> None:
             str(program),
         ]
         subprocess.run(post, check=True)
-        subprocess.run([*command, "view", str(program), "-o", str(page)], check=True)
+        subprocess.run([*command, "view", str(program), "--stock", "auto", "-o", str(page)], check=True)
         found = pictures(page)
     palette = found[len(found) // 2].quantize(COLOURS)
     frames = [each.quantize(COLOURS, palette=palette, dither=Image.Dither.NONE) for each in found]
