@@ -37,6 +37,7 @@ class Program:
     marked_din: bool
     is_plain: bool
     text: str
+    stepping: bool = False
 
     @property
     def file(self) -> str:
@@ -84,7 +85,9 @@ def _compiled(
         if isinstance(each, SubCall)
     )
     plain = all(isinstance(each, NcLine) and not each.names for each in statements)
-    return Program(source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text), []
+    return Program(
+        source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text, stepping
+    ), []
 
 
 class Linker:
@@ -107,7 +110,8 @@ class Linker:
         self._codes = codes
         self.alone: frozenset[str] = frozenset()
         """The codes that call programs where they stand alone, as they were when `look_again` was called."""
-        self._stepping = stepping
+        self.stepping = stepping
+        """Whether programs are compiled so that each of their lines is told."""
         self._opened = opened
         self._tables = tables or NoTables()
         self._faulty: dict[str, str] = {}  # texts by file
@@ -181,11 +185,11 @@ class Linker:
         if self._faulty.get(file) == text:
             return None
         known = self._programs.get(file)
-        if known is None or known.text != text:
+        if known is None or known.text != text or known.stepping != self.stepping:
             program, found = compile_program(
                 text,
                 file,
-                stepping=self._stepping,
+                stepping=self.stepping,
                 opened=self._opened,
                 alone=self.alone,
                 rules=self._codes.rules,
