@@ -447,6 +447,11 @@ class ProgramRun:
         rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
         return self.active and rests and self.channel.starved
 
+    @property
+    def queued(self) -> int:
+        """How many moves and waits are queued that have not been executed."""
+        return int(self._conduct.row["tail"] - self._conduct.row["head"])
+
     def line_check(self) -> LineCheck:
         """Return a check of blocks that would come after what has been prepared."""
         check = self.channel.line_check()

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from polycnc.errors import ProgramError
-from polycnc.language import Traced, resumed
+from polycnc.language import Traced, standing
 from polycnc.machine import SnapshotError
 from polycnc.nc.cpl._bounds import Bounds
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, CodeWord
@@ -203,11 +203,9 @@ class CplLanguage:
             raise damaged(f"{saved.file} cannot stand there")
         names = made.values(saved.names)
         called = tuple(made.value(each) for each in saved.called.values)
-        if not saved.place:
-            return _Standing(saved, program, called, names, None)
         try:
-            traced = resumed(program.traced, saved.place, names, again=bool(saved.wait))
-        except (ValueError, RecursionError, MemoryError, SyntaxError) as error:
+            traced = standing(program.traced, saved.place, names, again=bool(saved.wait))
+        except ValueError as error:
             raise damaged(f"{saved.file} cannot stand there") from error
         return _Standing(saved, program, called, names, traced)
 
@@ -402,14 +400,10 @@ class CplSource:
         )
 
     def go_to(self, saved: SavedProgram, traced: Traced[int] | None, names: dict[str, object]) -> None:
-        """Stand where another one stood; `traced` is code that stands there, None for the beginning and the end."""
+        """Stand where another one stood; `traced` is code that stands there, None for the end."""
         self._statements, self._answer = saved.statements, saved.answer
         self._behind, self._left = saved.behind, saved.left
         self.execution.line = saved.line
-        if traced is None:
-            if saved.place is None:
-                self.execution.close()
-            return
         event = self.execution.go_to(traced, names)
         if saved.wait and isinstance(event, Waiting):
             self._waiting = _Wait(event, self._language.milliseconds, began_ms=saved.wait[0])

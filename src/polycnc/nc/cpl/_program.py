@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
-from polycnc.language import Flaw, Source, Traced, clipped, without_collection
+from polycnc.language import Flaw, Source, Traced, clipped, every, without_collection
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, pattern_of
 from polycnc.nc.cpl._compile import Compiler
+from polycnc.nc.cpl._jumps import target_flaws
 from polycnc.nc.cpl._link_table import LinkedCall, LinkTable, LinkTables, NoTables, text_digest
 from polycnc.nc.cpl._nc_lines import PLAIN_RULES, is_marked_din
 from polycnc.nc.cpl._program_reader import read_program
-from polycnc.nc.cpl._shape import every, target_flaws
 from polycnc.nc.cpl._syntax import NcLine, SubCall
 from polycnc.nc.cpl._variables import Variable
 from polycnc.nc.text._program import TextRules
@@ -165,15 +165,6 @@ class Linker:
     def programs(self) -> Iterable[Program]:
         """Return all programs compiled so far."""
         return self._programs.values()
-
-    def traced(self, name: str) -> Traced[int] | None:
-        """Return the running code of a name, for `frame_of`."""
-        program = self._programs.get(name.removeprefix("<cpl ").removesuffix(">"))
-        return None if program is None else program.traced
-
-    def source(self, name: str) -> Source:
-        """Return the source of the running code of a name."""
-        return self._programs[name.removeprefix("<cpl ").removesuffix(">")].source
 
     def _found(self, address: str, name: str) -> tuple[str, str] | None:
         key = (address, name)
