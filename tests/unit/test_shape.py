@@ -58,7 +58,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "nc/cpl/_values.py Values",
         "nc/macro/_reader.py",
         "nc/macro/_reader.py _Statements",
-        "nc/macro/_system.py SystemVariables._modal",
     ),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
