@@ -35,6 +35,7 @@ export async function start(buffers) {
   const body = about.stock && bodyOf(record);
   if (body) {
     part.add(body.mesh);
+    stage.before.push(() => body.seenFrom(stage.camera.position, stage.controls.target));
     path.cuts.set("width", 1.4);
     path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
   }
@@ -89,7 +90,7 @@ export async function start(buffers) {
     const legend = element("legend"), how = element("colour").value;
     legend.replaceChildren();
     if (how === "speed" || how === "depth") {
-      const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.box[2];
+      const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.depths;
       bar.style.background = `linear-gradient(to right, ${scaleColours().join(",")})`;
       const texts = how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
       ends.append(...texts.map((textContent) => make("span", { textContent })));

@@ -41,7 +41,7 @@ void main() {
   bool within = all(greaterThan(cell_at, vec2(-0.49))) && all(lessThan(cell_at, size - 0.51));
   if (wall && base < 0.5 && within) { // a wall looks where its neighbourhood falls to, and has the colour of the later cut
     vec2 fall = vec2(0.0), corner = floor(cell_at);
-    for (int j = -2; j <= 3; j++) for (int i = -2; i <= 3; i++) {
+    for (int j = -1; j <= 2; j++) for (int i = -1; i <= 2; i++) {
       vec2 off = vec2(float(i), float(j));
       fall += (off - 0.5) * cellOf(corner + off).x;
     }
@@ -132,6 +132,9 @@ export class Field {
   }
 
   light(from, to) { this.uniforms.lit.value.set(after(this.ends, from + 1e-6), after(this.ends, to + 1e-6)); }
+
+  // The bottom is seen from below only.
+  seenFrom(camera, target) { this.mesh.children[1].visible = camera.z < target.z; }
 
   // Leave out what is beyond a plane across an axis; null for all.
   cutAt(axis, at) { this.uniforms.section.value.set(axis === 0 ? 1 : 0, axis === 1 ? -1 : 0, 0, axis === null ? 1 : axis === 1 ? -at : at); }
