@@ -329,9 +329,7 @@ class Conduct:
         number = int(self.row["event"])
         event = self.channel.writer.events.pop(number)
         self.moment.met = int(self.row["head"]), event.tag
-        self.moment.tool_times = self.moment.tool_times.changed(
-            self.channel.records.tool(event.tag), self.path_times
-        )
+        self.moment.tool_times.change(self.channel.records.tool(event.tag), self.path_times)
         if event.stop is Stop.REFUSED:
             if self.on_event is not None:
                 self.on_event(event)

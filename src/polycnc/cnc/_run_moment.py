@@ -46,4 +46,8 @@ class RunMoment:
 
     def copy(self) -> RunMoment:
         """Return a moment that changes no more with this one."""
-        return replace(self, probing=None if self.probing is None else replace(self.probing))
+        return replace(
+            self,
+            tool_times=self.tool_times.copy(),
+            probing=None if self.probing is None else replace(self.probing),
+        )

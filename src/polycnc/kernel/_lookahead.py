@@ -20,6 +20,8 @@ from polycnc.kernel._limits import least_accel, limit_junction, limit_segment, s
 from polycnc.kernel._path import Paths, slot
 from polycnc.kernel._segments import STOP, WAIT, Floats, Segments
 
+ROUNDING = 1e-9  # of a sum of gains
+
 
 @compiled
 def limit_queue(
@@ -116,16 +118,27 @@ def plan_path(seg: Segments, paths: Paths, g: int) -> None:
 
 @compiled
 def window_speed(seg: Segments, paths: Paths, g: int, count: int) -> float:
-    """Return the end speed of segment `count` when only `depth` segments after it are known."""
+    """Return the end speed of segment `count` when only `depth` segments after it are known.
+
+    It is the planned one where all of the queue is known, or where the path can rest from it within the window.
+    """
     path = paths.row[g]
     tail = int(path["prepared"])
+    planned = float(seg.row[slot(paths, g, count)]["out"])
     last = min(tail - 1, count + int(path["depth"]))
-    closed = path["closed"] != 0 and last == path["tail"] - 1
+    if last == tail - 1:
+        return planned
+    to_brake = planned * planned * (1.0 + ROUNDING)
+    for other in range(count + 1, last):
+        row = seg.row[slot(paths, g, other)]
+        if row["end_speed"] >= 0.0:
+            break  # the caller prescribes what comes after, which the window does not see
+        to_brake -= row["gain"]
+        if to_brake < 0.0:
+            return planned
     row = seg.row[slot(paths, g, last)]
-    limit = _last_limit(row, closed)
-    if last == count:
-        return limit
-    rest = limit * limit + _last_gain(row, closed, path["jerkrel"])
+    limit = _last_limit(row, False)
+    rest = limit * limit + _last_gain(row, False, path["jerkrel"])
     for other in range(last - 1, count, -1):
         row = seg.row[slot(paths, g, other)]
         limit = end_limit(row)

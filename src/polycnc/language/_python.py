@@ -97,6 +97,13 @@ class Traced(Generic[Place]):
         return scope
 
 
+class Piece(NamedTuple, Generic[Place]):
+    """Lines of Python on their own, and the place that each of them stems from."""
+
+    lines: list[str]
+    places: list[Place]
+
+
 class _Inside:
     """The inside of blocks: `leave` ends the innermost one. Contexts made of generators take several times as long."""
 
@@ -119,6 +126,7 @@ class Emitter(Generic[Place]):
         self.places: list[Place] = []
         self._indent = ""
         self._heads: list[int] = []  # how many lines there were when each open block began
+        self._diverted: list[tuple[list[str], list[Place], str]] = []
         self._inside = _Inside(self._leave)
 
     def put(self, *lines: str) -> None:
@@ -127,8 +135,19 @@ class Emitter(Generic[Place]):
             self.lines.append(self._indent + line)
             self.places.append(self.place)
 
-    def take(self, other: Emitter[Place]) -> None:
-        """Add the lines of another one, with their places, at the present indentation."""
+    def divert(self) -> None:
+        """Collect what is put from now on by itself, until `diverted` returns it."""
+        self._diverted.append((self.lines, self.places, self._indent))
+        self.lines, self.places, self._indent = [], [], ""
+
+    def diverted(self) -> Piece[Place]:
+        """Return what was put since `divert`; what is put next comes after what was there before."""
+        piece = Piece(self.lines, self.places)
+        self.lines, self.places, self._indent = self._diverted.pop()
+        return piece
+
+    def take(self, other: Piece[Place] | Emitter[Place]) -> None:
+        """Add lines with their places at the present indentation."""
         indent = self._indent
         self.lines += [indent + line for line in other.lines] if indent else other.lines
         self.places += other.places

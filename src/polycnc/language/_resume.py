@@ -53,8 +53,15 @@ def resumed(
     gone through anew, and its item is what is given first.
 
     Raises:
-        ValueError: There is no `yield` on this line.
+        ValueError: There is no `yield` on this line, or Python cannot go on there.
     """
+    try:
+        return _resumed(traced, line, names, again=again)
+    except (RecursionError, MemoryError, SyntaxError) as error:
+        raise ValueError(f"the program cannot go on at line {line}") from error
+
+
+def _resumed(traced: Traced[Place], line: int, names: Collection[str], *, again: bool) -> Traced[Place]:
     tree = ast.parse("\n".join(traced.lines))
     (function,) = tree.body
     if not isinstance(function, ast.FunctionDef):

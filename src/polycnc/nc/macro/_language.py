@@ -11,20 +11,13 @@ from polycnc.nc.macro._calls import Arguments, MacroCalls
 from polycnc.nc.macro._compile import compile_program, names
 from polycnc.nc.macro._functions import asin, atan2
 from polycnc.nc.macro._host import Host
-from polycnc.nc.macro._macro_source import Compiled, MacroSource, error_at, standing
+from polycnc.nc.macro._macro_source import Compiled, MacroSource, error_at, standing_code
 from polycnc.nc.macro._macro_state import MACRO_CLASSES, ModalCall, SavedLanguage, SavedSource
 from polycnc.nc.macro._output import OutputDevice
 from polycnc.nc.macro._plain_lines import OpenLines
 from polycnc.nc.macro._reader import LineReader
-from polycnc.nc.macro._shape import (
-    Special,
-    called_programs,
-    extent,
-    parse,
-    returns_to_a_block,
-    shape,
-    special,
-)
+from polycnc.nc.macro._shape import extent, parse, shape
+from polycnc.nc.macro._special_lines import Special, called_programs, returns_to_a_block, special
 from polycnc.nc.macro._system import SystemVariables
 from polycnc.nc.macro._variables import MacroVariables, Value
 from polycnc.nc.records._block_records import Call
@@ -190,7 +183,7 @@ class MacroLanguage:
             made, flaws = shape(whole, parts, returns=returns, start=start)
             if not flaws:
                 increment = self.channel.dialect.increment
-                code, flaws = compile_program(whole, made, self, increment, name)
+                code, flaws = compile_program(whole, made, self, increment, self._pause_jumps, name)
         errors = [error_at(text, flaw) for flaw in flaws]
         number = _program_number(whole, offset)
         return Compiled(text, offset, line, plain, start, code, errors, name, number)
@@ -287,7 +280,7 @@ class MacroLanguage:
                 f"{saved.text.name} cannot go on where the snapshot says", hint="use another snapshot"
             ) from error
         assert compiled is not None
-        return saved, compiled, standing(compiled, saved)
+        return saved, compiled, standing_code(compiled, saved)
 
     def _go_to(
         self,
@@ -332,7 +325,6 @@ class MacroLanguage:
         nat = self.nat
         return {
             **names(),
-            "JUMPS": self._pause_jumps,
             "f_ASIN": lambda value: asin(value, nat),
             "f_ATAN2": lambda value, below: atan2(value, below, nat),
         }

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NoReturn
 
 from polycnc.errors import ProgramError
-from polycnc.language import INNER, Flaw, Frame, Traced, frame_of, inner_of, line_of, names_of, resumed
+from polycnc.language import Execution, Flaw, Traced, standing
 from polycnc.machine import SnapshotError
 from polycnc.nc.macro._calls import Arguments
 from polycnc.nc.macro._compile import Code
@@ -70,8 +69,7 @@ class MacroSource:
         self._closed = False
         self.main = language.channel.depth == 0
         self._local = language.variables.local
-        nothing: tuple[SourceItem, ...] = ()
-        self._generator: Generator[Any, None, None] = (item for item in nothing)
+        self._execution: Execution | None = None
 
     def begin(self) -> MacroSource:
         """Begin the program: with local variables of its own, where it was called with any."""
@@ -87,8 +85,7 @@ class MacroSource:
             language.note_level()
         self._local = language.variables.local
         language.system.program_number = self._compiled.number
-        if self._compiled.code is not None:
-            self._generator = self._start(self._compiled.code.traced)
+        self._execution = self._made()
         return self
 
     def saved(self) -> SavedSource:
@@ -103,8 +100,10 @@ class MacroSource:
             raise SnapshotError(
                 "the program under way has been reset", hint="Take the snapshot when it is over."
             )
-        names = {name: value for name, value in names_of(self._generator).items() if name not in _PARAMETERS}
-        items = inner_of(self._generator)
+        run = self._execution
+        found = {} if run is None else run.names
+        names = {name: value for name, value in found.items() if name not in _PARAMETERS}
+        items = None if run is None else run.inner
         return SavedSource(
             compiled.text,
             compiled.offset,
@@ -120,7 +119,7 @@ class MacroSource:
             self._outer_number,
             self._closed,
             self.main,
-            None if compiled.code is None else line_of(self._generator),
+            None if run is None else run.place,
             names,
             items.saved() if isinstance(items, LineItems | SpanItems) else None,
         )
@@ -132,14 +131,9 @@ class MacroSource:
         self._outer_modals, self._outer_interrupt = saved.outer_modals, saved.outer_interrupt
         self._outer_number = saved.outer_number
         self._local = self._language.variables.locals_of(saved.level)
-        if traced is not None and saved.place == 0:
-            self._generator = self._start(traced)
-        elif traced is not None:
-            given: dict[str, object] = dict(saved.names)
-            if saved.items is not None:
-                given[INNER] = self._items(saved.items)
-            self._generator = self._start(traced, given)
-            next(self._generator)
+        if (run := self._made()) is not None:
+            run.go_on(traced, saved.names, None if saved.items is None else self._items(saved.items))
+        self._execution = run
         return self
 
     def _items(self, saved: SavedItems) -> LineItems | SpanItems:
@@ -169,10 +163,9 @@ class MacroSource:
         if self._errors:
             raise self._errors.pop(0)
         self._language.turns += 1
-        try:
-            item: SourceItem | None = next(self._generator, None)
-        except (MacroError, ArithmeticError, TypeError, ValueError) as error:
-            self._explain(error)
+        if self._execution is None:
+            return None
+        item: SourceItem | None = self._execution.next()
         if item is Pause.PAUSE:
             self._pauses += 1
             limit = self._language.longest_loop_pauses
@@ -194,7 +187,8 @@ class MacroSource:
         if self._closed:
             return
         self._closed = True
-        self._generator.close()
+        if self._execution is not None:
+            self._execution.close()
         language = self._language
         language.system.program_number = self._outer_number
         if self._arguments.values is not None:
@@ -208,8 +202,10 @@ class MacroSource:
 
     # ------------------------------------------------------------------ the program's own calls
 
-    def _start(self, traced: Traced[int], *more: object) -> Generator[Any, None, None]:
-        code, language = self._code, self._language
+    def _made(self) -> Execution | None:
+        code, language = self._compiled.code, self._language
+        if code is None:
+            return None
         variables, system = language.variables, language.system
         common, ranges = variables.common, variables.ranges
         local = self._local
@@ -255,9 +251,7 @@ class MacroSource:
             "sub": self._sub,
             "modal": self._modal_call,
         }
-        program = traced.load(names)["program"]
-        result: Generator[Any, None, None] = program(local, common, _Host(self), *more)
-        return result
+        return Execution(code.traced, names, (local, common, _Host(self)), self._explained)
 
     def skips(self, level: int) -> bool:
         return level in self._language.channel.skip_levels
@@ -340,32 +334,25 @@ class MacroSource:
 
     def _find(self, number: int, offset: int) -> tuple[int, int]:
         code = self._code
-        label = code.shape.find(number, offset)
-        if label is None:
+        found = code.shape.find(number, offset)
+        if found is None:
             raise MacroError(
                 f"there is no block N{number} in this program", "Check the block number.", "PS0128"
             )
-        return label.region.number, label.region.targets[label.part]
+        return code.places[found]
 
     # ------------------------------------------------------------------ errors
 
     def _endless(self) -> ProgramError:
-        frame = getattr(self._generator, "gi_frame", None)
-        code = self._code
-        at = 0 if frame is None else code.traced.places[frame.f_lineno - 1]
+        at = 0 if self._execution is None else self._execution.at or 0
         return error_at(
             self._compiled.text,
             Flaw(at, "this loop goes on without end", "Nothing that it waits for can change here."),
         )
 
-    def _explain(self, error: Exception) -> NoReturn:
-        code = self._code
-        known = {self._compiled.name: code.traced}
-        frame: Frame[int] | None = frame_of(error, known.get)
-        if frame is None:
-            raise error
+    def _explained(self, error: Exception, at: int) -> ProgramError:
         what, hint, number = _meaning(error)
-        raise error_at(self._compiled.text, Flaw(frame.place, what, hint, code=number)) from error
+        return error_at(self._compiled.text, Flaw(at, what, hint, code=number))
 
 
 class _Host:
@@ -422,7 +409,7 @@ class _Host:
 _NO_ARGUMENTS = Arguments(None)
 
 
-def standing(compiled: Compiled, saved: SavedSource) -> Traced[int] | None:
+def standing_code(compiled: Compiled, saved: SavedSource) -> Traced[int] | None:
     """Return the code of a program that stands where an execution of it stood; None for one that has ended.
 
     Raises:
@@ -435,16 +422,12 @@ def standing(compiled: Compiled, saved: SavedSource) -> Traced[int] | None:
         and all(isinstance(value, int | float | None) for value in saved.names.values())
         and (saved.items is None or _fits(saved.items, code))
     )
-    if not fits:
-        raise _elsewhere(compiled)
-    if code is None or saved.place is None:
-        return None
-    if saved.place == 0:
-        return code.traced
     try:
-        return resumed(code.traced, saved.place, saved.names)
-    except (ValueError, RecursionError, MemoryError, SyntaxError) as error:
+        if fits:
+            return None if code is None else standing(code.traced, saved.place, saved.names)
+    except ValueError as error:
         raise _elsewhere(compiled) from error
+    raise _elsewhere(compiled)
 
 
 def _fits(items: SavedItems, code: Code | None) -> bool:

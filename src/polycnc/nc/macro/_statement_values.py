@@ -10,6 +10,7 @@ from polycnc.nc.macro._variables import MacroError, Value
 from polycnc.nc.sources._block_source import WordsBlock
 from polycnc.nc.text._scan_plain import Word
 
+INTO_LOOP = "Jump out of loops or inside them, never into one."
 _ALARM_BASE = 3000
 _LARGEST_ALARM = 999
 
@@ -75,9 +76,7 @@ def into_loop(number: int) -> NoReturn:
     Raises:
         MacroError: Always.
     """
-    raise MacroError(
-        f"block N{number} is inside a loop", "Jump out of loops or inside them, never into one.", "PS0128"
-    )
+    raise MacroError(f"block N{number} is inside a loop", INTO_LOOP, "PS0128")
 
 
 def program_number(value: float) -> int:

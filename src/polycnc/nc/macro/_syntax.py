@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from polycnc.language import Tree
+from polycnc.language import Loop, Mark, Tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +74,16 @@ class If:
     then: Assignment | Goto
 
 
-@dataclass(frozen=True, slots=True)
-class While:
-    """`WHILE [...] DO m`, `DO m` without a condition."""
+@dataclass(slots=True)
+class While(Loop):
+    """`WHILE [...] DO m`, `DO m` without a condition; `line` and `label` are those of its block."""
 
     at: int
     loop: int
     condition: Expression | None
+    line: int = 0
+    label: int | None = None
+    body: list[Part | Mark | While] = field(default_factory=list)
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,6 +222,11 @@ class Line:
     skip: int
     statements: tuple[Statement, ...]
 
+    @property
+    def at(self) -> int:
+        """Where it begins."""
+        return self.offset
+
 
 @dataclass(frozen=True, slots=True)
 class Span:
@@ -227,6 +235,11 @@ class Span:
     line: int
     offset: int
     end: int
+
+    @property
+    def at(self) -> int:
+        """Where they begin."""
+        return self.offset
 
 
 Part: TypeAlias = Line | Span

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Final, Literal, NamedTuple, TypeAlias
 
+from polycnc.language import Fault
 from polycnc.machine import Store
 
 Value: TypeAlias = float | None
@@ -28,14 +29,8 @@ _SIZE = 1000
 _AREA = "nc.macro_variables"
 
 
-class MacroError(Exception):
+class MacroError(Fault):
     """A statement that cannot be executed: what is wrong, what to do, and the control's alarm number."""
-
-    def __init__(self, what: str, hint: str = "", code: str = "") -> None:
-        super().__init__(what)
-        self.what = what
-        self.hint = hint
-        self.code = code
 
 
 class SavedVariables(NamedTuple):

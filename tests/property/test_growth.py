@@ -1,0 +1,75 @@
+"""Four times the input takes four times as long: processor time of n and 4 n, exponent under 1.2."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+import pytest
+
+from polycnc import runner
+from polycnc.machine import parse_machine, preset_text
+
+MOST = 1.2
+TRIES = 4
+
+
+def _lines(line: Callable[[int], str], count: int) -> str:
+    return "".join(line(n) for n in range(1, count + 1))
+
+
+PROGRAMS: dict[str, Callable[[int], str]] = {
+    "tools": lambda n: _lines(lambda i: f"T{i}M6\nG1 X{i % 7} F900\n", n) + "M30\n",
+    "macros in a file": lambda n: (
+        _lines(lambda i: f"G65 P{i} A3.\n", n)
+        + "M30\n%\n"
+        + _lines(lambda i: f"O{i}\n#500=#500+#1\nM99\n", n)
+    ),
+    "sub-programs in a file": lambda n: (
+        _lines(lambda i: f"M98 P{i}\n", n)
+        + "M30\n%\n"
+        + _lines(lambda i: f"O{i}\nG1 X{i % 7} F900\nM99\n", n)
+    ),
+    "labels": lambda n: "#1=0\n" + _lines(lambda i: f"GOTO {i}\nN{i} #1=#1+1\n", n) + "M30\n",
+    "functions": lambda n: _lines(lambda i: f"M8\nS{i} M3\nM9\n", n) + "M30\n",
+    "dwells": lambda n: _lines(lambda i: f"G4 P{i % 3 + 1}\n", n) + "M30\n",
+}
+
+
+def _assert_linear(seconds: Callable[[int], float], count: int) -> None:
+    seconds(count // 4)  # compiled by then
+    few = many = math.inf
+    for _ in range(TRIES):
+        few, many = min(few, seconds(count)), min(many, seconds(4 * count))
+        if many / few < 4.0**MOST:
+            return
+    raise AssertionError(
+        f"{count}: {few:.3f} s, {4 * count}: {many:.3f} s, exponent {math.log(many / few, 4):.2f}"
+    )
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+def test_the_time_of_a_program_grows_with_its_length(name: str) -> None:
+    def seconds(count: int) -> float:
+        text = PROGRAMS[name](count)
+        before = time.process_time()
+        assert runner.run(text, None, "fanuc", check=False).ok
+        return time.process_time() - before
+
+    _assert_linear(seconds, 500)
+
+
+@pytest.mark.parametrize("blocks", [1_000_000, 10_000_000])
+def test_a_window_wider_than_the_program_costs_nothing(blocks: int) -> None:
+    """Braking takes longer than the queue is: each block would look through all that is known."""
+    text = preset_text("mill3").replace("[[axis]]", f"[path]\nlook_ahead_blocks = {blocks}\n[[axis]]", 1)
+    config = parse_machine(text, "m.toml")
+
+    def seconds(count: int) -> float:
+        program = "F3000\n" + _lines(lambda i: f"G1 X{i * 0.01:.2f} Y{i % 2 * 0.003}\n", count) + "M30\n"
+        before = time.process_time()
+        assert runner.run(program, config, "din", check=False).ok
+        return time.process_time() - before
+
+    _assert_linear(seconds, 15_000)
