@@ -366,3 +366,22 @@ def test_an_option_that_is_not_fitted_is_refused() -> None:
     _, handle = fwlib.cnc_allclibhndl()
     code, _ = fwlib.cnc_rdopmsg(handle, 0, 6 + 256)
     assert int(code) == 6
+
+
+@covers("ODBSYSC.sv3min", "ODBSYSC.sv5min")
+@pytest.mark.parametrize("axes", [1, 2, 3, 4, 5, 6])
+def test_servo_modules_are_there_for_every_pair_of_axes(axes: int) -> None:
+    found = fwlib.cnc_sysconfig(attached(axes=axes)[1])[1]
+    assert (found.sv3min, found.sv5min) == (0 if axes > 2 else -1, 0 if axes > 4 else -1)
+
+
+@covers("cnc_opdi.sig4.cdata.bit5")
+@pytest.mark.parametrize("axis", [1, 5, 6])
+def test_a_servo_is_off_by_the_bit_of_its_axis(axis: int) -> None:
+    control, handle = attached(axes=6)
+    signal = fwlib.ODBOPDI()
+    signal.u.cdata = 1 << axis - 1
+    assert fwlib.cnc_opdi(handle, 4, signal) == OK
+    assert [control.signals.servo_is_off(each) for each in range(1, 7)] == [
+        each == axis for each in range(1, 7)
+    ]
