@@ -52,6 +52,12 @@ def imc_page(name: str) -> str:
     return page()
 
 
+def grbl_page() -> str:
+    """Return the page of the door for senders."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_grbl_page.py"))["page"]
+    return page()
+
+
 def post_events_page() -> str:
     """Return the page of the post-processor's events."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_post_events.py"))["page"]
@@ -105,6 +111,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),
     "docs/reference/focas-protocol.md": focas_page,
+    "docs/reference/grbl-sender.md": grbl_page,
     "docs/reference/imc-axes.md": partial(imc_page, "axis_page"),
     "docs/reference/imc-functions.md": partial(imc_page, "functions_page"),
     "docs/reference/imc-parameters.md": partial(imc_page, "parameters_page"),

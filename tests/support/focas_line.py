@@ -79,9 +79,7 @@ def values(payload: bytes) -> list[float | None]:
     return [Value8.from_wire(payload[at : at + 8]).number for at in range(0, len(payload), 8)]
 
 
-def serve(
-    *arguments: str | Path, port: int = 0, said: str = "serving a FANUC"
-) -> tuple[subprocess.Popen[str], int]:
+def serve(*arguments: str | Path, port: int = 0, said: str = "focas: ") -> tuple[subprocess.Popen[str], int]:
     """Start a process that serves, and return it with its port when it listens."""
     process = subprocess.Popen(
         [*COMMAND, "serve", "--fanuc", "--port", str(port), *map(str, arguments)],

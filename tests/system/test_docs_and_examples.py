@@ -28,6 +28,7 @@ def _name(page: Path) -> str:
 # Pages that need a server, or change polycnc itself, run by a test of their own.
 ELSEWHERE = {
     "docs/tutorials/test-your-collector.md",
+    "docs/tutorials/your-sender.md",
     "docs/how-to/add-a-g-code.md",
     "docs/how-to/add-a-cpl-function.md",
     "docs/how-to/add-a-library-function.md",

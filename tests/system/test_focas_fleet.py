@@ -20,9 +20,7 @@ SEED = 815
 
 
 def test_several_machines_in_one_process_are_machines_of_their_own() -> None:
-    process, port = serve(
-        "--count", "3", "--axes", "2", port=free_port(), said="serving 3 FANUC 31i on 127.0.0.1:"
-    )
+    process, port = serve("--count", "3", "--axes", "2", port=free_port())
     try:
         lines = [Line(port, address=f"127.0.0.{k}") for k in (1, 2, 3)]
         for k, line in enumerate(lines, 1):
@@ -130,7 +128,7 @@ def test_faults_on_real_sockets(tmp_path: Path) -> None:
 
 
 def test_a_client_that_only_sends_stops_nobody() -> None:
-    process, port = serve("--count", "2", port=free_port(), said="serving 2 FANUC")
+    process, port = serve("--count", "2", port=free_port())
     try:
         flood = socket.create_connection(("127.0.0.1", port))
         flood.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)

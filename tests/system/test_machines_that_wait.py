@@ -27,7 +27,6 @@ def test_machines_that_wait_answer_and_end(kind: str, tmp_path: Path) -> None:
         "--program",
         program,
         port=free_port(),
-        said=f"serving {MACHINES} FANUC 31i on",
     )
     lines: list[Line] = []
     try:

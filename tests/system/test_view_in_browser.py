@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from io import BytesIO
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.image import imread
 
 import polycnc
 from support.browser import browser
@@ -62,10 +60,8 @@ class Opened:
 
     def marker(self) -> list[float]:
         """Return where the tool is drawn: x, y and z of the picture."""
-        found = self.page.evaluate(
-            "() => ['x', 'y', 'z'].map((n) => document.getElementById('tool').data[0][n][0])"
-        )
-        return [float(value) for value in found]
+        found = self.page.locator("#stage").get_attribute("data-tip")
+        return [float(value) for value in found.split()]
 
     def row_at(self) -> int:
         return int(np.searchsorted(self.trace.t_s, self.time_s))
@@ -130,16 +126,12 @@ def test_slide_play_and_click(
     view.close()
 
 
-def _tool_on_screen(shot: bytes, accent: tuple[int, int, int]) -> tuple[int, int]:
-    """Return the pixel in the middle of the tool: its colour all around, which is wider than a line."""
-    pixels = np.rint(imread(BytesIO(shot))[:, :, :3] * 255.0).astype(int)
-    alike = np.all(np.abs(pixels - np.array(accent)) < 12, axis=2)
-    filled = np.cumsum(np.cumsum(np.pad(alike, ((1, 0), (1, 0))), axis=0), axis=1)
-    side = 11
-    count = filled[side:, side:] - filled[:-side, side:] - filled[side:, :-side] + filled[:-side, :-side]
-    rows, columns = np.nonzero(count >= side * side - 8)
-    assert len(rows)
-    return int(columns.mean()) + side // 2, int(rows.mean()) + side // 2
+ON_STAGE = """(place) => {
+  const { stage, part } = document.getElementById('stage').seen;
+  const Vector = stage.camera.position.constructor, box = stage.canvas.getBoundingClientRect();
+  const at = stage.project(new Vector(...place).applyMatrix4(part.matrix));
+  return [box.left + at.x, box.top + at.y];
+}"""
 
 
 def test_a_click_on_the_path_goes_to_its_block(chromium: Any, tmp_path: Path) -> None:
@@ -147,20 +139,12 @@ def test_a_click_on_the_path_goes_to_its_block(chromium: Any, tmp_path: Path) ->
     view = Opened(chromium, tmp_path, "lathe_shaft.nc", "lathe2", color_scheme="light")
     view.slide(0.2)  # in the first roughing cut
     then, line, x_mm = view.time_s, view.cell("line"), view.cell("X")
-    stage = view.page.locator("#stage").bounding_box()
-    view.page.wait_for_timeout(500)
-    column, row = _tool_on_screen(view.page.screenshot(clip=stage), (0xB3, 0x40, 0x0A))
+    x, y = view.page.evaluate(ON_STAGE, view.marker())
     view.page.locator("#slider").focus()
     view.page.keyboard.press("Home")
     assert view.time_s == 0.0
-    view.page.mouse.move(stage["x"] + column + 6, stage["y"] + row)
-    for _ in range(20):  # the library looks under the mouse when it draws the next picture
-        view.page.mouse.move(stage["x"] + column, stage["y"] + row, steps=3)
-        view.page.wait_for_timeout(200)
-        view.page.mouse.click(stage["x"] + column, stage["y"] + row, delay=120)  # as long as a finger
-        if view.time_s > 0.0:
-            break
-    assert view.time_s == pytest.approx(then, abs=0.25)
+    view.page.mouse.click(x, y)
+    assert view.time_s == pytest.approx(then, abs=0.1)
     assert (view.cell("line"), view.cell("X")) == (line, x_mm)
     view.close()
 
@@ -182,68 +166,103 @@ def test_five_axes_as_the_part_sees_them(chromium: Any, tmp_path: Path) -> None:
     """In the frame of the part the tool is drawn where two rotations bring it; a chart shows the speed of C."""
     rotation = pytest.importorskip("scipy.spatial.transform").Rotation
     view = Opened(chromium, tmp_path, "five_axis.nc", "mill5")
-    view.page.locator("#frame").select_option("part")
-    view.page.wait_for_function("() => document.querySelector('#frame')?.value === 'part'", timeout=WAIT_MS)
-    view.page.wait_for_selector("html[data-ready=yes]", timeout=WAIT_MS)
     view.slide(0.9)  # in the groove: all axes move
     row = view.row_at()
     x, y, z, a, c = view.trace.setpoint[row]
     turned = rotation.from_euler("z", c, degrees=True) * rotation.from_euler("x", a, degrees=True)
     assert view.marker() == pytest.approx(turned.apply((x, y, z)), abs=0.4)
     assert abs(c) > 100.0
+    view.page.locator("#frame").select_option("machine")  # the part turns, and the tool is where the axes are
+    drawn = view.page.evaluate(
+        "() => { const { part, stage } = document.getElementById('stage').seen;"
+        " const V = stage.camera.position.constructor;"
+        " const tip = document.getElementById('stage').dataset.tip.split(' ').map(Number);"
+        " return new V(...tip).applyMatrix4(part.matrix).toArray(); }"
+    )
+    assert drawn == pytest.approx((x, y, z), abs=0.4)
     assert float(view.cell("C").split()[0]) == pytest.approx(c, abs=0.2)
     view.page.locator("#shown").select_option(label="speed C")
-    shown = view.page.evaluate("() => Math.max(...document.getElementById('chart').data[0].y)")
+    shown = view.page.evaluate(
+        "() => Math.max(...document.getElementById('chart').drawn.points.y.map(Math.abs))"
+    )
     assert shown == pytest.approx(np.max(np.abs(np.diff(view.trace.setpoint[:, 4]))) / 0.001, rel=0.01)
     assert "The groove" in view.page.locator("#operations").inner_text()
-    view.requests.remove(view.requests[-1])  # the page was loaded once more
     view.close()
 
 
 def test_a_distance_is_measured_between_two_places(chromium: Any, tmp_path: Path) -> None:
-    view = Opened(chromium, tmp_path, "bracket.nc", "mill3")
-    view.page.locator("#measure").click()
+    """Clicks near ends of pieces are drawn to them."""
+    program = tmp_path / "two.nc"
+    program.write_text("G21 G90 G94\nG0 X3 Y4 Z1\nG1 X3 Y24 F900\nG1 X43 Y24\nM30\n")
+    view = Opened(chromium, tmp_path, str(program), "mill3")
+    view.page.keyboard.press("m")
     assert view.page.locator("#measure").get_attribute("aria-pressed") == "true"
-    for point in ((3.0, 4.0, 1.0), (6.0, 8.0, 13.0)):  # clicks as the library tells them
-        view.page.evaluate(
-            "([x, y, z]) => document.getElementById('path').emit('plotly_click', "
-            "{ points: [{ x, y, z, curveNumber: 0, pointNumber: 0 }] })",
-            point,
-        )
-    assert view.page.locator("#status").inner_text() == "Distance 13.000 mm (X 3.000, Y 4.000, Z 12.000)"
+    for place in ((3.0, 5.0, 1.0), (42.0, 24.0, 1.0)):
+        view.page.mouse.click(*view.page.evaluate(ON_STAGE, place))
+    found = view.page.locator("#status").inner_text()
+    assert found == "Distance 44.721 mm (X 40.000, Y 20.000, Z 0.000)"
     view.close()
 
 
-def test_the_chart_goes_through_the_trace(chromium: Any, tmp_path: Path) -> None:
-    """However many points are crowded together, a line that can be seen as one is where the record is."""
+def test_coordinates_of_the_work_of_the_machine_and_to_go(chromium: Any, tmp_path: Path) -> None:
+    """In inch, as the program is, from a shifted zero."""
+    program = tmp_path / "inch.nc"
+    program.write_text("G20 G90 G94\nG92 X1 Y0.5\nG1 X3 F30\nM30\n")
+    view = Opened(chromium, tmp_path, str(program), "mill3")
+    view.slide(0.5)
+    shown = [view.cell("X")]
+    for _ in range(2):
+        view.page.keyboard.press("w")
+        shown.append(view.cell("X"))
+    work, machine, to_go = (float(text.removesuffix(" in")) for text in shown)
+    assert work == pytest.approx(machine + 1.0, abs=1e-4)
+    assert work + to_go == pytest.approx(3.0, abs=2e-4)
+    view.close()
+
+
+@pytest.mark.parametrize("size", [(820, 1180), (390, 844)])
+def test_smaller_screens_show_all_in_one_column(chromium: Any, tmp_path: Path, size: tuple[int, int]) -> None:
+    view = Opened(chromium, tmp_path, "bracket.nc", "mill3", viewport={"width": size[0], "height": size[1]})
+    assert view.page.evaluate("() => document.documentElement.scrollWidth") <= size[0]
+    assert view.page.locator("#stage").bounding_box()["height"] >= 300
+    view.close()
+
+
+def test_the_chart_draws_only_what_the_trace_has(chromium: Any, tmp_path: Path) -> None:
+    """Lines are the record's; a band goes from its lowest to its highest, with its mean in it."""
     feeds = [310.0 + 137.0 * (n * n % 29) for n in range(900)]
     lines = [f"G1 X{(n % 2) * (3 + n % 7)} Y{0.3 * n:.1f} F{feed:.0f}" for n, feed in enumerate(feeds)]
     program = tmp_path / "plateaus.nc"
     program.write_text("G21 G90 G94\n" + "\n".join(lines) + "\nM30\n")
     view = Opened(chromium, tmp_path, str(program), "mill3")
     trace = view.trace
-    speed = np.where(trace.rapid, np.nan, trace.feed_mm_s * 60.0)
+    speed = trace.feed_mm_s * 60.0
     end_s = float(trace.t_s[-1])
+    bands = 0
     for first, last in ((0.0, 1.0), (0.4, 0.6), (0.71, 0.72)):
-        view.page.evaluate(
-            "([a, b]) => Plotly.relayout('chart', {'xaxis.range[0]': a, 'xaxis.range[1]': b})",
+        drawn = view.page.evaluate(
+            "([a, b]) => { const { drawn } = document.getElementById('chart'); drawn.zoom(a, b);"
+            " return drawn.drawn; }",
             [first * end_s, last * end_s],
         )
-        x, y = view.page.evaluate(
-            "() => [...document.getElementById('chart').data].map((d) => [d.x, d.y])[0]"
+        x, line, low, high, mean = (
+            np.array([np.nan if value is None else value for value in drawn[name]], np.float64)
+            for name in ("x", "line", "low", "high", "mean")
         )
-        drawn = np.array([[t, np.nan if v is None else v] for t, v in zip(x, y, strict=True)], np.float64)
-        nearest = (
-            np.abs(drawn[:, None, 0] - trace.t_s[None, ::1]).argmin(axis=1) if len(drawn) < 200 else None
-        )
-        at = np.searchsorted(trace.t_s, drawn[:, 0]).clip(0, len(trace) - 1) if nearest is None else nearest
-        known = np.isfinite(drawn[:, 1])
-        assert np.nanmax(np.abs(drawn[known, 1] - speed[at][known])) < 8.0  # the view's tolerance is 6 mm/min
-        piece_s = (last - first) * end_s / 200.0
-        for (t0, v0), (t1, v1) in pairwise(drawn):
-            if t1 - t0 < piece_s or not np.isfinite(v0 + v1):
-                continue
-            inside = (trace.t_s > t0) & (trace.t_s < t1)
-            line = v0 + (v1 - v0) * (trace.t_s[inside] - t0) / (t1 - t0)
-            assert np.nanmax(np.abs(line - speed[inside])) < 15.0, (t0, t1)
+        at = np.abs(trace.t_s[None, :] - x[:, None]).argmin(axis=1)
+        known = np.isfinite(line)
+        assert np.abs(line[known] - speed[at][known]).max() < 8.0  # the view's tolerance is 6 mm/min
+        for begin, end in pairwise(np.flatnonzero(known)):
+            inside = (trace.t_s >= x[begin] - 1e-4) & (trace.t_s <= x[end] + 1e-4)
+            band = np.isfinite(low[begin + 1 : end])
+            if np.any(band):
+                bands += 1
+                k = begin + 1 + int(np.flatnonzero(band)[0])
+                assert low[k] == pytest.approx(speed[inside].min(), abs=8.0)
+                assert high[k] == pytest.approx(speed[inside].max(), abs=8.0)
+                assert mean[k] == pytest.approx(speed[inside].mean(), abs=0.02 * speed.max())
+            elif x[end] > x[begin]:
+                straight = np.interp(trace.t_s[inside], x[[begin, end]], line[[begin, end]])
+                assert np.abs(straight - speed[inside]).max() < 15.0
+    assert bands > 100
     view.close()

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from polycnc.nc import LINE_MASK, Action, BlockRecords, ProgramText
+from polycnc.nc import LINE_MASK, Action, BlockRecords, ProgramText, Zero
 from polycnc.nc.records._block_records import CONTEXT_SHIFT
 from polycnc.runner._blocks import ExecutionCollector
 
@@ -24,6 +24,9 @@ class Records:
 
     def tool(self, tag: int) -> int:
         return 3 + (tag >> CONTEXT_SHIFT) // 3
+
+    def zero(self, tag: int) -> Zero | None:
+        return Zero((float((tag >> CONTEXT_SHIFT) // 2),))
 
     def motion(self, tag: int) -> Action | None:
         return MOTIONS[((tag & LINE_MASK) * 7) % 4]

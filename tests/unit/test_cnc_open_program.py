@@ -11,10 +11,12 @@ from support.cnc_control import fresh, refused, x_of
 from support.cnc_machine import cnc_machine
 
 
-def opened(dialect: str = "din", mode: Mode = Mode.MDI, **keys: int) -> tuple[Control, OpenProgram]:
+def opened(
+    dialect: str = "din", mode: Mode = Mode.MDI, room_bytes: int = 65536
+) -> tuple[Control, OpenProgram]:
     made = Control(cnc_machine(), dialect=dialect, data=ControlData())
     made.select_mode(mode)
-    return made, made.open_program(**keys)
+    return made, made.open_program(room_bytes=room_bytes)
 
 
 def until_starved(made: Control, program: OpenProgram, cycles: int = 100_000) -> None:
@@ -219,8 +221,9 @@ def test_a_snapshot_is_refused_while_more_may_come_and_taken_after() -> None:
     status = fresh(made)
     made.restore(kept)
     assert fresh(made) == status
-    assert made.status().channel.block is not None
-    assert made.status().channel.block.text == "X15"
+    block = made.status().channel.block
+    assert block is not None
+    assert block.text == "X15"
 
 
 def test_a_search_in_it_is_refused() -> None:

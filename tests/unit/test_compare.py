@@ -434,10 +434,10 @@ def test_both_paths_in_one_view(mill: Path) -> None:
     other = _about(found.view().html)["other"]
     a, b = other["marks"]
     assert a["text"] == f"A is farthest from B: {found.a_from_b.mm:.4f} mm, line 2"
-    assert a["position"] == [found.a_from_b.position[axis] for axis in "XYZ"]
+    assert a["place"] == [found.a_from_b.position[axis] for axis in "XYZ"]
     assert a["time_s"] == found.a_from_b.time_s
     assert b["text"] == f"B is farthest from A: {found.b_from_a.mm:.4f} mm, line 2"
-    assert b["position"] == [found.b_from_a.position[axis] for axis in "XYZ"]
+    assert b["place"] == [found.b_from_a.position[axis] for axis in "XYZ"]
     assert b["time_s"] is None  # on the view's own clock nobody knows
     assert _about(polycnc.compare(line, line, mill).view().html)["other"]["marks"] == []
 

@@ -12,7 +12,7 @@ import polycnc
 from polycnc.nc import LINE_MASK, Action, BlockRecords
 from polycnc.runner import run, view_program
 from polycnc.runner._blocks import ExecutedBlock, ExecutionCollector, execution_by_lines
-from polycnc.runner.view import _page, _track
+from polycnc.runner.view import _listing, _track
 
 KINDS = {Action.RAPID: "rapid", Action.LINEAR: "line", Action.ARC_CW: "arc", Action.ARC_CCW: "arc"}
 
@@ -84,7 +84,7 @@ def test_a_view_makes_no_object_for_each_block(monkeypatch: pytest.MonkeyPatch) 
         raise AssertionError("a block as an object")
 
     monkeypatch.setattr("polycnc.runner._blocks.ExecutedBlock", refuse)
-    monkeypatch.setattr(_page, "_MOST_LINES", 500)
+    monkeypatch.setattr(_listing, "_MOST_LINES", 500)
     monkeypatch.setattr(_track.TrackCollector.__init__, "__kwdefaults__", {"most": 400})
     view = view_program(_program(3_000), "vmc3", "fanuc")
     assert view.result.ok

@@ -21,7 +21,7 @@ KNOWN = {
         "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
         "batches._report batches._store batches._sweep batches._thumbnail batches._workers batches._write "
         "comparison._both comparison._compare plots plots._over_time plots._paths plots._plot plots._scene "
-        "view view._page view._part_frame view._track view._view"
+        "view view._listing view._page view._part_frame view._picture view._track view._view"
     ),
 }
 

@@ -371,8 +371,8 @@ def test_jumps_lead_out_of_one_two_and_three_loops(fourth: str) -> None:
         ("#2=5\nN5 #100=#100+1\nGOTO#2\n", 3, 21 * 51),
         ("G0 X2\nN5 #100=#100+1\nGOTO5\n", 3, 21 * 51),
         ("#1=3\n#100=#100+1\nM99\n", 3, 21 * 51),
-        ("#1=3\nDO2\n#100=#100+1\nEND2\n", 2, 21 * 51 - 1),
-        ("#1=3\nWHILE[#1EQ3]DO2\n#100=#100+1\nEND2\n", 2, 21 * 51 - 1),
+        ("#1=3\nDO2\n#100=#100+1\nEND2\n", 2, 21 * 51),
+        ("#1=3\nWHILE[#1EQ3]DO2\n#100=#100+1\nEND2\n", 2, 21 * 51),
     ],
 )
 def test_a_loop_without_a_block_ends_after_its_pauses(text: str, line: int, rounds: int) -> None:

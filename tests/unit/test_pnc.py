@@ -262,7 +262,8 @@ def test_a_channel_selects_starts_and_watches_another(example: Example) -> None:
     found = example.run(
         '10 #A%=MCOPS(4,2,"other.npg") : #B%=MCOPS(6,2)\n20 DIM BUF%(2) : VERSION=0\n'
         "30 E%=MCODS(32,2,VERSION,BUF%,2) : #C%=BUF%(1)\n40 WHILE BUF%(1)<>1 DO\n50 E%=MCODS(32,2,VERSION,BUF%,2)\n"
-        '60 #N%=BUF%(1)\n70 END\n80 WAIT\n90 #D=MPOS("X2") : #E%=MCOPS(4,2,"none.npg") : #F%=MCOPS(4,4,"other.npg")\n'
+        '60 #N%=BUF%(1)\n70 END\n80 WAIT\n90 #D=MPOS("X2") : #E%=MCOPS(4,2,"none.npg",,,2)\n'
+        '95 #F%=MCOPS(4,4,"other.npg")\n'
         '100 #G%=MCOPS(6,1) : #H%=MCOPS(4,1,"other.npg")'
     )
     assert [found[f"#{name}"] for name in ("A%", "B%", "C%", "N%", "D", "E%", "F%", "G%", "H%")] == [
@@ -277,7 +278,7 @@ def test_a_channel_is_reset_and_changes_its_mode_on_demand(example: Example) -> 
         "10 #A%=MCOPS(7,2,4) : #B%=MCOPS(5,2) : #C%=MCOPS(2,2)\n20 WAIT(,200)\n30 #D%=MCOPS(7,2,4)\n"
         '40 #E%=MCOPS(4,2,"G1 X2=3 F6000",,,160) : #F%=MCOPS(7,2,99)\n50 WAIT(,2000)\n60 #G=SPOS(4)'
     )
-    assert [found[f"#{name}"] for name in ("A%", "B%", "C%", "D%", "E%", "F%")] == [13, 0, 0, 0, 0, 18]
+    assert [found[f"#{name}"] for name in ("A%", "B%", "C%", "D%", "E%", "F%")] == [13, 0, 3, 0, 0, 18]
     assert found["#G"] == pytest.approx(3)
 
 
@@ -288,7 +289,7 @@ def test_the_rest_of_a_way_is_not_cancelled_by_another_channel(example: Example)
         "".join(ask.format(*each) for each in ((1, "A", 2), (2, "B", 3), (3, "C", 4)))
         + "40 #D%=MCOPS(2,2)\n50 WAIT(,500)\n60 #E%=MCOPS(7,2,1) : #F%=MCOPS(1,2)"
     )
-    assert [found[f"#{name}%"] for name in "ABCDEF"] == [2, 10, 1, 0, 0, 8]
+    assert [found[f"#{name}%"] for name in "ABCDEF"] == [102, 10, 1, 0, 0, 10]
 
 
 @pytest.mark.covers("cpl.ex.2607", "cpl.err.1938", "cpl.err.1970")

@@ -726,3 +726,51 @@ def test_rapids_before_work_without_a_tool_change_stay(between: str) -> None:
     assert [record.line for record in path if isinstance(record, Goto)][:2] == [3, 5]
     assert path.remarks.all() == []
     assert [record.line for record in parse_tool_path("RAPID\nGOTO/0,0,90\n")] == [1, 2]
+
+
+WORLD = "TRNTYP/WORLD,0,0,0\nLOADTL/3\n"
+CSYS = "CSYS/1,0,0,{},0,1,0,{},0,0,1,0\n"
+
+
+def test_points_after_trntyp_world_count_from_the_world_whatever_csys_come() -> None:
+    text = WORLD + CSYS.format(0, 0) + AWAY + CSYS.format(50, 20) + AWAY.replace("4,5,", "54,25,") + "END\n"
+    results = []
+    for systems in ("one", "work_offsets"):
+        shipped = shipped_text("fanuc-mill")
+        mine = shipped.replace("[parameters]", f'[parameters]\ncoordinate_systems = "{systems}"')
+        result = post_file(parse_tool_path(text), parse_control(mine, "mine.toml"), verify=True)
+        assert result.ok
+        assert [remark.line for remark in result.summary.remarks] == [12]
+        results.append(result.text)
+    assert results[0] == results[1]
+    blocks = (results[0] or "").splitlines()
+    assert "G55" not in blocks
+    assert "X54. Y25." in (results[0] or "")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        WORLD + "CSYS/1,0,0,0,0,0,-1,0,0,1,0,0\n" + AWAY,
+        "CSYS/1,0,0,0,0,0,-1,0,0,1,0,0\n" + WORLD + AWAY,
+        WORLD + CSYS.format(0, 0) + AWAY + "CSYS/1,0,0,0,0,-1,0,0,0,0,-1,0\n" + AWAY,
+    ],
+)
+def test_a_set_up_that_leans_against_the_world_is_refused(text: str) -> None:
+    with pytest.raises(ProgramError, match="leans against the world"):
+        post_file(parse_tool_path(text), "fanuc-mill")
+
+
+@pytest.mark.parametrize("note", ["5MM CRB 4FL 16 LOC", "STOP change fixture", "TURN PART OVER"])
+def test_words_that_no_control_reads_are_a_comment_with_a_remark(note: str) -> None:
+    result = post_file(parse_tool_path(f"LOADTL/3\nINSERT/{note}\n" + AWAY), "fanuc-mill", verify=True)
+    assert result.ok
+    assert f"({note.upper()})" in (result.text or "").upper()
+    assert [remark.line for remark in result.summary.remarks] == [2]
+
+
+@pytest.mark.parametrize(
+    "block", ["M77", "G91 G28 Z0.", "#100=5", "GOTO 10", "IF[#1EQ0]GOTO5", "5 A%=1", "M30 END OF PART"]
+)
+def test_blocks_of_a_control_stay_blocks(block: str) -> None:
+    assert records(f"INSERT {block}\n") == [Text(1, "insert", block)]

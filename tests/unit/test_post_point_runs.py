@@ -11,7 +11,7 @@ from polycnc.errors import ProgramError
 from polycnc.post import BlockMap, parse_tool_path, post_program, sweep_tool_path
 from polycnc.post.tool_path._records import Points
 from polycnc.runner import post_file
-from polycnc.runner._verify_post import _Standing
+from polycnc.runner._verify_post import _Skipped
 from support.post_controls import control
 
 POINTS = "".join(
@@ -110,18 +110,12 @@ def test_old_line_ends_count_as_lines() -> None:
     assert [record.line for record in path] == list(range(1, 40))
 
 
-def test_where_the_machine_stood_is_known_where_records_have_gaps() -> None:
-    standing = _Standing()
-    rows = np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0], [7.0, 8.0, 9.0], [7.5, 8.5, 9.5]])
-    standing.note(np.array([2, 2, 3, 6]), rows)
-    standing.note(np.array([6, 9]), rows[:2] + 10.0)
-    begin = np.array([[0.5, 0.25, 0.75]])
-    found = standing.behind(np.array([1, 4, 5, 7, 8, 11]), begin)
-    assert found.tolist() == [
-        [0.5, 0.25, 0.75],
-        [7.0, 8.0, 9.0],
-        [7.0, 8.0, 9.0],
-        [11.0, 12.0, 13.0],
-        [11.0, 12.0, 13.0],
-        [14.0, 15.0, 16.0],
-    ]
+def test_records_without_rows_are_held_against_the_way_on_which_the_machine_passed_them() -> None:
+    skipped = _Skipped()
+    before, after = np.array([2, 2, 3]), np.array([2, 3, 6])
+    start = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
+    skipped.note(before, after, start, start + [1.0, 0.0, 0.0])
+    begin, here = np.array([[-1.0, 0.0, 0.0]]), np.array([[9.0, 0.0, 0.0]])
+    points = np.array([[0.0, 0.0, 0.0], [2.5, 0.25, 0.0], [4.0, 0.0, 0.0], [9.0, 0.0, 0.5]])
+    found = skipped.nearest(np.array([1, 4, 5, 11]), points, begin, (9, here))
+    assert found.tolist() == [1.0, 0.25, 1.0, 0.5]

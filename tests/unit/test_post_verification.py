@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import random
 from pathlib import Path
 
 import numpy as np
@@ -250,3 +251,46 @@ def test_a_length_that_is_not_compensated_is_found() -> None:
     assert proof.run.alarms == []
     assert not proof.ok
     assert proof.off_path.mm == pytest.approx(120.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["din", "fanuc-mill"])
+def test_a_move_that_rounds_to_nothing_in_fast_motion_is_no_deviation(name: str) -> None:
+    points = ("10,0", "10.0003,0", "50,0", "50.0002,0.0003", "50,40", "50,40.0002")
+    text = "FEDRAT/6000,MMPM\nGOTO/0,0,-1\n" + "".join(f"GOTO/{point},-1\n" for point in points)
+    proof = post_file(
+        parse_tool_path("LOADTL/1\nSPINDL/RPM,9000,CLW\n" + text), name, verify=True
+    ).verification
+    assert proof is not None
+    assert proof.ok
+    assert proof.deviation_mm < 5e-4
+
+
+def test_arcs_written_with_three_decimals_are_proven() -> None:
+    chance = random.Random(5)
+    lines = ["LOADTL/1", "SPINDL/RPM,9000,CLW", "FEDRAT/6000,MMPM", "GOTO/0,0,-1"]
+    x = y = 0.0
+    for _ in range(60):
+        radius, begin = 10.0 ** chance.uniform(-0.5, 1.3), chance.uniform(0.0, math.tau)
+        sense, turn = chance.choice((-1, 1)), chance.uniform(0.05, 6.0)
+        center = x - radius * math.cos(begin), y - radius * math.sin(begin)
+        x, y = (
+            c + radius * f(begin + sense * turn) for c, f in zip(center, (math.cos, math.sin), strict=True)
+        )
+        lines.append(f"CIRCLE/{center[0]:.6f},{center[1]:.6f},-1,0,0,{sense},{radius:.6f}")
+        lines.append(f"GOTO/{x:.6f},{y:.6f},-1")
+    proof = post_file(parse_tool_path("\n".join(lines) + "\n"), "fanuc-mill", verify=True).verification
+    assert proof is not None
+    assert proof.deviation_mm <= proof.tolerance_mm == pytest.approx(0.00125)
+
+
+@pytest.mark.parametrize(
+    ("decimals", "units", "tolerance_mm"), [(4, "mm", 0.001), (2, "mm", 0.0125), (4, "inch", 0.003175)]
+)
+def test_without_a_tolerance_it_is_what_rounding_may_cost(
+    decimals: int, units: str, tolerance_mm: float
+) -> None:
+    path = parse_tool_path("FEDRAT/900,MMPM\nGOTO/1,2,-1\nGOTO/3,4,-1\n")
+    shipped = shipped_text("din").replace("decimals = 3", f'decimals = {decimals}\nunits = "{units}"')
+    proof = post_file(path, parse_control(shipped, "mine.toml"), verify=True).verification
+    assert proof is not None
+    assert proof.tolerance_mm == pytest.approx(tolerance_mm)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import gzip
+import hashlib
 import json
 import re
 from pathlib import Path
@@ -14,6 +15,7 @@ import pytest
 
 import polycnc
 from polycnc.errors import UsageError
+from polycnc.machine import ToolConfig
 from polycnc.runner import check_view_file, view_program
 from polycnc.runner.view import TrackCollector
 from polycnc.runner.view._thin import kept_rows
@@ -35,7 +37,7 @@ M30
 
 def _content(html: str) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     def unpacked(name: str) -> bytes:
-        found = re.search(rf'<script type="text/plain" id="{name}">([^<]*)</script>', html)
+        found = re.search(rf'<script type="text/plain" class="data" id="{name}">([^<]*)</script>', html)
         assert found is not None
         return gzip.decompress(base64.b64decode(found[1]))
 
@@ -145,10 +147,18 @@ def test_texts_cannot_leave_their_place() -> None:
 
 
 def test_a_page_names_nothing_to_load() -> None:
+    """Style, script and modules are in the page; the policy allows these alone, by their hashes."""
     html = view_program(PROGRAM).html
-    own = html[: html.index("<script>")] + html[html.rindex("</script>\n<script>") :]
+    own = re.sub(r"<!--.*?-->", "", html, flags=re.DOTALL)
     assert not re.search(r"""(?:src|href)\s*=|@import|url\(|fetch\(|XMLHttp|https?://""", own)
-    assert "default-src 'none'" in own
+    policy = re.search(r'Content-Security-Policy" content="([^"]+)"', html)
+    assert policy is not None
+    assert "unsafe" not in policy[1]
+    for tag, directive in (("script", "script-src"), ("style", "style-src")):
+        (text,) = re.findall(rf"<{tag}>(.*?)</{tag}>", html, re.DOTALL)
+        digest = base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+        assert f"{directive} 'sha256-{digest}'" in policy[1]
+    assert len(html) < 1_200_000
 
 
 def test_a_program_without_motion_has_a_page() -> None:
@@ -207,3 +217,30 @@ def test_a_notebook_gets_a_frame() -> None:
     frame = view_program("G0 X5\n")._repr_html_()
     assert frame.startswith('<iframe srcdoc="&lt;!doctype html&gt;')
     assert "<script" not in frame
+
+
+def test_the_work_is_shown_from_its_zero_and_in_its_units() -> None:
+    """A work offset and a shift: what the page subtracts is where the program has its zero."""
+    machine = polycnc.load_machine("mill3").model_copy(
+        update={"offsets": {"G54": {"X": 17.0, "Y": -23.0, "Z": 5.5}}}
+    )
+    program = "G20 G54\nG0 X1 Y2 Z0.5\nG1 Z-0.25 F20\nX3\nG92 X0.5\nG1 X1\nM30\n"
+    about, columns = _content(view_program(program, machine, "fanuc").html)
+    assert about["inch"]
+    assert about["zero"] == pytest.approx([17.0, -23.0, 5.5])
+    zeros = columns["zero"].reshape(3, -1)
+    assert zeros[:, -1] == pytest.approx([17.0 + 2.5 * 25.4, -23.0, 5.5])
+    assert columns["position"].reshape(3, -1)[0, -1] - zeros[0, -1] == pytest.approx(25.4, abs=0.01)
+    about, _ = _content(view_program(program, machine, "fanuc", inch=False).html)
+    assert not about["inch"]
+
+
+def test_a_tool_hangs_from_the_spindle_and_has_its_shape() -> None:
+    tools = {3: ToolConfig(length_mm=71.0, description="ball end mill D=6.")}
+    machine = polycnc.load_machine("mill3").model_copy(update={"tools": tools})
+    program = "T3 M6\nG43 H3 Z40\nG1 X9 F800\nZ-2\nM30\n"
+    about, columns = _content(view_program(program, machine, "fanuc").html)
+    assert about["shapes"]["3"]["kind"] == "ball"
+    assert about["shapes"]["3"]["hang"] == [0.0, 0.0, -71.0]
+    assert about["zero"] == pytest.approx([0.0, 0.0, 0.0])
+    assert columns["tip"].reshape(3, -1)[2, -1] == pytest.approx(-2.0)

@@ -96,7 +96,9 @@ def test_a_view_of_a_head_follows_the_tip() -> None:
     points = columns["position"].reshape(len(about["axes"]), -1)
     still = points[4] > 0.0
     assert np.ptp(points[0][still]) > 170.0
-    assert np.abs(points[5:, still]).max() < 0.15  # the corners between the blocks are rounded by no more
+    assert (
+        np.abs(columns["tip"].reshape(3, -1)[:, still]).max() < 0.15
+    )  # the corners between the blocks are rounded by no more
 
 
 @pytest.mark.parametrize(
@@ -123,7 +125,7 @@ def test_at_zero_the_part_lies_as_the_machine_does() -> None:
 
 def _content(html: str) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     def unpacked(name: str) -> bytes:
-        found = re.search(rf'<script type="text/plain" id="{name}">([^<]*)</script>', html)
+        found = re.search(rf'<script type="text/plain" class="data" id="{name}">([^<]*)</script>', html)
         assert found is not None
         return gzip.decompress(base64.b64decode(found[1]))
 
@@ -138,8 +140,9 @@ def _content(html: str) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
 
 def test_a_turn_of_the_table_is_a_circle_on_the_part() -> None:
     about, columns = _content(view_program("G0 X40 Z9\nG91 G1 C350 F7200\nM30\n", "mill5").html)
-    assert [axis["name"] for axis in about["axes"]][-3:] == ["X on part", "Y on part", "Z on part"]
-    points = columns["position"].reshape(len(about["axes"]), -1)
+    assert [each["carries"] for each in about["chain"]] == ["part", "part"]
+    own, on_part = (columns[name].reshape(rows, -1) for name, rows in (("position", 5), ("tip", 3)))
+    points = np.vstack((own, on_part))
     turning = points[4] > 0.0
     radius = np.hypot(points[5], points[6])[turning]
     assert radius == pytest.approx(np.full(len(radius), 40.0), abs=1e-3)
@@ -152,7 +155,7 @@ def test_a_turn_of_the_table_is_a_circle_on_the_part() -> None:
 
 def test_a_machine_without_tables_has_no_such_frame() -> None:
     about, _ = _content(view_program("G1 X40 F900\nM30\n", "mill3").html)
-    assert [axis["name"] for axis in about["axes"]] == ["X", "Y", "Z"]
+    assert (about["chain"], about["tips"]) == ([], [0, 1, 2])
 
 
 def test_derivatives_are_those_of_the_record() -> None:

@@ -121,6 +121,10 @@ Page = Annotated[
         metavar="FILE",
     ),
 ]
+PageUnits = Annotated[
+    Units | None,
+    typer.Option("--units", help="Units of lengths in the page (default: the program's).", metavar="mm|inch"),
+]
 OpenPage = Annotated[bool, typer.Option("--open", help="Open the page in the browser.")]
 
 # ---------------------------------------------------------------------- of a batch
@@ -189,8 +193,14 @@ Verify = Annotated[
     bool, typer.Option("--verify", help="Run the program and compare its path with the tool path.")
 ]
 PostTolerance = Annotated[
-    float,
-    typer.Option(help="Greatest deviation that --verify accepts, in mm.", metavar="MM", min=1e-6, max=10.0),
+    float | None,
+    typer.Option(
+        help="Greatest deviation that --verify accepts, in mm; without it what rounding to the "
+        "decimals of the control file may cost, and at least 0.001.",
+        metavar="MM",
+        min=1e-6,
+        max=10.0,
+    ),
 ]
 PostMachine = Annotated[
     str | None,

@@ -16,15 +16,13 @@ if TYPE_CHECKING:
     from polycnc.post import ArcAxis
     from polycnc.runner import PostResult, PostVerification
 
-_TOLERANCE_MM = 1e-3
-
 
 def post_command(
     tool_path: options.ToolPath = None,
     control: options.Control = None,
     output: options.PostOutput = None,
     verify: options.Verify = False,
-    tolerance: options.PostTolerance = _TOLERANCE_MM,
+    tolerance: options.PostTolerance = None,
     machine: options.PostMachine = None,
     arc_axis: options.ArcSense = None,
     as_json: options.PostAsJson = False,

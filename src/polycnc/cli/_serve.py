@@ -1,85 +1,72 @@
-"""``polycnc serve``: controls that live, and answer clients over the network."""
+"""``polycnc serve``: machines that live, and answer clients over the network."""
 
 from __future__ import annotations
 
+import contextlib
 import ipaddress
-import re
-from dataclasses import dataclass
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING
 
-import typer
-
+from polycnc.cli import _serve_options as _options
 from polycnc.cli._output import say, say_error
-from polycnc.units import whole
 
 if TYPE_CHECKING:
-    from polycnc.servers.focas import Fault, FocasServer, Keeper, Profile
+    from polycnc.servers.setup import Plan
 
-_SHARE_S = 0.01  # of the wall clock that all controls together may take before a door answers
-_NUMBER = re.compile(rb"\s*O(\d{1,4})\b")
-_MOST = 4000
-_CHARACTERS = "Size of the program memory; absent: as of the series."
+_MOST_LINES = 20  # of doors that are named one by one
 
 
 def serve_command(
-    fanuc: Annotated[bool, typer.Option("--fanuc", help="Serve a FANUC control: FOCAS over TCP.")] = False,
-    profile: Annotated[
-        str, typer.Option(help="The series that clients see: power-mate, 16i, 0i-d or 31i.", metavar="NAME")
-    ] = "31i",
-    port: Annotated[
-        int, typer.Option(help="TCP port, 0 for a free one, which is said.", min=0, max=65535)
-    ] = 8193,
-    address: Annotated[
-        str, typer.Option(help="Address to listen on; only those of this computer.")
-    ] = "127.0.0.1",
-    count: Annotated[
-        int,
-        typer.Option(
-            help="So many controls, each at an address of its own: 127.0.0.1, 127.0.0.2, ...",
-            min=1,
-            max=_MOST,
-        ),
-    ] = 1,
-    program: Annotated[
-        Path | None, typer.Option(help="A program that runs again and again.", metavar="FILE")
-    ] = None,
-    axes: Annotated[int, typer.Option(help="How many axes the control has.", min=1, max=6)] = 3,
-    rate: Annotated[
-        float, typer.Option(help="Machine seconds that pass in a second.", min=0.0, max=1000.0, metavar="X")
-    ] = 1.0,
-    memory: Annotated[
-        Path | None,
-        typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
-    ] = None,
-    characters: Annotated[int | None, typer.Option(help=_CHARACTERS, min=1, max=10**9, metavar="N")] = None,
-    faults: Annotated[
-        Path | None,
-        typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
-    ] = None,
+    file: _options.File = None,
+    fanuc: _options.Fanuc = False,
+    plain: _options.Plain = None,
+    bosch: _options.Bosch = None,
+    apci: _options.Apci = None,
+    imc: _options.Imc = None,
+    doors: _options.Doors = None,
+    expose: _options.Expose = None,
+    token: _options.Token = None,
+    insecure: _options.Insecure = None,
+    log: _options.Log = None,
+    profile: _options.Profile = "31i",
+    port: _options.Port = 8193,
+    address: _options.Address = "127.0.0.1",
+    count: _options.Count = 1,
+    program: _options.Program = None,
+    axes: _options.Axes = 3,
+    rate: _options.Rate = 1.0,
+    memory: _options.Memory = None,
+    characters: _options.Characters = None,
+    faults: _options.Faults = None,
 ) -> None:
-    """Serve a simulated control that runs, until Ctrl-C ends it."""
-    from polycnc.errors import UsageError
-
-    if not fanuc:
-        raise UsageError("which control shall be served?", hint="Write --fanuc; others are not there yet.")
-    _check_addresses(address, count, port, memory)
+    """Serve simulated machines that run, until Ctrl-C ends it."""
     import asyncio
 
-    from polycnc.servers.focas import load_faults, load_profile
+    from polycnc.servers.setup import Flags, plan_of
 
-    wanted = _Wanted(
-        profile,
-        load_profile(profile),
-        port,
-        program,
-        axes,
-        rate,
-        memory,
-        characters,
-        () if faults is None else load_faults(faults),
+    _check_addresses(address, count, port, memory)
+    plan = plan_of(
+        Flags(
+            file=file,
+            kinds={"fanuc": "" if fanuc else None, "plain": plain, "bosch": bosch, "apci": apci, "imc": imc},
+            profile=profile,
+            port=port,
+            addresses=tuple(_addresses(address, count)),
+            doors=doors,
+            expose=expose,
+            token=token,
+            insecure=insecure,
+            log=log,
+            program=program,
+            axes=axes,
+            characters=characters,
+            rate=rate,
+            memory=memory,
+            faults=faults,
+        )
     )
-    asyncio.run(_serve(wanted, _addresses(address, count)))
+    asyncio.run(_serve(plan))
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -95,21 +82,6 @@ def _check_addresses(address: str, count: int, port: int, memory: Path | None) -
         raise UsageError(f"{count} controls cannot share {memory}", hint="Serve one control with a memory.")
     if count > 1 and port == 0:
         raise UsageError("several controls on port 0", hint="Say the port; they differ in their addresses.")
-
-
-@dataclass(frozen=True)
-class _Wanted:
-    """What is to be served."""
-
-    name: str
-    profile: Profile
-    port: int
-    program: Path | None
-    axes: int
-    rate: float
-    memory: Path | None
-    characters: int | None
-    faults: tuple[Fault, ...]
 
 
 class _Late:
@@ -146,68 +118,53 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def _serve(wanted: _Wanted, addresses: list[str]) -> None:
+async def _serve(plan: Plan) -> None:
     import asyncio
+    import signal
 
     from polycnc import runner
-    from polycnc.controllers.fanuc import PowerMate
-    from polycnc.servers.focas import Faults, FocasServer, Keeper, ServedControl
+    from polycnc.servers.process import Serving
 
-    content = None if wanted.program is None else runner.program_text(wanted.program).content
-    servers: list[FocasServer] = []
-    keepers: list[Keeper] = []
-    controls: list[PowerMate] = []
-    wall = runner.WallClock()
-    late = _Late()
+    ended = _end_on_signal(signal.SIGTERM)
+    serving = Serving(runner.WallClock(), plan.log, _Late().say)
     try:
-        for address in addresses:
-            characters = wanted.characters or wanted.profile.program_characters
-            control = PowerMate(wanted.axes, memory=wanted.memory, characters=characters)
-            controls.append(control)
-            if content is not None:
-                number, text = _numbered(content)
-                control.programs.register(number, text)
-                control.select_program(number)
-                control.cycle_start()
-            if not servers:
-                control.advance(1)  # what has to be compiled is compiled before anybody waits for an answer
-            faults = Faults(wanted.faults, control.clock.now_s)
-            keeper = Keeper(
-                ServedControl(control, faults, again=content is not None),
-                wall,
-                rate=wanted.rate,
-                share_s=_SHARE_S / len(addresses),
-                on_late=late.say,
-            )
-            keepers.append(keeper)
-            server = FocasServer(
-                keeper, control, wanted.profile, address=address, port=wanted.port, faults=faults
-            )
-            await server.start()
-            servers.append(server)
-        say(_said(wanted.name, servers))
-        await asyncio.wait([keeper.failed for keeper in keepers], return_when=asyncio.FIRST_COMPLETED)
-        for keeper in keepers:
-            if keeper.failed.done():
-                keeper.failed.result()
+        await serving.open(plan.machines, plan.shared)
+        for warning in plan.warnings:
+            say_error(warning)
+        _say_doors([(name, door.said) for name, door in serving.doors])
+        await asyncio.sleep(0)  # whoever wants it to end already
+        serving.begin()
+        await serving.run()
+    except asyncio.CancelledError:
+        if ended:
+            sys.exit(128 + ended[0])
+        raise
     finally:
-        for server in servers:
-            await server.close()
-        for keeper in keepers:
-            keeper.close()
-        for control in controls:
-            control.close()
+        await serving.close()
 
 
-def _said(profile: str, servers: list[FocasServer]) -> str:
-    first, last = (f"{server.address}:{server.port}" for server in (servers[0], servers[-1]))
-    if len(servers) == 1:
-        return f"serving a FANUC {profile} on {first}; Ctrl-C ends it"
-    return f"serving {len(servers)} FANUC {profile} on {first} to {last}; Ctrl-C ends them"
+def _end_on_signal(number: int) -> list[int]:
+    """Let a signal end what runs where it waits, never in the middle of something; return the list that tells of it."""
+    import asyncio
+
+    task, came = asyncio.current_task(), list[int]()
+    assert task is not None
+
+    def end() -> None:
+        came.append(number)
+        task.cancel()
+
+    with contextlib.suppress(NotImplementedError):  # Windows: the process ends as others do
+        asyncio.get_running_loop().add_signal_handler(number, end)
+    return came
 
 
-def _numbered(content: bytes) -> tuple[int, bytes]:
-    """Return the number of a program and its text from the O word on; one without a number becomes O1."""
-    text = content.replace(b"\r\n", b"\n").strip().removeprefix(b"%").lstrip().partition(b"\n%")[0] + b"\n"
-    found = _NUMBER.match(text)
-    return (whole(found[1]), text) if found else (1, b"O1\n" + text)
+def _say_doors(doors: list[tuple[str, str]]) -> None:
+    """Say where each door is; of a long row of doors the first and the last."""
+    if len(doors) > _MOST_LINES:
+        (first, at), (_, last) = doors[0], doors[-1]
+        say(f"{first}: {at} to {last}")
+    else:
+        for name, at in doors:
+            say(f"{name}: {at}")
+    sys.stdout.flush()

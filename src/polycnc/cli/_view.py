@@ -7,6 +7,7 @@ from pathlib import Path
 
 from polycnc.cli import _options as options
 from polycnc.cli._output import bold_red, progress_bar, say, say_error
+from polycnc.cli._summary import Units
 
 
 def view_command(
@@ -15,6 +16,7 @@ def view_command(
     open_page: options.OpenPage = False,
     machine: options.Machine = None,
     dialect: options.Dialect = None,
+    units: options.PageUnits = None,
 ) -> None:
     """Run a part program and write a page that shows it: path, time, blocks, tools, speed."""
     from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program
@@ -24,8 +26,9 @@ def view_command(
     target = check_view_file(
         output or Path(program.stem + ".html"), inputs, replaces_views_only=output is None
     )
+    inch = None if units is None else units is Units.INCH
     with progress_bar(program.name) as bar:
-        view = view_program(text, machine, dialect, progress=bar)
+        view = view_program(text, machine, dialect, inch=inch, progress=bar)
     view.save(target)
     say(f"time       {time_text(view.result.time_s)}")
     say(f"wrote      {target}")

@@ -186,10 +186,18 @@ class Control:
         return self._programs.open_program(name, room_bytes=room_bytes, channel=channel)
 
     def search(
-        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+        self,
+        *,
+        line: int = 0,
+        sequence: int | None = None,
+        calculate: bool = False,
+        last: int = 0,
+        channel: int = 0,
     ) -> int:
         """Let the next start begin the selected program at a block; return its line."""
-        return self._programs.search(line=line, sequence=sequence, calculate=calculate, channel=channel)
+        return self._programs.search(
+            line=line, sequence=sequence, calculate=calculate, last=last, channel=channel
+        )
 
     def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
         """Begin the selected program or the MDI text, or go on where a program is interrupted."""
@@ -211,8 +219,6 @@ class Control:
         """Put an alarm on from outside: everything brakes, and only a reset helps; one that is on stays as it is."""
         return self._programs.put_alarm(name, axis=axis, detail=detail)
 
-    # ------------------------------------------------------------------ editing
-
     def edit(self, name: str, *, background: bool = False) -> ProgramEdit:
         """Open a program for editing: in EDIT in the foreground, in any mode in the background; one of each."""
         if not background and all(channel.mode is not Mode.EDIT for channel in self.channels):
@@ -223,8 +229,6 @@ class Control:
     def is_editing(self) -> bool:
         """Whether a program is open for editing."""
         return self._parts.edits.any_open
-
-    # ------------------------------------------------------------------ axes by hand
 
     def jog(self, axis: str, direction: int | None, *, rapid: bool = False) -> None:
         """Press a jog key (1 or -1), or let it go (None)."""
@@ -250,8 +254,6 @@ class Control:
     def relative_zero(self) -> tuple[float, ...]:
         """Where the relative positions count from (machine coordinates)."""
         return tuple(self._parts.relative_zero)
-
-    # ------------------------------------------------------------------ time
 
     @property
     def raised(self) -> ControlEvent:
@@ -284,8 +286,6 @@ class Control:
             if (found := name.format(number=number)) in self.programs:
                 return self.programs.text(found)
         return None
-
-    # ------------------------------------------------------------------ auxiliary functions
 
     def _meet(self, path: int, event: Event) -> bool:
         """Hand the auxiliary functions of a block to spindle and PLC; return whether the path has to wait for them."""

@@ -109,12 +109,14 @@ def check_channels(channels: tuple[ChannelData, ...], axes: tuple[str, ...]) -> 
 class Search:
     """Where a program begins with its next start: the block on `line`, or with sequence number `sequence`.
 
-    With `calculate` what stands before is carried out without moving.
+    With `calculate` what stands before is carried out without moving. It ends behind the block on line `last`, if
+    that is given.
     """
 
     line: int = 0
     sequence: int | None = None
     calculate: bool = False
+    last: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._run_state import RunState
 from polycnc.machine import Clock
-from polycnc.nc import IncomingText, LineCheck
+from polycnc.nc import IncomingText, LineCheck, ModalWords
 
 
 class OpenProgram:
@@ -22,6 +22,7 @@ class OpenProgram:
         self._text = text
         self._clock = clock
         self._check: tuple[ProgramRun, LineCheck] | None = None
+        self._rehearses = False
 
     @property
     def name(self) -> str:
@@ -60,13 +61,48 @@ class OpenProgram:
         return self._text.waiting
 
     @property
-    def line_check(self) -> LineCheck:
-        """What the state will be after all that has been fed, as far as that is known.
+    def queued(self) -> int:
+        """How many lines wait and how many moves are queued that have not been executed."""
+        run = self._run
+        return 0 if run is None else self._text.waiting + run.queued
+
+    def modal_ahead(self) -> ModalWords:
+        """Return the modal words in force after all that has been fed, as far as that is known.
 
         Raises:
             ControlError: It is not open.
         """
-        return self._checked(self._open_run())
+        run = self._open_run()
+        return run.channel.records.words(self._text.opening, self._checked(run).state.snapshot())
+
+    def position_ahead(self) -> tuple[float, ...]:
+        """Return where the axes will be after all that has been fed (machine coordinates, mm or degree).
+
+        Raises:
+            ControlError: It is not open.
+        """
+        return tuple(self._checked(self._open_run()).state.modal.position.tolist())
+
+    def probed(self) -> tuple[float, ...] | None:
+        """Return where the last probing move met something (machine coordinates), None where it did not."""
+        run = self._run
+        found = None if run is None else run.channel.state.probe
+        return None if found is None else found.position
+
+    def rehearse(self, text: str) -> None:
+        """Check whole lines as those that come next, and those after them; nothing is executed from now on.
+
+        Raises:
+            ProgramError: As `feed`.
+            ControlError: It is not open.
+        """
+        run = self._open_run()
+        if not self._rehearses:
+            self._checked(run)
+            self._rehearses = True
+        self._checked(run).check(
+            self._text.piece((text.encode("utf-8", "replace"),)), run.channel.skip_levels
+        )
 
     def feed(self, text: str | bytes) -> None:
         """Add text, cut wherever; a line counts once its newline has come. Refused text changes nothing.
@@ -128,7 +164,7 @@ class OpenProgram:
         if self._check is None or self._check[0] is not run:
             self._check = run, run.line_check()
         check = self._check[1]
-        if run.state is not RunState.READY and run.channel.starved:
+        if run.state is not RunState.READY and run.channel.starved and not self._rehearses:
             check.follow(run.channel.state)
         return check
 

@@ -39,7 +39,9 @@ def find_block(run: ProgramRun, search: Search) -> int:
         ControlError: There is none, or the program cannot begin there.
     """
     try:
-        return run.search(line=search.line, sequence=search.sequence, calculate=search.calculate)
+        return run.search(
+            line=search.line, sequence=search.sequence, calculate=search.calculate, last=search.last
+        )
     except UsageError as error:
         raise ControlError(Refusal.NOT_FOUND, error.what, hint=error.hint) from error
 

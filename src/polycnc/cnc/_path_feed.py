@@ -100,9 +100,8 @@ class PathFeed:
             self.prepare()
         if self.channel.done or self.channel.waits or self._met_at is not None:
             row["low_water"] = _NEVER
-        elif (
-            self.channel.starved
-        ):  # a line is held back while the path may yet leave its end by a rounded corner
+        elif self.channel.starved:
+            # A line is held back while the path may yet leave its end by a rounded corner.
             row["low_water"] = 0 if row["prepared"] < row["tail"] else _NEVER
         elif self._ahead is not None or self.stopper.has_conditions or self.stopper.alone:
             row["low_water"] = row["planned"] - row["head"] - 1

@@ -92,13 +92,20 @@ class ProgramCommands:
         return OpenProgram(chosen, text, self._of.clock)
 
     def search(
-        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, channel: int = 0
+        self,
+        *,
+        line: int = 0,
+        sequence: int | None = None,
+        calculate: bool = False,
+        last: int = 0,
+        channel: int = 0,
     ) -> int:
         """Let the next start begin the selected program at a block; return its line.
 
         It is the block on `line`, or the first one with a sequence number. With `calculate` everything before is
         carried out without moving, and with the start the axes go straight at rapid to where that block begins; else
-        modal state and position are what they are. A reset, another selection and the start itself end the search.
+        modal state and position are what they are. With `last` the program ends behind the block on
+        that line. A reset, another selection and the start itself end the search.
 
         Raises:
             ControlError: Not in AUTO, nothing is selected, there is no such block, the program cannot begin there, or
@@ -115,7 +122,7 @@ class ProgramCommands:
             raise ControlError(
                 Refusal.NOT_FOUND, f"{text.name} is still coming", hint="Search a program of the memory."
             )
-        return chosen.seek(text, Search(line, sequence, calculate))
+        return chosen.seek(text, Search(line, sequence, calculate, last))
 
     def cycle_start(self, *, channel: int = 0, step: Step = Step.RUN, line: int = 1) -> None:
         """Begin the selected program or the MDI text, or go on where a program is interrupted.

@@ -223,11 +223,14 @@ class ProgramRun:
         self.load(ProgramText.from_text(text, "MDI"), keeps_modal=True)
         self.start()
 
-    def search(self, *, line: int = 0, sequence: int | None = None, calculate: bool = False) -> int:
+    def search(
+        self, *, line: int = 0, sequence: int | None = None, calculate: bool = False, last: int = 0
+    ) -> int:
         """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
 
         With `calculate` everything before is carried out without moving, and with the start the axes go straight at
-        rapid to where that block begins; else modal state and position are what they are. Return the line.
+        rapid to where that block begins; else modal state and position are what they are. The program ends behind the
+        block on line `last`, if one is given. Return the line.
 
         Raises:
             UsageError: there is no such block, or the program cannot begin there; it stands at its beginning then.
@@ -236,6 +239,7 @@ class ProgramRun:
         target = block_line(self.program, line, sequence)
         self._replace_channel(self.program, keeps_modal=False)
         self._moment.state = RunState.READY
+        self.channel.bound(target, last)
         if not calculate:
             self.channel.go_to(target)
             return target
@@ -442,6 +446,11 @@ class ProgramRun:
         row = self._conduct.row
         rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
         return self.active and rests and self.channel.starved
+
+    @property
+    def queued(self) -> int:
+        """How many moves and waits are queued that have not been executed."""
+        return int(self._conduct.row["tail"] - self._conduct.row["head"])
 
     def line_check(self) -> LineCheck:
         """Return a check of blocks that would come after what has been prepared."""

@@ -149,6 +149,7 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
                 raise ControlError(
                     Refusal.DATA, f"there is no axis '{axis}'", hint=f"The axes are {', '.join(self._axes)}."
                 )
+            _check_number(f"{name} {axis}", value)
             total = (row.get(axis, 0.0) if add else 0.0) + value
             if not math.isfinite(total):
                 raise ControlError(
@@ -162,17 +163,23 @@ class OffsetTable(Mapping[str, Mapping[str, float]]):
         self.revision += 1
 
 
+def _check_number(name: str, value: object) -> float:
+    """Return a value that is a finite number; refuse another."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ControlError(Refusal.DATA, f"{name} cannot be {value!r}", hint="Give a finite number.")
+    return value
+
+
 def _check_field(name: str, value: object) -> None:
     """Refuse a value that a field of a tool cannot have."""
     if name == "description":
         if not isinstance(value, str):
             raise ControlError(Refusal.DATA, f"a description is text, not {value!r}", hint="Give text.")
         return
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-        raise ControlError(Refusal.DATA, f"{name} cannot be {value!r}", hint="Give a finite number.")
-    if name == "radius_mm" and value < 0.0:
+    number = _check_number(name, value)
+    if name == "radius_mm" and number < 0.0:
         raise ControlError(
-            Refusal.DATA, f"the radius {value:g} mm is negative", hint="Give a radius from 0 mm."
+            Refusal.DATA, f"the radius {number:g} mm is negative", hint="Give a radius from 0 mm."
         )
     if name == "tip" and not (isinstance(value, int) and 0 <= value <= _TIPS):
         raise ControlError(Refusal.DATA, f"{value} is no place of a tool's tip", hint="Give 0 to 9.")

@@ -19,6 +19,7 @@ from polycnc.errors import ConfigurationError
 
 CLAIMS_FILE = "claims.tsv"
 NOT_APPLICABLE_FILE = "not_applicable.toml"
+STAND_INS_FILE = "stand_ins.toml"
 CLAIM_COLUMNS = ("row", "test")
 
 _ASSERTING_CALLS = ("raises", "warns", "fail")
@@ -76,6 +77,25 @@ def read_not_applicable(folder: Path, rows: Mapping[str, Row]) -> dict[str, str]
             _check_entry(f"{path.name}: '{pattern}'", reason, fitting, reasons)
             reasons |= {row_id: str(reason) for row_id in fitting}
     return reasons
+
+
+def read_stand_ins(folder: Path) -> dict[str, str]:
+    """Return what the tests of a file run against instead of the control, by file; none without the file.
+
+    Raises:
+        ConfigurationError: The file is malformed.
+    """
+    path = folder / STAND_INS_FILE
+    if not path.exists():
+        return {}
+    try:
+        stand_ins = tomllib.loads(path.read_text(encoding="utf-8"))
+    except tomllib.TOMLDecodeError as error:
+        raise ConfigurationError(f"{path.name}: {error}", hint="Mend the TOML syntax there.") from error
+    for file, what in stand_ins.items():
+        if not isinstance(what, str) or not what.strip():
+            raise ConfigurationError(f"{path.name}: '{file}' does not say what stands in", hint="Say it.")
+    return stand_ins
 
 
 def invalid_claim(row_id: object, rows: Mapping[str, Row], not_applicable: Mapping[str, str]) -> str:

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
-from polycnc.conformance._claims import NOT_APPLICABLE_FILE, read_claims, read_not_applicable
+from polycnc.conformance._claims import (
+    NOT_APPLICABLE_FILE,
+    read_claims,
+    read_not_applicable,
+    read_stand_ins,
+)
 from polycnc.conformance._rows import SYSTEMS, Row, data_folder, read_rows
 from polycnc.errors import ConfigurationError, UsageError
 
@@ -38,6 +43,13 @@ class Conformance:
     by_id: Mapping[str, Row]
     claims: Mapping[str, tuple[str, ...]]
     reasons: Mapping[str, str]
+    stand_ins: Mapping[str, str] = field(default_factory=dict)
+    """What the tests of a file run against instead of the control, by file."""
+
+    def stand_in(self, row_id: str) -> str:
+        """Return what all tests of a row run against instead of the control; "" if one runs against the control."""
+        files = [test.partition("::")[0] for test in self.claims.get(row_id, ())]
+        return self.stand_ins[files[0]] if files and all(file in self.stand_ins for file in files) else ""
 
     def state(self, row_id: str) -> State:
         """Return the state of one row."""
@@ -106,7 +118,7 @@ def load_conformance(folder: Path | None = None) -> Conformance:
             f"row '{both[0]}' is claimed by {claims[both[0]][0]} and stated as not applicable",
             hint=f"Remove the mark or the entry in {NOT_APPLICABLE_FILE}.",
         )
-    return Conformance(by_id=rows, claims=claims, reasons=reasons)
+    return Conformance(by_id=rows, claims=claims, reasons=reasons, stand_ins=read_stand_ins(folder))
 
 
 def summary_table(conformance: Conformance) -> str:
@@ -156,6 +168,7 @@ def reference_page(conformance: Conformance) -> str:
         parts += [f"## {title}", f"Rows: `conformance/{system}.tsv`."]
         groups = conformance.groups(system)
         parts.append(head + "".join(_markdown_line(name, counts) for name, counts in groups.items()))
+        parts += _on_stand_ins(conformance, system)
         parts += _reasons(conformance, system)
     return "\n\n".join(parts) + "\n"
 
@@ -163,6 +176,17 @@ def reference_page(conformance: Conformance) -> str:
 def _markdown_line(name: str, counts: Counts) -> str:
     name = name.replace("|", "\\|")
     return f"\n| {name} | {counts.rows} | {counts.tested} | {counts.not_applicable} | {counts.open} |"
+
+
+def _on_stand_ins(conformance: Conformance, system: str) -> list[str]:
+    by_what: dict[str, list[str]] = {}
+    for row in conformance.rows(system, State.TESTED):
+        if what := conformance.stand_in(row.id):
+            by_what.setdefault(what, []).append(f"`{row.id}`")
+    if not by_what:
+        return []
+    lines = [f"- {what} {len(ids)} rows: {', '.join(ids)}" for what, ids in by_what.items()]
+    return ["Tested on a stand-in of the control alone:", "\n".join(lines)]
 
 
 def _reasons(conformance: Conformance, system: str) -> list[str]:

@@ -23,6 +23,10 @@ _LABEL = re.compile("\x01([0-9]+)\x01")  # no text constant holds it: repr() wri
 class Words(Protocol):
     """What a language knows: its statements and conditions, which it writes where it is asked."""
 
+    def before(self, statement: Any) -> None:
+        """Write what comes before any statement, those of the flow too: a step of a debugger."""
+        ...
+
     def statement(self, statement: Any) -> None:
         """Write a statement that is no flow; jumps may be part of it."""
         ...
@@ -31,12 +35,15 @@ class Words(Protocol):
         """Return the condition of a branch, or of a round (number 0), None for none; write what it needs before."""
         ...
 
-    def begin(self, loop: Any) -> None:
-        """Write what comes once, before a loop."""
+    def begin(self, structure: Any) -> None:
+        """Write what comes once, before a choice or a loop."""
         ...
 
     def end(self, loop: Any) -> str | None:
-        """Write what a round ends with; return the Python condition under which the loop ends there."""
+        """Write what a round ends with; return the Python condition under which the loop ends there.
+
+        The place of the emitter then is that of a pause.
+        """
         ...
 
 
@@ -165,7 +172,9 @@ class Flow:
         out, words = self._out, self._words
         for statement in statements:
             out.place = statement.at
+            words.before(statement)
             if isinstance(statement, Choice):
+                words.begin(statement)
                 (self._parts_of_choice if id(statement) in self._plan.apart else self._choice)(statement)
             elif isinstance(statement, Loop):
                 words.begin(statement)
@@ -230,7 +239,6 @@ class Flow:
         before = out.diverted()
         self._around.append(_Around(loop))
         with out.block("while True:" if test is None or before.lines else f"while {test}:"):
-            self.tick()
             if before.lines:
                 out.take(before)
                 if test is not None:
@@ -238,6 +246,7 @@ class Flow:
             self._body(loop.body)
             if (ends := self._words.end(loop)) is not None:
                 out.put(f"if {ends}: break")
+            self.tick()
         self._leave_loop()
 
     def _parts_of_loop(self, loop: Loop) -> None:
@@ -245,22 +254,23 @@ class Flow:
         begin, close, end = (self._new_number() for _ in range(3))
         self._apart[id(loop)] = close if loop.closes else begin, end, self._regions[-1]
         self._mark(begin)
-        self.tick()
         if (test := self._words.condition(loop, 0)) is not None:
             with out.block(f"if not ({test}):"):
                 self._next(end)
         self._statements(loop.body)
         if loop.closes:
             self._mark(close)
-        if (ends := self._words.end(loop)) is None:
-            self._next(begin)
-        else:
-            with out.block(f"if not ({ends}):"):
-                self._next(begin)
+        if (ends := self._words.end(loop)) is not None:
+            with out.block(f"if {ends}:"):
+                self._next(end)
+        self.tick()
+        self._next(begin)
         self._mark(end)
 
     def _end_of_loop(self, statement: Leave | Again) -> None:
         ends = isinstance(statement, Leave)
+        if not ends:
+            self.tick()
         if apart := self._apart.get(id(statement.loop)):
             close, end, region = apart
             self._go(region, f"\x01{end if ends else close}\x01")

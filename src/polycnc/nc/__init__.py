@@ -23,6 +23,7 @@ from polycnc.nc.records._block_records import (
     BlockRecords,
     Call,
     ModalWords,
+    Zero,
     line_of,
 )
 from polycnc.nc.sources._block_source import (
@@ -92,6 +93,7 @@ __all__ = [
     "Texts",
     "Word",
     "WordsBlock",
+    "Zero",
     "choose_dialect",
     "dialect_for",
     "line_of",

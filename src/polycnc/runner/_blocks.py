@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.nc import CONTEXT_SHIFT, LINE_MASK, Action, BlockRecords, ProgramText
+from polycnc.runner._zeros import NO_ZEROS, ZeroCollector, Zeros
 
 _MOTIONS = {
     Action.RAPID: "rapid",
@@ -177,13 +178,14 @@ class Execution:
     """Say which block was executed when.
 
     `start` [executions] is the first row of each execution, `number` [executions] the place of its block in `blocks`;
-    `texts` are the programs by name.
+    `texts` are the programs by name, `zeros` where program zero lies.
     """
 
     start: npt.NDArray[np.int64]
     number: npt.NDArray[np.int64]
     blocks: Blocks
     texts: dict[str, ProgramText]
+    zeros: Zeros = NO_ZEROS
 
 
 def execution_by_lines(lines: npt.NDArray[np.int64]) -> Execution:
@@ -200,6 +202,7 @@ class ExecutionCollector:
     """Collect which block is executed from which row on."""
 
     table: BlockTable = field(default_factory=BlockTable)
+    _zeros: ZeroCollector = field(default_factory=ZeroCollector)
     _starts: list[npt.NDArray[np.int64]] = field(default_factory=list)
     _numbers: list[npt.NDArray[np.int64]] = field(default_factory=list)
     _rows: int = 0
@@ -212,6 +215,7 @@ class ExecutionCollector:
             return np.zeros(0, np.int64)
         starts = np.flatnonzero(np.diff(tags, prepend=~tags[:1] if self._last is None else self._last))
         numbers = self.table.numbers(tags[starts], records)
+        self._zeros.add((starts + self._rows).tolist(), tags[starts], records)
         self._numbers.append(numbers)
         self._starts.append(starts + self._rows)
         self._rows += len(tags)
@@ -229,4 +233,5 @@ class ExecutionCollector:
             np.concatenate([none, *self._numbers]),
             self.table.blocks(),
             dict(self.table.texts),
+            self._zeros.zeros(),
         )

@@ -24,7 +24,7 @@ from polycnc.post import (
     program_file,
 )
 from polycnc.runner._execution import Progress
-from polycnc.runner._verify_post import DEFAULT_TOLERANCE_MM, PostVerification, verify_post
+from polycnc.runner._verify_post import PostVerification, verify_post
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ def post_file(
     *,
     verify: bool = False,
     machine: str | MachineConfig | None = None,
-    tolerance_mm: float = DEFAULT_TOLERANCE_MM,
+    tolerance_mm: float | None = None,
     arc_axis: ArcAxis | None = None,
     progress: Progress | None = None,
 ) -> PostResult:

@@ -226,7 +226,7 @@ class RunResult:
         """Return a page that shows the run: save it, open it, or leave it to a notebook to show.
 
         Raises:
-            UsageError: the result has no trace, or plotly is not installed.
+            UsageError: the result has no trace.
         """
         from polycnc.runner.view import view_of_trace
 

@@ -45,8 +45,12 @@ from polycnc.runner._post_rotary import PartFrame, ToolAxisCheck, angle_columns
 from polycnc.runner._result import RunResult
 from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings
+from polycnc.units import MM_PER_INCH
 
-DEFAULT_TOLERANCE_MM = 1e-3
+SMALLEST_TOLERANCE_MM = 1e-3
+_ROUNDING_UNITS = (
+    1.25  # of the last decimal: a point loses up to 0.87 of them, a small arc a little more than one
+)
 TOOL_AXIS_TOLERANCE_DEG = 0.01
 _SAMPLING = 0.1  # part of the tolerance that the distance of the machine's positions may cost
 _AXES = "XYZ"
@@ -136,11 +140,13 @@ def verify_post(
     block_map: BlockMap,
     machine: str | MachineConfig,
     dialect: str,
-    tolerance_mm: float = DEFAULT_TOLERANCE_MM,
+    tolerance_mm: float | None = None,
     progress: Progress | None = None,
     parameters: Parameters | None = None,
 ) -> PostVerification:
     """Run a posted program and compare its path with the tool path; `block_map` is what posting filled.
+
+    Without a tolerance it is what rounding to the decimals of the control file may cost, and at least 0.001 mm.
 
     The run is that on the machine as it is. Tool radii count as 0 in the comparison, which is in the coordinates of the
     part. With rotary axes in the `parameters` of the control file the tool axis is compared too, where a record ends,
@@ -149,6 +155,9 @@ def verify_post(
     Raises:
         UsageError: no such machine or dialect.
     """
+    parameters = parameters or Parameters()
+    if tolerance_mm is None:
+        tolerance_mm = max(SMALLEST_TOLERANCE_MM, _ROUNDING_UNITS * last_decimal_mm(parameters))
     config = load_machine(machine)
     read = dialect_for(program, dialect)
     tangency = Tangency()
@@ -157,7 +166,7 @@ def verify_post(
     if carried is not None:
         owners = carried
         sweeps = (sweep._replace(record=int(owners[sweep.record])) for sweep in sweep_tool_path(tool_path))
-    frame = PartFrame(parameters or Parameters(), config)
+    frame = PartFrame(parameters, config)
     moves = Moves(
         _judged(sweeps, tangency),
         len(block_map.line),
@@ -189,6 +198,12 @@ def verify_post(
         tool_axis_deg=tool_axis_deg,
         tool_axis_line=tool_axis_line,
     )
+
+
+def last_decimal_mm(parameters: Parameters) -> float:
+    """Return how much one unit of the last decimal of a position is, in mm."""
+    unit = 10.0**-parameters.decimals
+    return unit * MM_PER_INCH if parameters.units == "inch" else unit
 
 
 def _carried(program: ProgramText, block_map: BlockMap, dialect: Dialect) -> Indices | None:
@@ -257,29 +272,34 @@ class _TipFrame:
         return tool.length_mm + tool.wear_length_mm
 
 
-class _Standing:
-    """Where the machine stood behind records, as far as the next record is another one than the one behind."""
+class _Skipped:
+    """The ways on which the machine passed records that have no row of their own.
+
+    Such a record moved by less than the last decimal: its points lie on the way from the last row of a record before
+    it to the first row of one after it.
+    """
 
     def __init__(self) -> None:
         self._records: list[Indices] = []
-        self._points: list[Floats] = []
+        self._ways: list[Floats] = []
 
-    def note(self, records: Indices, points: Floats) -> None:
-        """Take rows of a recording: their records, and where the machine is behind them."""
-        steps = np.diff(records)
-        last = np.append(np.flatnonzero((steps != 0) & (steps != 1)), len(records) - 1)
-        self._records.append(records[last].astype(np.int32))
-        self._points.append(points[last])
+    def note(self, before: Indices, records: Indices, start: Floats, end: Floats) -> None:
+        """Take rows of a recording: the records before and at each, and the way there."""
+        steps = records - before
+        jumps = np.flatnonzero((steps != 0) & (steps != 1))
+        self._records.append(before[jumps].astype(np.int32))
+        self._ways.append(np.concatenate((start[jumps], end[jumps]), axis=1))
 
-    def behind(self, records: Indices, begin: Floats) -> Floats:
-        """Return where the machine stood behind records, at first at `begin`."""
-        if not self._records:
-            return np.repeat(begin, len(records), axis=0)
-        known, points = np.concatenate(self._records), np.concatenate(self._points)
+    def nearest(self, records: Indices, points: Floats, begin: Floats, end: tuple[int, Floats]) -> Floats:
+        """Return how near the machine came to points of records that it passed, from `begin` to `end`."""
+        last, here = end
+        known = np.concatenate([np.array([-1]), *self._records, np.array([last])])
+        rest = np.concatenate((begin, begin), axis=1), np.concatenate((here, here), axis=1)
+        ways = np.concatenate([rest[0], *self._ways, rest[1]])
         order = np.argsort(known, kind="stable")
-        known, points = known[order], points[order]
-        places = np.searchsorted(known, records, side="right") - 1
-        return np.where((places >= 0)[:, None], points[np.maximum(places, 0)], begin)
+        known, ways = known[order], ways[order]
+        passed = ways[np.searchsorted(known, records, side="right") - 1]
+        return to_segments(points, passed[:, :3], passed[:, 3:])
 
 
 class _Comparison:
@@ -326,8 +346,9 @@ class _Comparison:
             self._wanted_axes, self._moving = moves.last_axes()
         self._tool_axes = ToolAxisCheck(frame, records)
         self._begin: Floats | None = None
+        self._tip: Floats = np.zeros((1, 3))
         self._record = 0
-        self._standing = _Standing()
+        self._skipped = _Skipped()
 
     def add(self, rows: Floats, tags: Indices, blocks_of: BlockRecords) -> None:
         """Take a piece of the record; `tags` refer to the blocks of its rows."""
@@ -349,8 +370,9 @@ class _Comparison:
             points, before = self._on_part(rows, points, before, shifts[:, 3:], records)
         if self._begin is None:
             self._begin = before[:1]
+        self._tip = points[-1:].copy()
         moved = (points != before).any(axis=1) | (records != before_records)
-        self._standing.note(records, points)
+        self._skipped.note(before_records, records, before, points)
         points, before, blocks = points[moved], before[moved], blocks[moved]
         rapid = rows[moved, IS_RAPID] != 0.0
         records, before_records = records[moved], before_records[moved]
@@ -383,7 +405,7 @@ class _Comparison:
         """Return the farthest point that the machine did not come to."""
         if not len(self._best):
             return Deviation()
-        self._visit_by_standing()
+        self._visit_skipped()
         worst = int(np.argmax(self._best))
         x, y, z = self._witness[worst].tolist()
         line = self._moves.line(worst if self._owner is None else int(self._owner[worst]))
@@ -424,13 +446,13 @@ class _Comparison:
             np.minimum.at(self._best, witness[nearer], found[nearer])
             self._at_block[witness[nearer]] = blocks[chosen[nearer]]
 
-    def _visit_by_standing(self) -> None:
-        """Count points of records for which nothing moved: the machine stood where the record before ended."""
+    def _visit_skipped(self) -> None:
+        """Count points of records that the machine passed without a row of theirs."""
         still = np.flatnonzero(~np.isfinite(self._best))
         if not len(still):
             return
-        begin = np.zeros((1, 3)) if self._begin is None else self._begin
+        here = self._tip
+        begin = here if self._begin is None else self._begin
         moves = still if self._owner is None else self._owner[still]
-        standing = self._standing.behind(self._moves.record[moves], begin)
-        ways = self._witness[still] - standing
-        self._best[still] = np.sqrt((ways * ways).sum(axis=1))
+        records = self._moves.record[moves]
+        self._best[still] = self._skipped.nearest(records, self._witness[still], begin, (self._record, here))

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from polycnc.cnc import ProgramRun
+from polycnc.controllers.bosch._block_buffer import BlockBuffer
 from polycnc.controllers.bosch._called_codes import DRILLING, called_codes
 from polycnc.controllers.bosch._memory import plain_variable
 from polycnc.controllers.bosch._services import Services
@@ -17,7 +18,7 @@ from polycnc.controllers.bosch.ncs import Coupling, Mmc, NcsServer
 from polycnc.controllers.bosch.screen import Dialog, Image, Keyboard, Surface, read_bitmap
 from polycnc.controllers.bosch.system import Category
 from polycnc.errors import ProgramError
-from polycnc.machine import MachineConfig
+from polycnc.machine import MachineConfig, SnapshotError
 from polycnc.nc import BlockSource, ProgramText, Returning, load_dialect
 from polycnc.nc.cpl import (
     OMITTED,
@@ -66,6 +67,9 @@ class ChannelHost:
         codes = called_codes(system, load_dialect("bosch"), lambda: system.axes.names_in(number))
         self.language = _Language(self, codes, skip_levels=frozenset(skip_levels), stepping=stepping)
         system.running_files.append(self._running_files)
+        system.programs[number] = self
+        self.buffer: BlockBuffer | None = None
+        """The blocks put in by hand that wait, in a device."""
         self.files = FileCommands(
             self.directory,
             self._say,
@@ -176,6 +180,21 @@ class ChannelHost:
         for each in linker.programs():
             errors += undeclared(each, self.permanent)
         return [*self.system.errors_of_files, *self.system.not_installed, *errors]
+
+    @property
+    def waits(self) -> bool:
+        """Whether a WAIT for a signal or a time is under way."""
+        return any(source.waits for source in self.language.running[-1:])
+
+    @property
+    def is_buffered(self) -> bool:
+        """Whether blocks can be put behind those under way."""
+        return self.buffer is not None
+
+    @property
+    def buffer_is_empty(self) -> bool:
+        """Whether all blocks that were buffered have been taken, and more may come."""
+        return self.buffer is not None and not self.buffer.waiting
 
     def wakes_in_s(self) -> float | None:
         """Return when the WAIT of the program ends at the latest (s from now), None if it is in none."""
@@ -314,7 +333,22 @@ class _Language(CplLanguage):
         self.used = False
         """Whether a program with CPL has begun."""
 
-    def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
+    def save(self, under_way: Sequence[tuple[object, BlockSource | None]]) -> Any:
+        """Return its state (see `CplLanguage.save`).
+
+        Raises:
+            SnapshotError: Buffered blocks are under way.
+        """
+        if any(isinstance(source, BlockBuffer) for _, source in under_way):
+            raise SnapshotError("buffered blocks are under way", hint="take the snapshot when they are left")
+        return super().save(under_way)
+
+    def source(  # type: ignore[override]
+        self, text: ProgramText, offset: int, line: int, arguments: object
+    ) -> CplSource | BlockBuffer | None:
+        buffer = self._host_of.buffer
+        if buffer is not None and text is buffer.text:
+            return buffer
         if self._host_of.system.errors_of_files:
             raise self._host_of.system.errors_of_files[0]
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from polycnc.cnc import Control, Mode, ProgramRun, RunState
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
@@ -24,6 +24,16 @@ _SHOWN = {
 }
 
 
+class Selected(NamedTuple):
+    """What a start would begin: the name of a program, or "" for blocks put in by hand.
+
+    `searched` tells that it begins, or ends, at a block that was searched.
+    """
+
+    program: str
+    searched: bool = False
+
+
 class ChannelPorts(Protocol):
     """Channels count from 1."""
 
@@ -40,8 +50,20 @@ class ChannelPorts(Protocol):
     def mode(self, number: int) -> BoschMode:
         """Return the mode of a channel."""
 
-    def selected(self, number: int) -> str:
-        """Return the program that a start would begin."""
+    def selected(self, number: int) -> Selected | None:
+        """Return what a start would begin, None if nothing is selected."""
+
+    def missing(self, number: int) -> str:
+        """Return the program that was selected and does not exist, "" if there is none."""
+
+    def reselects(self) -> bool:
+        """Tell whether a program that has ended is selected again."""
+
+    def functions_wait(self, number: int) -> bool:
+        """Tell whether an auxiliary function waits for its acknowledgement."""
+
+    def is_by_hand(self, number: int) -> bool:
+        """Tell whether what is executed are blocks put in by hand."""
 
     def referenced(self) -> frozenset[str]:
         """Return the axes that have been referenced."""
@@ -76,9 +98,25 @@ class AttachedRuns:
         """Return automatic."""
         return BoschMode.AUTOMATIC
 
-    def selected(self, number: int) -> str:
-        """Return no program: one is being executed."""
+    def selected(self, number: int) -> Selected | None:
+        """Return nothing: a program is being executed."""
+        return None
+
+    def missing(self, number: int) -> str:
+        """Return none."""
         return ""
+
+    def reselects(self) -> bool:
+        """Return False."""
+        return False
+
+    def functions_wait(self, number: int) -> bool:
+        """Return False: nobody acknowledges functions."""
+        return False
+
+    def is_by_hand(self, number: int) -> bool:
+        """Return False: it is a program."""
+        return False
 
     def referenced(self) -> frozenset[str]:
         """Return all axes."""
@@ -92,9 +130,11 @@ class AttachedRuns:
 class DeviceChannels:
     """The channels of a control that is a device, with the modes that its operator has selected."""
 
-    def __init__(self, control: Control) -> None:
+    def __init__(self, control: Control, *, reselects: bool = False) -> None:
         self._control = control
+        self._reselects = reselects
         self._modes: dict[int, BoschMode] = {}
+        self._missing: dict[int, str] = {}
 
     @property
     def machine(self) -> Machine:
@@ -118,16 +158,47 @@ class DeviceChannels:
         kept = self._modes.get(number)
         return kept if kept is not None and MODES[kept] is mode else _SHOWN.get(mode, BoschMode.NONE)
 
-    def selected(self, number: int) -> str:
-        """Return the program that a start would begin; one that has ended has to be selected again."""
+    def selected(self, number: int) -> Selected | None:
+        """Return what a start would begin; what has ended has to be selected again."""
         channel = self._control.channels[number - 1]
-        if channel.program is None or (
-            channel.run_state is RunState.COMPLETED
-            and channel.run is not None
-            and channel.run.program is channel.program
-        ):
-            return ""
-        return channel.program.name
+        text = channel.mdi if channel.mode is Mode.MDI else channel.program
+        run = channel.run
+        ended = channel.run_state is RunState.COMPLETED and run is not None and run.program is text
+        if text is None or (ended and not (self._reselects and channel.mode is not Mode.MDI)):
+            return None
+        return Selected("" if channel.mode is Mode.MDI else text.name, channel.search is not None)
+
+    def leave(self, number: int, *, again: bool) -> None:
+        """Have nothing selected, or with `again` the program from its beginning."""
+        channel = self._control.channels[number - 1]
+        channel.mdi = None
+        channel.select(channel.program if again else None)
+        self._missing.pop(number, None)
+
+    def miss(self, number: int, name: str) -> None:
+        """Take note that a program was selected that does not exist."""
+        self.leave(number, again=False)
+        self._missing[number] = name
+
+    def found(self, number: int) -> None:
+        """Take note that something else was selected, or the channel was reset."""
+        self._missing.pop(number, None)
+
+    def missing(self, number: int) -> str:
+        """Return the program that was selected and does not exist, "" if there is none."""
+        return self._missing.get(number, "")
+
+    def reselects(self) -> bool:
+        """Tell whether a program that has ended is selected again."""
+        return self._reselects
+
+    def functions_wait(self, number: int) -> bool:
+        """Tell whether an auxiliary function waits for its acknowledgement."""
+        return bool(self._control.waiting_functions(number - 1))
+
+    def is_by_hand(self, number: int) -> bool:
+        """Tell whether what is executed are blocks put in by hand."""
+        return self._control.channels[number - 1].is_mdi
 
     def referenced(self) -> frozenset[str]:
         """Return the axes that have been referenced."""

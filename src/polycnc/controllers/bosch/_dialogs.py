@@ -3,15 +3,61 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import TypeAlias
 
-from polycnc.controllers.bosch.files import CALL
+from polycnc.cnc import ControlError, Refusal
+from polycnc.controllers.bosch._memory import first_of
+from polycnc.controllers.bosch._parameters import DIALOG_CALLS, DIALOG_PROGRAMS
+from polycnc.controllers.bosch.files import CALL, Directory, SelectedBlock
 
 AREAS = {
     "manual": "cpldlg01.dlg", "automatic": "cpldlg02.dlg", "manage": "cpldlg03.dlg", "diagnostics": "cpldlg04.dlg",
     "editor": "cpldlg05.dlg",
 }  # fmt: skip
 """The dialog program of each area of the operator interface."""
+
+
+Start: TypeAlias = Callable[[tuple[str, str], SelectedBlock | None], None]
+"""Start a dialog program, file and text, for a block of the editor or none."""
+
+
+class DialogCalls:
+    """The dialog programs of a control: those of areas are read at power-up, which is when this is made."""
+
+    def __init__(
+        self, directory: Directory, parameters: Callable[[int], Sequence[object]], start: Start
+    ) -> None:
+        self._directory = directory
+        self._parameters = parameters
+        self._start = start
+        places = ((area, first_of(directory, name)) for area, name in AREAS.items())
+        self.areas = {area: found for area, found in places if found is not None}
+
+    def call(self, area: str) -> None:
+        """Start the dialog program of an area.
+
+        Raises:
+            ControlError: The area had none at power-up.
+        """
+        if area not in self.areas:
+            hint = f"Dialog programs are {', '.join(AREAS.values())}, read at power-up."
+            raise ControlError(Refusal.NOT_FOUND, f"{area} has no dialog program", hint=hint)
+        self._start(self.areas[area], None)
+
+    def edit(self, text: str) -> SelectedBlock:
+        """Start the dialog program for an NC block of the editor; what it makes of it is in what is returned.
+
+        Raises:
+            ControlError: There is no such program.
+        """
+        name = dialog_for(text, self._parameters(DIALOG_CALLS), self._parameters(DIALOG_PROGRAMS))
+        found = first_of(self._directory, name)
+        if found is None:
+            raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
+        block = SelectedBlock(text)
+        self._start(found, block)
+        return block
 
 
 def called_name(block: str) -> str:

@@ -21,10 +21,9 @@ from polycnc.cnc import (
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_host import ChannelHost
 from polycnc.controllers.bosch._channel_ports import MODES, DeviceChannels
-from polycnc.controllers.bosch._dialogs import AREAS, dialog_for
-from polycnc.controllers.bosch._memory import first_of
+from polycnc.controllers.bosch._dialogs import DialogCalls
 from polycnc.controllers.bosch._operator import DeviceOperator
-from polycnc.controllers.bosch._parameters import DIALOG_CALLS, DIALOG_CHANNEL, DIALOG_PROGRAMS
+from polycnc.controllers.bosch._parameters import DIALOG_CHANNEL
 from polycnc.controllers.bosch._services import Services
 from polycnc.controllers.bosch._system import BoschSystem
 from polycnc.controllers.bosch.files import STORE, RootOwner, SelectedBlock
@@ -48,6 +47,7 @@ class Pnc:
     of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
     the control that programs ask by MCODS and MCOPS, like the `ncs` of another one; this one if None. `script` says how
     the PLC answers functions. With `stepping` programs are linked so that a debugger can stop at each of their lines.
+    With `reselects` a program that has ended, or that MCOPS has left, is selected again (MCODS(70)).
 
     Raises:
         UsageError: Another control runs in the root.
@@ -65,6 +65,7 @@ class Pnc:
         script: Script | None = None,
         servo: bool = False,
         stepping: bool = False,
+        reselects: bool = False,
     ) -> None:
         machine = load_machine(config)
         self._owner = RootOwner(Path(root).resolve())
@@ -79,10 +80,10 @@ class Pnc:
         self._control = Control(
             machine, channels=owners, memory=Path(root) / STORE, dialect=dialect, data=data, script=script, servo=servo,
         )  # fmt: skip
-        self._channels = DeviceChannels(self._control)
+        self._channels = DeviceChannels(self._control, reselects=reselects)
         store = self._control.machine.memory
         self.system = BoschSystem(root, self._control.clock, machine, self._channels, axes=axes, store=store)
-        self.services = Services(self.system, DeviceOperator(self))
+        self.services = Services(self.system, DeviceOperator(self, self._control, self._channels, hosts))
         self.ncs = NcsServer(self.services)
         """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
         self.server = server or self.ncs
@@ -102,8 +103,7 @@ class Pnc:
             channel.runs.names = axes.names_in(number)
         self.hosts = tuple(hosts)
         self.system.links.start_up()
-        places = ((area, first_of(self.system.directory, name)) for area, name in AREAS.items())
-        self._dialogs = {area: found for area, found in places if found is not None}
+        self._dialogs = DialogCalls(self.system.directory, self.system.parameters, self._start_dialog)
         self._dialog_channel = int(str(self.system.parameter(DIALOG_CHANNEL)))
 
     # ------------------------------------------------------------------ the device
@@ -175,12 +175,9 @@ class Pnc:
         text = self._text(name)
         if text is None:
             raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
+        self._channels.found(channel)
         self._control.select_program(ProgramText.from_text(text, name), channel=self._path(channel))
         self.system.reset_signal(channel, False)
-
-    def has_program(self, name: str) -> bool:
-        """Tell whether there is a part program."""
-        return self._text(name) is not None
 
     def select_blocks(self, text: str, *, channel: int = 1) -> None:
         """Select blocks put in by hand.
@@ -189,11 +186,8 @@ class Pnc:
             ControlError: See `Control.set_mdi`.
         """
         self._control.set_mdi(text, channel=self._path(channel))
+        self.hosts[channel - 1].buffer = None
         self.system.reset_signal(channel, False)
-
-    def leave_program(self, *, channel: int = 1) -> None:
-        """Leave the selected program."""
-        self._control.reset(channel=self._path(channel))
 
     def cycle_start(self, *, channel: int = 1) -> None:
         """Begin what is selected, or go on.
@@ -204,26 +198,36 @@ class Pnc:
         self._control.cycle_start(channel=self._path(channel))
         self.system.reset_signal(channel, False)
 
-    def search_block(self, start: str, *, channel: int = 1) -> int:
+    def search_block(self, start: str = "", end: str = "", *, channel: int = 1) -> int:
         """Let the selected program begin at the first block that begins with `start`; return its line.
 
         What stands before is carried out without moving, statements too, and the next start goes straight to where the
-        block begins (Manual 003, 4.14.2: MCOPS(3)).
+        block begins. The program ends with the first block from there that begins with `end`. Without one of them it
+        begins, or ends, as it would (Manual 003, 4.14.2: MCOPS(3)).
 
         Raises:
             ControlError: There is no such block, or the program does not come to it; see `Control.search`.
         """
         program = self._control.channels[self._path(channel)].program
-        blocks = [] if program is None else program.content.decode("latin-1").splitlines()
-        found = find_block(blocks, start)
-        if found is None:
-            raise ControlError(Refusal.NOT_FOUND, f"there is no block {start}", hint="Give its beginning.")
-        return self._control.search(line=found + 1, calculate=True, channel=self._path(channel))
+        lines = [] if program is None else program.content.splitlines()
+        blocks = [line.decode("latin-1") for line in lines]
+        first = find_block(blocks, start) if start else 0
+        last = find_block(blocks, end, first or 0) if end else -1
+        for sought, found in ((start, first), (end, last)):
+            if found is None:
+                raise ControlError(
+                    Refusal.NOT_FOUND, f"there is no block {sought}", hint="Give its beginning."
+                )
+        assert first is not None
+        assert last is not None
+        return self._control.search(
+            line=first + 1, calculate=first > 0, last=last + 1, channel=self._path(channel)
+        )
 
     @property
     def dialogs(self) -> tuple[str, ...]:
         """The areas of the operator interface that had a dialog program at power-up (`AREAS`)."""
-        return tuple(self._dialogs)
+        return tuple(self._dialogs.areas)
 
     def call_dialog(self, area: str) -> None:
         """Start the dialog program of an area, as its softkey does, in the channel for dialogs.
@@ -231,10 +235,7 @@ class Pnc:
         Raises:
             ControlError: The area had none at power-up, or the channel executes a program.
         """
-        if area not in self._dialogs:
-            hint = f"Dialog programs are {', '.join(AREAS.values())}, read at power-up."
-            raise ControlError(Refusal.NOT_FOUND, f"{area} has no dialog program", hint=hint)
-        self._start_dialog(self._dialogs[area], None)
+        self._dialogs.call(area)
 
     def edit_block(self, text: str) -> SelectedBlock:
         """Start the dialog program for an NC block of the editor; what it makes of it is in what is returned.
@@ -242,13 +243,7 @@ class Pnc:
         Raises:
             ControlError: There is no such program, or the channel executes one.
         """
-        name = dialog_for(text, self.system.parameters(DIALOG_CALLS), self.system.parameters(DIALOG_PROGRAMS))
-        found = first_of(self.system.directory, name)
-        if found is None:
-            raise ControlError(Refusal.NOT_FOUND, f"there is no program {name}", hint="Put it into the root.")
-        block = SelectedBlock(text)
-        self._start_dialog(found, block)
-        return block
+        return self._dialogs.edit(text)
 
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Hold the feed of a channel, or of all.
@@ -265,6 +260,8 @@ class Pnc:
             self.system.forget_errors(number)
             self.system.reset_signal(number, True)
             self.hosts[number - 1].coupling.release()
+            self.hosts[number - 1].buffer = None
+            self._channels.found(number)
 
     def transfer_axis(self, axis: str, channel: int | None) -> None:
         """Give an axis to a channel, or to none: then it is asynchronous. Logical indices are counted anew.

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Protocol
 
 import numpy as np
 
@@ -37,7 +38,26 @@ _SAV = {
     RunState.ACTIVE: Sav.ACTIVE, RunState.HOLD: Sav.ACTIVE, RunState.STOPPED_AT_BLOCK: Sav.READY,
     RunState.PROGRAM_STOP: Sav.READY, RunState.OPTIONAL_STOP: Sav.READY, RunState.ALARM: Sav.ERROR,
 }  # fmt: skip
+_WAITS = {
+    RunState.PROGRAM_STOP: Wait.PROGRAM_STOP, RunState.OPTIONAL_STOP: Wait.PROGRAM_STOP, RunState.HOLD: Wait.FEED_HOLD,
+}  # fmt: skip
 _MOTIONS = {1: SpindleMotion.CLOCKWISE, -1: SpindleMotion.COUNTER_CLOCKWISE, 0: SpindleMotion.STOP}
+
+
+class Programs(Protocol):
+    """What a channel's programs wait for."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether a WAIT for a signal or a time is under way."""
+
+    @property
+    def is_buffered(self) -> bool:
+        """Whether blocks can be put behind those under way."""
+
+    @property
+    def buffer_is_empty(self) -> bool:
+        """Whether all blocks that were buffered have been taken, and more may come."""
 
 
 class Shown:
@@ -49,7 +69,9 @@ class Shown:
         channels: ChannelPorts,
         data: Callable[[int], ChannelData],
         tables: Callable[[], tuple[ZeroShifts, ToolCompensations]],
+        programs: Mapping[int, Programs],
     ) -> None:
+        self._programs = programs
         self._axes = axes
         self._channels = channels
         self._data = data
@@ -121,8 +143,9 @@ class Shown:
     def _channel(self, shown: Channel, number: int) -> None:
         run = self._channels.run(number)
         shown.mode = self._channels.mode(number)
-        shown.program = self._channels.selected(number)
-        shown.sav = Sav.AT_START if shown.program else Sav.INACTIVE
+        self._select(shown, number)
+        shown.reselection = self._channels.reselects()
+        shown.auxiliary_waits = self._channels.functions_wait(number)
         if run is None:
             shown.coordinates = [
                 Coordinate(self._axes.logical_name(number, each), (each,))
@@ -134,8 +157,7 @@ class Shown:
         if self._tags.get(number) != run.executed_tag:
             self._tags[number] = run.executed_tag
             shown.blocks += 1
-        if run.state in _SAV:
-            shown.sav, shown.program = _SAV[run.state], run.program.name
+        self._state(shown, run, number)
         running = row["state"] == RUNNING
         shown.ipo = (
             Ipo.RUNNING if run.state is RunState.ACTIVE else Ipo.RUNNING_DOWN if running else Ipo.STOPPED
@@ -151,14 +173,39 @@ class Shown:
         shown.programmed_feed = words.feed * (25.4 if words.inch else 1.0)
         shown.potentiometer = run.feed_override * _FULL
         self._tool(shown, run)
-        shown.other_waits = (
-            (shown.other_waits & Wait.DATA_SERVICE)
-            | (Wait.PROGRAM_STOP if run.state in (RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP) else Wait(0))
-            | (Wait.FEED_HOLD if run.state is RunState.HOLD else Wait(0))
-        )
+        shown.other_waits = (shown.other_waits & Wait.DATA_SERVICE) | _WAITS.get(run.state, Wait(0))
+        if self._waits(number):
+            shown.other_waits |= Wait.SIGNAL_OR_TIME
         shown.optional_stop = (run.optional_stop, run.optional_stop)
         shown.skip = (bool(run.block_delete), bool(run.block_delete))
+        if shown.sav is Sav.ACTIVE and not running and self._buffer_empty(number):
+            shown.sav = Sav.BUFFER_EMPTY
         shown.coordinates = self._coordinates(run, number)
+
+    def _select(self, shown: Channel, number: int) -> None:
+        """Show what is selected."""
+        selected, missing = self._channels.selected(number), self._channels.missing(number)
+        shown.program = missing if selected is None else selected.program
+        if selected is None:
+            shown.sav = Sav.ERROR if missing else Sav.INACTIVE
+        else:
+            shown.sav = Sav.READY if selected.searched else Sav.AT_START
+
+    def _state(self, shown: Channel, run: ProgramRun, number: int) -> None:
+        """Show what is executed."""
+        if run.state in _SAV:
+            shown.sav = _SAV[run.state]
+            shown.program = "" if self._channels.is_by_hand(number) else run.program.name
+        elif run.state is RunState.RESET and not run.at_rest:
+            shown.sav = Sav.RESET
+
+    def _waits(self, number: int) -> bool:
+        programs = self._programs.get(number)
+        return programs is not None and programs.waits
+
+    def _buffer_empty(self, number: int) -> bool:
+        programs = self._programs.get(number)
+        return programs is not None and programs.buffer_is_empty
 
     def _tool(self, shown: Channel, run: ProgramRun) -> None:
         state = run.channel.state

@@ -29,7 +29,7 @@ from polycnc.controllers.bosch._parameters import (
 )
 from polycnc.controllers.bosch._permanence import Permanence
 from polycnc.controllers.bosch._positions import Positions
-from polycnc.controllers.bosch._shown import Shown
+from polycnc.controllers.bosch._shown import Programs, Shown
 from polycnc.controllers.bosch._table_files import TableFiles
 from polycnc.controllers.bosch.files import Directory, StoredFile
 from polycnc.controllers.bosch.ncs import Clients
@@ -90,6 +90,8 @@ class BoschSystem:
         self.channels: ChannelPorts = channels or AttachedRuns(config.axis_names)
         self.clients = Clients()
         self.open_files: dict[Path, StoredFile] = {}
+        self.programs: dict[int, Programs] = {}
+        """What the programs of each channel wait for."""
         self.running_files: list[Callable[[], set[Path]]] = []
         """What tells the files of the programs that run, of each channel."""
         self._noted: dict[int, tuple[Channel, int]] = {}
@@ -122,7 +124,13 @@ class BoschSystem:
             number: ChannelData(self.axes, number, self.channels, int(str(self.parameter(LANGUAGE))))
             for number in self.axes.channels
         }
-        self.shown = Shown(self.axes, self.channels, self.data.__getitem__, lambda: (self.shifts, self.tools))
+        self.shown = Shown(
+            self.axes,
+            self.channels,
+            self.data.__getitem__,
+            lambda: (self.shifts, self.tools),
+            self.programs,
+        )
 
     # ------------------------------------------------------------------ functions of a channel
 

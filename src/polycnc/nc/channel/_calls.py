@@ -8,6 +8,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import SnapshotError
 from polycnc.nc.blocks._outcomes import Trouble
 from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._main_bounds import MainBounds
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._running import Back, Running, SavedCall
 from polycnc.nc.channel._sub_programs import SubPrograms
@@ -52,6 +53,7 @@ class Calls:
         self._all = [Running(Place(main.opening))]
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
+        self.bounds = MainBounds(self.running, language)
         self.within: tuple[Call, ...] = ()
         self.stack: tuple[Call, ...] = ()
 
@@ -68,8 +70,6 @@ class Calls:
             return None
         return None if place is None else place.text
 
-    # ------------------------------------------------------------------ beginning and ending
-
     def begin(self) -> None:
         """Begin the present program, or its next round."""
         self.go_within(())
@@ -83,8 +83,8 @@ class Calls:
         self._reader.word_values = running.word_values
         if running.source is not None:
             self._reader.jump(begin, begin.offset)  # no text for now
-        elif self.depth or language is not None:
-            self._reader.jump(begin, len(begin.text))
+        elif self.depth or language is not None or self.bounds.is_cut:
+            self._reader.jump(begin, len(begin.text) if self.depth else self.bounds.end)
 
     @property
     def has_language(self) -> bool:
@@ -142,9 +142,12 @@ class Calls:
             UsageError: a language executes the program, and cannot begin there.
         """
         running = self.running
+        begin = running.begin
+        if place.offset == begin.offset:
+            self.begin()
+            return
         running.begun = True
         if isinstance(self._language, SearchingLanguage):
-            begin = running.begin
             try:
                 running.source = self._language.source_at(begin.text, begin.offset, begin.line, place.offset)
             except ProgramError as error:
@@ -153,7 +156,7 @@ class Calls:
             if running.source is not None:
                 self._reader.jump(begin, begin.offset)  # no text for now
                 return
-        self._reader.jump(place, len(place.text))
+        self._reader.jump(place, self.bounds.end)
 
     def enter(self, program: int | ProgramText, repeats: int, line: int, arguments: object = None) -> None:
         """Begin a sub-program that `trouble` had nothing against, called on `line`; nothing for no repeats."""
@@ -224,8 +227,6 @@ class Calls:
             calls += [*back.within, Call(back.place.text.name, back.line, running.round)]
         self._entered = tuple(calls)
         self.stack = self._entered + self.within
-
-    # ------------------------------------------------------------------ what is against a call
 
     def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Trouble | None:
         """Return what is against a call that stands at byte `offset` of `text`, None if nothing is.

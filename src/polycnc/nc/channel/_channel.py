@@ -229,6 +229,14 @@ class Channel:
         self._preparation.begun = True
         self._calls.begin_at(place)
 
+    def bound(self, first: int, last: int) -> None:
+        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
+
+        Raises:
+            UsageError: a language executes it that cannot end there.
+        """
+        self._calls.bounds.set(first, last)
+
     def calculate_to(self, line: int, drop: Callable[[], None]) -> bool:
         """Carry out all blocks before a line of the main program; False if the program ends before.
 
@@ -259,7 +267,7 @@ class Channel:
                 hint="Search a block before G41 or G42, or behind G40.",
             )
         if search.held is None:
-            self._reader.jump(place, len(place.text))
+            self._reader.jump(place, self._calls.bounds.end)
         return True
 
     def begin_at(self, position: tuple[float, ...], line: int) -> None:

@@ -56,7 +56,8 @@ class Search:
     def begin(self) -> None:
         """Read no more than what stands before the place; the program has begun."""
         if self.place is not None and self._calls.running.source is None:
-            self._reader.end = self.place.offset
+            # A language that leaves the program to the reader has let it scan beyond the place.
+            self._reader.jump(self._calls.running.begin, self.place.offset)
 
     @property
     def active(self) -> bool:

@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from polycnc.errors import ProgramError
-from polycnc.language import Traced, resumed
+from polycnc.language import Traced, standing
 from polycnc.machine import SnapshotError
+from polycnc.nc.cpl._bounds import Bounds
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, CodeWord
 from polycnc.nc.cpl._cpl_state import (
     CPL_CLASSES,
@@ -97,6 +98,13 @@ class CplLanguage:
         self._host = WatchedHost(host)
         self._loop = LoopWatch()
         self._skip_levels = skip_levels
+        self._bounds: Bounds | None = None
+        self.shows_statements = stepping
+        """Whether statements are told to who runs the channel."""
+
+    def begin_between(self, first: int, last: int) -> None:
+        """Let the main program that comes next look out for line `first`, and end behind line `last` (0: its last)."""
+        self._bounds = Bounds(first, last)
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
         """Return the source of a program, None for one without CPL.
@@ -105,6 +113,9 @@ class CplLanguage:
             ProgramError: It, or a sub-program of it, is wrong; this is the link step.
         """
         called = arguments if isinstance(arguments, _Called) else None
+        bounds, self._bounds = self._bounds, None
+        if called is None and not self.running:
+            self.linker.stepping = self.shows_statements or bounds is not None
         if called is None and not self.running:
             self.linker.look_again()
         if offset or (called is None and not holds_cpl(text.content, self.linker.alone)):
@@ -122,7 +133,7 @@ class CplLanguage:
         except ProgramError:
             self.linker.refuse(called.program)
             raise
-        source = CplSource(text, execution, self, modal=called.modal)
+        source = CplSource(text, execution, self, modal=called.modal, bounds=bounds)
         self.running.append(source)
         return source
 
@@ -192,11 +203,9 @@ class CplLanguage:
             raise damaged(f"{saved.file} cannot stand there")
         names = made.values(saved.names)
         called = tuple(made.value(each) for each in saved.called.values)
-        if not saved.place:
-            return _Standing(saved, program, called, names, None)
         try:
-            traced = resumed(program.traced, saved.place, names, again=bool(saved.wait))
-        except (ValueError, RecursionError, MemoryError, SyntaxError) as error:
+            traced = standing(program.traced, saved.place, names, again=bool(saved.wait))
+        except ValueError as error:
             raise damaged(f"{saved.file} cannot stand there") from error
         return _Standing(saved, program, called, names, traced)
 
@@ -261,9 +270,16 @@ class CplSource:
     """The blocks of one CPL program."""
 
     def __init__(
-        self, text: ProgramText, execution: Execution, language: CplLanguage, *, modal: bool = False
+        self,
+        text: ProgramText,
+        execution: Execution,
+        language: CplLanguage,
+        *,
+        modal: bool = False,
+        bounds: Bounds | None = None,
     ) -> None:
         self.execution = execution
+        self._bounds = bounds
         self.is_modal = modal
         """Whether its moves are followed by no modal call: it is that call."""
         self._behind: tuple[CodeWord, ...] | None = None  # words behind which a modal call may come
@@ -337,6 +353,12 @@ class CplSource:
                         self._waiting = _Wait(wait, self._language.milliseconds)
                     return Drain(wait.line)
                 case Step() as step:
+                    bounds = self._bounds
+                    if bounds is not None and bounds.end_before(step.line):
+                        return None
+                    is_sought = self._language.hasty and bounds is not None and bounds.first == step.line
+                    if not (self._language.shows_statements or is_sought):
+                        continue
                     if not _STATEMENT.match(self.execution.program.source.line(step.line)):
                         continue  # an NC block, or a WAIT: these are stopped at by themselves
                     if self._language.stands(self.execution.program.file, step.line):
@@ -350,8 +372,13 @@ class CplSource:
         """Return where the program stands.
 
         Raises:
-            SnapshotError: It waits for the answer of a function.
+            SnapshotError: It waits for the answer of a function, or ends behind a block that was given.
         """
+        if self._bounds is not None and self._bounds.last:
+            raise SnapshotError(
+                "a part of a CPL program is under way, up to a block that was given",
+                hint="take the snapshot when it has ended",
+            )
         execution = self.execution
         place = execution.place
         return SavedProgram(
@@ -373,14 +400,10 @@ class CplSource:
         )
 
     def go_to(self, saved: SavedProgram, traced: Traced[int] | None, names: dict[str, object]) -> None:
-        """Stand where another one stood; `traced` is code that stands there, None for the beginning and the end."""
+        """Stand where another one stood; `traced` is code that stands there, None for the end."""
         self._statements, self._answer = saved.statements, saved.answer
         self._behind, self._left = saved.behind, saved.left
         self.execution.line = saved.line
-        if traced is None:
-            if saved.place is None:
-                self.execution.close()
-            return
         event = self.execution.go_to(traced, names)
         if saved.wait and isinstance(event, Waiting):
             self._waiting = _Wait(event, self._language.milliseconds, began_ms=saved.wait[0])

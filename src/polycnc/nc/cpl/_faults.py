@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from polycnc import language
+
 __all__ = ["Fault"]
 
 
@@ -14,15 +16,12 @@ class Text(NamedTuple):
     code: str = ""
 
 
-class Fault(Exception):  # noqa: N818 (never leaves the package: the run makes a ProgramError of it)
+class Fault(language.Fault):
     """Something that goes wrong while a program runs; who raises it need not know where in the program."""
 
     def __init__(self, text: Text | str, hint: str = "") -> None:
         text = Text(text) if isinstance(text, str) else text
-        super().__init__(text.what)
-        self.what = text.what
-        self.code = text.code
-        self.hint = hint
+        super().__init__(text.what, hint, text.code)
 
 
 ASSIGNMENT_MISSING = Text("= MISSING", "2167")

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 from polycnc.errors import ProgramError
-from polycnc.language import Flaw, Source, Traced, clipped, without_collection
+from polycnc.language import Flaw, Source, Traced, clipped, every, without_collection
 from polycnc.nc.cpl._code_calls import NO_CODES, CodeCalls, pattern_of
 from polycnc.nc.cpl._compile import Compiler
+from polycnc.nc.cpl._jumps import target_flaws
 from polycnc.nc.cpl._link_table import LinkedCall, LinkTable, LinkTables, NoTables, text_digest
 from polycnc.nc.cpl._nc_lines import PLAIN_RULES, is_marked_din
 from polycnc.nc.cpl._program_reader import read_program
-from polycnc.nc.cpl._shape import every, target_flaws
 from polycnc.nc.cpl._syntax import NcLine, SubCall
 from polycnc.nc.cpl._variables import Variable
 from polycnc.nc.text._program import TextRules
@@ -37,6 +37,7 @@ class Program:
     marked_din: bool
     is_plain: bool
     text: str
+    stepping: bool = False
 
     @property
     def file(self) -> str:
@@ -84,7 +85,9 @@ def _compiled(
         if isinstance(each, SubCall)
     )
     plain = all(isinstance(each, NcLine) and not each.names for each in statements)
-    return Program(source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text), []
+    return Program(
+        source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text, stepping
+    ), []
 
 
 class Linker:
@@ -107,7 +110,8 @@ class Linker:
         self._codes = codes
         self.alone: frozenset[str] = frozenset()
         """The codes that call programs where they stand alone, as they were when `look_again` was called."""
-        self._stepping = stepping
+        self.stepping = stepping
+        """Whether programs are compiled so that each of their lines is told."""
         self._opened = opened
         self._tables = tables or NoTables()
         self._faulty: dict[str, str] = {}  # texts by file
@@ -162,15 +166,6 @@ class Linker:
         """Return all programs compiled so far."""
         return self._programs.values()
 
-    def traced(self, name: str) -> Traced[int] | None:
-        """Return the running code of a name, for `frame_of`."""
-        program = self._programs.get(name.removeprefix("<cpl ").removesuffix(">"))
-        return None if program is None else program.traced
-
-    def source(self, name: str) -> Source:
-        """Return the source of the running code of a name."""
-        return self._programs[name.removeprefix("<cpl ").removesuffix(">")].source
-
     def _found(self, address: str, name: str) -> tuple[str, str] | None:
         key = (address, name)
         if key not in self._files:
@@ -181,11 +176,11 @@ class Linker:
         if self._faulty.get(file) == text:
             return None
         known = self._programs.get(file)
-        if known is None or known.text != text:
+        if known is None or known.text != text or known.stepping != self.stepping:
             program, found = compile_program(
                 text,
                 file,
-                stepping=self._stepping,
+                stepping=self.stepping,
                 opened=self._opened,
                 alone=self.alone,
                 rules=self._codes.rules,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from polycnc.language import END, Flaw, Source, whole_value
+from polycnc.language import END, Flaw, Jump, Mark, Source, whole_value
 from polycnc.nc.cpl._faults import NESTING_TOO_DEEP, Fault
 from polycnc.nc.cpl._fields import check_sizes
 from polycnc.nc.cpl._functions import FUNCTIONS
@@ -20,14 +20,12 @@ from polycnc.nc.cpl._syntax import (
     Command,
     Dim,
     For,
-    Goto,
     If,
     Name,
     NcLine,
     Repeat,
     Statement,
     SubCall,
-    Target,
     Wait,
     While,
 )
@@ -117,7 +115,7 @@ class _ProgramReader:
     def _target(self, at: int, name: str) -> None:
         """Note a place that is jumped to; most numbers are not."""
         if name in self._jumps:
-            self._body.append(Target(at, name))
+            self._body.append(Mark(at, name))
 
     def _nc(self, begin: int, end: int, number: int) -> None:
         opened = open_line(self._text, begin, end, number) if self._opened else None
@@ -143,7 +141,7 @@ class _ProgramReader:
                 self._goes_on = tokens.token.kind == END
             elif token.kind == "label":
                 tokens.step()
-                self._body.append(Target(token.at, token.word))
+                self._body.append(Mark(token.at, token.word))
             elif instruction := self._instructions.get(token.word):
                 tokens.step()
                 instruction(reader, token.at)
@@ -328,7 +326,7 @@ class _ProgramReader:
         else:
             raise Flaw(token.at, f"{token} is no jump destination", "GOTO N20, GOTO 120 or GOTO .LABEL")
         reader.tokens.step()
-        self._body.append(Goto(token.at, name))
+        self._body.append(Jump(token.at, name))
         self._ends(reader)
 
     def _dim(self, reader: Reader, at: int) -> None:
@@ -424,5 +422,5 @@ class _Unreachable(list[Statement]):
         self._flaws = flaws
 
     def append(self, statement: Statement) -> None:
-        if not isinstance(statement, Target):
+        if not isinstance(statement, Mark):
             self._flaws.append(Flaw(statement.at, "an instruction between CASE and its first LABEL"))

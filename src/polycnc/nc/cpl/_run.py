@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from array import array
 from collections.abc import Callable, Container, Sequence
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NamedTuple
 
 from polycnc.errors import PolycncError, ProgramError
-from polycnc.language import Flaw, Traced, frame_of, inner_of, line_of, names_of
+from polycnc.language import Execution as Generated
+from polycnc.language import Flaw, Traced
 from polycnc.machine import SnapshotError
 from polycnc.nc.cpl import _numbers, _strings
 from polycnc.nc.cpl._faults import CPL_IN_UNLINKED, INVALID_PARAMETER, INVALID_VARIABLE, Fault
@@ -33,7 +34,7 @@ from polycnc.nc.cpl._host import (
 from polycnc.nc.cpl._program import NESTING, Linker, Program, shown_call
 from polycnc.nc.cpl._variables import SUFFIXES, Kind
 
-_STATE = re.compile(r"v_|pc\Z|t[0-9]")
+_STATE = re.compile(r"v_|at[0-9]|go\Z|t[0-9]|\Z")
 
 
 class Arguments(NamedTuple):
@@ -57,9 +58,8 @@ class Execution:
         """The line of the last event."""
         self._linker = linker
         self.arguments = arguments
-        self._given = variables, host.permanent, host, arguments
-        make = program.traced.load(_SCOPE)["program"]
-        self._generator = make(*self._given)
+        given = variables, host.permanent, host, arguments
+        self._run = Generated(program.traced, _SCOPE, given, self._explained)
 
     def step(self, answer: object = None) -> Event | None:
         """Return the next event, None at the end; `answer` is that to the last one (WAIT: 0, 1 or 2).
@@ -67,13 +67,8 @@ class Execution:
         Raises:
             ProgramError: The program does what it must not.
         """
-        try:
-            event: Event = self._generator.send(answer)
-        except StopIteration:
-            return None
-        except (Fault, ArithmeticError, TypeError, ValueError) as error:
-            self._explain(error)
-        if not isinstance(event, Pause):
+        event: Event | None = self._run.next(answer)
+        if event is not None and not isinstance(event, Pause):
             self.line = event[0]
         return event
 
@@ -84,31 +79,26 @@ class Execution:
         Raises:
             SnapshotError: It waits for the answer of a function, in the middle of a statement.
         """
-        if inner_of(self._generator) is not None:
+        if self._run.inner is not None:
             raise SnapshotError(
                 "the CPL program waits for the answer of a function",
                 hint="take the snapshot when it has come",
             )
-        return line_of(self._generator)
+        return self._run.place
 
     def names(self) -> dict[str, Any]:
         """Return the names of its Python."""
-        return names_of(self._generator)
+        return self._run.names
 
-    def go_to(self, traced: Traced[int], names: dict[str, object]) -> object:
-        """Stand where the code of `traced` stands (see `resumed`); return what it gives there."""
-        self._generator.close()
-        make = traced.load(_SCOPE)["program"]
-        self._generator = make(*self._given, names)
-        return next(self._generator)
+    def go_to(self, traced: Traced[int] | None, names: dict[str, object]) -> object:
+        """Stand where the code of `traced` stands (see `standing`), None at the end; return what it gives there."""
+        return self._run.go_on(traced, names)
 
     @property
     def statement_line(self) -> int:
         """The line of the statement that is executed, or was last."""
-        frame = self._generator.gi_frame
-        if frame is None:
-            return self.line
-        return self.program.source.line_of(self.program.traced.places[frame.f_lineno - 1])
+        at = self._run.at
+        return self.line if at is None else self.program.source.line_of(at)
 
     def error_here(self, what: str, hint: str = "") -> ProgramError:
         """Return an error at the statement that is executed, or was last."""
@@ -118,7 +108,7 @@ class Execution:
 
     def close(self) -> None:
         """End the program."""
-        self._generator.close()
+        self._run.close()
 
     def called(self, call: SubProgram, running: Sequence[Program]) -> Program:
         """Return the sub-program that is called, `running` being those under way.
@@ -141,29 +131,22 @@ class Execution:
 
     def local_variables(self) -> dict[str, object]:
         """Return the local variables by name."""
-        values = self._generator.gi_frame.f_locals if self._generator.gi_frame is not None else {}
+        values = self._run.names
         local = (each for each in self.program.variables if each.scope in ("local", "parameter"))
         return {each.name: shown(values.get(each.python)) for each in local}
 
     def state(self) -> dict[str, object]:
         """Return what it goes on with: its place, variables, and what it is just reckoning; not what counts pauses."""
-        frame = self._generator.gi_frame
-        if frame is None:
-            return {}
-        found = {name: value for name, value in frame.f_locals.items() if _STATE.match(name)}
-        return {**found, "": frame.f_lasti}
+        return {name: value for name, value in self._run.state().items() if _STATE.match(name)}
 
     def _error(self, call: SubProgram, what: str, hint: str = "") -> ProgramError:
         source = self.program.source
         text = source.line(call.line)
         return source.error(Flaw(source.begin(call.line) + len(text) - len(text.lstrip()), what, hint))
 
-    def _explain(self, error: Exception) -> NoReturn:
-        frame = frame_of(error, self._linker.traced)
-        if frame is None:
-            raise error
+    def _explained(self, error: Exception, at: int) -> ProgramError:
         what, hint, code = _meaning(error)
-        raise self._linker.source(frame.name).error(Flaw(frame.place, what, hint, code=code)) from error
+        return self.program.source.error(Flaw(at, what, hint, code=code))
 
 
 class Run:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from polycnc.language import Tree
+from polycnc.language import Choice, Jump, Loop, Mark, Tree
 from polycnc.nc.cpl._variables import Variable
 
 # Expressions
@@ -96,22 +96,6 @@ class Dim:
 
 
 @dataclass(slots=True)
-class Goto:
-    """A jump; `target` is "N20", "120" or ".LABEL"."""
-
-    at: int
-    target: str
-
-
-@dataclass(slots=True)
-class Target:
-    """A place that can be jumped to."""
-
-    at: int
-    name: str
-
-
-@dataclass(slots=True)
 class SubCall:
     """A sub-program call: by CALL, or by an address of an NC block."""
 
@@ -139,7 +123,7 @@ class Wait:
 
 
 @dataclass(slots=True)
-class If:
+class If(Choice):
     """IF: a condition and two routines."""
 
     at: int
@@ -148,19 +132,31 @@ class If:
     otherwise: list[Statement] = field(default_factory=list)
     has_else: bool = False
 
+    @property
+    def bodies(self) -> tuple[list[Statement], ...]:
+        """The two routines."""
+        return self.then, self.otherwise
+
 
 @dataclass(slots=True)
-class Case:
+class Case(Choice):
     """CASE: a selector and the routines of its labels; an empty tuple of labels is OTHERWISE."""
 
     at: int
     selector: Expression
     branches: list[tuple[tuple[int, ...], list[Statement]]] = field(default_factory=list)
 
+    @property
+    def bodies(self) -> tuple[list[Statement], ...]:
+        """The routines."""
+        return tuple(body for _, body in self.branches)
+
 
 @dataclass(slots=True)
-class For:
+class For(Loop):
     """FOR: a counting loop."""
+
+    closes = True
 
     at: int
     counter: Name
@@ -171,7 +167,7 @@ class For:
 
 
 @dataclass(slots=True)
-class While:
+class While(Loop):
     """WHILE: a loop tested before."""
 
     at: int
@@ -180,8 +176,10 @@ class While:
 
 
 @dataclass(slots=True)
-class Repeat:
+class Repeat(Loop):
     """REPEAT: a loop tested behind."""
+
+    closes = True
 
     at: int
     condition: Expression | None = None
@@ -227,8 +225,8 @@ Statement: TypeAlias = (
     Assign
     | Command
     | Dim
-    | Goto
-    | Target
+    | Jump
+    | Mark
     | SubCall
     | Wait
     | If

@@ -108,6 +108,9 @@ class _Compiler:
 
     # ------------------------------------------------------------------ what the flow asks
 
+    def before(self, statement: object) -> None:
+        """Write nothing: macros are stepped from block to block."""
+
     def statement(self, part: Line | Span) -> None:
         """Write a line or a stretch of plain text."""
         if isinstance(part, Span):
@@ -141,7 +144,8 @@ class _Compiler:
         self._begin(loop.line)
 
     def end(self, loop: While) -> None:
-        """End a round."""
+        """End a round: a pause is one of the loop."""
+        self._out.place = loop.at
 
     def _span(self, part: Span) -> None:
         self._code.spans.append(TextSpan(part.offset, part.line, part.end))

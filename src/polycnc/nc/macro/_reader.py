@@ -55,9 +55,7 @@ _LEXICON = Lexicon(
     ),
     skip=rf"(?:{_BLANKS}|\([^)\r\n]*\))*",
     folded=("word", "letter"),
-    unfinished={
-        "(": ("the comment is not closed", "Write ')' at its end, on the same line."),
-    },
+    unfinished={"(": ("the comment is not closed", "Write ')' at its end, on the same line.")},
 )
 _OPERATORS = Operators(
     infix={
@@ -329,10 +327,7 @@ class _Statements:
         token = self._tokens.token
         if token.word != "[":
             raise Flaw(
-                token.at,
-                f"'[' is missing behind {word}",
-                f"Write {word} [#1 EQ 0] ...",
-                code=_STATEMENT,
+                token.at, f"'[' is missing behind {word}", f"Write {word} [#1 EQ 0] ...", code=_STATEMENT
             )
         return self._bracket()
 

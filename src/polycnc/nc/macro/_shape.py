@@ -81,11 +81,7 @@ def shape(
     if start is not None:
         parts = list(_cut(text, parts, start))
     statements = [each for part in parts if isinstance(part, Line) for each in part.statements]
-    jumps = list(_jumps(statements))
-    open_jumps = returns or any(not isinstance(each.target, Number) for each in jumps)
-    wanted = (
-        None if open_jumps else {int(each.target.value) for each in jumps if isinstance(each.target, Number)}
-    )
+    wanted = _wanted(statements, returns=returns)
     if wanted is None or wanted:
         parts = list(_split(text, parts, wanted))
     nest, labels = _Nest(), dict[int, list[int]]()
@@ -104,7 +100,7 @@ def shape(
             inside = _no_begin(start, "the program cannot begin inside a loop", "before it")
             begin = [inside] if nest.open else []
         nest.take(part)
-    return Shape(nest.main, labels, open_jumps, start), [*nest.all_flaws(), *(begin or ())]
+    return Shape(nest.main, labels, wanted is None, start), [*nest.all_flaws(), *(begin or ())]
 
 
 class _Nest:
@@ -154,6 +150,16 @@ class _Nest:
 
 def _no_begin(start: int, what: str, which: str) -> Flaw:
     return Flaw(start, what, f"Choose a block {which}.", code="PS0128")
+
+
+def _wanted(statements: list[Statement], *, returns: bool) -> set[int] | None:
+    """Return the block numbers that jumps lead to, None for any."""
+    found = set()
+    for each in _jumps(statements):
+        if not isinstance(each.target, Number):
+            return None
+        found.add(int(each.target.value))
+    return None if returns else found
 
 
 def _jumps(statements: list[Statement]) -> Iterator[Goto]:

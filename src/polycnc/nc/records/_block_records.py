@@ -106,6 +106,17 @@ class BlockRecord:
     lines: int = 0
 
 
+class Zero(NamedTuple):
+    """Where program zero lies: `offset` in machine coordinates (mm, degree), one value per axis.
+
+    It is the sum of the work offsets `work`, of what the program has shifted, and of the tool's length.
+    """
+
+    offset: tuple[float, ...]
+    work: tuple[str, ...] = ()
+    inch: bool = False
+
+
 class _Replay(NamedTuple):
     """What the plain blocks of a run say about motion, distance and feed: block numbers and values of each."""
 
@@ -216,6 +227,15 @@ class BlockRecords:
         """
         context = self._contexts.get(tag >> CONTEXT_SHIFT)
         return None if context is None else self.words(context.text, context.modal)
+
+    def zero(self, tag: int) -> Zero | None:
+        """Return where program zero lies with the block of a tag, None where that is not known."""
+        context = self._contexts.get(tag >> CONTEXT_SHIFT)
+        if context is None:
+            return None
+        modal = context.modal
+        inch = bool(np.frombuffer(modal.whole, np.int64)[INCH])
+        return Zero(tuple(np.frombuffer(modal.offset).tolist()), modal.work, inch)
 
     def depth(self, tag: int) -> int:
         """Return how many calls led to the block of a tag."""

@@ -200,6 +200,15 @@ class HastyLanguage(Language, Protocol):
 
 
 @runtime_checkable
+class BoundedLanguage(Language, Protocol):
+    """A language whose programs may begin and end at blocks that are given."""
+
+    def begin_between(self, first: int, last: int) -> None:
+        """Let the main program that comes next look out for line `first`, and end behind line `last` (0: its last)."""
+        ...
+
+
+@runtime_checkable
 class SearchingLanguage(Language, Protocol):
     """A language whose programs may begin at another line than their first."""
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from polycnc.errors import ProgramError
 from polycnc.post.macros._compile import START_WORDS
+from polycnc.post.output._arc_center import written_center
 from polycnc.post.output._kinematics import Angles, Kinematics
 from polycnc.post.output._output import Output
 from polycnc.post.output._rotary import table_angles
@@ -427,7 +428,7 @@ class Motion:
         plane, clockwise = found
         scale, decimals = self._scale, self._parameters.decimals
         start = [round(value * scale, decimals) for value in arc.start]
-        center = [round(value * scale, decimals) for value in arc.center]
+        center = written_center(arc, plane, scale, decimals)
         absolute = self._parameters.arc_center == "absolute"
         i, j, k = center if absolute else (c - s for c, s in zip(center, start, strict=True))
         normal_word = {17: "K", 18: "J", 19: "I"}[plane]

@@ -282,8 +282,8 @@ class _Driver:
             raise self.output.fail(
                 record.line,
                 "the coordinate system changes within the tool path",
-                'Write coordinate_systems = "work_offsets" in the parameters of the control file (the first is G54, '
-                "the next G55), or post each one on its own.",
+                "Let the CAM system write one tool path for each. If the points of each count from its own zero, "
+                'coordinate_systems = "work_offsets" in the control file makes the first G54, the next G55.',
             )
         before = self.course.work_offset
         self._take(record)

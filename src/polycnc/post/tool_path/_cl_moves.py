@@ -22,6 +22,9 @@ from polycnc.post.tool_path._records import (
     Vector,
 )
 
+_MATRIX_NUMBERS = 12
+_LEANING = 1e-6
+
 
 def _near(reading: Reading, statement: Statement, *numbers: float) -> None:
     if not all(abs(number * reading.scale) <= LARGEST_MM for number in numbers):
@@ -160,7 +163,30 @@ def _level(reading: Reading, statement: Statement) -> float:
 def coordinate_system(reading: Reading, statement: Statement) -> Iterator[Record]:
     """Read MSYS or CSYS: the first one is that of the program, another one is another work offset."""
     if numbers := tuple(statement.numbers()):
+        if reading.in_world:
+            check_upright(statement, numbers)
+            if any(numbers[3::4]):
+                reading.remarks.add(
+                    statement.line,
+                    "the points count from the world, so its zero is that of the program, not CSYS",
+                )
         yield from reading.take_frame(statement.line, numbers)
+
+
+def check_upright(statement: Statement, numbers: tuple[float, ...]) -> None:
+    """Refuse a coordinate system that leans, where points count from the world: its tool is not upright there.
+
+    The numbers are three rows of a direction matrix, each with a coordinate of the origin after it.
+
+    Raises:
+        ProgramError: it leans, or the numbers are not that matrix.
+    """
+    z_axis = numbers[2:11:4]
+    if len(numbers) != _MATRIX_NUMBERS or math.dist(z_axis, UPRIGHT) > _LEANING:
+        raise statement.fail(
+            "a coordinate system that leans against the world, from which the points count",
+            "Let the CAM system write a tool path of its own for each set-up, in that set-up's coordinates.",
+        )
 
 
 def circle(reading: Reading, statement: Statement) -> Iterator[Record]:

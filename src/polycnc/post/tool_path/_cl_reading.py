@@ -83,6 +83,8 @@ class Reading:
     """The coordinate systems in the order in which they were first given (MSYS, CSYS)."""
     frame: int = 0
     """The number of the one in force, 0 for none."""
+    in_world: bool = False
+    """Whether points count from one zero whatever coordinate systems come (TRNTYP/WORLD)."""
     matrix: list[float] | None = None
     """The numbers of a coordinate system that stands in remarks, while they come."""
     announced: Tool | None = None
@@ -207,7 +209,12 @@ class Reading:
             yield self.tool
 
     def take_frame(self, line: int, numbers: tuple[float, ...]) -> Iterator[WorkOffset]:
-        """Yield the change to a coordinate system, if it is another one than that in force; the first is 1."""
+        """Yield the change to a coordinate system, if it is another one than that in force; the first is 1.
+
+        After TRNTYP/WORLD a coordinate system is only the set-up of an operation: its points count from the world.
+        """
+        if self.in_world:
+            return
         place = next((at for at, each in enumerate(self.frames, 1) if _same_frame(each, numbers)), 0)
         if not place:
             self.frames.append(numbers)

@@ -36,6 +36,12 @@ TEXTS = re.compile(r"\s*(PARTNO|PPRINT|INSERT|REMARK|TPRINT)\b\s*/?\s?(.*)", re.
 _NOTE = re.compile(r"\[|[A-Z][a-z]+\b(?!\s*[(=\[])")
 """How the text of an INSERT begins that is no block of a control: CAM systems write notes as INSERT, too."""
 
+_PROSE = re.compile(
+    r"\d+(?:\.\d+)?[A-Za-z]{2,}\b|(?!(?:CALL|DIM|FOR|GOTO|GOSUB|IF|PRN|REPEAT|WAIT|WHILE)\b)"
+    r"[A-Za-z]{3,}(?:\s+[A-Za-z]{2,})+\s*$"
+)
+"""How an INSERT begins, or what it is as a whole, that no control reads as a block: a size, or words alone."""
+
 IGNORED = frozenset(
     (
         *(
@@ -125,6 +131,9 @@ def _text(kind: Literal["part", "comment", "insert"]) -> Handler:
         if len(text) > 1 and text[0] == text[-1] and text[0] in "'\"" and kind != "insert":
             text = text[1:-1].strip()
         is_note = kind == "insert" and _NOTE.match(text) is not None
+        if kind == "insert" and not is_note and _PROSE.match(text) is not None:
+            is_note = True
+            reading.remarks.add(statement.line, f"INSERT '{text[:40]}' is no block of a control: a comment")
         yield Text(statement.line, "comment" if is_note else kind, text)
 
     return read
@@ -441,7 +450,7 @@ def _dwell(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def _transformation(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read TRNTYP: points in the coordinates of the part are what is read anyway."""
+    """Read TRNTYP: points count from the world, whatever CSYS come."""
     first = statement.peek()
     if first is None or first.text != "WORLD" or any(token.number for token in statement):
         raise statement.fail(
@@ -449,6 +458,14 @@ def _transformation(reading: Reading, statement: Statement) -> Iterator[Record]:
             "Let the CAM system write all points in one coordinate system (TRNTYP/WORLD,0,0,0).",
             first,
         )
+    if reading.frame and not reading.in_world:
+        _cl_moves.check_upright(statement, reading.frames[reading.frame - 1])
+    if len(reading.frames) > 1 and not reading.in_world and reading.moves:
+        raise statement.fail(
+            "TRNTYP/WORLD after points of several coordinate systems",
+            "Let the CAM system write it before all points.",
+        )
+    reading.in_world = True
     return iter(())
 
 

@@ -12,11 +12,7 @@ from polycnc.runner.view import Beside, Mark, Track, View, page
 
 
 def view_of_comparison(comparison: Comparison) -> View:
-    """Return a page with path A, its blocks and times, path B beside it, and the greatest deviations marked.
-
-    Raises:
-        UsageError: plotly is not installed.
-    """
+    """Return a page with path A, its blocks and times, path B beside it, and the greatest deviations marked."""
     axes = comparison.axes
     marks = [
         _mark("A is farthest from B", comparison.a_from_b, axes, own=True),
@@ -30,11 +26,17 @@ def view_of_comparison(comparison: Comparison) -> View:
     result = _result_of(comparison.a)
     both = zip(comparison.tracks, comparison.track_axes, strict=True)
     own, beside = (_of_axes(track, names, axes) for track, names in both)
-    shown = Beside(comparison.b.name, comparison.a.name, beside, tuple(marks))
+    shown = Beside(_name(comparison.b), _name(comparison.a), beside, tuple(marks))
     texts: dict[str, ProgramText] = {}
     html = page(result, axes, own, texts, shown)
     inputs = tuple(FilePath(each.name) for each in (comparison.a, comparison.b) if "\0" not in each.name)
     return View(html, result, inputs)
+
+
+def _name(side: Compared) -> str:
+    """Return file and machine of a side; a trace has no machine."""
+    name = FilePath(side.name).name if "\0" not in side.name else side.name
+    return f"{name} on {side.machine}" if side.machine else name
 
 
 def _mark(what: str, found: PathDeviation, axes: tuple[tuple[str, str], ...], *, own: bool) -> Mark:

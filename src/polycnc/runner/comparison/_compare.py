@@ -134,11 +134,7 @@ class Comparison:
         )
 
     def view(self) -> View:
-        """Return both paths as one page, to be saved, opened, or shown in a notebook.
-
-        Raises:
-            UsageError: plotly is not installed.
-        """
+        """Return both paths as one page, to be saved, opened, or shown in a notebook."""
         from polycnc.runner.comparison._both import view_of_comparison
 
         return view_of_comparison(self)

@@ -46,7 +46,7 @@ def on_part(position: Floats, machine: MachineConfig, tool: npt.NDArray[np.int64
             place[:, column] = position[:, names.index(name)]
     hangs = np.zeros((len(position), 3))
     if tool is not None:
-        hangs[:, 2] = -_lengths_mm(machine, tool)
+        hangs = _hangs_mm(machine, tool)
     axes = turning_axes(machine)
     for number, axis in reversed(axes):
         if axis.carries == "tool":
@@ -90,7 +90,13 @@ def _extended(track: Track, machine: MachineConfig) -> Track:
     return replace(track, position=np.column_stack((track.position, tips)))
 
 
-def _lengths_mm(machine: MachineConfig, tool: npt.NDArray[np.int64]) -> Floats:
+def hang_mm(tool: ToolConfig) -> tuple[float, float, float]:
+    """Return where the tip of a tool is as seen from where it is held: X, Y, Z."""
+    z_mm = tool.length_mm + tool.wear_length_mm + tool.z_mm + tool.wear_z_mm
+    return -(tool.x_mm + tool.wear_x_mm), 0.0, -z_mm
+
+
+def _hangs_mm(machine: MachineConfig, tool: npt.NDArray[np.int64]) -> Floats:
     numbers, place = np.unique(tool, return_inverse=True)
-    found = [machine.tools.get(number, ToolConfig()) for number in numbers.tolist()]
-    return np.array([each.length_mm + each.wear_length_mm for each in found])[place]
+    found = [hang_mm(machine.tools.get(number, ToolConfig())) for number in numbers.tolist()]
+    return np.array(found).reshape(-1, 3)[place]

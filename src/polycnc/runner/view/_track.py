@@ -11,6 +11,7 @@ from polycnc.kernel import FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import Blocks, Execution, ExecutionCollector
 from polycnc.runner._result import Trace
+from polycnc.runner._zeros import NO_ZEROS, Zeros
 from polycnc.runner.view._motion import Motion, MotionCollector
 from polycnc.runner.view._thin import Floats, kept_rows
 
@@ -37,6 +38,8 @@ class Track:
     tolerance_mm: float
     thinned: bool  # executions are left out too
     motion: Motion
+    zeros: Zeros = NO_ZEROS
+    cycle_s: float = 0.0
 
     def block_at(self) -> npt.NDArray[np.int64]:
         """Return the place in `blocks` of each point's block; the rows before the first block count for it."""
@@ -113,6 +116,8 @@ class TrackCollector:
             tolerance_mm=self._missed * _TOLERANCE["mm"],
             thinned=thinned,
             motion=self._motion.motion(),
+            zeros=execution.zeros,
+            cycle_s=cycle_s,
         )
 
     def _take(self, piece: Floats) -> None:

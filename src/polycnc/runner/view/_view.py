@@ -17,7 +17,7 @@ from polycnc.runner._execution import Progress
 from polycnc.runner._result import RunResult, Trace
 from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings, program_text
-from polycnc.runner.view._page import page, plotly_source
+from polycnc.runner.view._page import page
 from polycnc.runner.view._track import TrackCollector
 
 VIEW_FORMATS = (".html", ".htm")
@@ -59,7 +59,7 @@ def check_view_file(
     """Return the path of a view that could be written there; with `replaces_views_only` over no file but another view.
 
     Raises:
-        UsageError: another extension, no such folder, one of `inputs`, another file, or plotly is not installed.
+        UsageError: another extension, no such folder, one of `inputs`, another file.
     """
     target = check_output(path, VIEW_FORMATS, "a view")
     keep_inputs(target, inputs, "a view")
@@ -68,7 +68,6 @@ def check_view_file(
             f"{target} exists and is no view of polycnc",
             hint="Name the page with -o, or move that file away.",
         )
-    plotly_source()
     return target
 
 
@@ -97,16 +96,17 @@ def view_program(
     dialect: str | Dialect | None = None,
     *,
     skip_levels: Iterable[int] = (),
+    inch: bool | None = None,
     progress: Progress | None = None,
 ) -> View:
     """Run a program and return its view, in memory that does not grow with the length of the run.
 
-    Alarms are in the view and in its `result`; arguments are those of `run`.
+    Alarms are in the view and in its `result`; arguments are those of `run`. Lengths are shown in inches
+    or not (`inch`), as the program has them if that is None.
 
     Raises:
-        UsageError: no such file, machine or dialect, or plotly is not installed.
+        UsageError: no such file, machine or dialect.
     """
-    plotly_source()
     text = program_text(program)
     config = load_machine(machine)
     collector = TrackCollector(tuple(axis.unit for axis in config.axes))
@@ -114,7 +114,7 @@ def view_program(
     result = run_program(text, settings, check=False, tagged_rows=collector.add, progress=progress)
     execution = collector.execution()
     axes = tuple((axis.name, axis.unit) for axis in config.axes)
-    shown = page(result, axes, collector.track(execution), execution.texts)
+    shown = page(result, axes, collector.track(execution), execution.texts, inch=inch)
     given = (Path(each) for each in (machine, dialect) if isinstance(each, str | Path))
     return View(shown, result, (*_files(execution.texts, text), *given))
 

@@ -25,11 +25,12 @@ from polycnc.servers.focas._commands import COMMANDS, WRITING, known
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._dissect import Dissector, Field, dissect
 from polycnc.servers.focas._faults import Fault, FaultKind, Faults, Plan, load_faults
-from polycnc.servers.focas._owner import HostOwner, Keeper, Owner
+from polycnc.servers.focas._numbered import numbered
 from polycnc.servers.focas._profile import PROFILES, Profile, load_profile
 from polycnc.servers.focas._served import ServedControl
 from polycnc.servers.focas._server import PORT, FocasServer
 from polycnc.servers.focas._session import TRANSITIONS, Answerer, Ending, Session, State, Status, Transition
+from polycnc.servers.machines import HostOwner, Keeper, Owner
 
 __all__ = [
     "CNC",
@@ -73,6 +74,7 @@ __all__ = [
     "known",
     "load_faults",
     "load_profile",
+    "numbered",
     "read_replies",
     "read_requests",
     "read_status",

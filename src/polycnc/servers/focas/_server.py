@@ -16,9 +16,9 @@ from polycnc.errors import UsageError
 from polycnc.machine import Host
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._faults import FaultKind, Faults
-from polycnc.servers.focas._owner import HostOwner, Keeper, Owner
 from polycnc.servers.focas._profile import Profile
 from polycnc.servers.focas._session import Ending, Session
+from polycnc.servers.machines import HostOwner, Keeper, Owner, ServedMachine
 
 PORT = 8193
 LOOPBACK = "127.0.0.1"
@@ -50,6 +50,19 @@ class FocasServer:
         self._lines: set[_Line] = set()
         self._watch: asyncio.TimerHandle | None = None
         self._task: asyncio.Task[None] | None = None  # keeps it from being collected
+
+    @classmethod
+    def of(cls, machine: ServedMachine, profile: Profile, *, address: str, port: int) -> FocasServer:
+        """Return the door of a served Power Mate; faults of its scenario act on the connections too."""
+        scenario, control = machine.served.scenario, machine.device
+        assert isinstance(control, PowerMate)
+        faults = scenario if isinstance(scenario, Faults) else None
+        return cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
+
+    @property
+    def said(self) -> str:
+        """Where it listens."""
+        return f"{self.address}:{self.port}"
 
     async def start(self) -> None:
         """Listen.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -10,7 +11,12 @@ from polycnc.controllers.bosch.ncs._buffers import check_buffer, fill, integer, 
 from polycnc.controllers.bosch.ncs._codes import NcsCode, NcsError
 from polycnc.controllers.bosch.ncs._data_services import DATA_SERVICES, DataService
 from polycnc.controllers.bosch.ncs._image import Image, Wait
-from polycnc.controllers.bosch.ncs._process_services import PROCESS_SERVICES, ProcessServices
+from polycnc.controllers.bosch.ncs._process_services import (
+    PROCESS_SERVICES,
+    WHOLE_SYSTEM,
+    ProcessService,
+    ProcessServices,
+)
 from polycnc.controllers.bosch.ncs._versions import Key, Ledger
 from polycnc.nc.cpl import BLOCKED, OMITTED, Box, Fault
 
@@ -33,6 +39,8 @@ class NcsServer:
     magic: int = MAGIC
     connected: bool = True
     ledger: Ledger = field(default_factory=Ledger)
+    orders: list[Iterator[None]] = field(default_factory=list)
+    """What is carried out behind the cycle: it ends the program that has asked for it."""
 
     def check(self, magic: int) -> None:
         """Make sure that a message can be received.
@@ -48,11 +56,17 @@ class NcsServer:
     @property
     def is_awake(self) -> bool:
         """Whether there is anything to note: data were asked for that can change and change back."""
-        return self.ledger.is_used
+        return self.ledger.is_used or bool(self.orders)
 
     def look(self) -> None:
         """Note what changed; once in every cycle of the control, so that nothing is missed between two calls."""
-        self.ledger.look(self.control.image)
+        orders, self.orders = self.orders, []
+        for order in orders:
+            with suppress(StopIteration, NcsError):  # nobody is left to tell
+                next(order)
+                self.orders.append(order)
+        if self.ledger.is_used:
+            self.ledger.look(self.control.image)
 
 
 class Coupling:
@@ -133,6 +147,9 @@ class Coupling:
                 return int(refused.code)
             if begun is None:
                 return int(NcsCode.DONE)
+            if self._ends_by(service, channel, values):
+                self._server.orders.append(begun)
+                begun = _never()
             work = begun
         try:
             self._server.check(self._magic)
@@ -151,12 +168,22 @@ class Coupling:
         self._under_way = None
         self._waits(False)
 
+    def _ends_by(self, service: ProcessService, channel: int, values: list[int | str]) -> bool:
+        """Tell whether a service ends the program that asks for it."""
+        own = channel in (self._channel, WHOLE_SYSTEM) and self._server.control.image is self._home
+        return own and service.ends(values)
+
     def _waits(self, on: bool) -> None:
         shown = None if self._home is None else self._home.channels.get(self._channel)
         if shown is not None:
             shown.other_waits = (
                 shown.other_waits | Wait.DATA_SERVICE if on else shown.other_waits & ~Wait.DATA_SERVICE
             )
+
+
+def _never() -> Iterator[None]:
+    while True:
+        yield
 
 
 def _key(service: DataService, channel: int, extra: tuple[int | None, ...], image: Image) -> Key:

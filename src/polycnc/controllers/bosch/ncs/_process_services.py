@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import IntFlag
 from typing import Literal, Protocol, TypeAlias
@@ -34,13 +34,17 @@ AUTOMATIC = frozenset((Mode.AUTOMATIC, Mode.PROGRAM_BLOCK, Mode.SINGLE_STEP, Mod
 """The modes that change among each other while a program is selected."""
 
 
+Done: TypeAlias = Iterator[None] | None
+"""Nothing if a service is done, else what is to be asked once a cycle until it is."""
+
+
 class ProcessServices(Protocol):
     """A control that does what other channels ask of it; each method may raise an NcsError."""
 
     def cancel_distance(self, channel: int) -> None:
         """Throw prepared blocks and the rest of the current one away and prepare them anew."""
 
-    def control_reset(self, channel: int, kind: int) -> None:
+    def control_reset(self, channel: int, kind: int) -> Done:
         """Reset a channel, or all (-2)."""
 
     def search_block(self, channel: int, start: str, end: str) -> None:
@@ -51,7 +55,7 @@ class ProcessServices(Protocol):
     ) -> Iterator[None]:
         """Select a program or manual blocks; yields while it cannot be answered yet."""
 
-    def exit_program(self, channel: int, kind: int) -> None:
+    def exit_program(self, channel: int, kind: int) -> Done:
         """Leave the selected program or block."""
 
     def start(self, channel: int) -> None:
@@ -69,7 +73,6 @@ class ProcessServices(Protocol):
 
 Parameter: TypeAlias = tuple[Literal["I", "S"], int | str | None]
 """Type of a parameter, and what stands for one left out; None: it must not be left out."""
-Done: TypeAlias = Iterator[None] | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +83,8 @@ class ProcessService:
     name: str
     parameters: tuple[Parameter, ...]
     do: Callable[..., Done]
+    ends: Callable[[Sequence[int | str]], bool] = lambda _values: False
+    """Whether it ends the program of the channel that it is for."""
 
 
 _TEXT: Parameter = ("S", "")
@@ -92,11 +97,14 @@ def _rows() -> list[ProcessService]:
     # fmt: off
     return [
         s(1, "cancel distance to go", (), lambda to, _by, channel: to.cancel_distance(channel)),
-        s(2, "control reset", (_KIND,), lambda to, _by, channel, kind: to.control_reset(channel, kind)),
+        s(2, "control reset", (_KIND,), lambda to, _by, channel, kind: to.control_reset(channel, kind),
+          lambda _values: True),
         s(3, "search block", (_TEXT, _TEXT), lambda to, _by, channel, *ends: to.search_block(channel, *ends)),
         s(4, "select program or manual block", (_TEXT, _TEXT, _TEXT, _KIND),
-          lambda to, by, channel, text, start, end, how: to.select(by, channel, text, start, end, Selection(how))),
-        s(5, "exit program", (_KIND,), lambda to, _by, channel, kind: to.exit_program(channel, kind)),
+          lambda to, by, channel, text, start, end, how: to.select(by, channel, text, start, end, Selection(how)),
+          lambda values: bool(int(values[3]) & (Selection.EXIT_BEFORE | Selection.REPLACE))),
+        s(5, "exit program", (_KIND,), lambda to, _by, channel, kind: to.exit_program(channel, kind),
+          lambda _values: True),
         s(6, "start program", (), lambda to, _by, channel: to.start(channel)),
         s(7, "operation mode", (_NUMBER,), lambda to, _by, channel, mode: to.set_mode(channel, mode)),
         s(8, "return to path strategy", (_NUMBER, _NUMBER),

@@ -19,6 +19,7 @@ from polycnc.cnc import (
     Refusal,
     Script,
     Status,
+    Step,
 )
 from polycnc.controllers.fanuc.data._bindings import bind
 from polycnc.controllers.fanuc.data._configuration import Configuration
@@ -258,7 +259,7 @@ class PowerMate:
         """Let the next start in MEM begin at a line of the selected program, from 0."""
         self.state.cursor = line
 
-    def cycle_start(self) -> None:
+    def cycle_start(self, step: Step = Step.RUN) -> None:
         """Start the program of MEM, MDI or RMT (`remote`), or go on where one is interrupted.
 
         Raises:
@@ -275,7 +276,7 @@ class PowerMate:
             self.custom_macros.begin()
             self.signals.apply_lock()
         start = self.mdi.state.start if self.state.mode is PowerMateMode.MDI else self.state.cursor
-        self.control.cycle_start(line=start + 1)
+        self.control.cycle_start(step=step, line=start + 1)
         self.state.cursor = 0
 
     def feed_hold(self) -> None:

@@ -1,7 +1,7 @@
-"""Who lets the time of a served control pass and carries out what its clients ask.
+"""Who lets the time of a served machine pass and carries out what its clients ask.
 
-A host does it in a thread of its own, for a control with several doors. A keeper does it in the event loop: without a
-change of threads for every request, and a thousand controls in one process.
+A host does it in a thread of its own, for a device that is commanded from elsewhere too. A keeper does it in the event
+loop: without a change of threads for every request, and a thousand machines in one process.
 """
 
 from __future__ import annotations
@@ -10,8 +10,7 @@ import asyncio
 from collections.abc import Callable
 from typing import Any, Protocol, TypeVar
 
-from polycnc.machine import Host, HostError, Pace, Wall
-from polycnc.servers.focas._served import ServedControl
+from polycnc.machine import Clock, Host, HostError, Pace, Wall
 
 R = TypeVar("R")
 _BUSY_BEAT_S = 0.05
@@ -21,10 +20,10 @@ _MOST_LATE_S = 0.5
 
 
 class Owner(Protocol):
-    """Carry out what is asked between two cycles of a control."""
+    """Carry out what is asked between two cycles of a device."""
 
-    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> None:
-        """Carry out `command` and give its result to `done` in the event loop; nothing is told if it cannot be."""
+    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> bool:
+        """Carry out `command` and give its result to `done` in the event loop; False if it cannot be carried out."""
 
 
 class HostOwner:
@@ -33,36 +32,52 @@ class HostOwner:
     def __init__(self, host: Host[Any]) -> None:
         self._host = host
 
-    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> None:
+    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> bool:
         """Post `command` to the host."""
         loop = asyncio.get_running_loop()
         try:
             posted = self._host.post(lambda _: command())
         except HostError:
-            return
+            return False
         posted.add_done_callback(
             lambda future: None if future.exception() else loop.call_soon_threadsafe(done, future.result())
         )
+        return True
+
+
+class Kept(Protocol):
+    """What a keeper lets the time of pass."""
+
+    @property
+    def clock(self) -> Clock:
+        """The clock of the device."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether something happens in it, so that time has to pass often."""
+
+    def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
+        """Let up to `cycles` control cycles pass, or until `is_enough` says so; return how many did."""
 
 
 class Keeper:
-    """Let the time of a control pass in the running event loop, at `rate` seconds for each second of `wall`.
+    """Let the time of a device pass in the running event loop, at `rate` seconds for each second of `wall`.
 
-    Time is let pass before every request and from time to time, for at most `share_s` of the wall clock in one go, so
-    that nobody waits long for others whose time is costly. A clock that is late by half a second drops its lag and
-    tells `on_late` how much. `failed` ends with the error if time cannot pass.
+    Time is let pass before every request and, from `start` on, from time to time, for at most `share_s` of the wall
+    clock in one go, so that nobody waits long for others whose time is costly. A clock that is late by half a second
+    drops its lag and tells `on_late` how much. `failed` ends with the error if time cannot pass.
     """
 
     def __init__(
         self,
-        served: ServedControl,
+        served: Kept,
         wall: Wall,
         *,
         rate: float = 1.0,
         share_s: float = 0.01,
         on_late: Callable[[float], None] | None = None,
     ) -> None:
-        self.pace = Pace(wall, rate)
+        self.pace = Pace(wall, rate, changed=self._soon)
         self._wall = wall
         self._share_s = share_s
         self._on_late = on_late
@@ -70,24 +85,30 @@ class Keeper:
         self._served = served
         self._timer: asyncio.TimerHandle | None = None
         self.pace.forget()
+
+    def start(self) -> None:
+        """Let time pass from now on, without being asked; what has passed outside until now is not caught up with."""
+        self.pace.forget()
         self._beat()
 
-    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> None:
-        """Let time pass, carry out `command`, and tell its result at once."""
+    def submit(self, command: Callable[[], R], done: Callable[[R], None]) -> bool:
+        """Let time pass, carry out `command`, and tell its result at once; False if time cannot pass."""
         if self.failed.done():
-            return
+            return False
         try:
             self._catch_up()
             result = command()
         except Exception as error:
             self._fail(error)
-        else:
-            done(result)
+            return False
+        done(result)
+        return True
 
     def close(self) -> None:
         """Let no more time pass."""
         if self._timer is not None:
             self._timer.cancel()
+            self._timer = None
         if not self.failed.done():
             self.failed.cancel()
 
@@ -111,6 +132,12 @@ class Keeper:
             return
         beat_s = 0.0 if late else _BUSY_BEAT_S if self._served.busy else _IDLE_BEAT_S
         self._timer = asyncio.get_running_loop().call_later(beat_s, self._beat)
+
+    def _soon(self) -> None:
+        """Look soon: the rate has changed, or steps are due."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = asyncio.get_running_loop().call_later(0.0, self._beat)
 
     def _fail(self, error: Exception) -> None:
         if not self.failed.done():

@@ -1,0 +1,113 @@
+// The path as lines: cuts and rapids, their colours, and which place of them is under the pointer.
+import { Vector3 } from "three";
+import { after } from "./format.js";
+import { Lines } from "./lines.js";
+import { css, paletteColour, rgb, scaled } from "./theme.js";
+
+export class Path {
+  constructor(record) {
+    this.record = record;
+    const swap = record.about.lathe;
+    this.place = (tip) => (swap ? [tip[2], 0, tip[0]] : tip); // of the picture: a lathe lies with z to the right
+    const { points } = record;
+    this.at = new Float32Array(3 * points);
+    for (let k = 0; k < points; k++) this.at.set(this.place([0, 1, 2].map((i) => record.tipOf(k, i))), 3 * k);
+    const cuts = [], rapids = [];
+    for (let k = 1; k < points; k++) {
+      const far = Math.hypot(...[0, 1, 2].map((i) => this.at[3 * k + i] - this.at[3 * k - 3 + i]));
+      if (far < 1e-6 || record.toolOf(record.blockAt[k]) !== record.toolOf(record.blockAt[k - 1])) continue; // another tool has not come that way
+      (record.rapid[k] ? rapids : cuts).push(k);
+    }
+    this.cuts = this.lines(cuts, 2.6, 2);
+    this.rapids = this.lines(rapids, 1.2, 1);
+    this.box = this.boxOf(cuts.length ? cuts : rapids);
+    this.all = this.boxOf([...cuts, ...rapids]);
+    this.tools = [...new Set([...record.about.tools.map((each) => each.tool), ...record.block_tool])].sort((a, b) => a - b);
+    const cutFeeds = cuts.map((k) => record.feed[k]);
+    this.topFeed = cutFeeds.reduce((top, feed) => Math.max(top, feed), 1e-9);
+    this.topRapid = rapids.reduce((top, k) => Math.max(top, record.feed[k]), 0);
+    this.usualFeed = this.usual(cuts);
+  }
+
+  lines(which, width, order) {
+    const begin = new Float32Array(3 * which.length), end = begin.slice(), times = new Float32Array(2 * which.length);
+    which.forEach((k, n) => {
+      begin.set(this.at.subarray(3 * k - 3, 3 * k), 3 * n);
+      end.set(this.at.subarray(3 * k, 3 * k + 3), 3 * n);
+      times.set([this.record.t_s[k - 1], this.record.t_s[k]], 2 * n);
+    });
+    return Object.assign(new Lines(begin, end, times, { width, order }), { which });
+  }
+
+  boxOf(which) {
+    const box = [0, 1, 2].map(() => [Infinity, -Infinity]);
+    for (const k of which) for (const p of [k - 1, k]) for (let i = 0; i < 3; i++) {
+      const v = this.at[3 * p + i];
+      if (v < box[i][0]) box[i][0] = v;
+      if (v > box[i][1]) box[i][1] = v;
+    }
+    if (this.record.about.lathe && which.length) { const r = Math.max(...box[2].map(Math.abs)); box[2] = [-r, r]; }
+    return which.length ? box : [[-1, 1], [-1, 1], [-1, 1]];
+  }
+
+  usual(cuts) { // 98 % of the cutting time is at most so fast: few fast moves leave the colours to the rest
+    const speeds = new Float64Array(1001), { record } = this;
+    for (const k of cuts) speeds[Math.min(Math.ceil(1000 * record.feed[k] / this.topFeed), 1000)] += record.t_s[k] - record.t_s[k - 1];
+    const all = speeds.reduce((sum, s) => sum + s, 0);
+    let i = 0;
+    for (let sum = speeds[0]; i < 1000 && sum < 0.98 * all; sum += speeds[i]) i++;
+    return Math.max(i, 1) * this.topFeed / 1000;
+  }
+
+  // The colour (r, g, b) of a point by a way of colouring.
+  colouring(how) {
+    const { record } = this, classes = (of) => (k) => rgb(paletteColour(of(k)));
+    const [low, high] = this.box[2];
+    return {
+      speed: (k) => scaled(record.feed[k] / this.usualFeed),
+      depth: (k) => scaled((this.at[3 * k + 2] - low) / Math.max(high - low, 1e-6)),
+      tool: classes((k) => this.tools.indexOf(record.toolOf(record.blockAt[k]))),
+      operation: classes((k) => Math.max(record.operationAt(record.t_s[k] - 1e-6), 0)),
+      kind: classes((k) => record.block_kind[record.number[record.blockAt[k]]]),
+    }[how];
+  }
+
+  paint(how) {
+    const of = this.colouring(how), grey = rgb(css("--rapid"));
+    this.cuts.paint((n) => of(this.cuts.which[n]));
+    this.rapids.paint(() => grey);
+    for (const lines of [this.cuts, this.rapids]) lines.paper(css("--paper"));
+  }
+
+  // The place of the path nearest to a pixel: {t, place, far}, null where none is near. `matrix` turns the part.
+  pick(stage, x, y, matrix, lines = [this.cuts, this.rapids]) {
+    const near = 12, a = new Vector3(), b = new Vector3(), world = new Vector3();
+    const shown = new Float32Array(3 * this.record.points);
+    for (let k = 0; k < this.record.points; k++) {
+      stage.project(world.fromArray(this.at, 3 * k).applyMatrix4(matrix), a);
+      a.toArray(shown, 3 * k);
+    }
+    let best = null;
+    for (const each of lines) for (const k of each.which) {
+      a.fromArray(shown, 3 * k - 3); b.fromArray(shown, 3 * k);
+      const dx = b.x - a.x, dy = b.y - a.y, length2 = dx * dx + dy * dy;
+      const share = length2 > 0 ? Math.min(Math.max(((x - a.x) * dx + (y - a.y) * dy) / length2, 0), 1) : 1;
+      const far = Math.hypot(a.x + share * dx - x, a.y + share * dy - y) + (each === this.rapids ? 3 : 0);
+      const z = a.z + share * (b.z - a.z);
+      if (far < near && (!best || far < best.far - 0.5 || (far < best.far + 0.5 && z < best.z))) best = { far, z, k, share };
+    }
+    if (!best) return null;
+    const { k, share } = best, { t_s } = this.record;
+    const place = [0, 1, 2].map((i) => this.at[3 * k - 3 + i] + share * (this.at[3 * k + i] - this.at[3 * k - 3 + i]));
+    return { t: t_s[k - 1] + share * (t_s[k] - t_s[k - 1]), place, k, share };
+  }
+
+  // The points of an execution of a block, its ends included.
+  pointsOf(execution) {
+    const { record } = this, from = record.start_s[execution], to = record.endOf(execution);
+    const places = [this.place(record.at(from).tip)];
+    for (let k = after(record.t_s, from); k < record.points && record.t_s[k] < to; k++) places.push([...this.at.subarray(3 * k, 3 * k + 3)]);
+    places.push(this.place(record.at(to).tip));
+    return places;
+  }
+}

@@ -1,0 +1,323 @@
+// The page of a view: what is where at a moment, and what one can do with it.
+import { Group, Matrix4, Vector3 } from "three";
+import { Chart } from "./chart.js";
+import { floor } from "./floor.js";
+import { clockText, units } from "./format.js";
+import { polyline } from "./lines.js";
+import { Listing } from "./listing.js";
+import { Path } from "./path.js";
+import { Record } from "./record.js";
+import { directions, Stage } from "./stage.js";
+import { begin, css, paletteColour, rgb, scaleColours, turnOver } from "./theme.js";
+import { toolShape } from "./tool_shape.js";
+
+const element = (id) => document.getElementById(id);
+const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
+
+export async function start(buffers) {
+  const record = new Record(buffers), { about } = record, unit = units(about.inch), lathe = about.lathe;
+  begin();
+  const path = new Path(record);
+  const stage = new Stage(element("stage"), { flat: Boolean(lathe) });
+  stage.reach = 2 * Math.max(...path.all.flat().map(Math.abs), 1) + 100;
+  const say = (text) => { element("status").textContent = text; };
+  const part = new Group(), carried = new Group(); // what turns with a table, and the tool
+  part.matrixAutoUpdate = carried.matrixAutoUpdate = false;
+  stage.scene.add(part, carried);
+  part.add(path.rapids.mesh, path.cuts.mesh);
+  let mirrored = null;
+  if (lathe) { // a full profile: the same below the axis of the spindle
+    mirrored = path.cuts.mesh.clone();
+    mirrored.scale.z = -1;
+    part.add(mirrored);
+  }
+  const wide = [path.cuts, path.rapids]; // lines that must know how large the stage is
+  stage.before.push(() => { for (const each of wide) each.fit(stage); });
+
+  // ---------------------------------------------------------------- what is drawn besides the path
+  const extra = {};
+  const replace = (name, places, options, colour, parent = part) => {
+    if (extra[name]) { parent.remove(extra[name].mesh); wide.splice(wide.indexOf(extra[name]), 1); extra[name].geometry.dispose(); delete extra[name]; }
+    if (!places || places.length < 2) return;
+    const lines = extra[name] = polyline(places, options);
+    lines.paint(() => rgb(colour)); lines.paper(css("--paper"));
+    wide.push(lines); parent.add(lines.mesh);
+  };
+  const cross = (at, size) => [0, 1, 2].flatMap((i) => [-1, 1].map((side) => at.map((v, n) => v + (n === i ? side * size : 0))).concat([null]));
+  let ground = null;
+  function drawFloor() {
+    if (ground) { part.remove(ground.group); for (const each of ground.lines) wide.splice(wide.indexOf(each), 1); }
+    const names = about.tips && !lathe ? about.tips.map((i) => (i === null ? "" : record.axes[i].name)) : ["X", "Y", "Z"];
+    ground = floor(path.box, names, unit, lathe);
+    part.add(ground.group);
+    wide.push(...ground.lines);
+  }
+  const longest = Math.max(...path.box.map(([low, high]) => high - low), 1);
+  function drawMarks() {
+    const alarms = about.remarks.filter((each) => each.kind !== "remark" && each.time_s !== null && record.points);
+    replace("alarms", alarms.flatMap((each) => cross(path.place(record.at(each.time_s).tip), 0.02 * longest)), { width: 4, order: 5 }, css("--accent"));
+    if (!about.other) return;
+    const { points } = { points: record.other_t_s.length }, places = [];
+    for (let k = 0; k < points; k++) places.push(path.place([0, 1, 2].map((i) => record.other_tip[i * points + k] - about.zero[i])));
+    replace("other", places, { width: 2, order: 3 }, css("--other"));
+    replace("marks", about.other.marks.flatMap((mark) => cross(path.place(mark.place.map((v, i) => v - about.zero[i])), 0.015 * longest)), { width: 3, order: 5 }, css("--accent"));
+  }
+  let tool = null, shownTool = -1;
+  function drawTool(number) {
+    shownTool = number;
+    if (tool) carried.remove(tool);
+    tool = toolShape(about.shapes[String(number)], 0.16 * longest, paletteColour(path.tools.indexOf(number)));
+    if (lathe) tool.rotation.set(0, 0, 0);
+    carried.add(tool);
+  }
+
+  // ---------------------------------------------------------------- colours
+  const chip = (colour, text, name = "") => {
+    const mark = make("i", { className: name }), entry = make("div", {});
+    if (colour) mark.style.background = colour;
+    entry.append(mark, text);
+    return entry;
+  };
+  function drawLegend() {
+    const legend = element("legend"), how = element("colour").value;
+    legend.replaceChildren();
+    if (how === "speed" || how === "depth") {
+      const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.box[2];
+      bar.style.background = `linear-gradient(to right, ${scaleColours().join(",")})`;
+      const texts = how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
+      ends.append(...texts.map((textContent) => make("span", { textContent })));
+      legend.append(bar, ends);
+    } else if (how === "tool") path.tools.forEach((number, i) => legend.append(chip(paletteColour(i), `T${number}`)));
+    else if (how === "operation") about.operations.forEach((each, i) => legend.append(chip(paletteColour(i), (each.name || `T${each.tool}`).slice(0, 60))));
+    else {
+      const used = new Set(path.cuts.which.map((k) => record.block_kind[record.number[record.blockAt[k]]]));
+      about.kinds.forEach((kind, i) => { if (used.has(i)) legend.append(chip(paletteColour(i), kind)); });
+    }
+    if (path.rapids.count) legend.append(chip("", "rapid", "rapid"));
+    if (about.other) legend.append(chip(paletteColour(0), about.other.own), chip(css("--other"), about.other.name));
+  }
+  function recolour() { path.paint(element("colour").value); drawLegend(); stage.draw(); }
+
+  // ---------------------------------------------------------------- the chart
+  const linearAxes = record.axes.map((axis, i) => ({ ...axis, i }));
+  const charts = [{ name: "path speed", unit: `${unit.name}/min`, y: () => record.feed.map((f) => f * unit.factor), top: path.topRapid > 2 * path.topFeed && path.cuts.count ? 1.15 * path.topFeed * unit.factor : null, zero: true }];
+  for (const { name, i, unit: of } of linearAxes) charts.push({ name: `position ${name}`, unit: of === "deg" ? "°" : unit.name, y: () => record.position.slice(i * record.points, (i + 1) * record.points).map((v) => (of === "deg" ? v : v * unit.factor)) });
+  if (record.motion_low) about.derivatives.forEach((what, d) => { for (const { name, i, unit: of } of linearAxes) charts.push({ name: `${what} ${name}`, unit: `${of === "deg" ? "°" : "mm"}/s${["", "²", "³"][d]}`, motion: d * record.axes.length + i }); });
+  const chart = new Chart(element("chart"), {
+    onTime: (t) => goTo(t),
+    colours: () => ({ line: paletteColour(0), band: `${paletteColour(0)}44`, soft: css("--soft"), grid: css("--line"), now: css("--accent") }),
+  });
+  function drawChart() {
+    const each = charts[element("shown").value];
+    if (each.motion === undefined) chart.show({ x: record.t_s, y: each.y(), end: record.end_s || 1, unit: each.unit, top: each.top ?? null, zero: each.zero });
+    else {
+      const n = record.motion_low.length / (about.derivatives.length * record.axes.length), x = [], y = [];
+      for (let k = 0; k < n; k++) for (const side of [record.motion_low, record.motion_high]) { x.push(Math.min((k + (side === record.motion_low ? 0.25 : 0.75)) * about.stretch_s, record.end_s)); y.push(side[each.motion * n + k]); }
+      chart.show({ x, y, end: record.end_s || 1, unit: each.unit });
+    }
+    element("chart").drawn = chart;
+  }
+
+  // ---------------------------------------------------------------- the moment that is shown
+  let now = 0, playing = false, before_ms = 0, shownExecution = -1, kind = "work";
+  const listing = new Listing(element("listing"), element("rows"), {
+    texts: about.text, lines: record.line, remarks: new Map(about.remarks.map((each) => [each.row, each]).reverse()),
+    onRow: (row) => { say(""); goToRow(row); },
+  });
+  const cells = {};
+  for (const name of ["time", "speed", "tool", "line", ...record.axes.map((axis) => axis.name), ...(lathe ? ["⌀"] : [])]) {
+    const cell = make("dd", {});
+    cell.dataset.of = name;
+    element("readout").append(make("dt", { textContent: name }), cell);
+    cells[name] = cell;
+  }
+  function readout(here, execution) {
+    const zero = record.zeroAt(now), to = kind === "to go" ? record.at(record.endOf(execution)).axes : null;
+    record.axes.forEach((axis, i) => {
+      const value = to ? to[i] - here.axes[i] : kind === "work" ? here.axes[i] - zero[i] : here.axes[i], text = Math.abs(value) < 5e-7 ? 0 : value;
+      cells[axis.name].textContent = axis.unit === "deg" ? `${text.toFixed(3)} °` : unit.length(text);
+    });
+    if (lathe) { const x = record.axes.findIndex((axis) => axis.name === "X"); cells["⌀"].textContent = unit.length(2 * (here.axes[x] - zero[x])); }
+  }
+  function goTo(t) {
+    now = Math.min(Math.max(t, 0), record.end_s);
+    element("slider").value = now;
+    element("slider").setAttribute("aria-valuetext", `${now.toFixed(3)} seconds`);
+    element("clock").textContent = `${clockText(now)} / ${clockText(record.end_s)}`;
+    cells.time.textContent = `${now.toFixed(3)} s`;
+    if (!record.points) return;
+    const here = record.at(now), execution = record.executionAt(now), number = record.toolOf(execution), row = record.rowOf(execution);
+    readout(here, execution);
+    cells.speed.textContent = unit.feed(here.feed);
+    cells.tool.textContent = record.executions ? `T${number}` : "";
+    cells.line.textContent = row >= 0 ? record.line[row] : "";
+    if (row !== listing.lit) listing.light(row);
+    if (number !== shownTool) drawTool(number);
+    if (execution !== shownExecution) {
+      shownExecution = execution;
+      if (record.executions) {
+        const places = path.pointsOf(execution);
+        replace("block", places, { width: 6, order: 4 }, css("--accent"));
+        const ends = places.length < 60 ? places : [places[0], places[places.length - 1]];
+        replace("points", ends.flatMap((at) => cross(at, 0.006 * longest)), { width: 2, order: 5 }, css("--ink"));
+      }
+    }
+    place(here);
+    for (const each of [path.cuts, path.rapids]) { each.set("now", now); each.set("faint", now > 0 ? 0.28 : 1); }
+    chart.now(now);
+    stage.draw();
+  }
+  function place(here) { // part and tool, as the machine has turned them or as the part sees it
+    const at = new Vector3(...path.place(here.tip)), turned = record.turned(here.axes), machine = element("frame").value === "machine";
+    const back = turned.part.clone().invert();
+    part.matrix.copy(machine ? turned.part : new Matrix4());
+    carried.matrix.copy(machine ? turned.tool : back.multiply(turned.tool)).setPosition(machine ? at.clone().applyMatrix4(turned.part) : at);
+    part.matrixWorldNeedsUpdate = carried.matrixWorldNeedsUpdate = true;
+    element("stage").dataset.tip = at.toArray().join(" ");
+    if (about.other && record.other_t_s.length) replace("beside", cross(path.place(record.otherAt(now)), 0.02 * longest), { width: 4, order: 6 }, css("--other"));
+  }
+  function goToRow(row) { // its next execution after this moment, or else its first
+    const here = record.executionAt(now);
+    for (let step = 1; step <= record.executions; step++) {
+      const execution = (here + step) % record.executions;
+      if (record.rowOf(execution) === row) { goToExecution(execution); return; }
+    }
+    say(`Line ${record.line[row]} takes no time.`);
+  }
+  function goToExecution(execution) {
+    if (record.executions) goTo(record.start_s[Math.min(Math.max(execution, 0), record.executions - 1)] + 2e-6);
+  }
+  function play(on) {
+    playing = on && record.end_s > 0;
+    element("play").textContent = playing ? "❚❚" : "▶";
+    element("play").setAttribute("aria-label", playing ? "Stop" : "Play");
+    if (!playing) return;
+    if (now >= record.end_s) now = 0;
+    before_ms = performance.now();
+    requestAnimationFrame(tick);
+  }
+  function tick(at_ms) {
+    if (!playing) return;
+    goTo(now + Math.max(at_ms - before_ms, 0) / 1000 * Number(element("rate").value));
+    before_ms = at_ms;
+    if (now >= record.end_s) play(false); else requestAnimationFrame(tick);
+  }
+
+  // ---------------------------------------------------------------- measuring: ends and middles of blocks attract
+  let measured = null;
+  function snapped(hit, x, y) {
+    const execution = record.blockAt[hit.k], [from, to] = [record.start_s[execution], record.endOf(execution)].map((t) => path.place(record.at(t).tip));
+    const straight = about.kinds[record.block_kind[record.number[execution]]] === "line";
+    const wanted = [from, to, ...(straight ? [from.map((v, i) => (v + to[i]) / 2)] : [])];
+    const far = wanted.map((at) => { const seen = stage.project(new Vector3(...at).applyMatrix4(part.matrix)); return Math.hypot(seen.x - x, seen.y - y); });
+    const best = far.indexOf(Math.min(...far));
+    return far[best] < 18 ? wanted[best] : hit.place;
+  }
+  function measure(at) {
+    measured.push(at);
+    if (measured.length < 2) { say("Now the other place."); return; }
+    const [from, to] = measured, off = from.map((v, i) => to[i] - v), [x, y, z] = lathe ? [off[2], null, off[0]] : off;
+    const parts = [["X", x], ["Y", y], ["Z", z]].flatMap(([name, d]) => (d === null ? [] : [`${name} ${unit.number(d)}`]));
+    say(`Distance ${unit.length(Math.hypot(...off))} (${parts.join(", ")})`);
+    replace("ruler", [from, to], { width: 3, order: 6 }, css("--ink"));
+    measured = [];
+    stage.draw();
+  }
+  function toggleMeasure() {
+    measured = measured ? null : [];
+    element("measure").setAttribute("aria-pressed", String(Boolean(measured)));
+    say(measured ? "Click two places on the path." : "");
+    if (!measured) { replace("ruler", null); stage.draw(); }
+  }
+  let pressed = null;
+  stage.canvas.addEventListener("pointerdown", (event) => { pressed = [event.clientX, event.clientY]; });
+  stage.canvas.addEventListener("pointerup", (event) => {
+    if (!pressed || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 5) return;
+    const box = stage.canvas.getBoundingClientRect(), [x, y] = [event.clientX - box.left, event.clientY - box.top];
+    const hit = path.pick(stage, x, y, part.matrix);
+    if (!hit) return;
+    if (measured) measure(snapped(hit, x, y)); else goTo(hit.t);
+  });
+
+  // ---------------------------------------------------------------- what is around it
+  element("title").textContent = about.program.split(/[\\/]/).pop();
+  element("title").title = about.program;
+  const stopped = about.remarks.find((each) => each.kind === "alarm");
+  element("summary").textContent = [about.machine, about.summary, unit.size(about.path_mm), about.ok ? "" : `stopped by an alarm${stopped?.line ? ` in line ${stopped.line}` : ""}`, about.other ? `beside ${about.other.name}` : ""].filter(Boolean).join(" · ");
+  element("note").textContent = about.note;
+  element("slider").max = record.end_s;
+  for (const rate of [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000]) element("rate").add(new Option(`${rate}×`, rate, rate === 10, rate === 10));
+  charts.forEach((each, i) => element("shown").add(new Option(each.name, i)));
+  const shownViews = lathe ? ["Front", "3-D"] : directions;
+  const look = (name) => stage.look(name, path.box, lathe ? 0.74 : 0.8);
+  shownViews.forEach((name) => element("views").append(make("button", { type: "button", textContent: lathe && name === "Front" ? "Profile" : name, onclick: () => look(name) })));
+  element("views").append(make("button", { type: "button", textContent: "All", title: "Everything, rapids too", onclick: () => stage.look(shownViews[0], path.all) }));
+  for (const name of ["work", "machine", "to go"]) element("places").append(make("button", { type: "button", textContent: name, onclick: () => choose(name) }));
+  function choose(name) {
+    kind = name;
+    for (const each of element("places").children) each.setAttribute("aria-pressed", String(each.textContent === name));
+    if (record.points) readout(record.at(now), record.executionAt(now));
+  }
+  function drawTables() {
+    const body = element("tools").tBodies[0], jobs = element("operations").tBodies[0];
+    body.replaceChildren(); jobs.replaceChildren();
+    about.tools.forEach((each) => {
+      const row = body.insertRow(), share = (each.cutting_s + each.rapid_s) / Math.max(about.time_s, 1e-9);
+      row.insertCell().append(chip(paletteColour(path.tools.indexOf(each.tool)), `T${each.tool}`));
+      for (const text of [clockText(each.cutting_s), clockText(each.rapid_s), `${(100 * share).toFixed(1)} %`]) row.insertCell().textContent = text;
+    });
+    element("tools").hidden = !about.tools.length;
+    about.operations.forEach((each) => {
+      const row = jobs.insertRow();
+      row.insertCell().append(make("button", { type: "button", textContent: each.name || `T${each.tool}`, onclick: () => goTo(each.start_s + 2e-6) }));
+      for (const time of [each.cutting_s, each.time_s]) row.insertCell().textContent = clockText(time);
+    });
+    element("operations").hidden = about.operations.length < 2;
+  }
+  const list = (button) => element("remarks").appendChild(make("li", {})).append(button);
+  const signs = { alarm: "▲ alarm", collision: "▲ collision", remark: "● remark" };
+  for (const each of about.remarks) {
+    list(make("button", {
+      type: "button", className: each.kind, textContent: `${signs[each.kind]}${each.line ? `, line ${each.line}` : ""}: ${each.text}`,
+      onclick: () => { if (each.time_s !== null) goTo(each.time_s); else if (each.row >= 0) goToRow(each.row); if (each.row >= 0) listing.light(each.row); },
+    }));
+  }
+  for (const mark of about.other?.marks ?? []) list(make("button", { type: "button", textContent: `◇ ${mark.text}`, onclick: () => { if (mark.time_s !== null) goTo(mark.time_s); } }));
+  if (!record.points) say("The program moves no axis.");
+  element("frames").hidden = !about.chain.length;
+  element("frame").onchange = () => goTo(now);
+  element("slider").oninput = () => goTo(Number(element("slider").value));
+  element("play").onclick = () => play(!playing);
+  element("colour").onchange = recolour;
+  element("shown").onchange = () => { drawChart(); chart.now(now); };
+  element("measure").onclick = toggleMeasure;
+  element("theme").onclick = () => { turnOver(); draw(); };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey) return;
+    const on = event.target.tagName;
+    if (on === "SELECT" || ((on === "BUTTON" || on === "SUMMARY") && [" ", "Enter"].includes(event.key))) return;
+    const faster = (by) => { const rate = element("rate"); rate.selectedIndex = Math.min(Math.max(rate.selectedIndex + by, 0), rate.options.length - 1); };
+    const kinds = ["work", "machine", "to go"], colour = element("colour");
+    const actions = {
+      " ": () => play(!playing), ArrowLeft: () => goToExecution(record.executionAt(now) - 1), ArrowRight: () => goToExecution(record.executionAt(now) + 1),
+      PageUp: () => goToExecution(record.executionAt(now) - 10), PageDown: () => goToExecution(record.executionAt(now) + 10),
+      Home: () => goTo(0), End: () => goTo(record.end_s), "+": () => faster(1), "-": () => faster(-1),
+      c: () => { colour.selectedIndex = (colour.selectedIndex + 1) % colour.options.length; recolour(); },
+      w: () => choose(kinds[(kinds.indexOf(kind) + 1) % 3]), m: toggleMeasure,
+    };
+    shownViews.forEach((name, i) => { actions[i + 1] = () => look(name); });
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    if (action) { event.preventDefault(); action(); }
+  });
+
+  function draw() {
+    stage.paper(css("--paper"));
+    drawTables(); recolour(); drawFloor(); drawMarks(); drawChart(); choose(kind);
+    shownExecution = shownTool = -1; listing.lit = -2;
+    goTo(now);
+  }
+  draw();
+  look(shownViews[0]);
+  element("stage").seen = { path, stage, part };
+  document.documentElement.dataset.ready = "yes";
+}

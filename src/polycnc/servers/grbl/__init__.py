@@ -1,0 +1,19 @@
+"""The interface of grbl 1.1: what senders of hobby machines and small mills speak."""
+
+from polycnc.servers.grbl._codes import GrblAlarm, GrblError
+from polycnc.servers.grbl._core import GrblCore
+from polycnc.servers.grbl._make import grbl_control, grbl_dialect
+from polycnc.servers.grbl._server import PORT, GrblServer, Owner
+from polycnc.servers.grbl._settings import ROWS as SETTINGS
+
+__all__ = [
+    "PORT",
+    "SETTINGS",
+    "GrblAlarm",
+    "GrblCore",
+    "GrblError",
+    "GrblServer",
+    "Owner",
+    "grbl_control",
+    "grbl_dialect",
+]

@@ -1,0 +1,81 @@
+"""A served machine: one device, who lets its time pass, its control, and what its operator does in its own way."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any, TypeVar
+
+from polycnc.cnc import Control
+from polycnc.errors import PolycncError
+from polycnc.machine import Device
+from polycnc.servers.machines._owner import Keeper
+from polycnc.servers.machines._programs import MemoryPrograms, Programs
+from polycnc.servers.machines._scenario import ServedDevice
+
+R = TypeVar("R")
+
+
+class MachineError(PolycncError):
+    """A machine whose time cannot pass any more."""
+
+
+@dataclass(slots=True)
+class ServedMachine:
+    """One device with a name; what its doors need of it.
+
+    `kind` is the controller ("fanuc", "plain", ...). `find_control` returns the control within the device, None for a
+    device without one. `own` are commands that the device carries out itself, by their names, in place of its control.
+    """
+
+    name: str
+    kind: str
+    device: Device[Any]
+    served: ServedDevice[Any]
+    keeper: Keeper
+    find_control: Callable[[], Control] | None = None
+    own: Mapping[str, Callable[..., object]] = field(default_factory=dict)
+    programs: Programs | None = None
+    end: Callable[[], None] = lambda: None
+    """Switches the device off and keeps its memory."""
+
+    def __post_init__(self) -> None:
+        if self.programs is None and self.find_control is not None:
+            self.programs = MemoryPrograms(self.find_control)
+
+    @property
+    def control(self) -> Control | None:
+        """The control within the device; None for a device without one."""
+        return None if self.find_control is None else self.find_control()
+
+    async def ask(self, question: Callable[[], R]) -> R:
+        """Ask between two cycles, after what is due, and return the answer.
+
+        Raises:
+            MachineError: The machine's time cannot pass any more.
+            PolycncError: What `question` raises.
+        """
+        answer: asyncio.Future[R | PolycncError] = asyncio.get_running_loop().create_future()
+
+        def asked() -> R | PolycncError:
+            try:
+                return question()
+            except PolycncError as error:
+                return error
+
+        def done(result: R | PolycncError) -> None:
+            if not answer.done():
+                answer.set_result(result)
+
+        if not self.keeper.submit(asked, done):
+            raise MachineError(f"machine {self.name} has failed", hint="Start the server anew.")
+        result = await answer
+        if isinstance(result, PolycncError):
+            raise result
+        return result
+
+    def close(self) -> None:
+        """Let no more time pass and switch off."""
+        self.keeper.close()
+        self.end()

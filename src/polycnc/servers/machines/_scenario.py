@@ -1,0 +1,127 @@
+"""What happens to a served device by itself: its program begins again when it is over, faults come at their cycles."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, Generic, Protocol, TypeVar
+
+from polycnc.cnc import Control, ControlError, RunState
+from polycnc.machine import Clock, Device, Snapshot
+
+_LOOK_CYCLES = 20
+_PIECE_CYCLES = 500  # between two looks at the wall clock where the device cannot be told to share its thread
+
+D = TypeVar("D", bound=Device[Any])
+D_contra = TypeVar("D_contra", contravariant=True)
+
+
+class Scenario(Protocol[D_contra]):
+    """What is done to a device at times of its own clock."""
+
+    def next_s(self) -> float:
+        """Return the time of the device at which something is to be done; infinity for never."""
+
+    def look(self, device: D_contra, /) -> None:
+        """Do what is due."""
+
+
+class Nothing:
+    """A scenario in which nothing happens."""
+
+    def next_s(self) -> float:
+        """Return infinity."""
+        return math.inf
+
+    def look(self, device: object, /) -> None:
+        """Do nothing."""
+
+
+class ServedDevice(Generic[D]):
+    """Let the time of a device pass as it is served, in the place of the device itself.
+
+    `control` returns the control within the device, None for one without. `again` calls for the selected program
+    whenever it has come to its end, at most 20 cycles later; what an alarm, a reset or an emergency stop broke off
+    stays so. What the scenario says comes in the very cycle that it says, however time is cut.
+    """
+
+    def __init__(
+        self,
+        device: D,
+        control: Callable[[], Control] | None = None,
+        scenario: Scenario[D] | None = None,
+        *,
+        again: Callable[[], None] | None = None,
+    ) -> None:
+        self.device = device
+        self._control = control
+        self.scenario: Scenario[D] = scenario or Nothing()
+        self.again = again
+        self.scenario.look(device)
+
+    @property
+    def clock(self) -> Clock:
+        """The clock of the device."""
+        clock: Clock = self.device.clock
+        return clock
+
+    @property
+    def busy(self) -> bool:
+        """Whether something is executed or moves; a device without a control may always be."""
+        if self._control is None:
+            return True
+        control = self._control()
+        return control.manual.active or any(channel.active for channel in control.channels)
+
+    def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
+        """Let up to `cycles` control cycles pass, or until `is_enough` says so; return how many did."""
+        done = 0
+        most = 1 << 30
+        if self._control is not None:
+            self._control().be_shared(is_enough)
+        elif is_enough is not None:
+            most = _PIECE_CYCLES
+        while done < cycles:
+            asked = min(cycles - done, most, self._to_next())
+            passed = self.device.advance(asked)
+            done += passed
+            self.scenario.look(self.device)
+            if self.again is not None:
+                self._start_again(self.again)
+            if passed < asked or (is_enough is not None and is_enough()):
+                break
+        return done
+
+    def _to_next(self) -> int:
+        """Return how many cycles may pass at once."""
+        clock = self.clock
+        # a program's end is looked for at cycles that do not depend on how time is cut
+        looks = self.again is not None and (self.busy or self._is_over)
+        most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if looks else 1 << 30
+        next_s = self.scenario.next_s()
+        if next_s == math.inf:
+            return most
+        return max(1, min(most, math.ceil((next_s - clock.now_s) / clock.cycle_s - 1e-6)))
+
+    @property
+    def _is_over(self) -> bool:
+        return self._control is not None and self._control().channels[0].run_state is RunState.COMPLETED
+
+    def _start_again(self, again: Callable[[], None]) -> None:
+        if self._is_over and self.clock.cycles % _LOOK_CYCLES == 0:
+            try:
+                again()
+            except ControlError:
+                return  # an alarm or another mode: later
+
+    def status(self) -> Any:
+        """Return the status of the device."""
+        return self.device.status()
+
+    def snapshot(self) -> Snapshot:
+        """Return the state of the device."""
+        return self.device.snapshot()
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Put the device back into a state."""
+        self.device.restore(snapshot)

@@ -1,0 +1,171 @@
+"""Serve machines: make them, open their doors, say where they are, and let time pass until somebody ends it."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from polycnc.cnc import Control
+from polycnc.errors import UsageError
+from polycnc.machine import Device, Wall
+from polycnc.nc import ProgramText
+from polycnc.servers.machines import (
+    Door,
+    DoorKind,
+    Keeper,
+    Log,
+    Scenario,
+    ServedDevice,
+    ServedMachine,
+    Wanted,
+)
+from polycnc.servers.process._kinds import KINDS, Machinery, Made
+
+_SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
+_MOST_PROGRAM_BYTES = 64 << 20
+
+
+@dataclass(frozen=True, slots=True)
+class MachineWanted:
+    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device."""
+
+    kind: str
+    machinery: Machinery = field(default_factory=Machinery)
+    program: Path | None = None
+    rate: float = 1.0
+    scenario: Callable[[Device[Any]], Scenario[Any]] | None = None
+    doors: tuple[tuple[DoorKind, Wanted], ...] = ()
+
+
+@dataclass(slots=True)
+class Serving:
+    """Machines with their doors, in the running event loop; `open` and then `run`, and `close` in any case."""
+
+    wall: Wall
+    log: Log
+    on_late: Callable[[float], None]
+    machines: list[ServedMachine] = field(default_factory=list)
+    doors: list[tuple[str, Door]] = field(default_factory=list)
+    programs: dict[str, Path] = field(default_factory=dict)
+
+    async def open(
+        self, wanted: Sequence[MachineWanted], shared: Sequence[tuple[DoorKind, Wanted]] = ()
+    ) -> None:
+        """Make the machines and open all doors.
+
+        Raises:
+            UsageError: A machine cannot be made, or a door cannot be opened; `close` closes the others.
+        """
+        for each in wanted:
+            self._make(each, _SHARE_S / len(wanted))
+        asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
+        asked += [(kind, at, self.machines) for kind, at in shared]
+        for kind, at, machines in asked:
+            if not all(map(kind.serves, machines)):
+                raise UsageError(
+                    f"{kind.name} does not serve a machine of the kind {machines[0].kind}",
+                    hint=f"It serves {', '.join(sorted(kind.controllers))}.",
+                )
+            door = kind.open_door(machines, at)
+            await door.start()
+            self.doors.append((kind.name, door))
+            self.log.write("open", door=kind.name, address=door.said)
+
+    def begin(self) -> None:
+        """Start the programs and let time begin; what has to be compiled is compiled here."""
+        for machine in self.machines:
+            if (path := self.programs.get(machine.name)) is not None:
+                _start(machine, path)
+            machine.served.advance(1)
+            machine.keeper.start()
+
+    async def run(self) -> None:
+        """Serve until the time of a machine cannot pass any more, or this is cancelled."""
+        failed = [machine.keeper.failed for machine in self.machines]
+        await asyncio.wait(failed, return_when=asyncio.FIRST_COMPLETED)
+        for each in failed:
+            if each.done():
+                each.result()
+
+    async def close(self) -> None:
+        """Close every door, and switch the machines off."""
+        for _, door in self.doors:
+            await door.close()
+        for machine in self.machines:
+            machine.close()
+        self.log.write("end")
+        self.log.close()
+
+    def _of(self, wanted: MachineWanted) -> ServedMachine:
+        return next(each for each in self.machines if each.name == wanted.machinery.name)
+
+    def _make(self, wanted: MachineWanted, share_s: float) -> None:
+        name = wanted.machinery.name
+        if any(each.name == name for each in self.machines):
+            raise UsageError(f"two machines are called {name}", hint="Give each a name of its own.")
+        if wanted.kind not in KINDS:
+            raise UsageError(f"there is no kind '{wanted.kind}'", hint=f"Kinds are {', '.join(KINDS)}.")
+        made = KINDS[wanted.kind](wanted.machinery)
+        if wanted.program is not None:
+            if made.find_control is None:
+                made.end()
+                raise UsageError(
+                    f"machine {name} runs no part programs", hint="Leave the program out, or serve another."
+                )
+            self.programs[name] = wanted.program
+        served: ServedDevice[Any] = ServedDevice(
+            made.device,
+            made.find_control,
+            None if wanted.scenario is None else wanted.scenario(made.device),
+            again=None if wanted.program is None else _again(made),
+        )
+        keeper = Keeper(served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late)
+        self.machines.append(
+            ServedMachine(
+                name, wanted.kind, made.device, served, keeper, made.find_control, made.own, None, made.end
+            )
+        )
+
+
+def _again(made: Made) -> Callable[[], None]:
+    own = made.own.get("cycle_start")
+    assert made.find_control is not None
+    find: Callable[[], Control] = made.find_control
+
+    def again() -> None:
+        if own is None:
+            find().cycle_start()
+        else:
+            own(step="run", line=1, channel=0)
+
+    return again
+
+
+def _start(machine: ServedMachine, path: Path) -> None:
+    """Put a program into the memory of a machine, select it and start it."""
+    try:
+        if path.stat().st_size > _MOST_PROGRAM_BYTES:
+            raise UsageError(
+                f"{path}: larger than {_MOST_PROGRAM_BYTES >> 20} MB", hint="Serve a smaller one."
+            )
+        content = path.read_bytes()
+    except OSError as error:
+        raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program file.") from None
+    control = machine.control
+    assert control is not None
+    if machine.kind == "fanuc":
+        from polycnc.servers.focas import numbered
+
+        number, text = numbered(content)
+        name = f"O{number:04d}"
+        assert machine.programs is not None
+        machine.programs.put(name, text)
+        machine.own["select_program"](program=name, channel=0)
+    else:
+        control.select_program(ProgramText(path.name, content))
+    again = machine.served.again
+    assert again is not None
+    again()

@@ -1,0 +1,26 @@
+// A tool as a body: its outline turned about its axis, shaft and holder above; without an outline a pointer.
+import { Color, DoubleSide, Group, LatheGeometry, Mesh, MeshStandardMaterial, Vector2 } from "three";
+
+const body = (points, colour, opacity = 1) => {
+  const geometry = new LatheGeometry(points.map(([r, z]) => new Vector2(Math.max(r, 0), z)), 40);
+  geometry.rotateX(Math.PI / 2); // the axis of a lathe geometry is y
+  const material = new MeshStandardMaterial({ color: new Color(colour), metalness: 0.35, roughness: 0.4, side: DoubleSide, transparent: opacity < 1, opacity });
+  return new Mesh(geometry, material);
+};
+
+// `shape` has `outline` and `holder` (mm) where they are known; a pointer is `size` long.
+export function toolShape(shape, size, colour) {
+  const group = new Group();
+  const outline = shape?.outline;
+  if (!outline) {
+    group.add(body([[0, 0], [0.16 * size, 0.55 * size], [0.16 * size, size], [0, size]], colour, 0.85));
+    return group;
+  }
+  const [radius, top] = outline[outline.length - 1];
+  group.add(body([...outline, [0, top]], colour, 0.92));
+  group.add(body([[0, top], [0.96 * radius, top], [0.96 * radius, top + 3 * radius], [0, top + 3 * radius]], "#9aa4ad", 0.92));
+  let end = top + 3 * radius;
+  for (const [height, r] of shape.holder ?? []) { group.add(body([[0, height], [r, height], [r, height + r], [0, height + r]], "#59636c", 0.6)); end = Math.max(end, height + r); }
+  if (!shape.holder?.length) group.add(body([[0, end], [1.8 * radius, end], [2.1 * radius, end + 2 * radius], [0, end + 2 * radius]], "#59636c", 0.6));
+  return group;
+}

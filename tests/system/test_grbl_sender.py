@@ -1,0 +1,112 @@
+"""A sender at a machine in a process of its own: over TCP and over a pseudo terminal, as the tutorial shows it."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from support.command import environment
+from support.grbl_sender import stream
+
+TUTORIAL = Path(__file__).parents[2] / "docs" / "tutorials" / "your-sender.md"
+PROGRAM = (
+    "G21 G90\n" + "".join(f"G1 X{n % 9} Y{n % 5} F6000\n" for n in range(60)) + "G2 X1\nG0 X3 Y0\nG4 P0\n"
+)
+ANSWERS = ["ok"] * 61 + ["error:35"] + ["ok"] * 2
+
+
+def shown() -> dict[str, str]:
+    """Return the titled blocks of the tutorial."""
+    text = TUTORIAL.read_text(encoding="utf-8")
+    return dict(re.findall(r'```\w+ title="([^"]+)"\n(.*?)```', text, re.DOTALL))
+
+
+class Link:
+    """A link to the machine by its file descriptor; it reads line by line."""
+
+    def __init__(self, descriptor: int) -> None:
+        self.descriptor = descriptor
+        self._read = b""
+
+    def write(self, data: bytes) -> None:
+        while data:
+            data = data[os.write(self.descriptor, data) :]
+
+    def read_line(self) -> str:
+        while b"\n" not in self._read:
+            piece = os.read(self.descriptor, 4096)
+            assert piece, "the machine has gone"
+            self._read += piece
+        line, self._read = self._read.split(b"\n", 1)
+        return line.decode().strip()
+
+
+@contextmanager
+def machine(folder: Path, rate: int) -> Iterator[tuple[int, Path]]:
+    """Serve a machine; yield its port and its terminal."""
+    (folder / "grbl_machine.py").write_text(shown()["grbl_machine.py"], encoding="utf-8")
+    terminal = folder / "tty"
+    arguments = [sys.executable, "grbl_machine.py", "mill3", "0", str(terminal), str(rate)]
+    process = subprocess.Popen(
+        arguments, cwd=folder, env=environment(), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    try:
+        assert process.stdout is not None
+        said = process.stdout.readline()
+        found = re.fullmatch(rf"grbl: 127\.0\.0\.1:(\d+) and {re.escape(str(terminal))}\n", said)
+        assert found, said + str(process.stderr and process.stderr.read())
+        yield int(found[1]), terminal
+        assert process.poll() is None
+    finally:
+        process.send_signal(signal.SIGINT)
+        printed, errors = process.communicate(timeout=30)
+        assert printed == "ended\n"
+        assert "Traceback" not in errors, errors
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pseudo terminals")
+def test_a_program_is_streamed_over_tcp_and_over_the_terminal(tmp_path: Path) -> None:
+    with machine(tmp_path, 20) as (port, terminal):
+        with socket.create_connection(("127.0.0.1", port), timeout=60) as connection:
+            link = Link(connection.fileno())
+            connection.settimeout(None)
+            assert [link.read_line(), link.read_line()] == ["", "Grbl 1.1h ['$' for help]"]
+            assert stream(PROGRAM, link.write, link.read_line) == ANSWERS
+            link.write(b"?")
+            assert link.read_line().startswith("<Idle|MPos:3.000,0.000,0.000|")
+            with socket.create_connection(("127.0.0.1", port), timeout=60) as second:
+                assert b"Another sender" in second.recv(100)
+        descriptor = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
+        try:
+            link = Link(descriptor)
+            while link.read_line() != "Grbl 1.1h ['$' for help]":
+                pass
+            link.write(b"\n")
+            while link.read_line() != "ok":  # the port is known to be free a moment later
+                link.write(b"\n")
+            assert stream(PROGRAM, link.write, link.read_line) == ANSWERS
+        finally:
+            os.close(descriptor)
+    assert not terminal.is_symlink()
+
+
+def test_the_conversation_of_the_tutorial(tmp_path: Path) -> None:
+    talk = shown()["talk"].splitlines()
+    with machine(tmp_path, 1) as (port, _), socket.create_connection(("127.0.0.1", port)) as connection:
+        link = Link(connection.fileno())
+        assert [link.read_line(), link.read_line()] == ["", "Grbl 1.1h ['$' for help]"]
+        for line in talk:
+            if line.startswith("> "):
+                text = line.removeprefix("> ")
+                link.write(text.encode() if text == "?" else text.encode() + b"\n")
+            else:
+                assert link.read_line() == line
