@@ -8,8 +8,7 @@ import pytest
 
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.machine import Machine, load_machine
-from polycnc.nc import Channel, ChannelOptions, ProgramText, load_dialect
-from polycnc.nc.macro import language_for
+from polycnc.nc import Channel, ChannelOptions, ProgramText, language_for, load_dialect
 from support.programs import moves
 
 ROOT = math.sqrt(3.0)

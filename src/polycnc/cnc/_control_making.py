@@ -19,8 +19,7 @@ from polycnc.cnc._spindle import Spindle
 from polycnc.cnc._tables import OffsetTable, ToolTable
 from polycnc.cnc._timers import PartCounter, Timers
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Dialect, Event, Language, Library
-from polycnc.nc.macro import language_for
+from polycnc.nc import Dialect, Event, Language, Library, language_for
 
 
 def check_shares(channels: Sequence[ChannelData], config: MachineConfig) -> tuple[ChannelData, ...]:

@@ -12,8 +12,7 @@ from polycnc.cnc._control_parts import ControlParts, live_config
 from polycnc.cnc._refusal import ControlError, Refusal
 from polycnc.cnc._stopping import break_off
 from polycnc.machine import AnyAxis
-from polycnc.nc import Dialect
-from polycnc.nc.macro import language_for
+from polycnc.nc import Dialect, language_for
 
 
 class Settings:

@@ -7,6 +7,7 @@ from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._queue import Event
 from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
+from polycnc.nc.channel._languages import language_for
 from polycnc.nc.channel._line_check import LineCheck
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._sub_programs import Library
@@ -96,6 +97,7 @@ __all__ = [
     "Zero",
     "choose_dialect",
     "dialect_for",
+    "language_for",
     "line_of",
     "load_dialect",
     "of_another_channel",

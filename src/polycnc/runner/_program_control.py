@@ -14,8 +14,7 @@ import numpy.typing as npt
 from polycnc.cnc import ProgramRun, RunOptions
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import Machine, MachineConfig
-from polycnc.nc import Dialect, Event, Language, ProgramText
-from polycnc.nc.macro import language_for
+from polycnc.nc import Dialect, Event, Language, ProgramText, language_for
 from polycnc.outputs import check_output
 
 if TYPE_CHECKING:

@@ -216,9 +216,10 @@ class Dialect(StrictModel):
         default=None,
         description="How many blocks are prepared beyond the one that is executed; absent: as many as fit.",
     )
-    language: Literal["none", "cpl", "macro"] = Field(
+    language: Literal["none", "cpl", "macro", "rs274"] = Field(
         default="none",
-        description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro").',
+        description='The language that programs may hold besides NC blocks: "cpl" of Bosch, custom macros ("macro"), '
+        '"rs274" of LinuxCNC.',
     )
     h_compensates: bool = Field(
         default=False,

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from polycnc.nc.dialect._dialect import Dialect
 from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
@@ -34,16 +33,6 @@ __all__ = [
     "MacroVariables",
     "SystemVariables",
     "Value",
-    "language_for",
 ]
 
 __getattr__ = names_on_demand(__name__, _LATER)
-
-
-def language_for(dialect: Dialect) -> MacroLanguage | None:
-    """Return the language of a dialect for one run, None if it has none."""
-    if dialect.language != "macro":
-        return None
-    from polycnc.nc.macro._language import MacroLanguage
-
-    return MacroLanguage()

@@ -1,0 +1,69 @@
+"""RS274/NGC as the language of a channel: parameters, expressions and O-words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Protocol
+
+from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.rs274._parameters import Parameters
+from polycnc.nc.rs274._program import Program, holds_language, translate
+from polycnc.nc.rs274._source import RunningProgram, sub_program_file
+from polycnc.nc.text._program import ProgramText
+
+
+class Host(Protocol):
+    """What the language asks of the channel that it works for."""
+
+    state: ChannelState
+    skip_levels: frozenset[int]
+
+
+class NgcLanguage:
+    """Execute programs of RS274/NGC. Sub-programs in files of their own lie beside the main one, or in `folders`."""
+
+    def __init__(self, folders: tuple[Path, ...] = ()) -> None:
+        self.parameters = Parameters()
+        self._folders = folders
+        self._channel: Host | None = None
+        self._translated: dict[tuple[int, int], tuple[ProgramText, Program]] = {}
+        self._files: dict[str, Program | None] = {}
+
+    def attach(self, channel: Host) -> None:
+        """Work for a channel: its positions and modal state are what parameters read."""
+        self._channel = channel
+        self.parameters.attach(channel.state)
+        self._files.clear()
+
+    def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> RunningProgram | None:
+        """Return a source for the program that begins at byte `offset`, None where plain text needs none.
+
+        Raises:
+            ProgramError: the program cannot be translated.
+        """
+        if not holds_language(text.content):
+            return None
+        program = self._of(text, offset)
+        return None if program.plain else RunningProgram(self, program)
+
+    def skips(self, level: int) -> bool:
+        """Tell whether lines with a skip mark of this number are left out."""
+        return self._channel is not None and level in self._channel.skip_levels
+
+    def file_of(self, name: str, main: ProgramText) -> Program | None:
+        """Return the translated file of a sub-program, None if there is none.
+
+        Raises:
+            ProgramError: the file cannot be translated.
+            UsageError: the file cannot be read.
+        """
+        if name not in self._files:
+            path = sub_program_file(name, main, self._folders)
+            self._files[name] = None if path is None else self._of(ProgramText.from_path(path), 0)
+        return self._files[name]
+
+    def _of(self, text: ProgramText, offset: int) -> Program:
+        key = id(text), offset
+        if key not in self._translated:
+            self._translated[key] = text, translate(text, offset)
+        return self._translated[key][1]

@@ -1,0 +1,66 @@
+"""Random programs with parameters and O-words through polycnc and through LinuxCNC's `rs274`: the same moves."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from polycnc.errors import ProgramError
+from polycnc.kernel import give_to_path
+from polycnc.machine import Machine, MachineConfig, parse_toml, validate
+from polycnc.nc import Channel, ProgramText, language_for, load_dialect
+from support import rs274
+from support.canonical import Step, first_difference, queued_steps
+from support.random_o_words import RandomProgram
+
+pytestmark = pytest.mark.skipif(rs274.COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
+
+TOLERANCE_MM = 2e-4  # rs274 prints four decimals
+
+
+def _config() -> MachineConfig:
+    axes = "".join(f'[[axis]]\nname = "{name}"\nvmax_mm_s = 500\namax_mm_s2 = 2000\n' for name in "XYZ")
+    return validate(MachineConfig, *parse_toml(f'name = "endless"\n{axes}', "endless.toml"))
+
+
+CONFIG = _config()
+DIALECT = load_dialect("din").model_copy(update={"language": "rs274"})
+
+
+def prepare(program: str) -> tuple[list[Step], ProgramError | None]:
+    """Return what polycnc queues for a program, and what it refuses."""
+    machine = Machine(CONFIG, segments=1 << 14)
+    channel = Channel(ProgramText.from_text(program), DIALECT, machine, language=language_for(DIALECT))
+    give_to_path(machine.state, channel.path)
+    for _ in range(100):
+        channel.fill()
+        if channel.done:
+            break
+    return queued_steps(machine, channel), channel.error
+
+
+def compare(seed: int, folder: Path) -> str:
+    """Return how a random program differs between the two; '' if it does not."""
+    program = RandomProgram(seed).text()
+    theirs = rs274.interpret(program, folder)
+    ours, error = prepare(program)
+    if bool(error) != bool(theirs.error):
+        return f"seed {seed}: refused\n  ours   {error}\n  theirs {theirs.error}: {theirs.block}\n{program}"
+    if error is not None:
+        return ""
+    found = first_difference(ours, rs274.canonical_steps(theirs, 3, 1.0), TOLERANCE_MM)
+    return f"seed {seed}: {found}\n{program}" if found else ""
+
+
+@pytest.mark.parametrize("first", range(0, 200, 50))
+def test_random_o_words_ask_for_the_same_moves(first: int, tmp_path: Path) -> None:
+    found = [text for seed in range(first, first + 50) if (text := compare(seed, tmp_path))]
+    assert not found, f"{len(found)} of 50\n" + "\n\n".join(found[:2])
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", range(10_000, 15_000, 500))
+def test_many_random_o_words_ask_for_the_same_moves(first: int, tmp_path: Path) -> None:
+    found = [text for seed in range(first, first + 500) if (text := compare(seed, tmp_path))]
+    assert not found, f"{len(found)} of 500\n" + "\n\n".join(found[:2])

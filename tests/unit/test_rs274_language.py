@@ -1,0 +1,96 @@
+"""RS274/NGC: parameters, expressions, O-words, files of sub-programs, and what is refused where."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import polycnc
+from polycnc.runner import RunSettings, run_program
+
+ENDS = [
+    ("#1=3 #2=[#1+1]\nG0 X#2", 1.0),  # settings count after their line
+    ("#<a>=2\n#<_B c>=3\nG0 X[#<A>**#<_bc> + 2 * 3]", 14.0),
+    ("#5=6\nG0 X[#[2+3] / 4 + 7 mod 4]", 4.5),
+    ("G0 X[-[2] ** 2]", 4.0),
+    ("G0 X[2 + 1 gt 2 and 0 or 5]", 1.0),
+    ("G0 X[ATAN[1]/[1] + ROUND[2.5] + FIX[-1.5] + FUP[1.2] + ABS[-1]]", 49.0),
+    ("G0 X[EXISTS[#<no>] + EXISTS[#<_metric>]]", 1.0),
+    ("G0 X5\nG92 X2\nG0 X[#5420 + 1]\nG0 X[#<_abs_x> + #<_x>]", 12.0),
+    ("G20\nG0 X1\nG21\nG0 X[#<_x> + 1]", 26.4),
+    ("o1 sub\no1 endsub [#1+#2]\no1 call [3] [4]\nG0 X#<_value>", 7.0),
+    ("o<f> sub\no2 if [#1 le 1]\no<f> return [1]\no2 endif\no<f> call [#1-1]\no<f> endsub [#1*#<_value>]\n"
+     "o<f> call [5]\nG0 X#<_value>", 120.0),
+    ("#1=0\no1 while [#1 lt 5]\n#1=[#1+1]\no2 if [#1 eq 3]\no1 continue\no2 endif\nG91 G0 X#1\no1 endwhile", 12.0),
+    ("#1=0\no1 do\n#1=[#1+1]\no2 if [#1 lt 3]\no1 continue\no2 endif\nG91 G0 X#1\no1 while [#1 lt 5]", 12.0),
+    ("#1=0\no1 while [1]\no2 while [1]\n#1=[#1+1]\no3 if [#1 gt 3]\no1 break\no3 endif\n"
+     "o2 endwhile\no1 endwhile\nG0 X#1", 4.0),
+    ("#1=0\no1 while [#1 lt 3]\n#1=[#1+1]\no2 while [1]\no1 continue\no2 endwhile\nG0 X99\no1 endwhile\nG0 X#1", 3.0),
+    ("o1 repeat [3]\nG91 G0 X2\no1 endrepeat", 6.0),
+    ("#1=2\no1 if [#1 eq 1]\nG0 X1\no1 elseif [#1 eq 2]\nG0 X2\no1 else\nG0 X3\no1 endif", 2.0),
+    ("o9 sub\nG0 X#1\nM2\no9 endsub\no[4+5] call [8]\nG0 X1", 8.0),  # M2 ends everything
+    ("/ #1=5\nG0 X[#1+1]", 6.0),
+    ("%\n#1=5\nG0 X#1\n%\nG0 X1", 5.0),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("program", "end"), ENDS)
+def test_where_it_goes(program: str, end: float, tmp_path: Path) -> None:
+    path = tmp_path / "part.ngc"
+    path.write_text(program + "\n")
+    assert polycnc.run(path).end_position_mm["X"] == pytest.approx(end, abs=1e-9)
+
+
+def test_lines_with_a_skip_mark_are_left_out_with_block_delete(tmp_path: Path) -> None:
+    path = tmp_path / "part.ngc"
+    path.write_text("/ #1=5\nG0 X[#1+1]\n")
+    assert polycnc.run(path, skip_levels=[1]).end_position_mm["X"] == 1.0
+
+
+def test_a_sub_program_in_a_file_beside_the_program(tmp_path: Path) -> None:
+    (tmp_path / "square.ngc").write_text("o<square> sub\nG1 X#1 F600\no<square> endsub\nM2\n")
+    (tmp_path / "part.ngc").write_text("o<square> call [7]\nG1 Y2\nM2\n")
+    result = polycnc.run(tmp_path / "part.ngc", trace=True)
+    assert (result.end_position_mm["X"], result.end_position_mm["Y"]) == (7.0, 2.0)
+    assert result.trace.program is not None
+    assert {Path(str(name)).name for name in result.trace.program} == {"square.ngc", "part.ngc"}
+
+
+def test_messages_show_parameters(tmp_path: Path) -> None:
+    (tmp_path / "part.ngc").write_text("#1=2.5\n(DEBUG,depth #1)\n(msg,hello)\nG0 X1\n")
+    texts = [message.text for message in polycnc.run(tmp_path / "part.ngc").messages]
+    assert "MSG: depth 2.500000" in texts
+    assert "MSG: hello" in texts
+
+
+REFUSED = [
+    ("G0 X1\nG0 X[1/#1]", "division by zero", 2),
+    ("G0 X#<none>", "#<none> has no value", 1),
+    ("#<_x>=1", "can only be read", 1),
+    ("#5420=1", "can only be read", 1),
+    ("#9999=1", "no parameter #9999", 1),
+    ("G0 X[SQRT[-1]]", "SQRT", 1),
+    ("\no1 if [1]\nG0 X1", "has no end", 2),
+    ("o1 endif", "without its beginning", 1),
+    ("o1 while [1]\no2 break\no1 endwhile", "outside its loop", 2),
+    ("o1 repeat [2]\no1 break\no1 endrepeat", "of a REPEAT", 2),
+    ("o<none> call", "no sub-program O<none>", 1),
+    ("o1 sub\no1 call\no1 endsub\no1 call", "nested more than 10 deep", 2),
+    ("G0 X[1", "']' is missing", 1),
+    ("o1 while [1]\no1 endwhile", "without a block", 1),
+    ("G0 X#<_ini[a]b>", "no INI file", 1),
+    ("#1=1\nG1 X[#1] Q5x", "a number is missing", 2),
+]
+
+
+@pytest.mark.parametrize(("program", "what", "line"), REFUSED)
+def test_what_is_refused_where(
+    program: str, what: str, line: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("polycnc.nc.rs274._source.LONGEST_LOOP_PAUSES", 3)
+    path = tmp_path / "part.ngc"
+    path.write_text(program + "\n")
+    (alarm,) = run_program(path, RunSettings(), check=False).alarms
+    assert what in alarm.text
+    assert alarm.line == line
