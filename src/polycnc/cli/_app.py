@@ -23,7 +23,7 @@ from polycnc.cli import (
     _view,
     _warmup,
 )
-from polycnc.cli._errors import INTERRUPTED, end_on_termination, end_with_report, guarded
+from polycnc.cli._errors import INTERRUPTED, check_environment, end_on_termination, end_with_report, guarded
 from polycnc.cli._output import print_remarks
 
 app = typer.Typer(
@@ -93,8 +93,9 @@ def main() -> None:
             stream.reconfigure(errors="replace")  # a terminal may lack a character of a file name
     if "scipy" not in sys.modules:
         sys.modules["scipy"] = None  # type: ignore[assignment]  # numba would load it: 0.3 s, for nothing here
-    print_remarks()
     end_on_termination()
+    check_environment()
+    print_remarks()
     try:
         app(prog_name="polycnc")
     except Exception as error:  # of the command line itself; the commands are guarded

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from polycnc.cli import _options as options
 from polycnc.cli._output import bold, print_json, progress_bar, say
 from polycnc.errors import UsageError
+from polycnc.outputs import keep_inputs
 
 if TYPE_CHECKING:
     from polycnc.runner.batches import BatchResult
@@ -44,9 +45,14 @@ def batch_command(
         )
     swept = _swept(sweep or ())
     given = [Path(each) for each in (machine, dialect) if each is not None]
+    asked = output is not None or done is not None
+    inputs = [*batches.find_programs(paths, pattern or ()), *given] if asked else given
     if output is not None:
-        batches.check_batch_file(output, [*batches.find_programs(paths, pattern or ()), *given])
+        batches.check_batch_file(output, inputs)
+        if done is not None and done.resolve() == output.resolve():
+            raise UsageError(f"{done} for the report and for what is done", hint="Name two files.")
         done = done or output.with_name(output.name + ".done")
+    keep_inputs(done, inputs, "what is done")
     if again and done is not None:
         batches.forget_done(done)
     with ExitStack() as stack:

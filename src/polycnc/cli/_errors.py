@@ -99,6 +99,14 @@ def _end(text: str, status: int) -> NoReturn:
     sys.exit(status)
 
 
+def check_environment() -> None:
+    """End the process where a variable of the environment keeps the compiler from being loaded."""
+    os.environ.pop("MPLBACKEND", None)  # files need none, and that of a notebook is not here
+    threads = os.environ.get("NUMBA_NUM_THREADS", "1")
+    if not (threads.strip().isascii() and threads.strip().isdigit() and int(threads[:9]) > 0):
+        _end(f"NUMBA_NUM_THREADS is '{threads[:40]}'\nSet it to 1 or more, or not at all.", USAGE)
+
+
 def end_on_termination() -> None:
     """Let SIGTERM end the process as an exception does, so that no partial file stays behind."""
 

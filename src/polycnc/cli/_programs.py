@@ -6,6 +6,8 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from polycnc.errors import UsageError
+
 if TYPE_CHECKING:
     from polycnc.nc import ProgramText
 
@@ -37,5 +39,7 @@ def read_program(program: Path) -> ProgramText:
     from polycnc.nc import ProgramText
 
     if str(program) == STANDARD_INPUT:
+        if sys.stdin is None:
+            raise UsageError("standard input is closed", hint="Name a file, or pipe the program in.")
         return ProgramText.from_text(sys.stdin.buffer.read(), STANDARD_INPUT_NAME)
     return runner.program_text(program)

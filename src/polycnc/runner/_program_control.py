@@ -134,14 +134,23 @@ def root_of(program: str | Path | ProgramText, root: str | Path | None) -> Path:
     return Path(root)
 
 
+MOST_KEYS_BYTES = 1_000_000
+
+
 def read_keys(path: str | Path) -> tuple[str, ...]:
     """Read the keys that are pressed, one a line.
 
     Raises:
-        UsageError: The file cannot be read.
+        UsageError: The file cannot be read, or is longer than a million bytes.
     """
     try:
-        lines = Path(path).read_text("utf-8").splitlines()
+        with Path(path).open("rb") as file:
+            content = file.read(MOST_KEYS_BYTES + 1)
+        if len(content) > MOST_KEYS_BYTES:
+            raise UsageError(
+                f"{path} holds more than {MOST_KEYS_BYTES:,} bytes of keys", hint="Write one key a line."
+            )
+        lines = content.decode("utf-8").splitlines()
     except (OSError, UnicodeDecodeError) as error:
         raise UsageError(f"no keys can be read from {path}: {error}", hint="Write one key a line.") from None
     return tuple(line if line == " " else line.strip() for line in lines if line)

@@ -127,7 +127,10 @@ def batch(
     programs = find_programs([paths] if isinstance(paths, str | Path) else paths, patterns)
     if root is not None and not Path(root).is_dir():
         raise UsageError(f"no such folder: {root}", hint="Make it first; it holds the files of the control.")
-    workers: Workers = LocalWorkers(jobs or cores()) if client is None else ClusterWorkers(client)
+    if jobs is not None and jobs < 1:
+        raise UsageError(f"{jobs} processes", hint="Give 1 or more.")
+    most = min(jobs or cores(), len(programs) * len(setups))  # more would have nothing to do
+    workers: Workers = LocalWorkers(most) if client is None else ClusterWorkers(client)
     store = ResultStore(None if done is None else Path(done))
     try:
         run = _Run(programs, setups, store, None if root is None else Path(root), progress)
@@ -138,6 +141,10 @@ def batch(
     return BatchResult(store, run.keys, run.counts())
 
 
+LONGEST_TIMEOUT_S = 1e8  # three years
+MOST_MEMORY_MB = 1e9
+
+
 def cores() -> int:
     """Return how many processes can run at once on this computer."""
     if hasattr(os, "sched_getaffinity"):
@@ -146,9 +153,12 @@ def cores() -> int:
 
 
 def _limits(timeout_s: float, memory_mb: float) -> Limits:
-    for what, value in (("a time-out", timeout_s), ("a limit of memory", memory_mb)):
-        if not 0.0 <= value < float("inf"):
-            raise UsageError(f"{what} of {value:g}", hint="Give a number above 0, or 0 for none.")
+    limits = (("a time-out", timeout_s, LONGEST_TIMEOUT_S), ("a limit of memory", memory_mb, MOST_MEMORY_MB))
+    for what, value, most in limits:
+        if not 0.0 <= value <= most:
+            raise UsageError(
+                f"{what} of {value:g}", hint=f"Give a number above 0, up to {most:g}, or 0 for none."
+            )
     return Limits(timeout_s, memory_mb)
 
 

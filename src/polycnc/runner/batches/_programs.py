@@ -25,8 +25,11 @@ def find_programs(paths: Iterable[str | Path], patterns: Sequence[str] = ()) -> 
     With `patterns` ("*.txt") those of a folder are the files whose names match one.
 
     Raises:
-        UsageError: there is no such file or folder, or no program anywhere.
+        UsageError: there is no such file or folder, no program anywhere, or a pattern is empty.
     """
+    for pattern in patterns:
+        if not Path(pattern).parts:
+            raise UsageError(f"'{pattern}' is no pattern of names", hint="Write one like '*.txt'.")
     found: dict[Path, None] = {}
     given = [Path(path) for path in paths]
     for path in given:

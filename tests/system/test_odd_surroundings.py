@@ -1,0 +1,104 @@
+"""Options and surroundings beyond reason: refused with a sentence, or harmless; never an internal error."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from polycnc.errors import UsageError
+from polycnc.runner import batches
+from support.command import COMMAND, environment, polycnc
+
+PROGRAM = "G1 X7 F612\nM30\n"
+ODD = ("1e308", "1e-308", "inf", "-inf", "nan", "", "0", "-1", "9" * 400)
+NUMBERS = {
+    "timeout": ("batch", "a.nc", "--timeout"),
+    "memory": ("batch", "a.nc", "--memory"),
+    "jobs": ("batch", "a.nc", "--jobs"),
+    "loop limit": ("run", "a.nc", "--loop-limit"),
+    "resolution": ("run", "a.nc", "--stock", "box=-1,-1,-2,9,2,0", "--resolution"),
+    "skip": ("run", "a.nc", "--skip"),
+}
+ENDED = (0, 1, 2)  # never 70
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "a.nc").write_text(PROGRAM)
+    return tmp_path
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", NUMBERS)
+def test_an_odd_number_ends_no_command_in_an_internal_error(name: str, folder: Path) -> None:
+    for number in ODD:
+        command, *words = NUMBERS[name]
+        done = subprocess.run(
+            [*COMMAND, command, *words, number],
+            cwd=folder,
+            env=environment(),
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+        assert done.returncode in ENDED, (number, done.stderr)
+        assert "Traceback" not in done.stderr
+
+
+REFUSED = {
+    "time-out": (("batch", "a.nc", "--timeout", "1e308"), "a time-out of 1e+308"),
+    "memory": (("batch", "a.nc", "--memory", "1e308"), "a limit of memory of 1e+308"),
+    "pattern": (("batch", ".", "--pattern", ""), "'' is no pattern"),
+    "dot": (("batch", ".", "--pattern", "."), "'.' is no pattern"),
+    "report": (("batch", "a.nc", "-o", "r.csv", "--done", "r.csv"), "Name two files"),
+    "done": (("batch", "a.nc", "--done", "a.nc"), "the command reads that file"),
+    "keys": (("run", "a.nc", "--keys", "/dev/zero"), "more than 1,000,000 bytes of keys"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_what_cannot_be_meant_is_refused(case: str, folder: Path) -> None:
+    words, said = REFUSED[case]
+    if case == "report":
+        (folder / "r.csv").write_text("of yesterday")
+    assert said in " ".join(polycnc(*words, cwd=folder, status=2).stderr.split())
+    assert (folder / "a.nc").read_text() == PROGRAM
+    if case == "report":
+        assert (folder / "r.csv").read_text() == "of yesterday"
+
+
+def test_variables_of_the_compiler_and_of_notebooks_are_no_internal_errors(folder: Path) -> None:
+    pytest.importorskip("matplotlib")
+    said = polycnc("run", "a.nc", cwd=folder, status=2, NUMBA_NUM_THREADS="0").stderr
+    assert "NUMBA_NUM_THREADS is '0'" in said
+    polycnc("run", "a.nc", "--plot", "a.png", cwd=folder, MPLBACKEND="module://matplotlib_inline.none")
+    assert (folder / "a.png").stat().st_size > 0
+
+
+def test_standard_input_may_be_closed(folder: Path) -> None:
+    command = ("sh", "-c", 'exec "$@" <&-', "sh", *COMMAND, "check", "-")
+    done = subprocess.run(
+        command, cwd=folder, env=environment(), capture_output=True, text=True, timeout=120, check=False
+    )
+    assert done.returncode == 2, done.stderr
+    assert "standard input is closed" in done.stderr
+
+
+def test_a_batch_has_no_more_processes_than_runs(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from polycnc.runner.batches._workers import LocalWorkers
+
+    asked: list[int] = []
+
+    def workers(most: int) -> LocalWorkers:
+        asked.append(most)
+        return LocalWorkers(most)
+
+    monkeypatch.setattr("polycnc.runner.batches._batch.LocalWorkers", workers)
+    with batches.batch(folder / "a.nc", jobs=5000) as result:
+        assert result.ok
+    assert asked == [1]
+    with pytest.raises(UsageError):
+        batches.batch(folder / "a.nc", jobs=-1)
