@@ -1,4 +1,4 @@
-"""Film a view: post a part as a CAM system gives it, run it, open the page, play it, keep the pictures as a GIF."""
+"""Film a view: run a part, open the page, let the slider cut it, keep the pictures as a GIF."""
 
 from __future__ import annotations
 
@@ -58,21 +58,11 @@ def pictures(page_file: Path) -> list[Image.Image]:
 
 def main() -> None:
     """Make the GIF."""
-    examples = REPOSITORY / "examples"
     command = [sys.executable, "-m", "polycnc.cli"]
     with tempfile.TemporaryDirectory() as name:
-        program, page = Path(name) / "mount_plate.tap", Path(name) / "view.html"
-        post = [
-            *command,
-            "post",
-            str(examples / "mount_plate.cl"),
-            "--control",
-            "fanuc-mill",
-            "-o",
-            str(program),
-        ]
-        subprocess.run(post, check=True)
-        subprocess.run([*command, "view", str(program), "-o", str(page)], check=True)
+        page = Path(name) / "view.html"
+        part = str(REPOSITORY / "examples" / "bracket.nc")
+        subprocess.run([*command, "view", part, "--stock", "auto", "-o", str(page)], check=True)
         found = pictures(page)
     palette = found[len(found) // 2].quantize(COLOURS)
     frames = [each.quantize(COLOURS, palette=palette, dither=Image.Dither.NONE) for each in found]

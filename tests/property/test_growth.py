@@ -32,7 +32,6 @@ PROGRAMS: dict[str, Callable[[int], str]] = {
         + _lines(lambda i: f"O{i}\nG1 X{i % 7} F900\nM99\n", n)
     ),
     "labels": lambda n: "#1=0\n" + _lines(lambda i: f"GOTO {i}\nN{i} #1=#1+1\n", n) + "M30\n",
-    "functions": lambda n: _lines(lambda i: f"M8\nS{i} M3\nM9\n", n) + "M30\n",
     "dwells": lambda n: _lines(lambda i: f"G4 P{i % 3 + 1}\n", n) + "M30\n",
 }
 

@@ -27,6 +27,7 @@ def _name(page: Path) -> str:
 
 # Pages that need a server, or change polycnc itself, run by a test of their own.
 ELSEWHERE = {
+    "docs/tutorials/a-machine-with-a-page.md",
     "docs/tutorials/test-your-collector.md",
     "docs/tutorials/your-sender.md",
     "docs/how-to/add-a-g-code.md",

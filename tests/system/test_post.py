@@ -30,7 +30,9 @@ PARTS = {
     "din": ("badge.json", "cover.cl", "mount_plate.cl"),
     "fanuc-lathe": ("pin.cl",),
     "fanuc-5axis": ("ring.cl", "cover.cl"),
+    "grbl": ("cover.cl", "mount_plate.cl"),
     "haas-mill": ("cover.cl", "mount_plate.cl"),
+    "linuxcnc-mill": ("cover.cl", "mount_plate.cl"),
 }
 CASES = [(control, part) for control, parts in PARTS.items() for part in parts]
 

@@ -27,8 +27,11 @@ def chromium() -> Iterator[Any]:
 class Opened:
     """A view in the browser, and the trace of the same run."""
 
-    def __init__(self, chromium: Any, folder: Path, part: str, machine: str, **page: Any) -> None:
-        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html")
+    def __init__(
+        self, chromium: Any, folder: Path, part: str, machine: str, stock: str | None = None, **page: Any
+    ) -> None:
+        cut = () if stock is None else ("--stock", stock, "--resolution", "0.5")
+        command("view", EXAMPLES / part, "-m", machine, "-o", folder / "part.html", *cut)
         result = polycnc.run(EXAMPLES / part, machine, trace=True)
         assert result.trace is not None
         self.trace = result.trace
@@ -265,4 +268,29 @@ def test_the_chart_draws_only_what_the_trace_has(chromium: Any, tmp_path: Path) 
                 straight = np.interp(trace.t_s[inside], x[[begin, end]], line[[begin, end]])
                 assert np.abs(straight - speed[inside]).max() < 15.0
     assert bands > 100
+    view.close()
+
+
+def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
+    """At any place of the slider the field is the same, whichever way it came there."""
+    view = Opened(chromium, tmp_path, "bracket.nc", "mill3", stock="auto")
+    field = (
+        "() => { const { body } = document.getElementById('stage').seen; return [body.step, ...body.shown]; }"
+    )
+    seen = {}
+    for share in (0.3, 0.7, 1.0, 0.7, 0.3):
+        view.page.evaluate(
+            "s => { const e = document.getElementById('slider'); e.value = s * e.max; e.oninput(); }", share
+        )
+        shown = np.array(view.page.evaluate(field))
+        assert np.array_equal(seen.setdefault(share, shown), shown)
+    assert seen[0.3][0] < seen[0.7][0] < seen[1.0][0]
+    result = polycnc.run(EXAMPLES / "bracket.nc", "mill3", stock="auto", resolution_mm=0.5)
+    assert result.stock is not None
+    heights = result.stock.heights - result.stock.grid.bottom
+    assert seen[1.0][1::2] == pytest.approx(heights.ravel(), abs=0.01)
+    view.page.locator("#stock").select_option("whole")
+    assert view.page.evaluate(field)[0] == 0
+    view.page.locator("#section").select_option("1")
+    assert view.page.locator("#cut").is_visible()
     view.close()

@@ -56,6 +56,11 @@ UNCLAIMED = {
     "200.12.i",
     "200.21.i",
     "200.22.i",
+    "581.0.m",
+    "581.s.0",
+    "581.s.1",
+    "581.s.2",
+    "581.s.3",
 }
 """What no program can program here: read all the same, and 0 in a running control."""
 SD = [

@@ -7,6 +7,7 @@ import pytest
 from polycnc.cnc import Control, ControlData, ControlError, Mode, OpenProgram, Refusal, RunState
 from polycnc.errors import ProgramError
 from polycnc.machine import SnapshotError
+from polycnc.nc.macro import MacroLanguage
 from support.cnc_control import fresh, refused, x_of
 from support.cnc_machine import cnc_machine
 
@@ -240,3 +241,15 @@ def test_an_alarm_closes_the_way_in() -> None:
     made.advance(1000)
     with pytest.raises(ControlError):
         program.feed("X50\n")
+
+
+def test_what_has_been_read_is_not_kept() -> None:
+    language = MacroLanguage()
+    made = Control(cnc_machine(), dialect="fanuc", languages=[language])
+    made.select_mode(Mode.MDI)
+    program = made.open_program()
+    made.cycle_start()
+    for n in range(200):
+        program.feed(f"#100={n}\nG91 G1 X0.001 F600.\n")
+        made.advance(5)
+    assert max(len(each) for each in vars(language).values() if isinstance(each, dict)) <= 260

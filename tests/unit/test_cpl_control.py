@@ -234,7 +234,7 @@ def test_the_command_runs_a_program_on_a_root(root: Root) -> None:
     program.write_text("10 A=\n20 CALL SP\n")
     told = CliRunner().invoke(app, ["check", str(program), "--root", str(other)])
     assert told.exit_code == 1
-    assert "1 error" in told.output
+    assert "2 errors" in told.output
 
 
 # ---------------------------------------------------------------------- tables

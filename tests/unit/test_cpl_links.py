@@ -9,7 +9,7 @@ import pytest
 
 from polycnc.controllers.bosch import Pnc
 from polycnc.nc import ProgramText
-from polycnc.nc.cpl import LinkTable, read_table, written_table
+from polycnc.nc.cpl import Linker, LinkTable, read_table, written_table
 from polycnc.nc.cpl._link_table import LinkedCall, text_digest
 from polycnc.runner import check, run
 from support.cpl_runs import Root
@@ -175,3 +175,27 @@ def test_a_link_leads_no_table_out_of_the_root(root: Root, tmp_path: Path) -> No
     (root.folder / "SUB.l").symlink_to(outside)
     assert ran(root)[0]["#C%"] == 23
     assert outside.read_bytes() == b"kept"
+
+
+def test_what_a_faulty_program_calls_is_looked_at_too() -> None:
+    """Missing sub-programs and their errors are said although the main program has an error of its own."""
+    texts = {"SIDE": "10 B%=\nP DEEP\nP GONE\n", "DEEP": "10 C%=1+\n", "RIGHT": "N1 X1\n"}
+
+    def find(_address: str, name: str) -> tuple[str, str] | None:
+        return (name, texts[name]) if name in texts else None
+
+    main = "10 A%=\nP NONE\nP SIDE\nP RIGHT\n20 IF A%=1 THEN\nP NONE2\n30 ENDIF\nP SIDE\n"
+    linked, errors = Linker(find).link(main, "main")
+    assert linked is None
+    found = [
+        (each.position.file, each.position.line, each.what) for each in errors if each.position is not None
+    ]
+    assert len(found) == len(set(found)) == len(errors)
+    assert {(file, line) for file, line, _ in found} == {
+        ("main", 1), ("main", 2), ("main", 6), ("SIDE", 1), ("DEEP", 1), ("SIDE", 3),
+    }  # fmt: skip
+    assert [what for _, _, what in found if "no sub-program" in what] == [
+        "there is no sub-program NONE",
+        "there is no sub-program GONE",
+        "there is no sub-program NONE2",
+    ]

@@ -80,7 +80,7 @@ def test_each_area_calls_the_dialog_program_that_was_there_at_power_up(panel: Pa
         panel.pnc.call_dialog(area)
         assert panel.wait(channel=2) is RunState.COMPLETED
         assert panel.pnc.variables(2)["#N%"] == number * 7
-    assert panel.pnc.variables(1) == {}
+    assert not [name for name in panel.pnc.variables(1) if name.startswith("#")]
     (panel.folder / "cpldlg01.dlg").unlink()
     panel.restart()
     assert panel.pnc.dialogs == ("automatic", "manage", "diagnostics", "editor")

@@ -442,7 +442,6 @@ def test_parameters_say_which_data_modules_a_program_may_write(cell: Cell) -> No
 
 @pytest.mark.covers(
     "cpl.SD.200.1", "cpl.SD.200.1.i", "cpl.SD.200.3.i",
-    *(f"cpl.{name}.581.{row}" for name in ("SD", "SDR") for row in ("0.m", "s.0", "s.1", "s.2", "s.3")),
 )  # fmt: skip
 def test_a_control_without_areas_and_couplings_says_so(cell: Cell) -> None:
     areas = ["SD(200,1)", *(f"SD(200,{index},{area})" for index in (1, 3) for area in (1, 10))]

@@ -660,7 +660,7 @@ def test_behind_multax_off_the_tool_axis_is_known_where_it_is_said() -> None:
 
 # --- what the shipped control files write at holes
 
-WITH_CYCLES = ("fanuc-mill", "haas-mill", "fanuc-5axis", "bosch-pnc", "bosch-pnc-cpl")
+WITH_CYCLES = ("fanuc-mill", "haas-mill", "linuxcnc-mill", "fanuc-5axis", "bosch-pnc", "bosch-pnc-cpl")
 TWO_HOLES = """LOADTL/4,LENGTH,70
 SPINDL/RPM,640,{sense}
 RAPID
@@ -774,3 +774,10 @@ def test_words_that_no_control_reads_are_a_comment_with_a_remark(note: str) -> N
 )
 def test_blocks_of_a_control_stay_blocks(block: str) -> None:
     assert records(f"INSERT {block}\n") == [Text(1, "insert", block)]
+
+
+@pytest.mark.parametrize("words", ["", "RAPID\nGOTO/3,0,-1\n"])
+def test_a_feed_per_revolution_that_a_control_file_cannot_say_is_an_error(words: str) -> None:
+    text = "LOADTL/1\nSPINDL/RPM,900,CLW\nFEDRAT/90,MMPM\nGOTO/0,0,-1\nGOTO/1,0,-1\nFEDRAT/0.1,MMPR\n"
+    with pytest.raises(ProgramError, match="a feed per revolution, and no macro"):
+        post_file(parse_tool_path(text + words + "GOTO/9,0,-1\nGOTO/9,9,-1\n"), "grbl")

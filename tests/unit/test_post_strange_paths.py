@@ -36,7 +36,9 @@ def test_what_would_be_another_part_is_refused_at_its_place(text: str, what: str
     assert caught.value.position.line == line
 
 
-@pytest.mark.parametrize("control", ["fanuc-mill", "haas-mill", "din", "bosch-pnc", "bosch-pnc-cpl"])
+@pytest.mark.parametrize(
+    "control", ["fanuc-mill", "grbl", "haas-mill", "linuxcnc-mill", "din", "bosch-pnc", "bosch-pnc-cpl"]
+)
 def test_from_elsewhere_then_a_rapid_is_written_and_proven(control: str) -> None:
     text = HEAD + "FROM/-36.5,16.25,24\nGOHOME\nGOTO/5,6,7\nEND\nPPRINT all\nFINI\nGOTO/1,1,1\n"
     result = post_file(parse_tool_path(text), control, verify=True)

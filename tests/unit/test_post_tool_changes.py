@@ -8,11 +8,12 @@ from polycnc.errors import ProgramError
 from polycnc.post import parse_control, parse_tool_path, shipped_text
 from polycnc.runner import PostVerification, post_file
 
-MILLS = ("fanuc-mill", "fanuc-5axis", "haas-mill", "bosch-pnc", "bosch-pnc-cpl", "din")
+MILLS = ("fanuc-mill", "fanuc-5axis", "haas-mill", "linuxcnc-mill", "bosch-pnc", "bosch-pnc-cpl", "din")
 HOME = {
     "fanuc-mill": ["M05", "G91 G28 Z0.", "G90 G49"],
     "fanuc-5axis": ["M05", "G91 G28 Z0.", "G90 G49 G00 A0. C0."],
     "haas-mill": ["M05", "G49 G00 G53 Z0."],
+    "linuxcnc-mill": ["M05", "G49 G00 G53 Z0."],
     "fanuc-lathe": ["M05", "G28 U0.", "G28 W0."],
 }
 
@@ -52,7 +53,7 @@ def test_a_feed_right_behind_a_tool_change_goes_across_first_and_then_down(name:
         ["G1", "Z34.", "F310."],
         ["G1", "Z34.", "F310"],
     )
-    assert ("H04" in words[across + 1]) == ("fanuc" in name or "haas" in name)
+    assert ("H04" in words[across + 1]) == name.startswith(("fanuc", "haas", "linuxcnc"))
     assert proof.ok
     assert proof.rapid_cuts == 0
 

@@ -54,13 +54,10 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (
-        "nc/cpl/_blocks.py",
-        "nc/cpl/_blocks.py CplSource.next",
         "nc/cpl/_program_reader.py _ProgramReader",
         "nc/cpl/_values.py Values",
         "nc/macro/_reader.py",
         "nc/macro/_reader.py _Statements",
-        "nc/macro/_system.py SystemVariables._modal",
     ),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",

@@ -180,7 +180,7 @@ Control = Annotated[
     typer.Option(
         "--control",
         "-c",
-        help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-5axis, fanuc-lathe, fanuc-mill, haas-mill or "
+        help="The control file: bosch-pnc, bosch-pnc-cpl, din, fanuc-5axis, fanuc-lathe, fanuc-mill, grbl, haas-mill, linuxcnc-mill or "
         "a file.",
         metavar="FILE|NAME",
     ),

@@ -17,18 +17,24 @@ def view_command(
     machine: options.Machine = None,
     dialect: options.Dialect = None,
     units: options.PageUnits = None,
+    stock: options.Stock = None,
+    resolution: options.Resolution = None,
 ) -> None:
     """Run a part program and write a page that shows it: path, time, blocks, tools, speed."""
     from polycnc.runner import check_view_file, open_in_browser, program_text, time_text, view_program
 
     inputs = [program, *(Path(each) for each in (machine, dialect) if each is not None)]
+    if stock is not None and stock.lower().endswith(".stl"):
+        inputs.append(Path(stock))
     text = program_text(program)
     target = check_view_file(
         output or Path(program.stem + ".html"), inputs, replaces_views_only=output is None
     )
     inch = None if units is None else units is Units.INCH
     with progress_bar(program.name) as bar:
-        view = view_program(text, machine, dialect, inch=inch, progress=bar)
+        view = view_program(
+            text, machine, dialect, inch=inch, stock=stock, resolution_mm=resolution, progress=bar
+        )
     view.save(target)
     say(f"time       {time_text(view.result.time_s)}")
     say(f"wrote      {target}")
@@ -36,4 +42,6 @@ def view_command(
         say(str(alarm), lead=bold_red("alarm: "))
     if open_page and not open_in_browser(target):
         say_error(f"no browser was found; open {target} yourself.")
-    sys.exit(0 if view.result.ok else 1)
+    for collision in view.result.collisions:
+        say(f"line {collision.line}: {collision}", lead=bold_red("collision: "))
+    sys.exit(0 if view.result.ok and not view.result.collisions else 1)

@@ -22,7 +22,7 @@ from polycnc.kernel import (
     replan_path,
 )
 from polycnc.machine import Machine
-from polycnc.nc import Channel, Stop
+from polycnc.nc import Channel
 
 Floats = npt.NDArray[np.float64]
 
@@ -143,7 +143,7 @@ class PathFeed:
         row = self.row
         first = int(row["prepared"])
         prepare_path(state.seg, state.paths, path, state.limits, self.machine.config.cycle_s, state.work)
-        probing = [each.tag for each in self.channel.writer.events.values() if each.stop is Stop.PROBE]
+        probing = list(self.channel.writer.probes.values())
         prepared = int(row["prepared"])
         if probing and first < prepared:  # what lies behind may not be gone along
             tags = self.tags(first, prepared)

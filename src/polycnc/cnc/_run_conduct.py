@@ -327,7 +327,7 @@ class Conduct:
 
     def _meet_event(self) -> None:
         number = int(self.row["event"])
-        event = self.channel.writer.events.pop(number)
+        event = self.channel.writer.take(number)
         self.moment.met = int(self.row["head"]), event.tag
         self.moment.tool_times.change(self.channel.records.tool(event.tag), self.path_times)
         if event.stop is Stop.REFUSED:

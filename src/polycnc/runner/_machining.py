@@ -59,7 +59,8 @@ class Collision:
 class Machined:
     """Hold what a run left of a body: the stock, volumes (mm3) in all, by block and by tool, and what went wrong.
 
-    `removed_mm3` [blocks] belongs to `blocks`. `messages` say what was assumed.
+    `removed_mm3` [blocks] belongs to `blocks`. `messages` say what was assumed. The body of `form` was cut by `tools`
+    on their `course`, from `zero_mm` in machine coordinates.
     """
 
     stock: Stock
@@ -68,6 +69,10 @@ class Machined:
     by_tool_mm3: Mapping[int, float]
     collisions: list[Collision]
     messages: list[str]
+    form: Form
+    course: Rows
+    tools: Mapping[int, Tool]
+    zero_mm: tuple[float, float, float]
 
     @property
     def volume_mm3(self) -> float:
@@ -189,7 +194,8 @@ class MachiningCollector:
         if tools is None:
             tools = tools_of(self._config, self.texts)
         course = self._course.rows()
-        course = replace(course, tip=course.tip - (self._zero or [0.0, 0.0, 0.0]))
+        x, y, z = self._zero or [0.0, 0.0, 0.0]
+        course = replace(course, tip=course.tip - (x, y, z))
         stock = form.body(course, tools)
         cutting = Cutting(stock, tools)
         messages = [f"stock: {stock.box}, {stock.cell_mm:g} mm a cell"]
@@ -207,7 +213,8 @@ class MachiningCollector:
         removed = np.zeros(len(blocks))
         known = cutting.by_block_mm3[: len(blocks)]
         removed[: len(known)] = known
-        return Machined(stock, blocks, removed, cutting.by_tool_mm3, collisions, messages)
+        volumes = cutting.by_tool_mm3
+        return Machined(stock, blocks, removed, volumes, collisions, messages, form, course, tools, (x, y, z))
 
 
 def tools_of(config: MachineConfig, texts: Mapping[str, ProgramText]) -> dict[int, Tool]:

@@ -77,8 +77,9 @@ class ChannelHost:
             warn=self._warn,
             stored=system.open_files,
         )
+        self.keyboard = Keyboard(keys, live=in_device)
         self.dialog = Dialog(
-            Keyboard(keys),
+            self.keyboard,
             lambda: self.files.left_justified,
             self._bitmap,
             self._warn,
@@ -255,7 +256,7 @@ class ChannelHost:
 
     def variables(self) -> dict[str, object]:
         """Return permanent and global variables as plain values, by name."""
-        if not self.language.used:
+        if not self.language.used and not self._in_device:
             return {}
         return {
             **self.kept.values(),

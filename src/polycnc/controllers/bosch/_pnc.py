@@ -29,6 +29,7 @@ from polycnc.controllers.bosch._system import BoschSystem
 from polycnc.controllers.bosch.files import STORE, RootOwner, SelectedBlock
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
 from polycnc.controllers.bosch.ncs import NcsServer, find_block
+from polycnc.controllers.bosch.screen import Surface
 from polycnc.controllers.bosch.system import Tab
 from polycnc.machine import Clock, MachineConfig, Snapshot, load_machine
 from polycnc.nc import ProgramText, load_dialect
@@ -106,8 +107,6 @@ class Pnc:
         self._dialogs = DialogCalls(self.system.directory, self.system.parameters, self._start_dialog)
         self._dialog_channel = int(str(self.system.parameter(DIALOG_CHANNEL)))
 
-    # ------------------------------------------------------------------ the device
-
     @property
     def clock(self) -> Clock:
         """The clock, counted in control cycles."""
@@ -150,8 +149,6 @@ class Pnc:
         finally:
             self._control.machine.memory.close()
             self._owner.release()
-
-    # ------------------------------------------------------------------ the operator
 
     def select_mode(self, mode: BoschMode, *, channel: int | None = None) -> None:
         """Change the mode of a channel, or of all.
@@ -245,6 +242,18 @@ class Pnc:
         """
         return self._dialogs.edit(text)
 
+    def press(self, key: str, *, channel: int = 1) -> None:
+        """Press a key, a name of `KEYS` or one character: the program of a channel that asks for one gets it.
+
+        Raises:
+            UsageError: There is no such key.
+        """
+        self.hosts[self._path(channel)].keyboard.press(key)
+
+    def screen(self, channel: int = 1) -> Surface:
+        """Return what the programs of a channel have put on the screen."""
+        return self.hosts[self._path(channel)].screen
+
     def feed_hold(self, *, channel: int | None = None) -> None:
         """Hold the feed of a channel, or of all.
 
@@ -293,8 +302,6 @@ class Pnc:
         for number, each in enumerate(self._control.channels, 1):
             each.runs.names = self.system.axes.names_in(number)
 
-    # ------------------------------------------------------------------ what it knows
-
     @property
     def axes(self) -> Mapping[str, AxisStatus]:
         """The axes in the present cycle."""
@@ -316,8 +323,6 @@ class Pnc:
     def variables(self, channel: int = 1) -> dict[str, object]:
         """Return permanent variables and a channel's global ones, by name."""
         return self.hosts[channel - 1].variables()
-
-    # ------------------------------------------------------------------ within
 
     def _start_dialog(self, program: tuple[str, str], block: SelectedBlock | None) -> None:
         channel = self._dialog_channel

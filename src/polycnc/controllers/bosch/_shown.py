@@ -264,11 +264,14 @@ class Shown:
         words = run.modal
         speed = 0.0 if words is None else words.speed
         direction = 0 if words is None else words.spindle_direction
+        override, rpm = self._channels.spindle()
+        turning = speed if direction else 0.0
         cutting = words is not None and words.g.get(Group.SPINDLE_MODE) in _CUTTING
         return Spindle(
-            programmed=speed, actual=speed if direction else 0.0, limits=(0.0, top), gear_limits=(0.0, top),
+            programmed=speed, actual=turning if rpm is None else rpm, potentiometer=override * _FULL,
+            limits=(0.0, top), gear_limits=(0.0, top),
             motion=SpindleMotion.ORIENTATION if words is not None and words.spindle_oriented else _MOTIONS[direction],
-            cutting_m_min=(speed if direction else 0.0) if cutting else None,
+            cutting_m_min=turning if cutting else None,
         )  # fmt: skip
 
 

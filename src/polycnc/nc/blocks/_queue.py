@@ -61,10 +61,10 @@ class WriterSnapshot(NamedTuple):
 class QueueWriter:
     """Append items to path `path` of the kernel; what finds no room waits in `backlog`.
 
-    `events` holds what the path has yet to come to, by number. `stops` counts those among them behind which
-    preparation waits: drains, with `stands_at_stops` program stops, and with `answers` auxiliary functions, at which
-    the path does not wait by itself: whoever runs it holds it until they are answered. `marks` takes the blocks that
-    leave nothing in the queue: the segment count that they stand before, and their tag.
+    `events` holds what the path has yet to come to, by number, `probes` the tags of probing among it. `stops` counts
+    those among them behind which preparation waits: drains, with `stands_at_stops` program stops, and with `answers`
+    auxiliary functions, at which the path does not wait by itself: whoever runs it holds it until they are answered.
+    `marks` takes the blocks that leave nothing in the queue: the segment count that they stand before, and their tag.
     """
 
     seg: Segments
@@ -77,6 +77,7 @@ class QueueWriter:
     answers: bool = False
     stops: int = 0
     marks: deque[tuple[int, int]] | None = None
+    probes: dict[int, int] = field(default_factory=dict)
     _next_event: int = 0
 
     def set_tolerance(self, tolerance_mm: float, merge_mm: float) -> None:
@@ -116,6 +117,7 @@ class QueueWriter:
         """Forget what has been put and not been come to."""
         self.backlog.clear()
         self.events.clear()
+        self.probes.clear()
         self.stops = 0
         if self.marks is not None:
             self.marks.clear()
@@ -124,10 +126,15 @@ class QueueWriter:
         """Append the events that have not been come to anew, because the queue that they were in has been dropped."""
         events = [self.events[number] for number in sorted(self.events)]
         self.events.clear()
+        self.probes.clear()
         for event in events:
             self._append_wait(0.0, self._next_event, event.tag)
-            self.events[self._next_event] = event
-            self._next_event += 1
+            self._note(event)
+
+    def take(self, number: int) -> Event:
+        """Return an event that the path has come to, which is pending no more."""
+        self.probes.pop(number, None)
+        return self.events.pop(number)
 
     def snapshot(self) -> WriterSnapshot:
         """Return what has been put and not been come to, to go back to; the queue itself is the kernel's."""
@@ -137,6 +144,7 @@ class QueueWriter:
     def restore(self, saved: WriterSnapshot) -> None:
         """Go back to a snapshot."""
         self.events = dict(saved.events)
+        self.probes = {n: event.tag for n, event in saved.events.items() if event.stop is Stop.PROBE}
         self.stops = saved.stops
         self._next_event = saved.next_event
         self.backlog = deque(saved.backlog)
@@ -222,12 +230,17 @@ class QueueWriter:
             time_s = item.duration_s if answered and word is words[-1] else 0.0
             barrier = answered and not stops and word is words[-1]
             event = Event(word, item.line, item.stop, time_s, item.tag, item.message, barrier)
-            self.events[self._next_event] = event
-            self._next_event += 1
+            self._note(event)
         if stops or answered:
             self.stops += 1
         if (item.duration_s > 0.0 or not words) and not answered:
             self._append_wait(item.duration_s, NO_EVENT, item.tag)
+
+    def _note(self, event: Event) -> None:
+        self.events[self._next_event] = event
+        if event.stop is Stop.PROBE:
+            self.probes[self._next_event] = event.tag
+        self._next_event += 1
 
     def _close_line(self) -> None:
         if self.paths.row[self.path]["merged"] > 0:

@@ -21,6 +21,7 @@ from polycnc.nc.sources._block_source import (
     LastingLanguage,
     Returning,
     SearchingLanguage,
+    TidyLanguage,
 )
 from polycnc.nc.text._incoming import IncomingText
 from polycnc.nc.text._place import Place
@@ -109,10 +110,11 @@ class Calls:
         """
         incoming, running = self._incoming, self.running
         assert incoming is not None
-        by_line = self._language is not None or self._dialect.reads_contours
-        piece = incoming.take(one_line=by_line)
+        piece = incoming.take(one_line=self.has_language or self._dialect.reads_contours)
         if piece is None:
             return False
+        if isinstance(self._language, TidyLanguage):
+            self._language.tidy()
         running.begin = Place(piece, 0, piece.first_line)
         self.begin()
         if running.source is None:

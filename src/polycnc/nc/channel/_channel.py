@@ -182,7 +182,7 @@ class Channel:
         """Whether all blocks of the main program's text have been taken, and no language has more."""
         reader, calls = self._reader, self._calls
         read = reader.at_end and reader.place.offset >= reader.end
-        return read and calls.depth == 0 and calls.running.source is None
+        return read and calls.depth == 0 and calls.running.source is None and not calls.is_coming
 
     @property
     def paused(self) -> bool:

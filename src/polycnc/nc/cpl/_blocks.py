@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 from polycnc.errors import ProgramError
 from polycnc.language import Traced, standing
@@ -18,16 +18,18 @@ from polycnc.nc.cpl._cpl_state import (
     SavedCalled,
     SavedCpl,
     SavedProgram,
+    Standing,
     damaged,
     kept_names,
     put_back,
 )
-from polycnc.nc.cpl._host import Host, KeepingHost, Lines, NcValues, Step, SubProgram, Waiting
+from polycnc.nc.cpl._host import Event, Host, KeepingHost, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._link_table import LinkTables
 from polycnc.nc.cpl._loops import LoopWatch, WatchedHost
 from polycnc.nc.cpl._open_lines import BracketWords, line_words
-from polycnc.nc.cpl._program import Linker, Program, holds_cpl
-from polycnc.nc.cpl._run import Arguments, Execution, undeclared
+from polycnc.nc.cpl._program import Linker, holds_cpl
+from polycnc.nc.cpl._run import Arguments, Called, Execution, undeclared
+from polycnc.nc.cpl._wait import Wait
 from polycnc.nc.sources._block_source import (
     BlockSource,
     CallProgram,
@@ -45,26 +47,7 @@ from polycnc.nc.text._scan_plain import Word, scan_block
 
 _LINE_END = re.compile(rb"\r\n|\r|\n")
 _STATEMENT = re.compile(r"[ \t]*[0-9.@#](?![0-9]*[ \t]*WAIT)")
-
 _STATEMENTS = 256  # so many, then time passes: a loop may hold no block
-
-
-class _Called(NamedTuple):
-    """What a call hands to the source of its sub-program; `modal`: its moves are followed by no call."""
-
-    program: Program
-    arguments: Arguments
-    modal: bool = False
-
-
-class _Standing(NamedTuple):
-    """A program that is to stand where another one stood."""
-
-    saved: SavedProgram
-    program: Program
-    called: tuple[object, ...]
-    names: dict[str, object]
-    traced: Traced[int] | None
 
 
 class CplLanguage:
@@ -112,7 +95,7 @@ class CplLanguage:
         Raises:
             ProgramError: It, or a sub-program of it, is wrong; this is the link step.
         """
-        called = arguments if isinstance(arguments, _Called) else None
+        called = arguments if isinstance(arguments, Called) else None
         bounds, self._bounds = self._bounds, None
         if called is None and not self.running:
             self.linker.stepping = self.shows_statements or bounds is not None
@@ -127,7 +110,7 @@ class CplLanguage:
             main, errors = self.linker.link(_decoded(text.content), text.name)
             if main is None:
                 raise errors[0]
-            called = _Called(main, Arguments())
+            called = Called(main, Arguments())
         try:
             execution = Execution(called.program, self.linker, self._host, self.globals, called.arguments)
         except ProgramError:
@@ -184,7 +167,7 @@ class CplLanguage:
         standing = [None if each is None else self._standing(each, made) for _, each in saved.under_way]
         return lambda: self._go_back(saved, values, standing)
 
-    def _standing(self, saved: SavedProgram, made: MadeObjects) -> _Standing:
+    def _standing(self, saved: SavedProgram, made: MadeObjects) -> Standing:
         found = self._control.program("", saved.file.rpartition("/")[2])
         text = _decoded(saved.text.content)
         if found is not None and found[0] == saved.file and found[1] != text:
@@ -207,13 +190,13 @@ class CplLanguage:
             traced = standing(program.traced, saved.place, names, again=bool(saved.wait))
         except ValueError as error:
             raise damaged(f"{saved.file} cannot stand there") from error
-        return _Standing(saved, program, called, names, traced)
+        return Standing(saved, program, called, names, traced)
 
     def _go_back(
         self,
         saved: SavedCpl,
         values: tuple[dict[str, object], dict[str, object]],
-        standing: Sequence[_Standing | None],
+        standing: Sequence[Standing | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
         put_back(self.globals, values[0])
@@ -232,7 +215,7 @@ class CplLanguage:
             source = CplSource(each.saved.text, execution, self, modal=each.saved.called.modal)
             source.go_to(each.saved, each.traced, each.names)
             self.running.append(source)
-            handed = None if called is None else _Called(each.program, arguments, each.saved.called.modal)
+            handed = None if called is None else Called(each.program, arguments, each.saved.called.modal)
             found.append((handed, source))
         return found
 
@@ -288,7 +271,7 @@ class CplSource:
         self._language = language
         self._starts = [0, *(found.end() for found in _LINE_END.finditer(text.content)), len(text.content)]
         self._statements = 0  # that were handed over, of a program linked for stepping
-        self._waiting: _Wait | None = None
+        self._waiting: Wait | None = None
         self._answer: object = None
         self._names: dict[str, Any] | None = None  # of the program's Python, where it stands
 
@@ -328,45 +311,55 @@ class CplSource:
                 self._waiting = None
             answer, self._answer = self._answer, None
             self._names = None
-            match self.execution.step(answer):
-                case None:
-                    return None
-                case Lines(first=first, last=last):
-                    if self._language.modal is None or self._in_modal:
-                        return self._span(first, last)
-                    self._left = first, last
-                case NcValues() as block:
-                    if not self._language.skips(block.skip):
-                        self._behind = tuple(
-                            CodeWord(each.address, each.extension, each.value) for each in block.words
-                        )
-                        return self._words(block)
-                case SubProgram() | Waiting() as skipped if self._language.skips(skipped.skip):
-                    pass
-                case SubProgram() as call:
-                    modal = f"{call.address}{call.name}" in self._language.codes.modal
-                    if modal and not self._in_modal:
-                        self._language.modal = call
-                    return self._call(call, modal=modal)
-                case Waiting() as wait:
-                    if wait.condition is not None or wait.duration_ms is not None:
-                        self._waiting = _Wait(wait, self._language.milliseconds)
-                    return Drain(wait.line)
-                case Step() as step:
-                    bounds = self._bounds
-                    if bounds is not None and bounds.end_before(step.line):
-                        return None
-                    is_sought = self._language.hasty and bounds is not None and bounds.first == step.line
-                    if not (self._language.shows_statements or is_sought):
-                        continue
-                    if not _STATEMENT.match(self.execution.program.source.line(step.line)):
-                        continue  # an NC block, or a WAIT: these are stopped at by themselves
-                    if self._language.stands(self.execution.program.file, step.line):
-                        return Drain(step.line)  # nothing is reckoned before the path has come here
-                    self._statements += 1
-                    return Statement(step.line) if self._statements % _STATEMENTS else Pause.PAUSE
-                case _:
-                    return Pause.PAUSE
+            event = self.execution.step(answer)
+            if event is None or (isinstance(event, Step) and self._ends_before(event.line)):
+                return None
+            if (item := self._item(event)) is not None:
+                return item
+
+    def _item(self, event: Event) -> SourceItem | None:
+        """Return the item that an event is, None where it is none, or leaves some for later."""
+        match event:
+            case Lines(first=first, last=last):
+                if self._language.modal is None or self._in_modal:
+                    return self._span(first, last)
+                self._left = first, last
+            case NcValues() as block:
+                if not self._language.skips(block.skip):
+                    self._behind = tuple(
+                        CodeWord(each.address, each.extension, each.value) for each in block.words
+                    )
+                    return self._words(block)
+            case SubProgram() | Waiting() as skipped if self._language.skips(skipped.skip):
+                return None
+            case SubProgram() as call:
+                modal = f"{call.address}{call.name}" in self._language.codes.modal
+                if modal and not self._in_modal:
+                    self._language.modal = call
+                return self._call(call, modal=modal)
+            case Waiting() as wait:
+                if wait.condition is not None or wait.duration_ms is not None:
+                    self._waiting = Wait(wait, self._language.milliseconds)
+                return Drain(wait.line)
+            case Step() as step:
+                return self._statement(step.line)
+            case _:
+                return Pause.PAUSE
+        return None
+
+    def _ends_before(self, line: int) -> bool:
+        return self._bounds is not None and self._bounds.end_before(line)
+
+    def _statement(self, line: int) -> SourceItem | None:
+        """Return the item of a statement that is stepped to or looked for."""
+        is_sought = self._language.hasty and self._bounds is not None and self._bounds.first == line
+        is_shown = self._language.shows_statements or is_sought
+        if not is_shown or not _STATEMENT.match(self.execution.program.source.line(line)):
+            return None  # of NC blocks and WAIT: these are stopped at by themselves
+        if self._language.stands(self.execution.program.file, line):
+            return Drain(line)  # nothing is reckoned before the path has come here
+        self._statements += 1
+        return Statement(line) if self._statements % _STATEMENTS else Pause.PAUSE
 
     def saved(self, objects: Objects) -> SavedProgram:
         """Return where the program stands.
@@ -406,7 +399,7 @@ class CplSource:
         self.execution.line = saved.line
         event = self.execution.go_to(traced, names)
         if saved.wait and isinstance(event, Waiting):
-            self._waiting = _Wait(event, self._language.milliseconds, began_ms=saved.wait[0])
+            self._waiting = Wait(event, self._language.milliseconds, began_ms=saved.wait[0])
 
     def leave(self) -> bool:
         """Leave returns to the channel, which has entered every sub-program."""
@@ -489,53 +482,12 @@ class CplSource:
         program = self.execution.called(call, running)
         text = ProgramText.from_text(program.source.text, program.file)
         arguments = Arguments(call.arguments, self.execution.linked)
-        called = _Called(program, arguments, modal)
+        called = Called(program, arguments, modal)
         return CallProgram(text, call.line, self._starts[call.line - 1], arguments=called)
 
 
-class _Wait:
-    """A WAIT with a condition or a duration, from when the queue has been drained."""
-
-    def __init__(
-        self, wait: Waiting, milliseconds: Callable[[], int], *, began_ms: int | None = None
-    ) -> None:
-        self._wait = wait
-        self._milliseconds = milliseconds
-        self.began_ms = began_ms
-        """When the queue had been drained, None before."""
-
-    @property
-    def begun(self) -> bool:
-        """Whether the queue has been drained."""
-        return self.began_ms is not None
-
-    @property
-    def ends_ms(self) -> int | None:
-        """When it ends at the latest; None if it has no duration or has not begun."""
-        if self.began_ms is None or self._wait.duration_ms is None:
-            return None
-        return self.began_ms + self._wait.duration_ms
-
-    def answer(self, *, hasty: bool = False) -> int | None:
-        """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet.
-
-        Where it is `hasty` all that is waited for comes at once.
-        """
-        wait = self._wait
-        first = self.began_ms is None
-        if self.began_ms is None:
-            self.began_ms = self._milliseconds() if wait.duration_ms is not None else 0
-        if wait.condition is not None and wait.condition():
-            return 0 if first else 2
-        if hasty:
-            return 2 if wait.duration_ms is None else 1
-        if wait.duration_ms is not None and self._milliseconds() - self.began_ms >= wait.duration_ms:
-            return 1
-        return None
-
-
 def _saved_call(arguments: object, objects: Objects) -> SavedCalled | None:
-    if not isinstance(arguments, _Called):
+    if not isinstance(arguments, Called):
         return None
     given = arguments.arguments
     return SavedCalled(tuple(map(objects.plain, given.values)), given.linked, arguments.modal)

@@ -6,11 +6,13 @@ from array import array
 from collections.abc import Mapping, MutableMapping, Sequence
 from typing import Any, NamedTuple
 
+from polycnc.language import Traced
 from polycnc.machine import SnapshotError
 from polycnc.nc.cpl._code_calls import CodeWord
 from polycnc.nc.cpl._faults import Fault
 from polycnc.nc.cpl._fields import Field, check_sizes
 from polycnc.nc.cpl._host import Box, SubProgram
+from polycnc.nc.cpl._program import Program
 from polycnc.nc.cpl._strings import LONGEST, CharacterField, Part, Unlinked
 from polycnc.nc.cpl._variables import Kind
 from polycnc.nc.text._program import ProgramText
@@ -90,6 +92,16 @@ class SavedCpl(NamedTuple):
     permanent: dict[str, object]
     modal: SubProgram | None
     under_way: tuple[tuple[SavedCalled | None, SavedProgram | None], ...]
+
+
+class Standing(NamedTuple):
+    """A program that is to stand where another one stood."""
+
+    saved: SavedProgram
+    program: Program
+    called: tuple[object, ...]
+    names: dict[str, object]
+    traced: Traced[int] | None
 
 
 CPL_CLASSES: Sequence[type] = (

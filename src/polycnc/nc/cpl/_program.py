@@ -79,11 +79,7 @@ def _compiled(
     flaws += compiler.flaws
     if traced is None:
         return None, [source.error(flaw) for flaw in sorted(flaws, key=lambda flaw: flaw.at)]
-    calls = tuple(
-        LinkedCall(each.at, each.line, each.address, each.name, each.unlinked)
-        for each in whole
-        if isinstance(each, SubCall)
-    )
+    calls = _calls(whole)
     plain = all(isinstance(each, NcLine) and not each.names for each in statements)
     return Program(
         source, traced, calls, compiler.variables, is_marked_din(source.line(1)), plain, text, stepping
@@ -127,7 +123,9 @@ class Linker:
         self._faulty.clear()
         self._checked.clear()
         main = self._compiled(text, file, errors)
-        if main is not None and not main.marked_din:
+        if main is None:
+            self._check_faulty(file, text, (), errors)
+        elif not main.marked_din:
             self._check(file, text, main.calls, (), errors)
         return (None if errors else main), errors
 
@@ -220,6 +218,18 @@ class Linker:
             self._tables.keep(file, LinkTable(text_digest(text), calls))
         return right
 
+    def _check_faulty(self, file: str, text: str, stack: tuple[str, ...], errors: list[ProgramError]) -> None:
+        """Check the calls of a program that is wrong itself, as far as it can be read; it leaves no table."""
+        if is_marked_din(text.split("\n", 1)[0]) or (file, len(stack)) in self._checked:
+            return
+        self._checked[file, len(stack)] = False
+        source = _source(text, file)
+        statements, _ = read_program(source, self.alone, self._codes.rules, in_text=self._opened)
+        for call in _calls(every(statements)):
+            flaw, _ = self._call_flaw(call, (*stack, file), errors)
+            if flaw is not None:
+                errors.append(source.error(flaw))
+
     def _call_flaw(
         self, call: LinkedCall, stack: tuple[str, ...], errors: list[ProgramError]
     ) -> tuple[Flaw | None, bool]:
@@ -242,7 +252,18 @@ class Linker:
         if table is not None and table.digest == text_digest(text) and file not in self._programs:
             return None, self._check(file, text, table.calls, stack, errors)
         program = self._compiled(text, file, errors)
-        return None, program is not None and self._check(file, text, program.calls, stack, errors)
+        if program is None:
+            self._check_faulty(file, text, stack, errors)
+            return None, False
+        return None, self._check(file, text, program.calls, stack, errors)
+
+
+def _calls(statements: Iterable[object]) -> tuple[LinkedCall, ...]:
+    return tuple(
+        LinkedCall(each.at, each.line, each.address, each.name, each.unlinked)
+        for each in statements
+        if isinstance(each, SubCall)
+    )
 
 
 def shown_call(address: str, name: str) -> str:

@@ -44,6 +44,14 @@ class Arguments(NamedTuple):
     linked: bool = True
 
 
+class Called(NamedTuple):
+    """What a call hands to the source of its sub-program; `modal`: its moves are followed by no call."""
+
+    program: Program
+    arguments: Arguments
+    modal: bool = False
+
+
 class Execution:
     """One program that runs: its next event, and its run-time errors at their places."""
 

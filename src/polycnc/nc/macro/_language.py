@@ -29,6 +29,7 @@ PAUSE_JUMPS = 20_000
 LONGEST_LOOP_PAUSES = 2_500
 """So many pauses in a row without a block are a loop without end."""
 _LEVELS_REMEMBERED = 64
+_TEXTS_REMEMBERED = 256
 _PLAIN_CALLS = MacroCalls()
 _PIECE_BYTES = 1 << 20
 
@@ -86,10 +87,8 @@ class MacroLanguage:
         self.interrupt_program, self._interrupt = None, False
         self.output.attach(channel)
         self.codes_off = 0
-        self._compiled.clear()
-        self._latin.clear()
-        self._without.clear()
-        self._returns.clear()
+        for kept in (self._returns, self._latin, self._without, self._compiled):
+            kept.clear()
 
     def interrupt(self) -> None:
         """Give the interrupt signal: the program that M96 names is called behind the block that is executed."""
@@ -134,6 +133,12 @@ class MacroLanguage:
             compiled = self._compile(text, offset, line, key[2], force=True)
             assert compiled is not None
         return MacroSource(self, compiled, given).begin()
+
+    def tidy(self) -> None:
+        """Keep no more of what was translated than a bounded amount: there is no end of texts."""
+        if len(self._without) + len(self._compiled) > _TEXTS_REMEMBERED:
+            for kept in (self._returns, self._latin, self._without, self._compiled):
+                kept.clear()
 
     def source_at(self, text: ProgramText, offset: int, line: int, start: int) -> MacroSource | None:
         """Return a source that begins at byte `start`, the beginning of a line; None where plain text needs none.

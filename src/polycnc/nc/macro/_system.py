@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from datetime import datetime
 
 from polycnc.kernel import OTHER_SOURCE
 from polycnc.machine import Clock
+from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._tables import COMMON_OFFSET, additional_offset
 from polycnc.nc.macro._host import Host
 from polycnc.nc.macro._macro_state import SavedSystem
@@ -40,6 +41,36 @@ _MODAL, _EXECUTED = 4000, 4200
 _MODAL_NUMBERS = frozenset(
     {1, 2, 3, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 22, 107, 109, 111, 113, 114, 115, 119, 120, 130}
 )
+
+
+_IN_FORCE: Mapping[int, Callable[[ChannelState], Value]] = {
+    1: lambda state: float(max(int(state.modal.whole[MOTION]), 0)),
+    2: lambda state: _PLANES[int(state.modal.whole[PLANE])],
+    3: lambda state: 90.0 if state.modal.whole[ABSOLUTE] else 91.0,
+    5: lambda state: _FEED_MODES[int(state.modal.whole[FEED_MODE])],
+    6: lambda state: 20.0 if state.modal.whole[INCH] else 21.0,
+    7: lambda state: {1: 41.0, -1: 42.0}.get(state.side, 40.0),
+    8: lambda state: {1: 43.0, -1: 44.0}.get(state.coordinates.length_sign, 49.0),
+    9: lambda state: state.cycle.code,
+    10: lambda state: 98.0 if state.cycle.retract_to_initial else 99.0,
+    11: lambda state: 51.0 if state.frame.scaled else 50.0,
+    13: lambda state: 96.0 if state.spindle.surface_speed else 97.0,
+    14: lambda state: (
+        54.1 if ".P" in state.coordinates.work[0] else float(state.coordinates.work[0][1:] or 53)
+    ),
+    15: lambda state: 61.0 if state.modal.whole[EXACT_STOP] else 64.0,
+    16: lambda state: 68.0 if state.frame.rotated else 69.0,
+    17: lambda state: 16.0 if state.frame.polar else 15.0,
+    22: lambda state: 51.1 if state.frame.mirrors else 50.1,
+    107: lambda state: float(state.compensation_tool or 0),
+    109: lambda state: float(state.modal.real[FEED_NUMBER]),
+    111: lambda state: float(state.length_tool),
+    113: lambda state: float(state.m_codes[-1]) if state.m_codes else 0.0,
+    119: lambda state: state.spindle.speed,
+    120: lambda state: float(state.selected_tool),
+    130: lambda state: float(state.coordinates.work[0].partition(".P")[2] or 0),
+}
+"""What is in force by the last digits of its variable (#4001 and on)."""
 
 
 class SystemVariables:
@@ -272,62 +303,12 @@ class SystemVariables:
                 return (float(machine.setpoint[axis]) - float(machine.servo.actual[axis])) / scale
 
     def _modal(self, number: int) -> Value:
-        state = self.channel.state
-        whole = state.modal.whole
-        coordinates, frame = state.coordinates, state.frame
-        work = coordinates.work[0]
         match number:
-            case 1:
-                return float(max(int(whole[MOTION]), 0))
-            case 2:
-                return _PLANES[int(whole[PLANE])]
-            case 3:
-                return 90.0 if whole[ABSOLUTE] else 91.0
-            case 5:
-                return _FEED_MODES[int(whole[FEED_MODE])]
-            case 6:
-                return 20.0 if whole[INCH] else 21.0
-            case 7:
-                return {1: 41.0, -1: 42.0}.get(state.side, 40.0)
-            case 8:
-                return {1: 43.0, -1: 44.0}.get(coordinates.length_sign, 49.0)
-            case 9:
-                return state.cycle.code
-            case 10:
-                return 98.0 if state.cycle.retract_to_initial else 99.0
-            case 11:
-                return 51.0 if frame.scaled else 50.0
             case 12:
                 return 66.0 if self.modal_call else 67.0
-            case 13:
-                return 96.0 if state.spindle.surface_speed else 97.0
-            case 14:
-                return 54.1 if ".P" in work else float(work[1:] or 53)
-            case 15:
-                return 61.0 if whole[EXACT_STOP] else 64.0
-            case 16:
-                return 68.0 if frame.rotated else 69.0
-            case 17:
-                return 16.0 if frame.polar else 15.0
-            case 22:
-                return 51.1 if frame.mirrors else 50.1
-            case 107:
-                return float(state.compensation_tool or 0)
-            case 109:
-                return float(state.modal.real[FEED_NUMBER])
-            case 111:
-                return float(state.length_tool)
-            case 113:
-                return float(state.m_codes[-1]) if state.m_codes else 0.0
             case 114:
                 return float(self.sequence_number)
             case 115:
                 return float(self.program_number)
-            case 119:
-                return state.spindle.speed
-            case 120:
-                return float(state.selected_tool)
-            case 130:
-                return float(work.partition(".P")[2] or 0)
-            case _:
-                return 0.0
+        found = _IN_FORCE.get(number)
+        return 0.0 if found is None else found(self.channel.state)

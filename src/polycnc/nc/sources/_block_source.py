@@ -184,6 +184,15 @@ class Language(Protocol):
 
 
 @runtime_checkable
+class TidyLanguage(Language, Protocol):
+    """A language that keeps what it has translated."""
+
+    def tidy(self) -> None:
+        """Keep no more of that than a bounded amount: there is no end of texts."""
+        ...
+
+
+@runtime_checkable
 class HastyLanguage(Language, Protocol):
     """A language whose programs may wait for time to pass."""
 

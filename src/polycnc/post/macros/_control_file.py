@@ -30,7 +30,9 @@ CONTROLS: tuple[str, ...] = (
     "fanuc-5axis",
     "fanuc-lathe",
     "fanuc-mill",
+    "grbl",
     "haas-mill",
+    "linuxcnc-mill",
 )
 """Names of the control files that come with polycnc."""
 

@@ -52,6 +52,7 @@ class Motion:
         self.angles: Angles = (0.0, 0.0)
         self.tool_length_mm: float | None = None
         self._has_start = any(output.control.names(word) for word in START_WORDS)
+        self._has_feed_mode = output.control.names("FEEDMODE")
         self._needs = {macro: output.control.has(macro) for macro in ("RAPID", "LINEAR", "THREAD")}
         # A lathe's program has no Y: what the tool path says there would be lost.
         self._flat = not any(output.control.uses(macro, "Y") for macro in ("RAPID", "LINEAR"))
@@ -67,6 +68,7 @@ class Motion:
         return not (
             self._must_write
             or self._first
+            or (self.per_revolution and not self._has_feed_mode)
             or self._kinematics is not None
             or self._rotary
             or self._thread is not None
@@ -371,10 +373,16 @@ class Motion:
         """Return F and FEEDMODE.
 
         Raises:
-            ProgramError: there is no feed yet.
+            ProgramError: there is no feed yet, or one per revolution that the control file does not know.
         """
         if self.feed is None:
             raise self._output.fail(line, "a feed move without a feed", "Write FEDRAT before it.")
+        if self.per_revolution and not self._has_feed_mode:
+            raise self._output.fail(
+                line,
+                "a feed per revolution, and no macro of the control file says so to the control",
+                "Let the CAM system write feeds per minute, or ask for FEEDMODE in its macros if the control has G95.",
+            )
         return self.feed * self._scale, 95.0 if self.per_revolution else 94.0
 
     def circle(self, act: Turn) -> None:

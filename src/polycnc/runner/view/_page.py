@@ -14,6 +14,7 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import KINDS
 from polycnc.runner._result import RunResult, counted, time_text
+from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
 from polycnc.runner.view._motion import DERIVATIVES
 from polycnc.runner.view._part_frame import turning_axes, with_part_frame
@@ -32,6 +33,7 @@ _TYPES = {
     np.dtype(np.float64): "f8",
     np.dtype(np.float32): "f4",
     np.dtype(np.int32): "i4",
+    np.dtype(np.uint16): "u2",
     np.dtype(np.uint8): "u1",
 }
 
@@ -82,10 +84,31 @@ def page(
         "shapes": tool_shapes(sorted(set(track.blocks.tool.tolist())), machine, texts),
         "lathe": _is_lathe(axes, machine),
     }
+    if result.machined is not None:
+        about["stock"] = _stock(film_of(result.machined), result.machined.zero_mm, columns)
     blob, about["columns"] = _packed(columns)
     shell = Page(_own("page.html"), _own("page.css"), "view.js", _modules(), "polycnc view")
     title = result.program.encode("utf-8", "replace").decode()
     return shell.html(title, {"about": json.dumps(about, allow_nan=False).encode(), "data": blob})
+
+
+def _stock(
+    film: Film, zero_mm: tuple[float, float, float], columns: dict[str, npt.NDArray[Any]]
+) -> dict[str, Any]:
+    """Add the columns of a body that is cut; return what they mean, in machine coordinates."""
+    columns["stock_begin"] = film.begin
+    columns["stock_s"] = film.ends
+    columns["stock_counts"] = film.counts
+    columns["stock_cells"] = np.diff(film.cells, prepend=np.int32(0)).astype(np.int32)
+    columns["stock_levels"] = film.levels
+    x, y, z = zero_mm
+    return {
+        "first": [film.first_mm[0] + x, film.first_mm[1] + y],
+        "bottom": film.bottom_mm + z,
+        "cell": film.cell_mm,
+        "level": film.level_mm,
+        "size": [film.begin.shape[1], film.begin.shape[0]],
+    }
 
 
 def _modules() -> dict[str, str]:

@@ -97,6 +97,8 @@ def view_program(
     *,
     skip_levels: Iterable[int] = (),
     inch: bool | None = None,
+    stock: str | None = None,
+    resolution_mm: float | None = None,
     progress: Progress | None = None,
 ) -> View:
     """Run a program and return its view, in memory that does not grow with the length of the run.
@@ -110,7 +112,9 @@ def view_program(
     text = program_text(program)
     config = load_machine(machine)
     collector = TrackCollector(tuple(axis.unit for axis in config.axes))
-    settings = RunSettings(config, dialect, skip_levels=frozenset(skip_levels))
+    settings = RunSettings(
+        config, dialect, skip_levels=frozenset(skip_levels), stock=stock, resolution_mm=resolution_mm
+    )
     result = run_program(text, settings, check=False, tagged_rows=collector.add, progress=progress)
     execution = collector.execution()
     axes = tuple((axis.name, axis.unit) for axis in config.axes)

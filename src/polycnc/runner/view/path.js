@@ -21,6 +21,7 @@ export class Path {
     this.cuts = this.lines(cuts, 2.6, 2);
     this.rapids = this.lines(rapids, 1.2, 1);
     this.box = this.boxOf(cuts.length ? cuts : rapids);
+    this.depths = this.box[2];
     this.all = this.boxOf([...cuts, ...rapids]);
     this.tools = [...new Set([...record.about.tools.map((each) => each.tool), ...record.block_tool])].sort((a, b) => a - b);
     const cutFeeds = cuts.map((k) => record.feed[k]);
@@ -62,7 +63,7 @@ export class Path {
   // The colour (r, g, b) of a point by a way of colouring.
   colouring(how) {
     const { record } = this, classes = (of) => (k) => rgb(paletteColour(of(k)));
-    const [low, high] = this.box[2];
+    const [low, high] = this.depths;
     return {
       speed: (k) => scaled(record.feed[k] / this.usualFeed),
       depth: (k) => scaled((this.at[3 * k + 2] - low) / Math.max(high - low, 1e-6)),

@@ -1,8 +1,9 @@
 // The page of a view: what is where at a moment, and what one can do with it.
 import { Group, Matrix4, Vector3 } from "three";
 import { Chart } from "./chart.js";
+import { Field } from "./field.js";
 import { floor } from "./floor.js";
-import { clockText, units } from "./format.js";
+import { after, clockText, units } from "./format.js";
 import { polyline } from "./lines.js";
 import { Listing } from "./listing.js";
 import { Path } from "./path.js";
@@ -30,6 +31,13 @@ export async function start(buffers) {
     mirrored = path.cuts.mesh.clone();
     mirrored.scale.z = -1;
     part.add(mirrored);
+  }
+  const body = about.stock && bodyOf(record);
+  if (body) {
+    part.add(body.mesh);
+    stage.before.push(() => body.seenFrom(stage.camera.position, stage.controls.target));
+    path.cuts.set("width", 1.4);
+    path.box = path.box.map(([low, high], i) => [Math.min(low, body.box[i][0]), i === 2 ? Math.max(body.box[2][1], Math.min(high, body.box[2][1] + 5)) : Math.max(high, body.box[i][1])]);
   }
   const wide = [path.cuts, path.rapids]; // lines that must know how large the stage is
   stage.before.push(() => { for (const each of wide) each.fit(stage); });
@@ -82,7 +90,7 @@ export async function start(buffers) {
     const legend = element("legend"), how = element("colour").value;
     legend.replaceChildren();
     if (how === "speed" || how === "depth") {
-      const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.box[2];
+      const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.depths;
       bar.style.background = `linear-gradient(to right, ${scaleColours().join(",")})`;
       const texts = how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
       ends.append(...texts.map((textContent) => make("span", { textContent })));
@@ -96,7 +104,23 @@ export async function start(buffers) {
     if (path.rapids.count) legend.append(chip("", "rapid", "rapid"));
     if (about.other) legend.append(chip(paletteColour(0), about.other.own), chip(css("--other"), about.other.name));
   }
-  function recolour() { path.paint(element("colour").value); drawLegend(); stage.draw(); }
+  function recolour() {
+    const how = element("colour").value, of = path.colouring(how);
+    path.paint(how);
+    if (body) body.paint((t) => of(Math.min(after(record.t_s, t - 1e-6), record.points - 1)));
+    drawLegend(); stage.draw();
+  }
+  function drawBody() { // as cut, or before, after, off; and the section
+    const how = element("stock").value, across = element("section").value, axis = across === "" ? null : Number(across);
+    body.mesh.visible = how !== "off";
+    body.goTo(how === "whole" ? -1 : how === "finished" ? Infinity : now);
+    if (record.executions) { const execution = record.executionAt(now); body.light(record.start_s[execution], record.endOf(execution)); }
+    element("cut").hidden = axis === null;
+    const [low, high] = body.box[axis ?? 0], share = Number(element("cut").value);
+    body.cutAt(axis, axis === 1 ? low + share * (high - low) : high - share * (high - low));
+    path.cuts.mesh.visible = path.rapids.mesh.visible = axis === null && how !== "finished";
+    stage.draw();
+  }
 
   // ---------------------------------------------------------------- the chart
   const linearAxes = record.axes.map((axis, i) => ({ ...axis, i }));
@@ -163,7 +187,8 @@ export async function start(buffers) {
       }
     }
     place(here);
-    for (const each of [path.cuts, path.rapids]) { each.set("now", now); each.set("faint", now > 0 ? 0.28 : 1); }
+    if (body) drawBody();
+    for (const each of [path.cuts, path.rapids]) { each.set("now", now); each.set("faint", now <= 0 && !body ? 1 : body ? 0 : 0.28); }
     chart.now(now);
     stage.draw();
   }
@@ -284,6 +309,9 @@ export async function start(buffers) {
   }
   for (const mark of about.other?.marks ?? []) list(make("button", { type: "button", textContent: `◇ ${mark.text}`, onclick: () => { if (mark.time_s !== null) goTo(mark.time_s); } }));
   if (!record.points) say("The program moves no axis.");
+  element("stocks").hidden = element("sections").hidden = !body;
+  if (body && !body.changes) element("stock").value = "off"; // no tool is known: the path says more
+  for (const id of ["stock", "section", "cut"]) element(id).oninput = () => drawBody();
   element("frames").hidden = !about.chain.length;
   element("frame").onchange = () => goTo(now);
   element("slider").oninput = () => goTo(Number(element("slider").value));
@@ -318,6 +346,14 @@ export async function start(buffers) {
   }
   draw();
   look(shownViews[0]);
-  element("stage").seen = { path, stage, part };
+  element("stage").seen = { path, stage, part, body };
   document.documentElement.dataset.ready = "yes";
+}
+
+function bodyOf(record) {
+  const { stock, zero } = record.about;
+  return new Field({
+    ...stock, place: [stock.first[0] - zero[0], stock.first[1] - zero[1], stock.bottom - zero[2]],
+    begin: record.stock_begin, ends: record.stock_s, counts: record.stock_counts, jumps: record.stock_cells, levels: record.stock_levels,
+  });
 }

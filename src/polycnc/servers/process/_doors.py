@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from polycnc.errors import UsageError
 from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
 
 FOCAS_PROFILE = "31i"
@@ -22,5 +23,33 @@ def focas_kind(profile: str = FOCAS_PROFILE) -> DoorKind:
     return DoorKind("focas", 8193, open_door, frozenset({"fanuc"}))
 
 
-DOORS = {row.name: row for row in (focas_kind(),)}
+def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    try:
+        from polycnc.servers.http import HttpDoor
+    except ModuleNotFoundError as error:
+        raise UsageError(
+            f"http needs {error.name}, which is not installed", hint="pip install 'polycnc[serve]'"
+        ) from None
+    return HttpDoor(machines, wanted)
+
+
+def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, grbl_dialect
+
+    (machine,) = machines
+    control = machine.control
+    assert control is not None
+    control.change_dialect(grbl_dialect())
+    port = PORT if wanted.port is None else wanted.port
+    core = GrblCore(control)
+    return GrblServer(machine.keeper, core, address=wanted.address, port=port, terminal=wanted.path)
+
+
+_ROWS = (
+    focas_kind(),
+    DoorKind("http", 8080, _http, shared=True, knows_token=True),
+    DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})),
+)
+
+DOORS = {row.name: row for row in _ROWS}
 """The doors by name."""

@@ -22,6 +22,7 @@ from polycnc.controllers.bosch.screen._surface import (
     Text,
 )  # fmt: skip
 from polycnc.nc.cpl import (
+    BLOCKED,
     OMITTED,
     Box,
     CharacterField,
@@ -68,6 +69,7 @@ class Dialog:
         self._prompts: list[tuple[int, int, str, Box | None]] = []
         self._in_dialog = False
         self._shown = 0
+        self._typing = "", False  # into a field of INP that waits for a key, and whether DELETE was pressed
         self.functions: Mapping[str, Callable[..., object]] = {
             **self._drawing.functions,
             "DSP": self._dsp, "DLG": self._dlg, "ENDDLG": self._enddlg, "PRN": self._prn, "INP": self._inp,
@@ -82,7 +84,8 @@ class Dialog:
         return self._in_dialog
 
     def finish(self) -> None:
-        """End the program: softkeys go, the font is the default one again."""
+        """End the program: softkeys go, the font is the default one again, keys that nobody asked for are lost."""
+        self._typing = "", False
         self.surface.softkeys = ()
         self._font = Font()
 
@@ -188,12 +191,14 @@ class Dialog:
         self.surface.softkeys = ()
         return 0
 
-    def _sfk(self, variable: object, *texts: object) -> int:
+    def _sfk(self, variable: object, *texts: object) -> object:
         shown = [(text_of(text) or "") if text is not OMITTED else "" for text in texts]
         keys = OLD_SOFTKEYS if self._few_keys() else SOFTKEYS
         shown = [*shown[:keys], *[""] * (SOFTKEYS - min(len(shown), keys))]
         self.surface.softkeys = tuple(shown)
         while (key := self._keyboard.wait()) != KEYS["LEVEL_RETURN"]:
+            if key is None:
+                return BLOCKED
             number_of_key = key - KEYS["SOFTKEY1"] + 1
             if not 1 <= number_of_key <= keys:
                 continue
@@ -230,7 +235,7 @@ class Dialog:
             self.surface.write(line, column, _prompt(text, box), *self._text_colours)
         self._shown = len(self._prompts)
 
-    def _inp(self, variable: object) -> int:
+    def _inp(self, variable: object) -> object:
         self._show_prompts()
         if not isinstance(variable, Box) or variable.kind not in ("I", "R", "D"):
             return 0
@@ -241,8 +246,11 @@ class Dialog:
             raise Fault("INP WITHOUT PRN", f"write PRN(line,column,text,{variable.name}) before, after DLG")
         line, column, text, _ = found
         begin, end = (groups(text) or [(len(text), len(text) + 9)])[0]
-        typed, deleted = "", False
+        (typed, deleted), self._typing = self._typing, ("", False)
         while (key := self._keyboard.wait()) not in (KEYS["ENTER"], KEYS["LEVEL_RETURN"], *_SKIPS):
+            if key is None:
+                self._typing = typed, deleted
+                return BLOCKED
             if key == KEYS["DELETE"]:
                 typed, deleted = "", True
             elif chr(key) in "0123456789.-+" and _fits(typed + chr(key), text[begin:end], variable.kind):

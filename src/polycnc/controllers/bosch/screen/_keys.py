@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable
 
 from polycnc.errors import UsageError
@@ -24,14 +25,28 @@ _PATIENCE = 100_000
 class Keyboard:
     """Press keys in their order: each is a name of KEYS or one character.
 
+    With `live` more may be pressed at any time: who asks waits for them.
+
     Raises:
         UsageError: A key has no such name.
     """
 
-    def __init__(self, keys: Iterable[str] = ()) -> None:
-        self._codes = [_code(key) for key in keys]
-        self._next = 0
+    def __init__(self, keys: Iterable[str] = (), *, live: bool = False) -> None:
+        self._codes = deque(_code(key) for key in keys)
+        self._live = live
         self._in_vain = 0
+
+    def press(self, key: str) -> None:
+        """Press one more key.
+
+        Raises:
+            UsageError: It has no such name.
+        """
+        self._codes.append(_code(key))
+
+    def clear(self) -> None:
+        """Forget the keys that nobody has asked for."""
+        self._codes.clear()
 
     def poll(self) -> int:
         """Return the next key that was pressed, 0 if there is none.
@@ -39,23 +54,24 @@ class Keyboard:
         Raises:
             Fault: A program goes on asking although no key is left.
         """
-        if self._next < len(self._codes):
-            self._next += 1
-            return self._codes[self._next - 1]
-        self._in_vain += 1
+        if self._codes:
+            return self._codes.popleft()
+        self._in_vain += not self._live
         if self._in_vain > _PATIENCE:
             raise _no_key()
         return 0
 
-    def wait(self) -> int:
-        """Return the next key.
+    def wait(self) -> int | None:
+        """Return the next key, None if one may come.
 
         Raises:
-            Fault: No key is left.
+            Fault: No key is left, and none will come.
         """
-        if self._next >= len(self._codes):
-            raise _no_key()
-        return self.poll()
+        if self._codes:
+            return self.poll()
+        if self._live:
+            return None
+        raise _no_key()
 
 
 def _code(key: str) -> int:

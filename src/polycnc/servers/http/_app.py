@@ -1,0 +1,136 @@
+"""The application: REST, stream, page, health and figures, behind the guard."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from prometheus_client import CollectorRegistry, Counter, Gauge, generate_latest
+from starlette.exceptions import HTTPException
+from starlette.responses import FileResponse
+from starlette.types import ASGIApp
+
+from polycnc import __version__
+from polycnc.errors import PolycncError
+from polycnc.servers.http._guard import COOKIE, Guard, TooLargeError
+from polycnc.servers.http._problem import of_error, problem
+from polycnc.servers.http._routes import Api
+from polycnc.servers.machines import Log, ServedMachine
+
+PAGE = Path(__file__).parent / "page"
+FILES = {
+    "": ("index.html", "text/html; charset=utf-8"),
+    "icon.svg": ("icon.svg", "image/svg+xml"),
+    "page.css": ("page.css", "text/css; charset=utf-8"),
+    "page.js": ("page.js", "text/javascript; charset=utf-8"),
+    "path.js": ("path.js", "text/javascript; charset=utf-8"),
+    "texts.js": ("texts.js", "text/javascript; charset=utf-8"),
+}
+_LOGIN = """<!doctype html><html lang="en"><meta charset="utf-8"><title>polycnc</title>
+<form method="post" action="/login"><label>Secret <input type="password" name="token" autofocus></label>
+<button>Log in</button></form></html>"""
+
+
+def make_app(
+    machines: Sequence[ServedMachine],
+    *,
+    token: str | None = None,
+    log: Log | None = None,
+    hosts: Iterable[str] = (),
+) -> ASGIApp:
+    """Return the application that serves these machines."""
+    by_name = {each.name: each for each in machines}
+    log = log or Log()
+    app = FastAPI(
+        title="polycnc", version=__version__, docs_url=None, redoc_url=None, openapi_url="/openapi.json"
+    )
+    app.include_router(Api(by_name, log).router)
+    _add_errors(app, log)
+    _add_figures(app, by_name)
+    guard = Guard(app, hosts=hosts, token=token)
+    _add_login(app, guard)
+
+    @app.get("/{file}", include_in_schema=False)
+    async def page(file: str) -> Response:
+        if file not in FILES:
+            return problem(404, "there is nothing here", "The page is at /.")
+        name, kind = FILES[file]
+        return FileResponse(PAGE / name, media_type=kind)
+
+    app.get("/", include_in_schema=False)(_first_page)
+    return guard
+
+
+async def _first_page() -> Response:
+    return FileResponse(PAGE / FILES[""][0], media_type=FILES[""][1])
+
+
+def _add_errors(app: FastAPI, log: Log) -> None:
+    @app.exception_handler(PolycncError)
+    async def refused(_: Request, error: PolycncError) -> Response:
+        return of_error(error)
+
+    @app.exception_handler(TooLargeError)
+    async def too_large(_: Request, __: TooLargeError) -> Response:
+        return problem(413, "the body is too large", "Send less.")
+
+    @app.exception_handler(RequestValidationError)
+    async def not_valid(_: Request, error: RequestValidationError) -> Response:
+        places = [f"{'.'.join(map(str, each['loc']))}: {each['msg']}"[:200] for each in error.errors()[:20]]
+        return problem(422, "the request cannot be meant", "See /openapi.json.", errors=places)
+
+    @app.exception_handler(HTTPException)
+    async def other(_: Request, error: HTTPException) -> Response:
+        said = problem(error.status_code, str(error.detail), "See /openapi.json.")
+        said.headers.update(error.headers or {})
+        return said
+
+    @app.exception_handler(Exception)
+    async def internal(_: Request, error: Exception) -> Response:
+        log.write("internal error", error=repr(error)[:500])
+        return problem(503, "an internal error", "Please report it; it is in the log.")
+
+
+def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:
+    registry = CollectorRegistry()
+    requests = Counter("polycnc_http_requests", "Requests by status.", ["status"], registry=registry)
+    time_s = Gauge("polycnc_machine_time_seconds", "The time of a machine.", ["machine"], registry=registry)
+
+    @app.middleware("http")
+    async def count(request: Request, call_next):  # type: ignore[no-untyped-def]
+        response = await call_next(request)
+        requests.labels(response.status_code).inc()
+        return response
+
+    @app.get("/health")
+    async def health() -> dict[str, str]:
+        """Return "ok" as long as time passes in all machines."""
+        if any(each.keeper.failed.done() for each in machines.values()):
+            raise HTTPException(503, "a machine has failed")
+        return {"status": "ok"}
+
+    @app.get("/metrics", include_in_schema=False)
+    async def metrics() -> Response:
+        for each in machines.values():
+            time_s.labels(each.name).set(each.served.clock.now_s)
+        return Response(generate_latest(registry), media_type="text/plain; version=0.0.4")
+
+
+def _add_login(app: FastAPI, guard: Guard) -> None:
+    @app.get("/login", include_in_schema=False)
+    async def form() -> Response:
+        return Response(_LOGIN, media_type="text/html; charset=utf-8")
+
+    @app.post("/login", include_in_schema=False)
+    async def login(request: Request) -> Response:
+        from urllib.parse import parse_qs
+
+        body = (await request.body())[:8192].decode("latin-1")
+        shown = parse_qs(body, max_num_fields=4).get("token", [""])[0]
+        if not guard.is_token(shown):
+            return problem(401, "this is not the secret", "Try again.")
+        answer = Response(status_code=303, headers={"location": "/"})
+        answer.set_cookie(COOKIE, shown, httponly=True, samesite="strict")
+        return answer

@@ -1,0 +1,59 @@
+"""Refusals as problem+json (RFC 9457): the control's number, text and hint."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from pydantic import BaseModel, Field
+from starlette.responses import Response
+
+from polycnc.cnc import ControlError, Refusal
+from polycnc.errors import PolycncError
+from polycnc.servers.commands import NUMBERS
+from polycnc.servers.machines import MachineError
+
+_STATUS = {
+    Refusal.NOT_FOUND: 404,
+    Refusal.DATA: 422,
+    Refusal.FULL: 413,
+    Refusal.PROTECTED: 403,
+}
+
+
+class Problem(BaseModel):
+    """What was refused: `number` and `reason` are the control's, 0 and "request" where it was not asked."""
+
+    title: str
+    status: int
+    detail: str
+    hint: str = ""
+    number: int = 0
+    reason: str = "request"
+    errors: list[str] = Field(default_factory=list, description="Places, each a line.")
+
+
+def problem(status: int, detail: str, hint: str = "", **more: Any) -> Response:
+    """Return a refusal."""
+    said = Problem(title=_TITLES.get(status, "refused"), status=status, detail=detail, hint=hint, **more)
+    body = json.dumps(said.model_dump()).encode()
+    return Response(body, status, media_type="application/problem+json")
+
+
+def of_error(error: PolycncError) -> Response:
+    """Return the refusal of a control, 409 where its state is in the way."""
+    if isinstance(error, ControlError):
+        status = _STATUS.get(error.reason, 409)
+        return problem(
+            status, error.what, error.hint, number=NUMBERS[error.reason], reason=error.reason.value
+        )
+    if isinstance(error, MachineError):
+        return problem(503, error.what, error.hint)
+    return problem(422, error.what, error.hint)
+
+
+_TITLES = {
+    401: "unauthorized", 403: "forbidden", 404: "not found", 405: "method not allowed", 409: "the control refuses",
+    413: "too large", 415: "unsupported media type", 421: "misdirected request", 422: "cannot be meant",
+    429: "too many requests", 431: "headers too large", 503: "not available",
+}  # fmt: skip

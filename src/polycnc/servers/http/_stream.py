@@ -1,0 +1,112 @@
+"""The stream: statuses at a rate, parts of the inventory when they change; whoever reads slowly gets the newest."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+from typing import Any
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from polycnc.errors import PolycncError
+from polycnc.servers.commands import carry_out
+from polycnc.servers.http._documents import inventory_parts, status_json
+from polycnc.servers.machines import ServedMachine
+
+LEAST_RATE, MOST_RATE, USUAL_RATE = 0.1, 50.0, 10.0
+DEAD_MAN_S = 0.5
+_MOST_TEXT = 4096
+
+
+def rate_of(text: str | None) -> float:
+    """Return updates for each second, held to what is allowed; a text that is no number is the usual rate."""
+    try:
+        rate = USUAL_RATE if text is None else float(text)
+    except ValueError:
+        rate = USUAL_RATE
+    return min(max(rate, LEAST_RATE), MOST_RATE) if rate == rate else USUAL_RATE
+
+
+class Stream:
+    """One viewer. It may hold jog keys: `{"jog": {"axis": "X", "direction": 1}}`, repeated while the key is held.
+
+    A key that is not repeated for half a second, or whose connection is lost, is released.
+    """
+
+    def __init__(self, socket: WebSocket, machine: ServedMachine, rate: float) -> None:
+        self._socket = socket
+        self._machine = machine
+        self._beat_s = 1.0 / rate
+        self._known: dict[str, int] = {}
+        self._held: dict[str, asyncio.TimerHandle] = {}
+
+    async def run(self) -> None:
+        """Send until the viewer leaves."""
+        await self._socket.accept()
+        reading = asyncio.ensure_future(self._read())
+        try:
+            while not reading.done():
+                text = await self._machine.ask(self._message)
+                await self._socket.send_text(text)  # waits for a slow reader; nothing queues up meanwhile
+                await asyncio.wait([reading], timeout=self._beat_s)
+        except (WebSocketDisconnect, RuntimeError, PolycncError):
+            pass
+        finally:
+            reading.cancel()
+            for axis in tuple(self._held):
+                self._release(axis)
+            with contextlib.suppress(RuntimeError, asyncio.CancelledError, WebSocketDisconnect, PolycncError):
+                await reading
+            with contextlib.suppress(RuntimeError, WebSocketDisconnect):
+                await self._socket.close()
+
+    def _message(self) -> str:
+        status = status_json(self._machine).decode()
+        parts = inventory_parts(self._machine, self._known)
+        return (
+            f'{{"status":{status},"inventory":{json.dumps(parts)},"rate":{self._machine.keeper.pace.rate!r}}}'
+        )
+
+    async def _read(self) -> None:
+        while True:
+            text = await self._socket.receive_text()
+            if len(text) > _MOST_TEXT:
+                return
+            answer = await self._machine.ask(lambda text=text: self._jog(text))  # type: ignore[misc]
+            if answer:
+                await self._socket.send_text(json.dumps(answer))
+
+    def _jog(self, text: str) -> dict[str, Any] | None:
+        try:
+            jog = json.loads(text)["jog"]
+            axis, direction, rapid = jog["axis"], jog.get("direction"), jog.get("rapid", False)
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            return {
+                "refused": {"detail": "not a jog key", "hint": 'Send {"jog": {"axis": "X", "direction": 1}}.'}
+            }
+        if not isinstance(axis, str):
+            return {"refused": {"detail": "an axis is text", "hint": "Name it."}}
+        if not direction:
+            self._release(axis)
+            return None
+        if axis not in self._held:
+            asked = {"command": "jog", "axis": axis, "direction": direction, "rapid": rapid}
+            try:
+                carry_out(self._machine, asked)
+            except PolycncError as error:
+                return {"refused": {"detail": error.what, "hint": error.hint}}
+        else:
+            self._held[axis].cancel()
+        self._held[axis] = asyncio.get_running_loop().call_later(DEAD_MAN_S, self._release, axis)
+        return None
+
+    def _release(self, axis: str) -> None:
+        timer = self._held.pop(axis, None)
+        if timer is not None:
+            timer.cancel()
+            self._machine.keeper.submit(lambda: self._let_go(axis), lambda _: None)
+
+    def _let_go(self, axis: str) -> None:
+        with contextlib.suppress(PolycncError):
+            carry_out(self._machine, {"command": "jog", "axis": axis})

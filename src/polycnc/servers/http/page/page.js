@@ -1,0 +1,267 @@
+// The operator's page: one screen that shows what the stream sends and asks the commands of REST.
+import { TEXTS } from "/texts.js";
+import { Path } from "/path.js";
+
+const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete"];
+const RATE = 20, STALE_MS = 900, AGAIN_MS = 1000, BEAT_MS = 200, MOST_LINES = 2000;
+const $ = (id) => document.getElementById(id);
+const make = (tag, attributes = {}, ...inside) => {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value); else made.setAttribute(name, value);
+  }
+  made.append(...inside);
+  return made;
+};
+const put = (place, text) => { if (place.textContent !== text) place.textContent = text; };
+
+class Axes extends HTMLElement {
+  show(axes) {
+    if (this.names !== Object.keys(axes).join()) this.build(axes);
+    for (const [name, axis] of Object.entries(axes)) {
+      const cells = this.cells[name];
+      for (const key of ["work", "machine", "relative", "to_go"]) put(cells[key], axis[key].toFixed(3));
+      put(cells.error, axis.following_error.toFixed(3));
+      put(cells.load, `${axis.load_percent.toFixed(0)} %`);
+      cells.name.classList.toggle("unreferenced", !axis.referenced);
+    }
+  }
+  build(axes) {
+    this.names = Object.keys(axes).join();
+    this.cells = {};
+    const columns = ["work", "machine", "relative", "to_go", "error", "load"];
+    const optional = (key) => (["relative", "error", "load"].includes(key) ? "optional" : key);
+    const head = make("tr", {}, make("th", {}, TEXTS.axis), ...columns.map((key) => make("th", { class: optional(key) }, TEXTS[key])));
+    const rows = Object.keys(axes).map((name) => {
+      const cells = (this.cells[name] = { name: make("th", { scope: "row" }, name) });
+      for (const key of columns) cells[key] = make("td", { class: optional(key), id: `${name}-${key}` });
+      return make("tr", {}, ...Object.values(cells));
+    });
+    this.replaceChildren(make("table", {}, head, ...rows));
+  }
+}
+customElements.define("cnc-axes", Axes);
+
+const state = { machine: "", status: null, socket: null, seen: 0, lines: "", held: new Map(), stamp: 0 };
+const path = new Path($("path"));
+const url = (rest) => `/api/machines/${encodeURIComponent(state.machine)}/${rest}`;
+
+function say(text) { put($("said"), text); clearTimeout(say.timer); say.timer = setTimeout(() => put($("said"), ""), 6000); }
+
+async function ask(rest, options) {
+  try {
+    const answer = await fetch(url(rest), options);
+    if (!answer.ok) {
+      const problem = await answer.json();
+      say(`${problem.detail}. ${problem.hint}`);
+      return null;
+    }
+    return answer;
+  } catch { say(TEXTS.lost); return null; }
+}
+
+async function command(name, values = {}) {
+  const answer = await ask("commands", { method: "POST", body: JSON.stringify({ command: name, ...values }) });
+  if (answer) show(await answer.json());
+  return Boolean(answer);
+}
+
+// ---------------------------------------------------------------- what is shown
+
+function show(status) {
+  state.status = status;
+  const channel = status.channels?.[0];
+  put($("clock"), `${status.time_s.toFixed(1)} s`);
+  if (!channel) return;
+  put($("mode"), TEXTS.modes[status.mode] ?? status.mode);
+  $("run").dataset.state = channel.run_state;
+  put($("run"), channel.run_state.replaceAll("_", " "));
+  document.querySelector("cnc-axes").show(status.axes);
+  const { X, Y } = status.axes;
+  if (X && Y) path.add(X.machine, Y.machine);
+  const alarms = status.alarms.map((alarm) => `${alarm.number} ${alarm.text}`).join("\n");
+  if ($("alarms").dataset.said !== alarms) {
+    $("alarms").dataset.said = alarms;
+    $("alarms").replaceChildren(...status.alarms.map((alarm) => make("p", {}, alarm.number < 0 ? alarm.text : `${alarm.number} ${alarm.text}`)));
+  }
+  showWords(status, channel);
+  for (const button of document.querySelectorAll("[data-mode]")) button.setAttribute("aria-pressed", button.dataset.mode === status.mode);
+  for (const name of SWITCHES) {
+    const on = status.switches[name];
+    $(name).setAttribute("aria-pressed", Array.isArray(on) ? on.length > 0 : on);
+  }
+  const pressed = status.emergency === "on";
+  $("stop").setAttribute("aria-pressed", pressed);
+  put($("stop"), pressed ? TEXTS.release : TEXTS.stop);
+  for (const key of document.querySelectorAll("[data-jog]")) key.disabled = !["jog", "inc"].includes(status.mode);
+  showLine(channel);
+}
+
+function showWords(status, channel) {
+  const feed = channel.feed, spindle = status.spindle;
+  const figures = [feed.programmed, feed.commanded, feed.actual, spindle.programmed_rpm ?? 0, spindle.commanded_rpm ?? 0, spindle.actual_rpm ?? 0];
+  for (const [index, value] of figures.entries()) put($(`figure${index}`), Number(value).toFixed(0));
+  put($("tool"), `T${channel.tool.number}`);
+  const modal = channel.modal, words = modal ? [...Object.values(modal.g ?? {}), ...(modal.m ?? []).map((code) => `M${code}`)] : [];
+  put($("modal"), words.filter((word) => typeof word === "string").join(" "));
+  for (const name of ["feed", "rapid", "spindle"]) {
+    const slider = $(`override-${name}`), value = Math.round(status.overrides[name] * 100);
+    if (document.activeElement !== slider) slider.value = value;
+    put($(`override-${name}-is`), `${value} %`);
+  }
+}
+
+function showLine(channel) {
+  const block = channel.block;
+  put($("name"), [channel.program ?? TEXTS.no_program, ...channel.stack.slice(1)].join(" › "));
+  if (channel.program !== state.lines) loadLines(channel.program);
+  const line = block && block.program === state.lines ? block.line : 0;
+  const old = $("lines").querySelector("[aria-current]"), now = line ? $("lines").children[line - 1] : null;
+  if (old !== now) {
+    old?.removeAttribute("aria-current");
+    now?.setAttribute("aria-current", "step");
+    if (now) $("lines").scrollTop = now.offsetTop - $("lines").offsetTop - $("lines").clientHeight / 2;
+  }
+}
+
+async function loadLines(name) {
+  state.lines = name;
+  $("lines").replaceChildren();
+  if (!name) return;
+  const answer = await fetch(url(`programs/${encodeURIComponent(name)}`)).catch(() => null);
+  if (!answer?.ok || state.lines !== name) return;
+  const lines = (await answer.text()).split("\n").slice(0, MOST_LINES);
+  $("lines").replaceChildren(...lines.map((line) => make("li", {}, line)));
+}
+
+function showInventory(parts) {
+  if (!parts.programs) return;
+  const chosen = $("names").value;
+  $("names").replaceChildren(...parts.programs.map((entry) => make("option", { value: entry.name }, `${entry.name} ${entry.comment}`)));
+  if (chosen) $("names").value = chosen;
+  state.lines = "";
+}
+
+// ---------------------------------------------------------------- the stream
+
+function connect() {
+  state.socket?.close();
+  const socket = new WebSocket(`${location.protocol === "https:" ? "wss" : "ws"}://${location.host}${url(`stream?rate=${RATE}`)}`);
+  state.socket = socket;
+  socket.onmessage = (event) => {
+    const message = JSON.parse(event.data);
+    if (message.refused) { say(`${message.refused.detail}. ${message.refused.hint}`); return; }
+    state.seen = performance.now();
+    document.body.classList.remove("lost");
+    put($("connection"), TEXTS.connected);
+    show(message.status);
+    showInventory(message.inventory);
+  };
+  socket.onclose = () => { if (state.socket === socket) { releaseAll(); setTimeout(connect, AGAIN_MS); } };
+}
+setInterval(() => {
+  if (performance.now() - state.seen > STALE_MS) {
+    document.body.classList.add("lost");
+    put($("connection"), TEXTS.lost);
+    releaseAll();
+  }
+}, 250);
+
+// ---------------------------------------------------------------- by hand
+
+function send(axis, direction, rapid) {
+  if (state.socket?.readyState === WebSocket.OPEN) state.socket.send(JSON.stringify({ jog: { axis, direction, rapid } }));
+}
+function press(axis, direction) {
+  if (!state.status) return;
+  if (state.status.mode === "inc") {
+    command("increment", { axis, direction, size: Number($("size").value) });
+    return;
+  }
+  if (state.status.mode !== "jog" || state.held.has(axis)) return;
+  const rapid = $("rapidly").getAttribute("aria-pressed") === "true";
+  send(axis, direction, rapid);
+  state.held.set(axis, setInterval(() => send(axis, direction, rapid), BEAT_MS));
+}
+function release(axis) {
+  if (!state.held.has(axis)) return;
+  clearInterval(state.held.get(axis));
+  state.held.delete(axis);
+  send(axis, 0);
+}
+function releaseAll() { for (const axis of [...state.held.keys()]) release(axis); }
+
+const ARROWS = { ArrowRight: ["X", 1], ArrowLeft: ["X", -1], ArrowUp: ["Y", 1], ArrowDown: ["Y", -1], PageUp: ["Z", 1], PageDown: ["Z", -1] };
+const SHORT = { KeyS: "cycle_start", KeyH: "feed_hold", KeyR: "reset", KeyX: "stop" };
+addEventListener("keydown", (event) => {
+  if (event.altKey && SHORT[event.code]) { event.preventDefault(); $(SHORT[event.code]).click(); return; }
+  const key = ARROWS[event.key];
+  if (key && !event.target.matches("input, textarea, select, ol") && ["jog", "inc"].includes(state.status?.mode)) {
+    event.preventDefault();
+    if (!event.repeat) press(...key);
+  }
+});
+addEventListener("keyup", (event) => { if (ARROWS[event.key]) release(ARROWS[event.key][0]); });
+addEventListener("blur", releaseAll);
+document.addEventListener("visibilitychange", () => { if (document.hidden) releaseAll(); });
+
+// ---------------------------------------------------------------- what is there from the beginning
+
+function build(axes) {
+  const button = (id, action) => make("button", { id, onclick: action }, TEXTS[id] ?? id);
+  put($("stop"), TEXTS.stop);
+  $("stop").onclick = () => command("emergency_stop", { on: state.status?.emergency !== "on" });
+  const toggled = (name) => () => {
+    const on = $(name).getAttribute("aria-pressed") !== "true";
+    command("set_switches", { [name]: name === "block_delete" ? (on ? [1] : []) : on });
+  };
+  $("keys").replaceChildren(
+    ...["cycle_start", "feed_hold", "reset"].map((name) => button(name, () => command(name))),
+    ...SWITCHES.map((name) => button(name, toggled(name))),
+    ...Object.entries(TEXTS.modes).map(([mode, text]) => make("button", { "data-mode": mode, onclick: () => command("select_mode", { mode }) }, text)),
+    make("p", { class: "hint" }, TEXTS.keys));
+  const label = (text, ...rest) => make("label", {}, text, ...rest);
+  $("overrides").replaceChildren(...["feed", "rapid", "spindle"].map((name) => label(TEXTS[name],
+    make("input", { type: "range", id: `override-${name}`, min: 0, max: name === "rapid" ? 100 : 200, step: name === "rapid" ? 25 : 5, value: 100,
+      onchange: (event) => command("set_overrides", { [name]: Number(event.target.value) / 100 }) }),
+    make("output", { id: `override-${name}-is` }))));
+  const row = (head, from) => [make("b", {}, head), ...[0, 1, 2].map((k) => make("b", { id: `figure${from + k}` }, "0"))];
+  $("fst").replaceChildren(make("b", { id: "tool" }), make("i", {}, TEXTS.programmed), make("i", {}, TEXTS.commanded), make("i", {}, TEXTS.actual),
+    ...row("F", 0), ...row("S", 3));
+  const mdi = make("input", { class: "mdi", id: "mdi", placeholder: TEXTS.mdi, "aria-label": TEXTS.mdi, list: "history" });
+  const history = make("datalist", { id: "history" });
+  const enter = async () => {
+    if (await command("set_mdi", { text: `${mdi.value}\n` })) { history.prepend(make("option", { value: mdi.value })); command("cycle_start"); }
+  };
+  mdi.addEventListener("keydown", (event) => { if (event.key === "Enter") enter(); });
+  const jogs = axes.flatMap((axis) => [1, -1].map((direction) => make("button", { "data-jog": axis, onpointerdown: () => press(axis, direction),
+    onpointerup: () => release(axis), onpointerleave: () => release(axis), onpointercancel: () => release(axis) }, `${axis}${direction > 0 ? "+" : "−"}`)));
+  const rapidly = make("button", { id: "rapidly", "aria-pressed": "false",
+    onclick: () => rapidly.setAttribute("aria-pressed", rapidly.getAttribute("aria-pressed") !== "true") }, TEXTS.rapidly);
+  const size = make("select", { id: "size", "aria-label": TEXTS.increment }, ...[0.001, 0.01, 0.1, 1, 10].map((value) => make("option", {}, String(value))));
+  $("hand").replaceChildren(mdi, history, button("enter", enter), ...jogs, rapidly, size);
+  const names = make("select", { id: "names", "aria-label": TEXTS.programs }), text = make("textarea", { id: "text", "aria-label": TEXTS.edit, spellcheck: "false" });
+  const name = make("input", { id: "new", placeholder: TEXTS.name, "aria-label": TEXTS.name });
+  const edit = async () => {
+    const answer = names.value && (await ask(`programs/${encodeURIComponent(names.value)}`));
+    if (answer) { text.value = await answer.text(); name.value = names.value; }
+  };
+  const save = () => ask(`programs/${encodeURIComponent(name.value)}`, { method: "PUT", body: text.value });
+  $("store").replaceChildren(names, button("select", () => command("select_program", { program: names.value })), button("edit", edit), name, button("save", save), text);
+  $("path").setAttribute("aria-label", TEXTS.path);
+}
+
+async function begin() {
+  const machines = await (await fetch("/api/machines")).json();
+  $("machine").replaceChildren(...machines.map((each) => make("option", { value: each.name }, each.name)));
+  state.machine = machines[0].name;
+  $("machine").onchange = (event) => { releaseAll(); state.machine = event.target.value; path.clear(); open(); };
+  await open();
+}
+async function open() {
+  const status = await (await fetch(url("status"))).json();
+  build(Object.keys(status.channels ? status.axes : {}));
+  show(status);
+  connect();
+}
+begin();

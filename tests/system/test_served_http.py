@@ -1,0 +1,280 @@
+"""A process with FOCAS and HTTP over real sockets: both doors agree, refuse what is bad, and the page operates it."""
+
+from __future__ import annotations
+
+import json
+import random
+import re
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import Phase, given, settings
+
+from support.browser import browser
+from support.command import COMMAND, environment
+from support.focas_line import Line
+
+httpx = pytest.importorskip("httpx", reason="pip install httpx")
+pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
+
+PROGRAM = "O0012 (SQUARE)\nN10 G90 G1 F1200 X40 S800 M3\nN20 Y30\nM0\nN30 G2 X0 Y0 R30\nN40 X-20\nM30\n"
+AUT = {"mdi": 0, "auto": 1, "edit": 3, "handle": 4, "jog": 5, "inc": 8, "ref": 9}
+
+
+class Served:
+    """A process that serves a control, and a client of each door."""
+
+    def __init__(self) -> None:
+        self.process = subprocess.Popen(
+            [*COMMAND, "serve", "--fanuc", "--doors", "focas=0,http=0"],
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
+        )  # fmt: skip
+        assert self.process.stdout is not None
+        self.focas_port = int(self.process.stdout.readline().rpartition(":")[2])
+        self.url = self.process.stdout.readline().partition(" ")[2].strip()
+        self.http = httpx.Client(base_url=f"{self.url}/api/machines/machine", timeout=60)
+        self.line = Line(self.focas_port)
+
+    def command(self, command: str, **values: Any) -> Any:
+        return self.http.post("/commands", json={"command": command, **values})
+
+    def status(self) -> dict[str, Any]:
+        found: dict[str, Any] = self.http.get("/status").json()
+        return found
+
+    def end(self) -> None:
+        self.line.close()
+        self.http.close()
+        self.process.terminate()
+        _, error = self.process.communicate(timeout=10)
+        assert self.process.returncode == 143
+        assert "Traceback" not in error, error
+
+
+@pytest.fixture(scope="module")
+def served() -> Iterator[Served]:
+    made = Served()
+    yield made
+    made.end()
+
+
+@pytest.fixture(autouse=True)
+def _at_rest(served: Served) -> Iterator[None]:
+    served.http.post("/clock", json={"rate": 0})
+    served.command("emergency_stop", on=False)
+    served.command("reset")
+    served.http.post("/clock", json={"step": 500})
+    yield
+    served.http.post("/clock", json={"rate": 1})
+
+
+def focas_state(line: Line) -> tuple[int, ...]:
+    """Return aut, run, motion, mstb, emergency, alarm."""
+    payload = line.payload(0x19)
+    return tuple(int.from_bytes(payload[at : at + 2], "big") for at in range(0, 14, 2))
+
+
+def test_focas_rest_and_stream_agree_at_random_instants(served: Served) -> None:
+    ws = pytest.importorskip("websockets.sync.client", reason="pip install websockets")
+    chosen = random.Random(20261124)
+    served.command("select_mode", mode="auto")
+    assert served.http.put("/programs/O0012", content=PROGRAM).status_code in (201, 204)
+    first: list[tuple[str, dict[str, Any]]] = [
+        ("select_program", {"program": "O0012"}), ("cycle_start", {}), ("set_overrides", {"feed": 0.5}),
+        ("feed_hold", {}), ("cycle_start", {}), ("emergency_stop", {"on": True}), ("emergency_stop", {"on": False}),
+        ("reset", {}), ("select_mode", {"mode": "mdi"}), ("set_mdi", {"text": "G91 G1 X-5 F900\n"}),
+        ("cycle_start", {}),
+    ]  # fmt: skip
+    actions: list[tuple[str, dict[str, Any]]] = [
+        ("cycle_start", {}), ("cycle_start", {}), ("feed_hold", {}), ("reset", {}), ("emergency_stop", {"on": True}),
+        ("emergency_stop", {"on": False}), ("set_overrides", {"feed": 0.5}), ("set_overrides", {"feed": 1.2}),
+        ("select_mode", {"mode": "auto"}), ("select_mode", {"mode": "jog"}), ("select_mode", {"mode": "mdi"}),
+        ("set_mdi", {"text": "G91 G1 X-5 F900\n"}), ("select_program", {"program": "O0012"}),
+    ]  # fmt: skip
+    seen: set[str] = set()
+    for name, values in [*first, *chosen.choices(actions, k=29)]:
+        answer = served.command(name, **values)
+        assert answer.status_code in (200, 404, 409), answer.text
+        served.http.post("/clock", json={"step": chosen.randint(1, 900)})
+        status = served.status()
+        state = focas_state(served.line)
+        with ws.connect(f"{served.url.replace('http', 'ws')}/api/machines/machine/stream") as stream:
+            assert json.loads(stream.recv())["status"] == status
+        channel = status["channels"][0]
+        seen.add(channel["run_state"])
+        assert state[0] == AUT[status["mode"]]
+        assert (state[1] == 3) is (channel["run_state"] == "active" or channel["returning"])
+        assert (state[4] == 1) is (status["emergency"] == "on"), (state, status["emergency"])
+        positions = served.line.payload(0x26, 4, -1)
+        for at, axis in enumerate(status["axes"].values()):
+            value = int.from_bytes(positions[at * 8 : at * 8 + 4], "big", signed=True)
+            assert value / 1000 == pytest.approx(axis["machine"], abs=0.0011)
+        override = 255 - served.line.payload(0x8001, 12, 12, 0, 0, target=2)[0]
+        assert override == round(100 * status["overrides"]["feed"])
+    assert {"active", "hold"} <= seen, seen
+
+
+BAD_BODIES = [
+    b"", b"\xff\xfe", b"null", b"[]", b"{", b'{"command": "reset", "command": "jog"}', b'{"command": NaN}',
+    b'{"command": "set_overrides", "feed": 1e308}', b'{"command": "set_overrides", "feed": 1e999}', b"[" * 100_000,
+    b'{"command": "cycle_start", "line": 99999999999999999999999999}', b'{"command": "' + b"x" * 5000 + b'"}',
+    b"{" + b" " * (2 << 20) + b"}",
+]  # fmt: skip
+BAD_NAMES = ["../x", "%2e%2e%2fx", "%00", "CON", "x" * 5000, "O12345", "O0000", "%ff", "a%2fb", "O1%0a"]
+
+
+def test_bad_input_is_refused_and_changes_nothing(served: Served) -> None:
+    before = served.status(), served.http.get("/inventory").json()
+    for body in BAD_BODIES:
+        for place in ("/commands", "/clock"):
+            answer = served.http.post(place, content=body)
+            assert 400 <= answer.status_code < 500, (body[:60], answer.status_code)
+            assert answer.headers["content-type"] == "application/problem+json"
+            assert answer.json()["hint"]
+    for name in BAD_NAMES:
+        for method in ("GET", "DELETE", "PUT"):
+            answer = served.http.request(
+                method, f"/programs/{name}", content=b"O1\nM30\n" if method == "PUT" else None
+            )
+            assert 400 <= answer.status_code < 500, (method, name[:20], answer.status_code)
+    with socket.create_connection(("127.0.0.1", int(served.url.rpartition(":")[2])), timeout=60) as line:
+        line.sendall(b"PUT /api/machines/machine/programs/O0099 HTTP/1.1\r\nHost: 127.0.0.1\r\n")
+        line.sendall(b"Content-Length: 200000000\r\n\r\n")
+        assert line.recv(100).startswith(b"HTTP/1.1 413 ")
+    with suppress(httpx.TransportError):  # refused before all of it was sent
+        chunked = served.http.put("/programs/O0099", content=iter([b"x" * (1 << 20)] * 17))
+        assert chunked.status_code == 413
+    for headers in ({"host": "evil.example"}, {"origin": "http://evil.example"}, {"origin": "null"}):
+        assert served.http.get("/status", headers=headers).status_code in (403, 421)
+    assert (served.status(), served.http.get("/inventory").json()) == before
+
+
+def test_two_doors_command_at_once(served: Served) -> None:
+    """What each client set last is what holds; no request fails."""
+    codes: list[int] = []
+
+    def many(client: Any, values: list[float]) -> None:
+        asked = ({"command": "set_overrides", "feed": value} for value in values)
+        codes.extend(client.post("/commands", json=each).status_code for each in asked)
+
+    with httpx.Client(base_url=served.http.base_url, timeout=60) as other:
+        threads = [threading.Thread(target=many, args=(c, [0.5, 0.75] * 20)) for c in (served.http, other)]
+        for thread in threads:
+            thread.start()
+        override = Line(served.focas_port)
+        for _ in range(40):
+            assert 255 - override.payload(0x8001, 12, 12, 0, 0, target=2)[0] in (50, 75, 100, 120)
+        override.close()
+        for thread in threads:
+            thread.join()
+    assert set(codes) == {200}
+    assert served.status()["overrides"]["feed"] == 0.75
+
+
+def test_a_lost_connection_releases_the_jog_key(served: Served) -> None:
+    ws = pytest.importorskip("websockets.sync.client", reason="pip install websockets")
+    served.command("select_mode", mode="jog")
+    with ws.connect(f"{served.url.replace('http', 'ws')}/api/machines/machine/stream?rate=50") as stream:
+        stream.send(json.dumps({"jog": {"axis": "X", "direction": 1}}))
+        served.http.post("/clock", json={"step": 50})
+        while served.status()["axes"]["X"]["manual"] != "jog":
+            stream.recv()
+    for _ in range(200):
+        served.http.post("/clock", json={"step": 100})
+        if served.status()["axes"]["X"]["manual"] == "none":
+            return
+    raise AssertionError("the axis still moves")
+
+
+def test_the_tutorial_shows_what_happens(served: Served, tmp_path: Path) -> None:
+    page = Path(__file__).parents[2] / "docs" / "tutorials" / "a-machine-with-a-page.md"
+    shown = dict(re.findall(r'```\w+ title="([^"]+)"\n(.*?)```', page.read_text("utf-8"), re.DOTALL))
+    script = shown["start_a_program.py"].replace("http://127.0.0.1:8080", served.url).replace("PART", "O0077")
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert done.stdout.replace("O0077", "PART") == shown["prints"]
+
+
+def test_a_taken_port_ends_it_with_its_name(served: Served) -> None:
+    port = served.url.rpartition(":")[2]
+    done = subprocess.run(
+        [*COMMAND, "serve", "--plain", "mill3", "--doors", f"http={port}"],
+        capture_output=True, text=True, env=environment(), timeout=60, check=False,
+    )  # fmt: skip
+    assert done.returncode == 2
+    assert f"http: cannot listen on 127.0.0.1:{port}" in done.stderr
+    assert done.stdout == ""
+
+
+@pytest.mark.parametrize("size", [(1280, 800), (820, 1180), (390, 844)])
+def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, tmp_path: Path) -> None:
+    served.http.post("/clock", json={"rate": 1})
+    served.command("select_mode", mode="auto")
+    wrong: list[str] = []
+    with browser() as running:
+        page = running.new_page(viewport={"width": size[0], "height": size[1]})
+        page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
+        page.on("pageerror", lambda error: wrong.append(str(error)))
+        page.on(
+            "request", lambda asked: None if asked.url.startswith(served.url) else wrong.append(asked.url)
+        )
+        page.goto(served.url)
+        page.wait_for_selector("body:not(.lost)")
+        page.fill("#new", "O0044")
+        page.fill("#text", "O0044\nG91 G1 X2 F60\nM30\n")
+        page.click("#save")
+        page.wait_for_selector("#names option[value=O0044]", state="attached")
+        page.select_option("#names", "O0044")
+        page.click("#select")
+        page.click("#cycle_start")
+        page.wait_for_selector("#lines [aria-current]")
+        page.click("#feed_hold")
+        page.wait_for_selector("#run[data-state=hold]")
+        page.click("#single_block")
+        page.wait_for_selector("#single_block[aria-pressed=true]")
+        page.click("#single_block")
+        assert page.locator("#stop").bounding_box()["y"] < size[1]
+        page.click("#stop")
+        page.wait_for_selector("#alarms p")
+        page.click("#stop")
+        page.wait_for_selector("#stop[aria-pressed=false]")
+        page.click("#reset")
+        page.click("[data-mode=jog]")
+        page.wait_for_selector("[data-mode=jog][aria-pressed=true]")
+        before = page.text_content("#X-machine")
+        page.keyboard.down("ArrowRight")
+        while page.text_content("#X-machine") == before:
+            page.wait_for_timeout(20)
+        page.evaluate("window.dispatchEvent(new Event('blur'))")
+        while served.status()["axes"]["X"]["manual"] != "none":
+            page.wait_for_timeout(20)
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        assert wrong == []
+        page.close()
+
+
+def test_requests_from_the_description_are_never_an_internal_error(served: Served) -> None:
+    schemathesis = pytest.importorskip("schemathesis", reason="pip install schemathesis")
+    schema = schemathesis.openapi.from_url(f"{served.url}/openapi.json")
+    codes: set[int] = set()
+    for operation in (found.ok() for found in schema.get_all_operations()):
+
+        @settings(max_examples=4, deadline=None, database=None, derandomize=True, phases=[Phase.generate])
+        @given(case=operation.as_strategy())
+        def ask(case: Any) -> None:
+            if "machine" in case.path_parameters:
+                case.path_parameters["machine"] = "machine"
+            answer = case.call()
+            assert answer.status_code < 500, (case.method, case.path, answer.text)
+            codes.add(answer.status_code)
+
+        ask()
+    assert {200, 404, 422} <= codes

@@ -1,0 +1,282 @@
+"""MCODS on a living control, in states in which data are not what they are at power-up (Manual 003, 4.14.2).
+
+What moves is compared with the axes of the control's status, what stands with numbers worked out by hand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+
+from polycnc.controllers.bosch import Pnc
+from polycnc.controllers.bosch.ncs import DATA_SERVICES, Coupling, Mode
+from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Field
+
+AXIS = '[[axis]]\nname = "{}"\nvmax_mm_s = {}\namax_mm_s2 = 5000\n'
+ROTARY = '[[axis]]\nname = "C"\nkind = "rotary"\nvmax_deg_s = 90\namax_deg_s2 = 400\n'
+MACHINE = (
+    'name = "six"\n' + AXIS.format("X", 500) + AXIS.format("Z", 400) + ROTARY + AXIS.format("X2", 300)
+    + AXIS.format("U", 200) + "[spindle]\nmax_rpm = 4000\n[tools.3]\nlength_mm = 42.5\nradius_mm = 6.25\n"
+)  # fmt: skip
+PROGRAM = """1 FXC("X",55,1)=4 : FXC("X",154,1)=1.5 : FXC("Z",254,1)=-0.5
+N1 G55
+N2 G154
+N3 G254
+N4 H3
+N5 S1500 M4
+N6 (MSG,TOOL 7 IS WORN)
+N7 G92 Z-2
+N8 G1 X100 Z50 C20 F6000
+N9 X0
+"""
+ZERO = "\0"
+
+
+class Six:
+    """X, Z and C in channel 1, X2 in channel 2, U in none; numbers 3 and 6 are no axes."""
+
+    def __init__(self, folder: Path, *, servo: bool = False) -> None:
+        self.folder = folder
+        (folder / "six.toml").write_text(MACHINE)
+        shares = [("X", "Z", "C"), ("X2", "U")]
+        self.pnc = Pnc(folder, folder / "six.toml", channels=shares, numbers=(1, 2, 4, 5, 7), servo=servo)
+        self.pnc.transfer_axis("U", None)
+        self.coupling = Coupling(self.pnc.ncs, None, 1)
+        self.version = Box("V", "R", 0.0)
+
+    def start(self, program: str = PROGRAM, cycles: int = 700, channel: int = 1) -> None:
+        (self.folder / f"main{channel}").write_text(program)
+        self.pnc.select_program(f"main{channel}", channel=channel)
+        self.pnc.cycle_start(channel=channel)
+        self.pnc.advance(cycles)
+        assert not self.pnc.status().alarms
+
+    def ask(self, number: int, channel: int, size: int, *extra: int) -> Any:
+        """Return what a service writes: a text, a list of elements, or the code that it answers."""
+        kind = DATA_SERVICES[number].kind
+        buffer = CharacterField(size) if kind == "S" else Field("R" if kind == "X" else kind, (size,))
+        answer = self.coupling.mcods(number, channel, self.version, buffer, size, *extra)
+        if answer != 0:
+            return answer
+        if isinstance(buffer, CharacterField):
+            return buffer.text
+        return [buffer.get(index) for index in range(1, size + 1)]
+
+    def read(self, number: int, channel: int = 1, size: int = 1, *extra: int) -> Any:
+        self.version.value = 0.0
+        return self.ask(number, channel, size, *extra)
+
+
+class Case(NamedTuple):
+    number: int
+    channel: int
+    size: int
+    expected: Any
+    rows: tuple[str, ...] = ()
+    extra: tuple[int, ...] = ()
+
+
+def moving(*names: str, plus: dict[str, float] | None = None) -> Callable[[Six], list[float]]:
+    """Return where axes are, with what is added to each."""
+    return lambda six: [six.pnc.axes[name].setpoint + (plus or {}).get(name, 0.0) for name in names]
+
+
+def padded(*names: str) -> str:
+    return "".join(f"{name:<8}{ZERO}" if name else ZERO * 9 for name in names)
+
+
+ALL = ("X", "Z", "C", "X2", "U")
+PHYSICAL = padded("X", "Z", "", "C", "X2", "", "U")
+# G92 Z-2 stands where Z shows -42: 0.5 by the shift, -42.5 by the length
+SHIFTS = {"X": -5.5, "Z": 0.5}  # of the groups; G92 and the length are no zero shifts
+NO = -2147483648
+MOVING = [
+    Case(1, -1, 5, moving(*ALL, plus={"Z": 40.0}), ("refresh.Z",)),
+    Case(3, 1, 3, [6000.0, 6000.0, 6000.0], ("3.elem.1", "3.elem.2", "3.elem.3")),
+    Case(5, -1, 2, [1500.0, 0.0]),
+    Case(6, -1, 5, [0, 0, 0, 1, 1], ("6.val.0", "6.val.1")),
+    Case(9, 1, 1, [3], ("refresh.S",)),
+    Case(10, 1, 1, [42.5]),
+    Case(13, 1, 90, "K4"),
+    Case(14, 1, 90, "V1"),
+    Case(15, 1, 9, [4.0, 0.0, 0.0, 1.5, 0.0, 0.0, 0.0, -0.5, 0.0]),
+    Case(18, 1, 1, [1], ("18.val.1",)),
+    Case(19, -1, 2, [4000.0, 0.0]),
+    Case(24, 1, 1, [6000.0]),
+    Case(25, -1, 2, [1500.0, 0.0]),
+    Case(27, -1, 5, [30000.0, 24000.0, 15.0, 18000.0, 12000.0]),
+    Case(28, 1, 90, "TOOL 7 IS WORN"),
+    Case(30, 1, 90, "main1"),
+    Case(31, 1, 1, [5], ("31.val.5", "refresh.E")),
+    Case(32, 1, 2, [3, 1], ("32.elem.1", "32.elem.2", "32.sav.3", "32.ipo.1")),
+    Case(33, -1, 90, PHYSICAL),
+    Case(33, 1, 90, padded("X", "Z", "C")),
+    Case(35, -1, 5, moving(*ALL)),
+    Case(36, -1, 2, [1500.0, 0.0]),
+    Case(37, -1, 5, moving(*ALL, plus=SHIFTS)),
+    Case(43, -1, 8, [1, 1, -3, 1, 2, -3, -1, -3], ("43.val.n", "43.val.-1", "43.val.-3")),
+    Case(44, -1, 3, [2, 5, 2], ("44.elem.1", "44.elem.2", "44.elem.3", "refresh.R")),
+    Case(45, -1, 2, [5, 5], ("45.elem.1", "45.elem.2")),
+    Case(47, -1, 7, [1, 1, 0, 1, 0, 0, 0], ("47.val.0", "47.val.1")),
+    Case(47, 1, 4, [1, 1, 1, 0]),
+    Case(48, -1, 7, [5, 5, 0, 5, 5, 0, 0]),
+    Case(53, -1, 8, [1, 1, 3, 2, 1, 3, 1, 3], ("53.val.1", "53.val.2", "53.val.3")),
+    Case(58, -1, 8, [1, 1, -3, 1, 2, -3, 2, -3], ("58.val.n",)),
+    Case(59, 2, 90, padded("X2")),
+    Case(60, 1, 90, padded("X", "Z", "C")),
+    Case(61, -1, 8, [1, 1, 3, 2, 1, 3, 1, 3], ("61.val.1", "61.val.2", "61.val.3")),
+    Case(63, -1, 2, [3, 0], ("63.val.3", "63.val.0")),
+    Case(71, 1, 3, moving("X", "Z", "C", plus={"X": -5.5, "Z": 0.5 - 42.5})),
+    Case(73, 1, 3, moving("X", "Z", "C", plus=SHIFTS)),
+    Case(74, -1, 5, moving(*ALL)),
+    Case(74, 2, 1, moving("X2")),
+    Case(78, 1, 90, padded("X", "Z", "C")),
+    Case(79, 1, 3, [0, 0, 0]),
+    Case(80, 1, 3, [1, 1, 1]),
+    Case(81, 1, 4, [1, 1, 2, 3], ("81.val.1", "81.val.2", "81.val.3")),
+    Case(82, 1, 3, [3, 3, 3], ("82.elem.1", "82.elem.2", "82.elem.3")),
+]  # fmt: skip
+
+
+def marked(case: Case) -> Any:
+    rows = (str(case.number), *case.rows)
+    marks = pytest.mark.covers(*(f"cpl.MCODS.{row}" for row in rows))
+    return pytest.param(case, marks=marks, id=f"{case.number} of {case.channel}")
+
+
+@pytest.fixture(scope="module")
+def six(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Six]:
+    """Return a control in the middle of N8."""
+    made = Six(tmp_path_factory.mktemp("six"))
+    made.start()
+    yield made
+    made.pnc.close()
+
+
+@pytest.fixture
+def fresh(tmp_path: Path) -> Iterator[Six]:
+    made = Six(tmp_path)
+    yield made
+    made.pnc.close()
+
+
+@pytest.mark.parametrize("case", [marked(case) for case in MOVING])
+def test_data_of_a_control_in_motion(six: Six, case: Case) -> None:
+    expected = case.expected(six) if callable(case.expected) else case.expected
+    found = six.read(case.number, case.channel, case.size, *case.extra)
+    assert found == (expected if isinstance(expected, str) else pytest.approx(expected, abs=1e-4))
+
+
+@pytest.mark.covers(
+    "cpl.MCODS.2", "cpl.MCODS.62", "cpl.MCODS.62.val.-2147483648", "cpl.MCODS.83", "cpl.MCODS.76"
+)
+def test_whole_numbers_ends_and_what_is_left(six: Six) -> None:
+    x, c = six.pnc.axes["X"], six.pnc.axes["C"]
+    assert six.read(2, -1, 1) == [round(x.setpoint * 10_000)]
+    assert six.read(62, -1, 4, 1, 51) == [round(x.actual * 10_000), six.read(62, -1, 2, 1, 51)[1], NO,
+                                          round(c.actual * 10_000)]  # fmt: skip
+    assert six.read(62, -1, 1, 1, 53) == [NO]
+    end = six.read(76, 1, 3)
+    assert (end[0], end[2]) == (pytest.approx(100), pytest.approx(20))
+    left = six.read(83, 1, 3)
+    assert left[0] == pytest.approx(105.5 - x.setpoint, abs=1e-4)
+    assert left[2] == pytest.approx(20 - c.setpoint, abs=1e-4)
+    ends = six.read(77, 1, 1), six.read(16, -1, 1), six.read(23, -1, 1)
+    assert ends == ([pytest.approx(105.5)], [pytest.approx(105.5)], [pytest.approx(100)])
+
+
+@pytest.mark.covers("cpl.MCODS.34", "cpl.MCODS.42", "cpl.ncs.102", "cpl.ncs.1", "cpl.ncs.24", "cpl.ncs.18")
+def test_what_the_control_does_not_have_is_refused(six: Six) -> None:
+    assert [six.read(34, -1), six.read(42, 1, 1, 7), six.read(31, 3), six.read(55, -1, 40, 3)] == [
+        102,
+        102,
+        1,
+        24,
+    ]
+    assert (six.read(42, 1, 1), six.read(55, -1, 40, 1), six.read(56, -1, 40, 0)) == (
+        18,
+        "polycnc",
+        "simulated",
+    )
+
+
+@pytest.mark.parametrize(("number", "extra"), [(number, ()) for number in (1, 3, 35, 37, 47, 71, 74, 83)])
+@pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh.Z")
+def test_cyclic_data_are_new_in_the_next_cycle(fresh: Six, number: int, extra: tuple[int, ...]) -> None:
+    fresh.start()
+    channel = -1 if DATA_SERVICES[number].scope == "system" else 1
+    first = fresh.read(number, channel, 2, *extra)
+    assert fresh.ask(number, channel, 2, *extra) is BLOCKED
+    fresh.pnc.advance(1)
+    assert fresh.ask(number, channel, 2, *extra) != BLOCKED
+    assert first
+
+
+class Change(NamedTuple):
+    """What an operator or a program does, and the data before and after."""
+
+    number: int
+    channel: int
+    size: int
+    before: Any
+    change: Callable[[Six], object]
+    after: Any
+    rows: tuple[str, ...] = ()
+
+
+def run(program: str, cycles: int = 5, channel: int = 1) -> Callable[[Six], object]:
+    return lambda six: six.start(program, cycles, channel)
+
+
+def mode(which: Mode) -> Callable[[Six], object]:
+    return lambda six: six.pnc.select_mode(which, channel=1)
+
+
+CHANGES = [
+    Change(7, 1, 1, [10000.0], lambda six: six.pnc.control.set_overrides(feed=0.825, channel=0), [8250.0]),
+    Change(8, -1, 1, [10000.0], lambda six: six.pnc.control.set_overrides(spindle=0.9), [9000.0]),
+    Change(11, 1, 1, [-1], run("N1 G18 G41 D3 G1 X5 F60000\nN2 X9 F60\n"), [3], ("11.val.-1",)),
+    Change(12, 1, 1, [0.0], run("N1 G18 G41 D3 G1 X5 F60000\nN2 X9 F60\n"), [6.25]),
+    Change(18, 1, 1, [1], run("N1 G70\nN2 G1 X9 F60\n"), [0], ("18.val.0",)),
+    Change(29, -1, 1, [0], lambda six: six.pnc.control.set_switches(machine_lock=True), [1], ("29.val.0", "29.val.1")),
+    Change(39, 1, 1, [0], run("N1 G4 F5\n"), [1], ("39.val.0", "39.val.1")),
+    Change(46, 1, 3, [1, 1, 0], run("1 E%=MCOPS(8,1,2,3)\n"), [2, 3, 0],
+           ("46.elem.1", "46.elem.2", "46.elem.3")),
+    Change(53, 1, 2, [1, 1], run("N1 G70\nN2 G1 X9 F60\n"), [0, 0], ("53.val.0",)),
+    Change(63, -1, 1, [5], run("N1 S300 M3\nN2 G1 X9 F60\n"), [1], ("63.val.5", "63.val.1")),
+    Change(68, 1, 2, [0, 0], lambda six: six.pnc.control.set_switches(block_delete=frozenset({1})), [1, 1],
+           ("68.elem.1", "68.elem.2")),
+    Change(69, 1, 2, [0, 0], lambda six: six.pnc.control.set_switches(optional_stop=True), [1, 1],
+           ("69.elem.1", "69.elem.2")),
+    Change(81, 1, 2, [1, 1], run("N1 G70\nN2 G1 X9 F60\n"), [0, 0], ("81.val.0",)),
+    Change(87, 1, 1, [0], run("N1 G4 F5\n"), [1], ("87.bit.0",)),
+    Change(87, 1, 1, [0], run("N1 G1 X1 F60000\nN2 M0\nN3 X2\n", 500), [16], ("87.bit.4",)),
+    Change(87, 1, 1, [0], lambda six: six.pnc.control.set_overrides(feed=0.0, channel=0), [8], ("87.bit.3",)),
+    Change(87, 1, 1, [0], run("1 WAIT(,5000)\n", 5), [4096], ("87.bit.12",)),
+    *(Change(31, 1, 1, [5], mode(which), [int(which)], (f"31.val.{int(which)}",))
+      for which in (Mode.JOG, Mode.REFERENCE, Mode.MDI, Mode.PROGRAM_BLOCK, Mode.SINGLE_STEP, Mode.SINGLE_BLOCK,
+                    Mode.DEBUG_BLOCK, Mode.DEBUG_AUTOMATIC)),
+    Change(48, 1, 1, [5], mode(Mode.JOG), [1]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(
+            case,
+            marks=pytest.mark.covers(f"cpl.MCODS.{case.number}", *(f"cpl.MCODS.{row}" for row in case.rows)),
+            id=f"{case.number} becomes {case.after}",
+        )
+        for case in CHANGES
+    ],
+)
+def test_a_change_is_seen_by_who_asks_and_ends_the_wait_of_who_asked(fresh: Six, case: Change) -> None:
+    fresh.start("N1 G71 G0 X0\n", 20)
+    assert fresh.read(case.number, case.channel, case.size) == case.before
+    case.change(fresh)
+    fresh.pnc.advance(1)
+    assert fresh.ask(case.number, case.channel, case.size) == pytest.approx(case.after)
