@@ -51,9 +51,9 @@ def loaded(*arguments: str) -> set[str]:
 @pytest.mark.parametrize(
     ("arguments", "spared"),
     [
-        (("run", "examples/bracket.nc", "--machine", "vmc3"), NO_RUN),
-        (("run", "examples/bracket.nc", "--machine", "vmc3", "--json"), NO_RUN),
-        (("check", "examples/bracket.nc"), NO_RUN),
+        (("run", "examples/bracket.nc", "--dialect", "din", "--machine", "vmc3"), NO_RUN),
+        (("run", "examples/bracket.nc", "--dialect", "din", "--machine", "vmc3", "--json"), NO_RUN),
+        (("check", "examples/bracket.nc", "--dialect", "din"), NO_RUN),
         (("--help",), NO_HELP),
         (("run", "--help"), NO_RUN),
     ],
