@@ -244,5 +244,6 @@ class Preparation:
         if not self._errors.collects:
             self._calls.failed()
             return
-        tag = self._interpreter.last_tag
-        self._prepared.writer.put(Wait(0.0, self._reader.line, stop=Stop.REFUSED, tag=tag))
+        line = self._reader.line if error.position is None else error.position.line
+        tag = self._interpreter.tag_of(line)
+        self._prepared.writer.put(Wait(0.0, line, stop=Stop.REFUSED, tag=tag))
