@@ -25,6 +25,9 @@ _TILTED = 1e-6
 _FLAT_MM = 1e-7
 _LARGE_TURN_DEG = 90.0
 _OFF_PLANE_MM = 1e-3
+_FEED_OF_AXES = (
+    "the feed of moves that turn the tool axis is that of the machine's axes, not of the tip (inverse_time)"
+)
 
 
 class Motion:
@@ -337,11 +340,7 @@ class Motion:
             return plain
         if not five_axis.inverse_time:
             if five_axis.output == "machine":
-                self._output.remark(
-                    line,
-                    "the feed of moves that turn the tool axis is that of the machine's axes, not of the tip: see "
-                    "inverse_time",
-                )
+                self._output.remark(line, _FEED_OF_AXES)
             return plain
         assert self.feed is not None
         if self.per_revolution:
