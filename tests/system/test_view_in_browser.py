@@ -277,7 +277,7 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
     field = (
         "() => { const { body } = document.getElementById('stage').seen; return [body.step, ...body.shown]; }"
     )
-    seen: dict[float, list[object]] = {}
+    seen: dict[float, np.ndarray[Any, Any]] = {}
     for share in (0.3, 0.7, 1.0, 0.7, 0.3):
         view.page.evaluate(
             "s => { const e = document.getElementById('slider'); e.value = s * e.max; e.oninput(); }", share

@@ -107,7 +107,7 @@ def zigzag(machine: MachineConfig, tolerance_mm: float) -> tuple[polycnc.RunResu
     points = np.round(np.cumsum(steps * rng.uniform(0.1, 3.0, (120, 1)), axis=0), 4)
     blocks = [f"G1 X{x:.4f} Y{y:.4f} Z{z:.4f}" for x, y, z in points]
     text = "\n".join([f"G21 G90 G64 P{tolerance_mm}", "F6000", *blocks, "M30"])
-    result = polycnc.run(text, machine, trace=True)
+    result = polycnc.run(text, machine, dialect="din", trace=True)
     return result, np.concatenate([np.zeros((1, 3)), points])
 
 

@@ -432,11 +432,14 @@ def test_a_manual_speed_of_nothing_is_refused(name: str) -> None:
 
 
 def test_times_of_tools_as_they_come_and_go() -> None:
-    times = ToolTimes().changed(0, ToolTime(1.0, 2.0))
+    times = ToolTimes()
+    times.change(0, ToolTime(1.0, 2.0))
     assert times == ToolTimes()
-    times = times.changed(7, ToolTime(0.0, 1.5)).changed(4, ToolTime(6.0, 2.0)).changed(7, ToolTime(6.0, 2.0))
+    for tool, now in ((7, ToolTime(0.0, 1.5)), (4, ToolTime(6.0, 2.0)), (7, ToolTime(6.0, 2.0))):
+        times.change(tool, now)
     assert times.until(ToolTime(9.0, 2.25)) == {0: ToolTime(0.0, 1.5), 7: ToolTime(9.0, 0.75)}
-    assert list(times.changed(3, ToolTime(9.0, 2.25)).until(ToolTime(9.0, 5.25))) == [0, 3, 7]
+    times.change(3, ToolTime(9.0, 2.25))
+    assert list(times.until(ToolTime(9.0, 5.25))) == [0, 3, 7]
 
 
 def test_how_an_axis_searches_its_reference_point() -> None:

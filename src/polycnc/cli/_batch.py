@@ -44,15 +44,10 @@ def batch_command(
             "--jobs and --cluster", hint="A cluster has as many workers as it has; leave --jobs out."
         )
     swept = _swept(sweep or ())
-    given = [Path(each) for each in (machine, dialect) if each is not None]
-    asked = output is not None or done is not None
-    inputs = [*batches.find_programs(paths, pattern or ()), *given] if asked else given
-    if output is not None:
-        batches.check_batch_file(output, inputs)
-        if done is not None and done.resolve() == output.resolve():
-            raise UsageError(f"{done} for the report and for what is done", hint="Name two files.")
-        done = done or output.with_name(output.name + ".done")
-    keep_inputs(done, inputs, "what is done")
+    inputs = [Path(each) for each in (machine, dialect) if each is not None]
+    if output is not None or done is not None:
+        inputs += batches.find_programs(paths, pattern or ())
+    done = _done_beside(output, done, inputs)
     if again and done is not None:
         batches.forget_done(done)
     with ExitStack() as stack:
@@ -82,6 +77,23 @@ def batch_command(
         )
         status = _finish(result, output, as_json=as_json)
     sys.exit(status)
+
+
+def _done_beside(output: Path | None, done: Path | None, inputs: list[Path]) -> Path | None:
+    """Return the file of what is done, which lies beside the report if none is named.
+
+    Raises:
+        UsageError: the report or that file cannot be written, or they are one file or one of the inputs.
+    """
+    from polycnc.runner import batches
+
+    if output is not None:
+        batches.check_batch_file(output, inputs)
+        if done is not None and done.resolve() == output.resolve():
+            raise UsageError(f"{done} for the report and for what is done", hint="Name two files.")
+        done = done or output.with_name(output.name + ".done")
+    keep_inputs(done, inputs, "what is done")
+    return done
 
 
 def _swept(sweeps: Iterable[str]) -> dict[str, tuple[float | str, ...]]:

@@ -123,6 +123,7 @@ class ProgramRun:
                 answers=self._options.answers,
                 marks=self._options.stands_at_stops,
                 collect_errors=self._options.collect_errors,
+                mark_refused=self._options.mark_refused,
             ),
             before=before,
             keeps_modal=keeps_modal,

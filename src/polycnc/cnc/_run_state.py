@@ -48,6 +48,7 @@ class RunOptions:
     dry_run_mm_s: float = 0.0
     most_feed_override: float = 2.0
     collect_errors: bool = False
+    mark_refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)

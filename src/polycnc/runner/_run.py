@@ -183,6 +183,7 @@ def run_program(
         block_delete=settings.skip_levels,
         stands_at_stops=settings.stop_at_m0,
         collect_errors=settings.past_errors,
+        mark_refused=settings.past_errors,
     )
     execution = run_under(
         control,
@@ -196,10 +197,7 @@ def run_program(
         on_event=lambda event: log.note(event, execution),
     )
     stuck = chosen.problem or _to_end(execution, control, settings, record)
-    if (empty := empty_remark(text)) is not None:
-        execution.channel.messages.note(empty.text, 0)
-    if remark := times_remark(config, dialect, [event.word for _, event in log.found]):
-        execution.channel.messages.note(remark, 0)
+    _remark(execution, text, times_remark(config, dialect, [event.word for _, event in log.found]))
     result = replace(
         _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
     )
@@ -212,6 +210,15 @@ def run_program(
     if check:
         result.raise_for_alarms()
     return result
+
+
+def _remark(execution: ProgramRun, text: ProgramText, times: str | None) -> None:
+    """Note what is to be said of the whole program: that it is empty, and of times that the machine does not name."""
+    messages = execution.channel.messages
+    if (empty := empty_remark(text)) is not None:
+        messages.note(empty.text, 0)
+    if times:
+        messages.note(times, 0)
 
 
 def _to_end(

@@ -260,6 +260,10 @@ class Interpreter:
         """The reference of the last block that was executed."""
         return self._last_tag
 
+    def tag_of(self, line: int) -> int:
+        """Return the tag of a block that was refused, with the modal state before it."""
+        return self._reference(line, self.state.snapshot())
+
     def mark(self, line: int) -> None:
         """Note a block that does nothing on the path, to be stepped to."""
         if self._queue.marks is not None:

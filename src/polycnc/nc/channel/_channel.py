@@ -101,7 +101,7 @@ class Channel:
             self.interpreter,
             errors,
             Turns(machine.clock),
-            ordinary_blocks=options.ordinary_blocks,
+            options=options,
             end_returns=dialect.sub_program.end_returns,
         )
         if attaches:

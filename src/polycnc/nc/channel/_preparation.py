@@ -8,6 +8,7 @@ from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._outcomes import Control
 from polycnc.nc.channel._calls import Calls
 from polycnc.nc.channel._errors import Errors
+from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.channel._prepared import Prepared
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._search import Search
@@ -47,7 +48,7 @@ class Preparation:
         errors: Errors,
         turns: Turns,
         *,
-        ordinary_blocks: float,
+        options: ChannelOptions,
         end_returns: bool,
     ) -> None:
         self._reader = reader
@@ -56,7 +57,7 @@ class Preparation:
         self._search = search
         self._interpreter = interpreter
         self._errors = errors
-        self._ordinary_blocks = ordinary_blocks
+        self._options = options
         self._end_returns = end_returns
         self.begun = False
         self.ended = False
@@ -81,7 +82,7 @@ class Preparation:
                     return
                 continue
             reason, first, tail = NOT_PLAIN, reader.blocks, prepared.row["tail"]
-            if compiled and reader.blocks >= self._ordinary_blocks and prepared.is_plain:
+            if compiled and reader.blocks >= self._options.ordinary_blocks and prepared.is_plain:
                 reason = reader.take_plain(self._calls.running, self._calls.stack, most, prepared)
             if reason == QUEUE_FULL:
                 return
@@ -244,5 +245,8 @@ class Preparation:
         if not self._errors.collects:
             self._calls.failed()
             return
-        tag = self._interpreter.last_tag
-        self._prepared.writer.put(Wait(0.0, self._reader.line, stop=Stop.REFUSED, tag=tag))
+        if not self._options.mark_refused:
+            return
+        line = self._reader.line if error.position is None else error.position.line
+        tag = self._interpreter.tag_of(line)
+        self._prepared.writer.put(Wait(0.0, line, stop=Stop.REFUSED, tag=tag))

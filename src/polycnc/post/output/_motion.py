@@ -25,6 +25,13 @@ _TILTED = 1e-6
 _FLAT_MM = 1e-7
 _LARGE_TURN_DEG = 90.0
 _OFF_PLANE_MM = 1e-3
+_FEED_OF_AXES = (
+    "the feed of moves that turn the tool axis is that of the machine's axes, not of the tip (inverse_time)"
+)
+_NO_FEED_MODE = (
+    "a feed per revolution, and no macro of the control file says so to the control",
+    "Let the CAM system write feeds per minute, or ask for FEEDMODE in its macros if the control has G95.",
+)
 
 
 class Motion:
@@ -337,19 +344,12 @@ class Motion:
             return plain
         if not five_axis.inverse_time:
             if five_axis.output == "machine":
-                self._output.remark(
-                    line,
-                    "the feed of moves that turn the tool axis is that of the machine's axes, not of the tip: see "
-                    "inverse_time",
-                )
+                self._output.remark(line, _FEED_OF_AXES)
             return plain
         assert self.feed is not None
         if self.per_revolution:
-            raise self._output.fail(
-                line,
-                "a feed per revolution with inverse time",
-                "Let the CAM system write feeds per minute where the tool axis turns.",
-            )
+            hint = "Let the CAM system write feeds per minute where the tool axis turns."
+            raise self._output.fail(line, "a feed per revolution with inverse time", hint)
         minutes = way / self.feed if way > _FLAT_MM else turn / five_axis.turning_deg_min
         return 1.0 / minutes, 93.0
 
@@ -378,11 +378,7 @@ class Motion:
         if self.feed is None:
             raise self._output.fail(line, "a feed move without a feed", "Write FEDRAT before it.")
         if self.per_revolution and not self._has_feed_mode:
-            raise self._output.fail(
-                line,
-                "a feed per revolution, and no macro of the control file says so to the control",
-                "Let the CAM system write feeds per minute, or ask for FEEDMODE in its macros if the control has G95.",
-            )
+            raise self._output.fail(line, *_NO_FEED_MODE)
         return self.feed * self._scale, 95.0 if self.per_revolution else 94.0
 
     def circle(self, act: Turn) -> None:

@@ -164,6 +164,9 @@ def _start(machine: ServedMachine, path: Path) -> None:
         assert machine.programs is not None
         machine.programs.put(name, text)
         machine.own["select_program"](program=name, channel=0)
+    elif machine.kind == "plain" and machine.programs is not None:
+        machine.programs.put(path.name, content)
+        control.select_program(path.name)
     else:
         control.select_program(ProgramText(path.name, content))
     again = machine.served.again
