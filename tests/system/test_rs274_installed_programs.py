@@ -55,7 +55,7 @@ REFUSED: dict[str, str] = {
     "spiral": "'@' may not stand in a block",
     "nestedcall": "'u' is no function",  # an O-word `callsub`, which rs274 refuses too
     "offsets": "'Q' has no meaning in this block",
-    "roparams": "#<_line> has no value",
+    "roparams": "#<_tool_offset> has no value",
     "skeleton": "a dwell (G4) and a move in one block",
 }
 """Programs that polycnc refuses, with what its error says."""
@@ -118,3 +118,19 @@ def test_an_installed_program_has_the_same_end_points(name: str, tmp_path: Path)
     for number, (own, other) in enumerate(zip(here, there, strict=False)):
         assert math.dist(own, other) <= TOLERANCE_MM, f"end point {number}: {own}, in rs274 {other}"
     assert len(here) == len(there) or (not done and here)
+
+
+def test_the_number_of_a_line_is_that_of_rs274(tmp_path: Path) -> None:
+    program = (
+        "\nG0 X#<_line>\nO<a> SUB\nG0 Z[#<_line>+1]\nO<a> ENDSUB\nO<a> CALL\n"
+        "O1 REPEAT [2]\nG91 G0 Y#<_line>\nO1 ENDREPEAT\nM2\n"
+    )
+    file = tmp_path / "lines.ngc"
+    (tmp_path / "tools.tbl").write_text(tool_table(), encoding="ascii")
+    file.write_text(program, encoding="ascii")
+    ours, error, done = prepare(file)
+    assert error is None
+    assert done
+    theirs = rs274.canonical_steps(rs274.interpret(program, tmp_path), 6, scale=1)
+    assert end_points(ours) == end_points(theirs)
+    assert end_points(ours)[-1][:3] == (2.0, 16.0, 5.0)
