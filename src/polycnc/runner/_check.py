@@ -110,7 +110,7 @@ def _inspected(
             return CheckReport(errors, [])
         return CheckReport(*rehearsed(text, simulated.config, chosen, settings.root_of(program)))
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = run_under(control, simulated, text, chosen, options)
+    execution = run_under(control, simulated, text, chosen, options, root=settings.root_of(program))
     watch = MachiningWatch(execution.channel)
     execution.channel.on_filled = watch.look
     run_to_end(execution, every_cycle=False)

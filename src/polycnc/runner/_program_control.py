@@ -95,6 +95,7 @@ def run_under(
     dialect: Dialect,
     options: RunOptions,
     *,
+    root: Path | None = None,
     rows: RowsWithTags | None = None,
     on_event: OnEvent | None = None,
 ) -> ProgramRun:
@@ -103,7 +104,9 @@ def run_under(
         machine,
         program,
         dialect,
-        language=language_for(dialect) if control is None else control.language,
+        language=language_for(dialect, () if root is None else (root,))
+        if control is None
+        else control.language,
         config=None if control is None else control.config,
         options=options,
         rows=rows,

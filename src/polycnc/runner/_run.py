@@ -191,6 +191,7 @@ def run_program(
         text,
         dialect,
         options,
+        root=settings.root_of(program),
         rows=(lambda piece, tags: record.take(piece, tags, execution.channel.records))
         if record.is_wanted
         else None,

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.sources._block_source import Language
 
 
-def language_for(dialect: Dialect) -> Language | None:
-    """Return the language of a dialect for one run, None if it has none that needs no control."""
+def language_for(dialect: Dialect, folders: tuple[Path, ...] = ()) -> Language | None:
+    """Return the language of a dialect for one run, None if it has none that needs no control.
+
+    Sub-programs in files of their own are also looked for in `folders`.
+    """
     match dialect.language:
         case "macro":
             from polycnc.nc.macro import MacroLanguage
@@ -16,6 +21,6 @@ def language_for(dialect: Dialect) -> Language | None:
         case "rs274":
             from polycnc.nc.rs274 import NgcLanguage
 
-            return NgcLanguage()
+            return NgcLanguage(folders)
         case _:
             return None

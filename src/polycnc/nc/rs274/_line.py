@@ -88,10 +88,11 @@ def parameter_name(text: str) -> str:
 
 
 class LineReader:
-    """Read one line of text."""
+    """Read one line of text; `number` is its number in the file."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text: str, number: int) -> None:
         self._text = text
+        self._number = number
         self._at = 0
         self._depth = 0
 
@@ -223,6 +224,8 @@ class LineReader:
             name = parameter_name(found[1])
             if not name.startswith("_"):
                 return f"N[{name!r}]" + (" = {}" if sets else "")
+            if name == "_line" and not sets:
+                return repr(float(self._number))
             return f"name({name!r}, {{}})" if sets else f"named({name!r})"
         found = _NUMBER.match(self._text, self._at)
         if found is not None and found[0].isdigit():

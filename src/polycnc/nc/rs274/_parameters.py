@@ -164,6 +164,7 @@ _NAMED: dict[str, Callable[[Parameters], float]] = {
     "_coord_system": lambda of: 10.0 * float((of.state.coordinates.work[0] or "G54")[1:]),
     "_call_level": lambda of: float(of.level),
     "_ccomp": lambda of: {0: 400.0, 1: 410.0, -1: 420.0}[of.state.side],
+    "_line": lambda _: 0.0,  # the translation puts the number of the line in its place
     "_vmajor": lambda _: 2.9,
     "_vminor": lambda _: 0.0,
     "_task": lambda _: 0.0,

@@ -212,7 +212,7 @@ def _extend(inside: list[Item], row: Row) -> None:
 
 def _read(row: Row) -> Line:
     try:
-        return LineReader(row.text).read()
+        return LineReader(row.text, row.number).read()
     except Flaw as flaw:
         raise Flaw(row.offset + flaw.at, flaw.what, flaw.hint) from None
 
@@ -272,7 +272,7 @@ class _Writer:
     def _statement(self, row: Row, line: Line) -> None:
         put = self._out.put
         message = self._message(line)
-        for text in self._texts(line):
+        for text in self._texts(row, line):
             put(f"yield says({row.number}, {row.offset}, {text})")
         for target, _ in line.settings:  # a name is there, with 0, as soon as its line is read
             own = target.removesuffix(" = {}")
@@ -302,7 +302,7 @@ class _Writer:
                 return repr(found[2].strip())
         return "''"
 
-    def _texts(self, line: Line) -> list[str]:
+    def _texts(self, row: Row, line: Line) -> list[str]:
         """Return Python of the texts of DEBUG and PRINT, with the values of parameters in them."""
         texts: list[str] = []
         for comment in line.comments:
@@ -314,7 +314,7 @@ class _Writer:
             for parameter in _PARAMETER.finditer(found[2]) if found[1].lower() != "msg" else ():
                 parts += [
                     repr(found[2][at : parameter.start()]),
-                    f"six({LineReader(parameter[0]).value().python})",
+                    f"six({LineReader(parameter[0], row.number).value().python})",
                 ]
                 at = parameter.end()
             texts.append(" + ".join([*parts, repr(found[2][at:])]))
