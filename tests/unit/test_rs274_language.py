@@ -94,3 +94,12 @@ def test_what_is_refused_where(
     (alarm,) = run_program(path, RunSettings(), check=False).alarms
     assert what in alarm.text
     assert alarm.line == line
+
+
+@pytest.mark.parametrize("number", ["O1000", "O1000 (SURFACE)", "N5 o 7", "/O1000 ; a text"])
+@pytest.mark.parametrize("words", ["X4", "X[2+2]"])
+def test_an_o_number_by_itself_is_the_number_of_a_program(number: str, words: str) -> None:
+    program = f"%\n{number}\nG21 G90 G0 {words}\nO2000\nG0 X6\nM2\n%\n"
+    result = polycnc.run(program, "mill3", dialect="linuxcnc")
+    assert result.blocks == 3
+    assert result.rapid_path_mm == pytest.approx(6.0)

@@ -7,7 +7,7 @@ from typing import Protocol
 
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.rs274._parameters import Parameters
-from polycnc.nc.rs274._program import Program, holds_language, translate
+from polycnc.nc.rs274._program import Program, holds_language, is_numbered_within, translate
 from polycnc.nc.rs274._source import RunningProgram, sub_program_file
 from polycnc.nc.text._program import ProgramText
 
@@ -41,10 +41,11 @@ class NgcLanguage:
         Raises:
             ProgramError: the program cannot be translated.
         """
-        if not holds_language(text.content):
+        is_numbered = is_numbered_within(text.content)
+        if not is_numbered and not holds_language(text.content):
             return None
         program = self._of(text, offset)
-        return None if program.plain else RunningProgram(self, program)
+        return RunningProgram(self, program) if is_numbered or not program.plain else None
 
     def skips(self, level: int) -> bool:
         """Tell whether lines with a skip mark of this number are left out."""

@@ -15,13 +15,21 @@ from polycnc.language import Emitter, Flaw, Traced
 from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
 from polycnc.nc.text._program import ProgramText
 
+# An O number by itself is the number of a program, and text.
 _CODE = re.compile(
-    rb"[#\[]|(?:\A|[\r\n])[ \t/]*(?:[Nn][0-9 \t]+)?[Oo][ \t]*[0-9<]|\((?:[ \t]*)(?:debug|print)",
+    rb"[#\[]|(?:\A|[\r\n])[ \t/]*(?:[Nn][0-9 \t]+)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|\Z))[0-9<]"
+    rb"|\((?:[ \t]*)(?:debug|print)",
     re.IGNORECASE,
 )
 _IS_CODE = re.compile(
-    r"[#\[]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*[0-9<\[#]|\([ \t]*(?:debug|print)[ \t]*,", re.IGNORECASE
+    r"[#\[]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"|\([ \t]*(?:debug|print)[ \t]*,",
+    re.IGNORECASE,
 )
+_NUMBERED = re.compile(
+    rb"(?:\A|[\r\n])[ \t/]*(?:N[0-9. \t]+)?O[ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)", re.IGNORECASE
+)
+_PROGRAM_NUMBER = re.compile(r"[ \t/]*(?:N[0-9.]+[ \t]*)?O[ \t]*[0-9]+\s*", re.IGNORECASE)
 _COMMENT = re.compile(r"\([^)]*\)|;.*")
 _PARAMETER = re.compile(r"#(?:<[^>]*>|[0-9]+)")
 _TEXTS = re.compile(r"[ \t]*(msg|debug|print)[ \t]*,(.*)", re.IGNORECASE | re.DOTALL)
@@ -33,6 +41,11 @@ PAUSE_ROUNDS = 20_000
 def holds_language(content: bytes) -> bool:
     """Tell whether a text may hold more than plain words."""
     return _CODE.search(content) is not None
+
+
+def is_numbered_within(content: bytes) -> bool:
+    """Tell whether numbers of programs stand within a text: LinuxCNC goes on there, as plain text does not."""
+    return len(_NUMBERED.findall(content)) > 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,6 +135,8 @@ class _Structure:
         main: list[Item] = []
         for row in rows:
             inside = self._open[-1].bodies[-1][2] if self._open else main
+            if _PROGRAM_NUMBER.fullmatch(_COMMENT.sub("", row.text)):
+                continue
             if not _IS_CODE.search(row.text) or not _is_code(row.text):
                 _extend(inside, row)
                 continue
