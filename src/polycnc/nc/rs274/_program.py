@@ -7,6 +7,7 @@ is for, where that is not the innermost one.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -15,19 +16,17 @@ from polycnc.language import Emitter, Flaw, Traced
 from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
 from polycnc.nc.text._program import ProgramText
 
-# An O number by itself is the number of a program, and text.
-_CODE = re.compile(
-    rb"[#\[]|(?:\A|[\r\n])[ \t/]*(?:[Nn][0-9 \t]+)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|\Z))[0-9<]"
-    rb"|\((?:[ \t]*)(?:debug|print)",
-    re.IGNORECASE,
-)
+_TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print)")
+_O = re.compile(rb"[Oo]")
+_LONGEST_BEFORE_O = 256
+_BEFORE_O = re.compile(rb"[ \t/]*(?:[Nn][0-9. \t]+)?")
+_O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
+"""An O number by itself is the number of a program, and text."""
+_O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
     r"[#\[]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
     r"|\([ \t]*(?:debug|print)[ \t]*,",
     re.IGNORECASE,
-)
-_NUMBERED = re.compile(
-    rb"(?:\A|[\r\n])[ \t/]*(?:N[0-9. \t]+)?O[ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)", re.IGNORECASE
 )
 _PROGRAM_NUMBER = re.compile(r"[ \t/]*(?:N[0-9.]+[ \t]*)?O[ \t]*[0-9]+\s*", re.IGNORECASE)
 _COMMENT = re.compile(r"\([^)]*\)|;.*")
@@ -40,12 +39,28 @@ PAUSE_ROUNDS = 20_000
 
 def holds_language(content: bytes) -> bool:
     """Tell whether a text may hold more than plain words."""
-    return _CODE.search(content) is not None
+    return (
+        b"#" in content
+        or b"[" in content
+        or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
+        or _TEXT_WITH_VALUES.search(content) is not None
+    )
 
 
 def is_numbered_within(content: bytes) -> bool:
     """Tell whether numbers of programs stand within a text: LinuxCNC goes on there, as plain text does not."""
-    return len(_NUMBERED.findall(content)) > 1
+    numbers = (at for at in _o_lines(content) if _O_NUMBER.match(content, at))
+    return next(numbers, None) is not None and next(numbers, None) is not None
+
+
+def _o_lines(content: bytes) -> Iterator[int]:
+    """Yield where lines have an O as their first letter, but for a number of the block."""
+    for found in _O.finditer(content):
+        at = found.start()
+        least = max(0, at - _LONGEST_BEFORE_O)
+        begin = max(content.rfind(b"\n", least, at), content.rfind(b"\r", least, at)) + 1
+        if _BEFORE_O.fullmatch(content, begin, at):
+            yield at
 
 
 @dataclass(frozen=True, slots=True)
