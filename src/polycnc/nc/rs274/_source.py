@@ -72,11 +72,11 @@ class RunningProgram:
         self._pauses = self._pauses + 1 if item is Pause.PAUSE else 0
         if self._pauses > LONGEST_LOOP_PAUSES:
             self._over = True
-            raise ProgramError(
-                "a loop goes round without a block",
-                position=self._main.text.position(0),
-                hint="Add what ends it.",
-            )
+            endless = NumberError("a loop goes round without a block", "Add what ends it.")
+            try:
+                self._run.throw(endless)  # it comes back with the place of the loop
+            except NumberError as error:
+                raise self._placed(error) from None
         return item
 
     def leave(self) -> bool:
