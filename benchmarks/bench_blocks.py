@@ -29,7 +29,8 @@ def figures(quick: bool) -> list[Figure]:
 
 def _measured(folder: Path, programs: dict[str, Path], runs: int) -> dict[str, Process]:
     commands: dict[str, list[str | Path]] = {
-        f"polycnc {name}": polycnc_command("run", path, "--dialect", "din", "--json") for name, path in programs.items()
+        f"polycnc {name}": polycnc_command("run", path, "--dialect", "din", "--json")
+        for name, path in programs.items()
     }
     peer = shutil.which("rs274")
     if peer is not None:
