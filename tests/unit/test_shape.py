@@ -49,7 +49,7 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_path_feed.py PathFeed",
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
-        "cnc/_run_conduct.py Conduct",
+        "cnc/_path_runner.py PathRunner",
         "controllers/fanuc/device/_power_mate.py",
         "controllers/fanuc/device/_power_mate.py PowerMate",
     ),

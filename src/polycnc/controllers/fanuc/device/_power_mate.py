@@ -60,7 +60,7 @@ from polycnc.controllers.fanuc.device._signals import MOST_FEED_PERCENT, Signals
 from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.errors import UsageError
-from polycnc.machine import AnyAxis, Clock, Machine, Snapshot, SnapshotError, Store, copied, put_back
+from polycnc.machine import AnyAxis, Clock, Machine, Snapshot, SnapshotError, Store, copied, restore_state
 from polycnc.nc import Dialect, load_dialect
 
 MOST_AXES = {"H": 6, "D": 2}
@@ -158,7 +158,7 @@ class PowerMate:
         self.parameters.on_change = self._parameters_changed
         self.custom_macros = Macros(self, self.macros, self.state.macros)
         self.control = self._switched_on(None)
-        self.control.be_watched(self.history)
+        self.control.set_observer(self.history)
         if self.selected not in self.programs:
             self.unselect()
         self._begin_signals()
@@ -400,7 +400,7 @@ class PowerMate:
         self.state.inch = self.parameters.bit(0, 2)
         self.custom_macros.switched_on()
         self.control = self._switched_on(old.machine)
-        self.control.be_watched(self.history)
+        self.control.set_observer(self.history)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self.state.mode = PowerMateMode.MEM
         if self.selected:
@@ -473,7 +473,7 @@ class PowerMate:
                 hint="restore it where it was taken",
             )
         self.control.restore(snapshot.control)
-        put_back(self.state, snapshot.state)
+        restore_state(self.state, snapshot.state)
         self.control.channels[0].set_skip_signal(self.state.skip)
         self.signals.restored()
 
