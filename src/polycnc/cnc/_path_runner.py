@@ -1,4 +1,4 @@
-"""What a program run does along its path: lets it go, meets what stands on it, and brings it to a stand.
+"""What a program run does along its path: lets it go, meets what stands on it, and stops it.
 
 Nothing here changes where the path leads; see `ProgramRun`, which has the commands.
 """
@@ -126,7 +126,7 @@ class PathRunner:
     def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
-        It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
+        It returns early when the run stops (a block's end, a program stop, its end, an alarm), and with
         `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
         is not asked meanwhile, since nothing can have come.
         """
@@ -297,7 +297,7 @@ class PathRunner:
                 self.feed.replan()
 
     def _stand_at_marks(self) -> bool:
-        """Carry out the blocks without segments that come next; return whether the program stops behind one."""
+        """Carry out the blocks without segments that come next; return whether the program stops after one."""
         for _ in range(_MOST_MARKS):  # a loop may have no other blocks
             if (tag := self.feed.take_mark()) is None:
                 break
@@ -354,7 +354,7 @@ class PathRunner:
                 self.feed.keep_box()
                 self.set_hold()
             if self.stopper.alone:
-                self.feed.let_pass()  # what is read behind it belongs to it
+                self.feed.let_pass()  # what is read after it belongs to it
             self._go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self.moment.stop = event
@@ -370,13 +370,13 @@ class PathRunner:
         self.set_hold()
 
     def _pass_barrier(self) -> None:
-        """Let preparation go on behind functions that have been answered: what they change counts for what follows."""
+        """Continue preparing after functions that have been answered: what they change counts for what follows."""
         if self.moment.barrier and not self.moment.unanswered:
             self.moment.barrier = False
             self._go_on()
 
     def _go_on(self) -> None:
-        """Let preparation go on behind what has been met."""
+        """Let preparation continue after what has been met."""
         self.channel.go_on()
         self.feed.wake()
 

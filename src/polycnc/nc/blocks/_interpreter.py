@@ -137,7 +137,7 @@ class Interpreter:
                 raise ProgramError(
                     f"{corner.word} at the end of the program",
                     position=self._text.line_position(corner.move.line),
-                    hint="A corner needs a straight move behind it.",
+                    hint="A corner needs a straight move after it.",
                 )
             if (curve := state.nurbs) is not None:
                 state.nurbs = None
@@ -153,7 +153,7 @@ class Interpreter:
             self._queue.put(item)
 
     def drain(self, text: ProgramText, line: int) -> None:
-        """Let preparation stop behind everything that has been given out; radius compensation holds nothing back.
+        """Let preparation stop after everything that has been given out; radius compensation holds nothing back.
 
         Raises:
             ProgramError: the last move cannot be compensated.
@@ -270,7 +270,7 @@ class Interpreter:
             self._queue.mark(self._next_tag(line, self.state.snapshot()))
 
     def leave_compensation(self) -> None:
-        """Go on without radius compensation, to look for errors behind a path that cannot be followed."""
+        """Go on without radius compensation, to look for errors after a path that cannot be followed."""
         self.state.compensation.reset()
         self.state.side = 0
 

@@ -1,4 +1,4 @@
-"""What a segment is part of: block records behind one integer per segment.
+"""What a segment is part of: block records after one integer per segment.
 
 The tag of a segment is a block reference: line in the low bits, one bit that tells two executions in a row of
 the same block apart, and above them the number of a context. A context is what many blocks share: the program,

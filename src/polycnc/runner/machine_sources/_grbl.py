@@ -23,7 +23,7 @@ DEVIATION_MM = 0.01  # what the control takes where the listing says nothing
 SPEED, ACCELERATION, TRAVEL = 110, 120, 130  # the first axis; mm/min, mm/s2, mm
 DEVIATION, ARC_TOLERANCE, SOFT_LIMITS, HOMING, HOME_SIDES, PULL_OFF, TOP_RPM = 11, 12, 20, 22, 23, 27, 30
 LEFT_OUT = {
-    f"${ARC_TOLERANCE}": "arcs are gone along as arcs, not as chords",
+    f"${ARC_TOLERANCE}": "arcs are traversed as arcs, not as chords",
     "$32": "a laser that follows the speed is no motion",
 }
 

@@ -56,7 +56,7 @@ def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index
 def queue_interpolation(
     board: Board, units: PathUnits, speeds: Speeds, shape: Shape, *, index: int = -1
 ) -> None:
-    """Put an interpolation behind what the spoolers of its axes hold."""
+    """Put an interpolation after what the spoolers of its axes hold."""
     ac, vl, tvl = units.acceleration(speeds.ac), units.velocity(speeds.vl), units.velocity(speeds.tvl)
     bases = units.velocity_unit, units.acceleration_unit
     if isinstance(shape, Line):

@@ -75,7 +75,7 @@ class ModalData:
         self._power_mate = power_mate
 
     def block(self, ahead: int) -> ModalBlock:
-        """Return what holds with the executed block (0), the next one (1) or the one behind it (2)."""
+        """Return what holds with the executed block (0), the next one (1) or the one after it (2)."""
         executed = self._power_mate.execution.block
         if executed is None:
             return ModalBlock(self._at_start(), {})
