@@ -92,5 +92,5 @@ def _permanent(token: Token, base: str, kind: Kind) -> Variable:
     if base == PERMANENT_FIELD:
         return Variable(base, "permanent", "D")
     if not base[1:2].isalpha():
-        raise Flaw(token.at, f"{token} is no variable", "behind @ stands a number or a capital letter")
+        raise Flaw(token.at, f"{token} is no variable", "a number or a capital letter follows @")
     return Variable(base[:SIGNIFICANT_PERMANENT] + MARKS.get(kind, ""), "permanent", kind)

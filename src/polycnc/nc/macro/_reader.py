@@ -317,7 +317,7 @@ class _Statements:
         if tokens.token.word != "#":
             raise Flaw(
                 tokens.token.at,
-                "behind THEN only an assignment may stand",
+                "only an assignment may follow THEN",
                 "Write IF [...] GOTO and jump over the block.",
                 code=_STATEMENT,
             )

@@ -139,7 +139,7 @@ EVENTS: tuple[EventRow, ...] = (
     EventRow("CYCLE_CHIP_BREAK", "cycle", "each hole of CYCLE/BRKCHP", (*_HOLE, "Q", "P")),
     EventRow("CYCLE_TAP", "cycle", "each hole of CYCLE/TAP", (*_HOLE, "PITCH", "S", "P")),
     EventRow("CYCLE_BORE", "cycle", "each hole of CYCLE/BORE, REAM", (*_HOLE, "P")),
-    EventRow("CYCLE_OFF", "frame", "behind the last hole that a cycle macro drilled"),
+    EventRow("CYCLE_OFF", "frame", "after the last hole that a cycle macro drilled"),
     EventRow("DWELL", "state", "DELAY", ("DWELL", "DWELLREV")),
     EventRow("STOP", "state", "STOP"),
     EventRow("OPTIONAL_STOP", "state", "OPSTOP"),

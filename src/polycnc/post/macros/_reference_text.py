@@ -152,7 +152,7 @@ RULINGS = [
     ("Sequence number: options besides 2", "0: no block, 1: every block", "`sequence_place`"),
     ("`@0@` and `@1@` in one block", "no number", "fixed"),
     ("Lines without output, also of nothing but blanks", "no block, no number", "fixed"),
-    ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds behind", "fixed"),
+    ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds after", "fixed"),
     ("TAN, ASIN, ACOS, ATAN", "in radians", "fixed"),
     ("`&&` and `||`", "`&&` binds closer; what is decided is not looked at further", "fixed"),
     ("IF on texts", "refused: an expression is of words with numbers, constants and operators (8)", "fixed"),
