@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
+from polycnc.cnc import Control
 from polycnc.servers.mtconnect._rows import (
     CONDITION_SCOPES,
     CONDITIONS,
@@ -15,7 +16,7 @@ from polycnc.servers.mtconnect._rows import (
     Row,
     Version,
 )
-from polycnc.servers.plant import FACTS, About, Place, Scope, Seen, Shape, Value, places
+from polycnc.servers.plant import FACTS, About, Place, Scope, Seen, Shape, Value, places, shape_of
 
 _DIGITS = 4
 MOST_TEXT = 255
@@ -116,7 +117,12 @@ def number_text(value: float) -> str:
 
 def plain_text(text: str) -> str:
     """Return a text without what XML and lines cannot hold, cut to what is allowed."""
-    return "".join(char if char.isprintable() else "?" for char in text[:MOST_TEXT])
+    return clean(text[:MOST_TEXT])
+
+
+def clean(text: str) -> str:
+    """Return a text without characters that are no letters or signs, which XML and lines cannot hold."""
+    return text if text.isprintable() else "".join(char if char.isprintable() else "?" for char in text)
 
 
 def value_text(value: Value) -> str | None:
@@ -268,3 +274,11 @@ def device_model(
         make.component("Controller", "controller", "controller", on_controller, *paths),
     )  # fmt: skip
     return DeviceModel(name, uuid or f"polycnc.{name}", serial, model or name, version, root)
+
+
+def model_of(name: str, control: Control, version: Version) -> DeviceModel:
+    """Return the description of a control that is served under a name."""
+    identity = control.inventory().identity
+    return device_model(
+        name, shape_of(control.status()), version, serial=identity.serial_number, model=identity.machine
+    )

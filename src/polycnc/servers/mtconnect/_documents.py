@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from xml.sax.saxutils import escape, quoteattr
 
 from polycnc.servers.mtconnect._assets import Asset
-from polycnc.servers.mtconnect._device import Component, DeviceModel, Item, number_text
+from polycnc.servers.mtconnect._device import Component, DeviceModel, Item, clean, number_text
 from polycnc.servers.mtconnect._errors import AgentError
 from polycnc.servers.mtconnect._observations import FAULT, Observation
 from polycnc.servers.mtconnect._rows import Version
@@ -266,7 +266,7 @@ def error_document(error: AgentError, header: Header, uri: str) -> bytes:
     if header.version < _TYPED_ERRORS_SINCE:
         told = f'    <Error errorCode="{error.code.name}">{escape(error.text)}</Error>\n'
     else:
-        parts = [f"<URI>{escape(uri)}</URI>", f"<ErrorMessage>{escape(error.text)}</ErrorMessage>"]
+        parts = [f"<URI>{escape(clean(uri))}</URI>", f"<ErrorMessage>{escape(error.text)}</ErrorMessage>"]
         parts += [f"<Request>{error.request}</Request>"] if error.request else []
         if error.asset:
             parts.insert(0, f"<AssetId>{escape(error.asset)}</AssetId>")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from enum import Enum
 
 from polycnc.errors import PolycncError
+from polycnc.servers.mtconnect._device import clean
 
 _NAMED = frozenset({"device", "deviceType", "path", "from", "count", "interval", "heartbeat"})
 
@@ -48,10 +49,10 @@ class AgentError(PolycncError):
     ) -> None:
         super().__init__(what, hint=hint)
         self.code = code
-        self.asset = asset
+        self.asset = clean(asset)
         self.request = ""
         self.limits = limits
-        self.value = value[:80]
+        self.value = clean(value[:80])
         self.parameter = self._parameter(parameter)
 
     def _parameter(self, name: str) -> str:
@@ -71,4 +72,4 @@ class AgentError(PolycncError):
     @property
     def text(self) -> str:
         """What is wrong, and what to do."""
-        return f"{self.what}. {self.hint}" if self.hint else self.what
+        return clean(f"{self.what}. {self.hint}" if self.hint else self.what)

@@ -18,6 +18,7 @@ VERSIONS: Mapping[str, Version] = MappingProxyType(
     {"2.7": (2, 7), "2.2": (2, 2), "1.8": (1, 8), "1.3": (1, 3)}
 )
 """The versions that are served, the newest first."""
+USUAL_VERSION = "2.7"
 FIRST, LAST = (1, 0), (99, 0)
 
 _UNITS = {
