@@ -15,6 +15,7 @@ from polycnc.cli import (
     _debug,
     _focas,
     _machine,
+    _mtconnect,
     _post,
     _run,
     _sap,
@@ -83,6 +84,10 @@ _focas.focas_app.command("dissect", short_help="Explain captured bytes of the pr
     guarded(_focas.dissect_command)
 )
 app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
+_mtconnect.mtconnect_app.command("devices", short_help="Write the Devices.xml of a machine for an agent.")(
+    guarded(_mtconnect.devices_command)
+)
+app.add_typer(_mtconnect.mtconnect_app, name="mtconnect", short_help="Tools around MTConnect.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 

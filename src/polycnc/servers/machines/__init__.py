@@ -6,8 +6,11 @@ from polycnc.servers.machines._machine import MachineError, ServedMachine
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
+from polycnc.servers.machines._watch import BUSY_S, IDLE_S, Watch
 
 __all__ = [
+    "BUSY_S",
+    "IDLE_S",
     "LOOPBACK",
     "Door",
     "DoorKind",
@@ -24,4 +27,5 @@ __all__ = [
     "ServedDevice",
     "ServedMachine",
     "Wanted",
+    "Watch",
 ]
