@@ -67,7 +67,7 @@ class Spindle:
     def __init__(self, clock: Clock, config: MachineConfig) -> None:
         self._clock = clock
         self._config = config.spindle
-        self._start_s = config.times.spindle_start_s
+        self._start_s = 0.0 if config.spindle.laser else config.times.spindle_start_s
         self._motion = SpindleMotion()
         self._rest: tuple[SpindleMotion, SpindleState] | None = None  # what a motion has come to rest at
 

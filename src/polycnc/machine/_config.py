@@ -208,6 +208,20 @@ class SpindleConfig(StrictModel):
         default=60.0, description="Speed at which the spindle is brought to an angle."
     )
     orientation_deg: float = Field(default=0.0, description="Angle at which an oriented spindle stands.")
+    laser: bool = Field(
+        default=False,
+        description="S is the power of a laser: S, M3, M4 and M5 act without a stop, where the next move begins.",
+    )
+
+    @model_validator(mode="after")
+    def _lasers_do_not_turn(self) -> SpindleConfig:
+        if self.laser and self.acceleration_rpm_s is not None:
+            raise problem(
+                "'acceleration_rpm_s' has no meaning for a laser",
+                hint="leave it out, or take 'laser' out",
+                at=("acceleration_rpm_s",),
+            )
+        return self
 
 
 class ToolConfig(StrictModel):

@@ -56,6 +56,7 @@ class MachiningWatch:
         self._state = self.channel.machine.state
         self._row = self._state.paths.row[self.channel.path]
         self._seen = int(self._row["tail"])
+        self._turning = self.channel.machine.config.spindle.laser  # a laser that is off cuts nothing
         dialect: Dialect = self.channel.dialect
         self._changes_tools = dialect.has_tool_change
         names = self.channel.machine.config.axis_names

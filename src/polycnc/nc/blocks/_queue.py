@@ -93,6 +93,8 @@ class QueueWriter:
                 self.put(item)
             return
         row = self.paths.row[self.path]
+        if items and isinstance(items[0], Wait) and items[0].passes and not self.backlog:
+            self._close_line()
         before = int(row["tail"])
         marked = len(self.marks)
         for item in items:
@@ -221,6 +223,8 @@ class QueueWriter:
         )
 
     def _put_wait(self, item: Wait) -> None:
+        if item.passes:
+            return
         words = item.events or (("",) if item.stop is not None else ())
         answered = self.answers and bool(item.events)
         stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)

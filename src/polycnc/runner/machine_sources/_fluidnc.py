@@ -48,9 +48,11 @@ def read(text: str, file: str) -> Facts:
         )
     if not axes:
         raise ConfigurationError(f"{file}: there is no axis", hint="Axes lie under 'axes:', like x: and y:.")
+    has_laser = any(name.lower().startswith("laser.") for name in settings.entries)
     return Facts(
         control=CONTROL,
         axes=tuple(axes),
+        spindle={"laser": True} if has_laser else {},
         path={"junction_deviation_mm": settings.positive("junction_deviation_mm", DEVIATION_MM)},
         left_out=others(settings, LEFT_OUT),
     )
