@@ -12,7 +12,7 @@ from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._moves import Stop, Wait
-from polycnc.nc.blocks._tool_words import tool_data
+from polycnc.nc.blocks._tool_offsets import tool_data
 from polycnc.nc.blocks._words import GWord, MWord, code_text, whole_number
 from polycnc.nc.modal._actions import Action, Group, MAction
 from polycnc.nc.modal._modal import INCH
@@ -37,6 +37,9 @@ _DIRECTION = {
     MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0, MAction.SPINDLE_ORIENT: 0,
 }  # fmt: skip
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
+_COOLANT = {
+    MAction.COOLANT_MIST: (True, None), MAction.COOLANT_FLOOD: (None, True), MAction.COOLANT_OFF: (False, False),
+}  # fmt: skip
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
 
@@ -171,4 +174,7 @@ def _function(block: BlockContext, m: MWord) -> Wait:
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
+    if (coolant := _COOLANT.get(m.action)) is not None:
+        (mist, flood), (old_mist, old_flood) = coolant, block.after.coolant
+        block.after.coolant = old_mist if mist is None else mist, old_flood if flood is None else flood
     return Wait(times.auxiliary_s, block.line, (name,))

@@ -72,11 +72,36 @@ def clear_position(block: BlockContext, g: GWord) -> None:
     block.after.place_zero(block.after.coordinates.without_shift())
 
 
+@carries_out(Action.SUSPEND_POSITION, Action.RESUME_POSITION)
+def suspend_position(block: BlockContext, g: GWord) -> None:
+    """Suspend the shift of program zero, or put it in force again."""
+    refuse_compensation(block, g, side=False)
+    shifted = g.action is Action.RESUME_POSITION
+    block.after.place_zero(replace(block.after.coordinates, shifted=shifted))
+
+
+@carries_out(Action.SET_SHIFT)
+def set_shift(block: BlockContext, g: GWord) -> None:
+    """Put the shift of some axes where the words say, in place of what set it before."""
+    refuse_compensation(block, g, side=False)
+    values = motion.named_axes(block, g)
+    block.after.place_zero(block.after.coordinates.with_shift_of(values))
+
+
+@carries_out(Action.KEEP_REFERENCE, Action.KEEP_REFERENCE_POINT)
+def keep_reference(block: BlockContext, g: GWord) -> None:
+    """Make the present position the first or second reference position."""
+    refuse_compensation(block, g, stage=False)
+    first, second = block.after.references
+    here = block.start
+    block.after.references = (here, second) if g.action is Action.KEEP_REFERENCE else (first, here)
+
+
 @carries_out(Action.SET_POSITION)
 def set_position(block: BlockContext, g: GWord) -> None:
     """Shift program zero so that the present position reads these values."""
     refuse_compensation(block, g, side=False)
-    if block.after.frame.active:
+    if block.after.frame.active and not block.dialect.turns_work:
         raise block.problem(
             f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
         )
@@ -86,9 +111,10 @@ def set_position(block: BlockContext, g: GWord) -> None:
             f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
         )
     state, modal = block.after, block.after.modal
-    for axis, value in values.items():
-        way = float(modal.position[axis] - modal.offset[axis]) - value
-        state.place_zero(state.coordinates.with_shift({axis: way}))
+    here = state.frame.back((modal.position - modal.offset).tolist())
+    if values:
+        ways = {axis: here[axis] - value for axis, value in values.items()}
+        state.place_zero(state.coordinates.with_shift(ways))
 
 
 def _reference_number(block: BlockContext, g: GWord) -> int:
@@ -99,7 +125,8 @@ def _reference_number(block: BlockContext, g: GWord) -> int:
         raise block.problem(
             f"there is no reference position P{number}", f"Write P2 to P{REFERENCE_POSITIONS}.", word
         )
-    if not any(len(axis.reference_positions) > number - 2 for axis in block.after.machine.axes):
+    known = any(len(axis.reference_positions) > number - 2 for axis in block.after.machine.axes)
+    if not known and not (number == 2 and block.after.references[1] is not None):
         block.note(
             f"G{g.code}: the machine file has no reference position {number}: the home position stands for it"
         )
@@ -115,14 +142,18 @@ def return_to_reference(block: BlockContext, g: GWord) -> list[Line]:
     start = block.start
     middle = motion.target(block, values)
     limits.check(block, middle, "would pass")
+    kept = block.after.references[number - 1] if number <= len(block.after.references) else None
     home = tuple(
-        motion.turned(block, index, axis.reference_position(number), middle[index])
+        motion.turned(
+            block, index, axis.reference_position(number) if kept is None else kept[index], middle[index]
+        )
         if index in values or not values
         else middle[index]
         for index, axis in enumerate(block.after.machine.axes)
     )
     limits.check(block, home, "would go home to")
-    _remark_home(block, g, [index for index in range(len(home)) if index in values or not values])
+    if kept is None:
+        _remark_home(block, g, [index for index in range(len(home)) if index in values or not values])
     return [
         Line(start, middle, Feed(), True, True, block.line),
         Line(middle, home, Feed(), True, True, block.line),
