@@ -33,6 +33,7 @@ _FUNCTIONS = {
     "PROGRAM_STOP": "M0",
     "OPTIONAL_PROGRAM_STOP": "M1",
 }
+_DIRECTIONS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
 _IGNORED = {
     "COMMENT",
     "MESSAGE",
@@ -106,6 +107,8 @@ class _Canon:
     rpm: float = 0.0
     plane: tuple[int, int, int] = (0, 1, 2)
     offsets: dict[str, list[float]] = field(default_factory=dict)
+    lead: float = 0.0  # that the spindle turns
+    direction: int = 0
     rotation: float = 0.0  # of a work offset, degrees
     at: Point = ()
     steps: list[Step] = field(default_factory=list)
@@ -131,6 +134,8 @@ class _Canon:
 
     def speed(self, end: Point, arc: bool = False) -> float:
         """Return the speed of a feed move to `end`."""
+        if self.lead:
+            return self.lead * self.rpm
         straight = arc or math.dist(end[:3], self.at[:3]) > 2.0 * RESOLUTION_MM
         feed = self.feed if straight else self.number
         return feed * self.rpm if self.per_revolution else feed
@@ -182,6 +187,15 @@ class _Canon:
             case "SET_SPINDLE_SPEED":
                 self.rpm = float(texts[1])
                 self.steps.append(Function(f"S{self.rpm:g}"))
+            case "START_SPEED_FEED_SYNC":
+                self.lead = self.length(texts[0])
+            case "STOP_SPEED_FEED_SYNCH":
+                self.lead = 0.0
+            case "RIGID_TAP":
+                start, end = self.at, self.point([*texts, "0", "0", "0"])
+                turn = {1: ("M4", "M3"), -1: ("M3", "M4")}[self.direction]
+                self.steps += [Feed(end, self.speed(end)), Function(turn[0])]
+                self.steps += [Feed(start, self.speed(start)), Function(turn[1])]
             case "SET_FEED_MODE":  # a feed of inverse time comes as a feed per minute
                 self.per_revolution = texts[1] == "1"
             case "STRAIGHT_TRAVERSE":
@@ -202,6 +216,7 @@ class _Canon:
             case "FLOOD_OFF":
                 self.steps.append(Function("M9"))
             case _:
+                self.direction = _DIRECTIONS.get(name, self.direction)
                 if name in _FUNCTIONS:
                     self.steps.append(Function(_FUNCTIONS[name]))
                 else:

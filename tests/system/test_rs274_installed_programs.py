@@ -39,10 +39,8 @@ CONFIG = _config()
 DIALECT = load_dialect("linuxcnc")
 
 REFUSED: dict[str, str] = {
-    **dict.fromkeys(("gridprobe", "tool-length-probe", "x-trim"), "G38.2 is not supported yet"),
-    "smartprobe": "G38.2 is not supported yet",
+    "tool-length-probe": "G38.2 to where the probe stands",  # it begins where the operator has moved to
     "cone": "there is no axis 'W'",
-    "threading": "G33 is not supported yet",
     "lathe_g70_71_demo": "G71.1 is not known",
     "lathe_g7x_face_boring": "G72 is not known",
     "lathe_g7x_quadrants": "G70 is not known",
@@ -58,7 +56,10 @@ REFUSED: dict[str, str] = {
 """Programs that polycnc refuses, with what its error says."""
 REFUSED_BY_RS274 = {"increment", "lathecomp", "mmount", "probe-hole"}
 """Programs that polycnc takes and rs274 does not."""
-OTHER_WAYS = {"systems": "rs274 does not print where splines (G5.1) end"}
+OTHER_WAYS = {
+    "systems": "rs274 does not print where splines (G5.1) end",
+    **dict.fromkeys(("gridprobe", "smartprobe", "x-trim"), "polycnc waits for the probe, rs274 has none"),
+}
 """Programs that both take and that cannot be compared, and why."""
 
 

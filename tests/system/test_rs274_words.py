@@ -76,6 +76,12 @@ SAME = [
     "G0 X3 Y4 Z2\nG91 G81 ^20 @1 Z-3 R1 L4\n^-15 L2",
     "G0 X3 Y4\nG91 G0 @-2 ^[5*3]\nG90 @-3 ^20",
     "G7 G0 X6 Y4\nG0 @5 ^10\n@10",
+    # threads
+    "G0 X10 Z5\nM3 S500\nG33 Z-10 K1.5\nX12 K2\nG0 X20\nG33.1 Z-5 K1\nG0 X3",
+    "M4 S300 G0 X20 Y3 Z2\nG33.1 Z3 K1.25\nG0 X1",
+    "M3 S300 G18 G0 X20 Z2\nG76 P1.5 Z-20 I-1 J0.3 K1.2 R1.5 Q29.5 H2 E1 L3\nG0 X3\nG76 P1.5 Z20 I1 J0.3 K1.2 Q30\n"
+    "G76 P1.5 Z1 I1 J0.3 K1.2 L1 E.5\nG76 P1.5 Z20 I1 J0.3 K1.2 L2 E.5\nG0 X5",
+    "M3 S300 G7 G0 X20 Z2\nG76 P1.5 Z-20 I-1 J0.6 K1.2\nG91 G76 P1.5 Z-20 I-1 J0.6 K1.2\nG90 G0 X1",
 ]
 
 
@@ -118,6 +124,22 @@ REFUSED = [
     "G52",
     "G10 L2 P10 X1",
     "G43.2 Z1",
+    "G33 Z3 K1",
+    "M3 S100 G33 Z3",
+    "M3 S100 G33 K1",
+    "M3 S100 G33.1 Z-3",
+    "G76 P1.5 Z-20 I-1 J0.6 K1.2",
+    *(
+        f"M3 S100\nG76 {words}"
+        for words in ("P1 Z-9 I-1 J1", "P1 Z-9 I-1 J1.2 K1", "Z-9 I-1 J.2 K1", "P1 I-1 J.2 K1")
+    ),
+    *(
+        f"M3 S100\nG76 P1 Z-9 {words}"
+        for words in ("I0 J.2 K1", "I-1 J0 K1", "I-1 J.2 K1 H1.5", "I-1 J.2 K1 E1 L1.5")
+    ),
+    "M3 S100\nG76 P1 Z-9 I1 J.2 K1\nX3",
+    "G38.2",
+    "G41.1 D1\nG38.2 Z-3",
 ]
 """Blocks that both refuse, in their last line."""
 

@@ -13,9 +13,16 @@ from polycnc.nc.blocks._moves import Feed, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action
-from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR, MOTION_RAPID
+from polycnc.nc.modal._modal import FEED_INVERSE_TIME, FEED_MODE, MOTION, MOTION_LINEAR, MOTION_RAPID
 
 REFERENCE_POSITIONS = 4
+PROBES = {
+    Action.PROBE_CONTACT: (False, True),
+    Action.PROBE_TOWARDS: (False, False),
+    Action.PROBE_LEAVE: (True, True),
+    Action.PROBE_AWAY: (True, False),
+}
+"""Probing moves that tell the program: whether each leaves the workpiece, and whether a miss is an error."""
 
 
 @carries_out(Action.SKIP_MOVE)
@@ -39,6 +46,25 @@ def probe_move(block: BlockContext, g: GWord) -> list[QueueItem]:
     move = _measuring_move(block, g, one_axis=in_passing)
     stop = Stop.PROBE_IN_PASSING if in_passing else Stop.PROBE
     return [Wait(0.0, block.line, stop=stop), move, Wait(0.0, block.line, stop=Stop.DRAIN)]
+
+
+@carries_out(*PROBES)
+def probe(block: BlockContext, g: GWord) -> list[QueueItem]:
+    """Go straight at feed until the probe switches; the program is told where it does not."""
+    if block.after.modal.whole[FEED_MODE] == FEED_INVERSE_TIME:
+        raise block.problem(f"G{g.code} with inverse time feed (G93)", "Select G94 first.", g.word)
+    move = _measuring_move(block, g)
+    if move.end == move.start:
+        raise block.problem(f"G{g.code} to where the probe stands", "Say how far to go at the most.", g.word)
+    leaves, needed = PROBES[g.action]
+    block.after.probe = Probe(
+        frozenset(range(len(block.after.axis_names))),
+        leaves=leaves,
+        code=g.code,
+        place=g.word.place,
+        needed=needed,
+    )
+    return [Wait(0.0, block.line, stop=Stop.PROBE), move, Wait(0.0, block.line, stop=Stop.DRAIN)]
 
 
 @carries_out(Action.PROBE_FIXED_STOP)

@@ -22,6 +22,7 @@ from polycnc.nc.modal._modal import (
 
 AXES = "XYZABCUVW"
 _MOTIONS = {-1: 800.0, 0: 0.0, 1: 10.0, 2: 20.0, 3: 30.0, 4: 50.0, 5: 51.0, 6: 52.0}
+_TURNING = {"synchronized": 330.0, "tap_and_back": 331.0, "threading": 760.0}
 _PLANES = {0: 170.0, 1: 180.0, 2: 190.0}
 
 
@@ -55,7 +56,7 @@ def _motion(of: Known) -> float:
     state = of.state
     if state.cycle.action:
         return 10.0 * state.cycle.code
-    return _MOTIONS[int(state.modal.whole[MOTION])]
+    return _TURNING.get(state.turning.motion) or _MOTIONS[int(state.modal.whole[MOTION])]
 
 
 def _has_diameters(of: Known) -> bool:
