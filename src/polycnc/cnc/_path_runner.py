@@ -6,6 +6,7 @@ Nothing here changes where the path leads; see `ProgramRun`, which has the comma
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -15,7 +16,7 @@ from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
-from polycnc.cnc._probing import Probing, delete_rest, positions
+from polycnc.cnc._probing import Probing, cannot_begin, delete_rest, positions
 from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Step, Stopper
@@ -348,8 +349,14 @@ class PathRunner:
             self._pass_barrier()
         if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
             self.moment.probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
+            if cannot_begin(self.machine, self.channel):
+                self.moment.probing.met = True  # what is left of the move is dropped
+                self._tell_probe(at_once=True)
+                self.set_hold()
         elif event.stop is Stop.DRAIN:
             if self.moment.probing is not None:
+                if not self.moment.probing.met:
+                    self._tell_probe(missed=True)
                 self.moment.probing = None
                 self.feed.keep_box()
                 self.set_hold()
@@ -362,6 +369,12 @@ class PathRunner:
             self.set_hold()
         elif event.stop is not None and self.options.stands_at_stops:
             self._go_on()
+
+    def _tell_probe(self, *, missed: bool = False, at_once: bool = False) -> None:
+        """Note in the channel's state how a probing move went wrong, where the program asks for it."""
+        state = self.channel.state
+        if state.probe is not None and state.probe.code:
+            state.probe = replace(state.probe, missed=missed, at_once=at_once)
 
     def answered(self) -> None:
         """Let the path, and preparation, go on from an auxiliary function."""

@@ -12,7 +12,7 @@ from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._moves import Stop, Wait
-from polycnc.nc.blocks._tool_words import tool_data
+from polycnc.nc.blocks._tool_offsets import tool_data
 from polycnc.nc.blocks._words import GWord, MWord, code_text, whole_number
 from polycnc.nc.modal._actions import SPINDLE_SENSES, Action, Group, MAction
 from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, INCH
@@ -35,6 +35,9 @@ _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_EN
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
+_COOLANT = {
+    MAction.COOLANT_MIST: (True, None), MAction.COOLANT_FLOOD: (None, True), MAction.COOLANT_OFF: (False, False),
+}  # fmt: skip
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
 
@@ -207,4 +210,7 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
+    if (coolant := _COOLANT.get(m.action)) is not None:
+        (mist, flood), (old_mist, old_flood) = coolant, block.after.coolant
+        block.after.coolant = old_mist if mist is None else mist, old_flood if flood is None else flood
     return Wait(times.auxiliary_s, block.line, (name,))

@@ -49,7 +49,7 @@ def refuse_contradictions(block: BlockContext) -> None:
         return
     is_straight = motion.action in (Action.RAPID, Action.LINEAR)
     if non_modal and (
-        non_modal.action is Action.SET_POSITION
+        non_modal.action in (Action.SET_POSITION, Action.SET_SHIFT)
         or motion.action.family in _CURVED
         or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
     ):

@@ -140,6 +140,11 @@ def set_diameters(modal: Modal, axes: Sequence[int]) -> None:
         modal.scale[axis] *= 0.5
 
 
+def set_diameter(modal: Modal, axis: int, diameter: bool) -> None:
+    """Let words of an axis be diameters, or what they are to others."""
+    modal.scale[axis] = length_scale(modal) * (0.5 if diameter else 1.0)
+
+
 def length_scale(modal: Modal) -> float:
     """Return mm per program unit of what is no position: radii, centres, ways."""
     return MM_PER_INCH if modal.whole[INCH] else 1.0
