@@ -49,7 +49,7 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_path_feed.py PathFeed",
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
-        "cnc/_run_conduct.py Conduct",
+        "cnc/_path_runner.py PathRunner",
         "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (

@@ -17,7 +17,7 @@ from polycnc.nc.blocks._limits import check_path
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._not_blocks import NotBlocks
-from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Trouble
+from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Problem
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._steps import take_steps
 from polycnc.nc.blocks._travel import up_to_limits
@@ -35,7 +35,7 @@ from polycnc.nc.text._scan_plain import Block
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
-    `call_trouble` says what is against calling a sub-program from an offset of a text, None if nothing is. `reference`
+    `call_problem` says what is against calling a sub-program from an offset of a text, None if nothing is. `reference`
     gives the reference of the record of the block on a line, with what it leaves in force.
     """
 
@@ -45,7 +45,7 @@ class Interpreter:
         state: ChannelState,
         messages: Messages,
         queue: QueueWriter,
-        call_trouble: Callable[[int, ProgramText, int], Trouble | None],
+        call_problem: Callable[[int, ProgramText, int], Problem | None],
         reference: Callable[[int, ModalSnapshot], int],
     ) -> None:
         self.dialect = dialect
@@ -53,7 +53,7 @@ class Interpreter:
         self.messages = messages
         self._queue = queue
         self._reference = reference
-        self._rules = ChannelRules(dialect, state, call_trouble, self._run)
+        self._rules = ChannelRules(dialect, state, call_problem, self._run)
         self._not_blocks = NotBlocks(dialect)
         self._after = state.copy()  # what the present block changes
         self._last_tag = 0

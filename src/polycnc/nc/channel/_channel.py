@@ -3,7 +3,7 @@
 A `Reader` makes blocks of program texts, `Calls` know which program runs and which language executes it, `Prepared` is
 the queue with the records of its blocks, and the `Preparation` executes one block after the other and goes on where it
 says. Runs of plain blocks go through the compiled kernel (`fast`), every other block, and the first blocks of a
-program, through the ordinary interpreter. Where a language executes a program, its `BlockSource` gives the blocks.
+program, through the reference interpreter. Where a language executes a program, its `BlockSource` gives the blocks.
 """
 
 from __future__ import annotations
@@ -202,7 +202,7 @@ class Channel:
     def fill(self, blocks: int | None = None, *, compiled: bool = True) -> None:
         """Prepare blocks until the queue is full, the program has ended or waits; `blocks` more at the most.
 
-        Without `compiled` every block goes through the ordinary interpreter.
+        Without `compiled` every block goes through the reference interpreter.
         """
         self._preparation.fill(blocks, compiled=compiled)
         if self.on_filled is not None:
@@ -277,7 +277,7 @@ class Channel:
     # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> ChannelSnapshot:
-        """Return where preparation stands and all that it has found, to go back to with `way_back`.
+        """Return where preparation stands and all that it has found, to go back to with `restore_point`.
 
         The queue itself belongs to the machine.
 
@@ -304,13 +304,13 @@ class Channel:
             self._calls.language_state(),
         )
 
-    def way_back(self, saved: ChannelSnapshot) -> Callable[[], None]:
+    def restore_point(self, saved: ChannelSnapshot) -> Callable[[], None]:
         """Return what goes back to a snapshot of this channel, or of one that was made alike; nothing changes yet.
 
         Raises:
             SnapshotError: a program of it cannot go on from there.
         """
-        take_up = self._calls.way_back(self, saved.language)
+        take_up = self._calls.restore_point(self, saved.language)
         return lambda: self._go_back(saved, take_up)
 
     def _go_back(self, saved: ChannelSnapshot, take_up: Callable[[], None]) -> None:

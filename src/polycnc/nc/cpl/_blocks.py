@@ -21,7 +21,7 @@ from polycnc.nc.cpl._cpl_state import (
     Standing,
     damaged,
     kept_names,
-    put_back,
+    restore_state,
 )
 from polycnc.nc.cpl._host import Event, Host, KeepingHost, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._link_table import LinkTables
@@ -73,7 +73,7 @@ class CplLanguage:
         self.linker = Linker(host.program, stepping=stepping, opened=True, tables=tables, codes=codes)
         self.running: list[CplSource] = []
         """The sources under way, that of the main program first."""
-        self.hasty = False
+        self.fast_forward = False
         """Whether a WAIT is over at once: a block is sought, and no time passes."""
         self.at_line: Callable[[str, int], bool] | None = None
         """What tells a debugger's wish to stand before a line, of programs linked for stepping."""
@@ -151,7 +151,7 @@ class CplLanguage:
         )
         return SavedCpl(objects.all(), shared, kept, self.modal, programs)
 
-    def way_back(self, channel: object, saved: object) -> Returning:
+    def restore_point(self, channel: object, saved: object) -> Returning:
         """Return what goes back to a state; nothing changes yet.
 
         Raises:
@@ -199,9 +199,9 @@ class CplLanguage:
         standing: Sequence[Standing | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
-        put_back(self.globals, values[0])
+        restore_state(self.globals, values[0])
         if values[1]:
-            put_back(self._host.permanent, values[1])
+            restore_state(self._host.permanent, values[1])
         self.modal = saved.modal
         self.moves_on()
         self.running = []
@@ -305,7 +305,7 @@ class CplSource:
             if (item := self._left_over()) is not None:
                 return item
             if self._waiting is not None:
-                self._answer = self._waiting.answer(hasty=self._language.hasty)
+                self._answer = self._waiting.answer(fast_forward=self._language.fast_forward)
                 if self._answer is None:
                     return Pause.PAUSE
                 self._waiting = None
@@ -352,7 +352,7 @@ class CplSource:
 
     def _statement(self, line: int) -> SourceItem | None:
         """Return the item of a statement that is stepped to or looked for."""
-        is_sought = self._language.hasty and self._bounds is not None and self._bounds.first == line
+        is_sought = self._language.fast_forward and self._bounds is not None and self._bounds.first == line
         is_shown = self._language.shows_statements or is_sought
         if not is_shown or not _STATEMENT.match(self.execution.program.source.line(line)):
             return None  # of NC blocks and WAIT: these are stopped at by themselves

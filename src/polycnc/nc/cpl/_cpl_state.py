@@ -224,7 +224,7 @@ def kept_names(names: Mapping[str, Any], objects: Objects) -> dict[str, object]:
 _HEAD = frozenset({"G", "M", "host", "arguments"})
 
 
-def put_back(variables: MutableMapping[str, Any], values: Mapping[str, object]) -> None:
+def restore_state(variables: MutableMapping[str, Any], values: Mapping[str, object]) -> None:
     """Let variables have these values."""
     for name in [name for name in variables if name not in values]:
         del variables[name]

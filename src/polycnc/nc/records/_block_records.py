@@ -2,7 +2,7 @@
 
 The tag of a segment is a block reference: line in the low bits, one bit that tells two executions in a row of
 the same block apart, and above them the number of a context. A context is what many blocks share: the program,
-the calls that led to it and the modal state. Blocks of the ordinary interpreter have the context that they leave
+the calls that led to it and the modal state. Blocks of the reference interpreter have the context that they leave
 behind. A run of plain blocks shares the context that stood before it; the modal words that such blocks may change
 (motion, absolute or incremental, F) are read again from the text when somebody asks. So a plain block costs its
 integer and nothing else.

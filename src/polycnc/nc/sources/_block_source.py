@@ -193,10 +193,10 @@ class TidyLanguage(Language, Protocol):
 
 
 @runtime_checkable
-class HastyLanguage(Language, Protocol):
+class FastForwardLanguage(Language, Protocol):
     """A language whose programs may wait for time to pass."""
 
-    hasty: bool
+    fast_forward: bool
     """Whether no time passes: what waits for it goes on at once."""
 
     def loops(self) -> bool:
@@ -254,7 +254,7 @@ class LastingLanguage(Language, Protocol[HostT]):
         """
         ...
 
-    def way_back(self, channel: HostT, saved: object) -> Returning:
+    def restore_point(self, channel: HostT, saved: object) -> Returning:
         """Return what goes back to a state, for a channel that it is attached to by then; nothing changes yet.
 
         Raises:

@@ -15,7 +15,7 @@ import numpy as np
 
 from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import reset_system
-from polycnc.controllers.apci.board._board_snapshot import put_back, take_snapshot
+from polycnc.controllers.apci.board._board_snapshot import restore_state, take_snapshot
 from polycnc.controllers.apci.board._board_variables import Tasks, Variables
 from polycnc.controllers.apci.board._command import Command
 from polycnc.controllers.apci.board._declared import COMMON_VARIABLES
@@ -306,4 +306,4 @@ class Board:
         Raises:
             SnapshotError: It is of something else, or damaged; nothing has changed.
         """
-        put_back(self, snapshot)
+        restore_state(self, snapshot)

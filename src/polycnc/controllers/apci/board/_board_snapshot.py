@@ -29,7 +29,7 @@ def take_snapshot(board: Board) -> Snapshot:
     return Snapshot.take(_KIND, _made_from(board), board.clock.cycles, _arrays(board), _beside(board))
 
 
-def put_back(board: Board, snapshot: Snapshot) -> None:
+def restore_state(board: Board, snapshot: Snapshot) -> None:
     """Go back to a snapshot.
 
     Raises:
@@ -44,7 +44,7 @@ def put_back(board: Board, snapshot: Snapshot) -> None:
         raise SnapshotError(
             f"the snapshot of a {_KIND} is damaged: {error}", hint="use another one"
         ) from error
-    snapshot.put_back(arrays)
+    snapshot.restore_state(arrays)
     board.clock.go_back(snapshot.cycle, epoch)
     for change in changes:
         change()

@@ -143,7 +143,7 @@ class AxisMotion:
         else:
             try:
                 for channel in control.channels:
-                    channel.lend()
+                    channel.release()
                 for axis, value in block.values:
                     self._move(block, axis, value)
             except ControlError as error:

@@ -48,7 +48,7 @@ from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
 from polycnc.controllers.fanuc.device._units import Units
 from polycnc.errors import UsageError
-from polycnc.machine import Clock, Machine, Snapshot, SnapshotError, Store, copied, put_back
+from polycnc.machine import Clock, Machine, Snapshot, SnapshotError, Store, copied, restore_state
 
 _ALL_KEYS = frozenset({1, 2, 3, 4})
 
@@ -442,7 +442,7 @@ class PowerMate:
                 hint="restore it where it was taken",
             )
         self.control.restore(snapshot.control)
-        put_back(self.state, snapshot.state)
+        restore_state(self.state, snapshot.state)
         self.control.channels[0].set_skip_signal(self.state.skip)
         self.signals.restored()
 
@@ -472,7 +472,7 @@ class PowerMate:
 
         languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()
         self.power.switch_on(before, languages, note_skip)
-        self.control.be_watched(self.history)
+        self.control.set_observer(self.history)
 
     def _parameters_changed(self, rows: tuple[ParameterRow, ...]) -> None:
         self.power.parameters_changed(rows)

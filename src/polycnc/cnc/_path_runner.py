@@ -16,7 +16,7 @@ from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._probing import Probing, delete_rest, positions
-from polycnc.cnc._run_moment import RunMoment
+from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Step, Stopper
 from polycnc.cnc._tool_times import ToolTime
@@ -43,15 +43,21 @@ RESTS_PER_CYCLE = 16
 """Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
 
 
-class Conduct:
-    """Conduct one path of a machine along what its channel prepares, as `moment` says.
+class PathRunner:
+    """PathRunner one path of a machine along what its channel prepares, as `moment` says.
 
     `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes. `rows`, `on_event` and
     `on_skip` are told what happens, see `ProgramRun`.
     """
 
     def __init__(
-        self, machine: Machine, channel: Channel, options: RunOptions, moment: RunMoment, *, ahead: int | None
+        self,
+        machine: Machine,
+        channel: Channel,
+        options: RunOptions,
+        moment: RunProgress,
+        *,
+        ahead: int | None,
     ) -> None:
         self.machine = machine
         self.path = channel.path
