@@ -6,9 +6,20 @@ from polycnc.servers.machines._machine import MachineError, ServedMachine
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
+from polycnc.servers.machines._values import (
+    NO_PARAMETERS,
+    NO_VARIABLES,
+    NamedValue,
+    ReadValues,
+    Single,
+    Values,
+    no_such,
+)
 
 __all__ = [
     "LOOPBACK",
+    "NO_PARAMETERS",
+    "NO_VARIABLES",
     "Door",
     "DoorKind",
     "HostOwner",
@@ -17,11 +28,16 @@ __all__ = [
     "Log",
     "MachineError",
     "MemoryPrograms",
+    "NamedValue",
     "Nothing",
     "Owner",
     "Programs",
+    "ReadValues",
     "Scenario",
     "ServedDevice",
     "ServedMachine",
+    "Single",
+    "Values",
     "Wanted",
+    "no_such",
 ]
