@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 
 from polycnc.errors import UsageError
 from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
@@ -72,9 +73,18 @@ def plant_kinds(version: str = USUAL_VERSION) -> tuple[DoorKind, ...]:
     )
 
 
+def _open_calls(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    from polycnc.servers.calls import PORT, CallsServer
+
+    port = PORT if wanted.port is None else wanted.port
+    trace = Path(wanted.path) if wanted.path else None
+    return CallsServer(machines, address=wanted.address, port=port, log=wanted.log, trace=trace)
+
+
 _ROWS = (
     focas_kind(),
     DoorKind("http", 8080, _http, shared=True, knows_token=True),
+    DoorKind("calls", 8194, _open_calls, frozenset({"fanuc"}), shared=True),
     DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})),
     *plant_kinds(),
 )
