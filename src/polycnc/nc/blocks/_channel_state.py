@@ -21,8 +21,8 @@ from polycnc.nc.blocks._tables import ProgramTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.modal._actions import Family
-from polycnc.nc.modal._frame import Frame, Rotation, UNTURNED
-from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, NO_AXIS, changing, copy_modal
+from polycnc.nc.modal._frame import UNTURNED, Frame, Rotation
+from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, NO_AXIS, Modal, changing, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
 

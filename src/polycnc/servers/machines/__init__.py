@@ -6,7 +6,6 @@ from polycnc.servers.machines._machine import MachineError, ServedMachine
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
-from polycnc.servers.machines._watch import BUSY_S, IDLE_S, Watch
 from polycnc.servers.machines._values import (
     NO_PARAMETERS,
     NO_VARIABLES,
@@ -16,6 +15,7 @@ from polycnc.servers.machines._values import (
     Values,
     no_such,
 )
+from polycnc.servers.machines._watch import BUSY_S, IDLE_S, Watch
 
 __all__ = [
     "BUSY_S",
