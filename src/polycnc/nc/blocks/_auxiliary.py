@@ -36,6 +36,7 @@ _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTION
 _DIRECTION = {
     MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0, MAction.SPINDLE_ORIENT: 0,
 }  # fmt: skip
+_COOLANT = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD, MAction.COOLANT_OFF)
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
@@ -171,4 +172,14 @@ def _function(block: BlockContext, m: MWord) -> Wait:
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
+    if m.action in _COOLANT:
+        _switch_coolant(block, m)
     return Wait(times.auxiliary_s, block.line, (name,))
+
+
+def _switch_coolant(block: BlockContext, m: MWord) -> None:
+    spindle = block.after.spindle
+    others = tuple(code for code in spindle.coolant if code != m.code)
+    block.after.spindle = replace(
+        spindle, coolant=() if m.action is MAction.COOLANT_OFF else (*others, m.code)
+    )
