@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from polycnc.errors import UsageError
+from polycnc.servers.commands import carry_out
 from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
 
 FOCAS_PROFILE = "31i"
@@ -34,21 +35,26 @@ def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
 
 
 def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
-    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, grbl_dialect
+    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, GrblWatch, grbl_dialect
 
     (machine,) = machines
-    control = machine.control
+    control, find = machine.control, machine.find_control
     assert control is not None
-    control.change_dialect(grbl_dialect())
+    assert find is not None
+    core: GrblCore | GrblWatch
+    if machine.kind == "plain":
+        control.change_dialect(grbl_dialect())
+        core = GrblCore(control)
+    else:  # its programs stay in its own dialect
+        core = GrblWatch(find, lambda asked: carry_out(machine, asked))
     port = PORT if wanted.port is None else wanted.port
-    core = GrblCore(control)
     return GrblServer(machine.keeper, core, address=wanted.address, port=port, terminal=wanted.path)
 
 
 _ROWS = (
     focas_kind(),
     DoorKind("http", 8080, _http, shared=True, knows_token=True),
-    DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})),
+    DoorKind("grbl", 8123, _open_grbl, frozenset({"plain", "fanuc", "bosch"})),
 )
 
 DOORS = {row.name: row for row in _ROWS}
