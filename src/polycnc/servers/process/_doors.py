@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from polycnc.errors import UsageError
+from polycnc.servers.commands import carry_out
 from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
 from polycnc.servers.mtconnect import USUAL_VERSION
 
@@ -37,14 +38,19 @@ def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
 
 
 def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
-    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, grbl_dialect
+    from polycnc.servers.grbl import PORT, GrblCore, GrblServer, GrblWatch, grbl_dialect
 
     (machine,) = machines
-    control = machine.control
+    control, find = machine.control, machine.find_control
     assert control is not None
-    control.change_dialect(grbl_dialect())
+    assert find is not None
+    core: GrblCore | GrblWatch
+    if machine.kind == "plain":
+        control.change_dialect(grbl_dialect())
+        core = GrblCore(control)
+    else:  # its programs stay in its own dialect
+        core = GrblWatch(find, lambda asked: carry_out(machine, asked))
     port = PORT if wanted.port is None else wanted.port
-    core = GrblCore(control)
     return GrblServer(machine.keeper, core, address=wanted.address, port=port, terminal=wanted.path)
 
 
@@ -85,7 +91,7 @@ _ROWS = (
     focas_kind(),
     DoorKind("http", 8080, _http, shared=True, knows_token=True),
     DoorKind("calls", 8194, _open_calls, frozenset({"fanuc"}), shared=True),
-    DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})),
+    DoorKind("grbl", 8123, _open_grbl, _CONTROLS),
     *plant_kinds(),
 )
 
