@@ -19,6 +19,7 @@ from polycnc.servers.process import Machinery
 from support.c_hold import Hold, Passed
 from support.c_library import Door, at_door, built, loaded
 from support.command import COMMAND, environment
+from support.focas_line import Line
 
 AXES = 4
 HANDLE = 1
@@ -183,6 +184,23 @@ def test_a_control_by_its_address_and_another_by_its_own(
         assert axes == [b"2", b"4", b"2"]
     finally:
         other.close()
+
+
+def test_an_unchanged_program_finds_its_control_at_the_port_of_focas(tmp_path: Path) -> None:
+    library = loaded("fanuc", tmp_path)
+    door = Door(("fanuc", Machinery(axes=2)), focas=True)
+    try:
+        port = int(door.first_place.rpartition(":")[2])
+        line = Line(port)
+        handle, system = ctypes.c_uint16(), (ctypes.c_char * 18)()
+        assert library.cnc_allclibhndl3(b"localhost", port, 5, ctypes.byref(handle)) == 0
+        assert library.cnc_sysinfo(handle, system) == 0
+        assert bytes(system)[-1:] == b"2"
+        assert line.payload(0x19)
+        line.close()
+        assert library.cnc_freelibhndl(handle) == 0
+    finally:
+        door.close()
 
 
 def test_a_door_that_ends_and_comes_back(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
