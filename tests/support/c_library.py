@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from polycnc.machine import Device
+from polycnc.runner import WallClock
 from polycnc.servers.calls import build_library, library_of, write_library
 from polycnc.servers.machines import Log, Wanted
 from polycnc.servers.process import DOORS, Machinery, MachineWanted, Serving
@@ -65,11 +66,11 @@ class _StandingWall:
 
 
 class Door:
-    """Machines with the door `calls`, in a thread; no time passes by itself."""
+    """Machines with the door `calls`, in a thread; no time passes by itself, unless they are running."""
 
-    def __init__(self, *machines: tuple[str, Machinery], focas: bool = False) -> None:
+    def __init__(self, *machines: tuple[str, Machinery], focas: bool = False, running: bool = False) -> None:
         self._ready = threading.Event()
-        self._machines, self._focas = machines, focas
+        self._machines, self._focas, self._running = machines, focas, running
         self._loop: asyncio.AbstractEventLoop | None = None
         self._end: asyncio.Event | None = None
         self.devices: Sequence[Device[Any]] = ()
@@ -83,11 +84,14 @@ class Door:
         at = Wanted(port=0)
         own = ((DOORS["focas"], at),) if self._focas else ()
         wanted = [MachineWanted(kind, machinery, doors=own) for kind, machinery in self._machines]
-        serving = Serving(_StandingWall(), Log(), lambda _: None)
+        wall = WallClock() if self._running else _StandingWall()
+        serving = Serving(wall, Log(), lambda _: None)
         try:
             await serving.open(wanted, [(DOORS["calls"], at)])
             self.devices = [each.device for each in serving.machines]
             self.place, self.first_place = serving.doors[-1][1].said, serving.doors[0][1].said
+            if self._running:
+                serving.begin()
             self._ready.set()
             await self._end.wait()
         finally:

@@ -9,6 +9,7 @@ from polycnc.controllers.apci.library._session import UNKNOWN_ERROR
 from polycnc.controllers.library.clib import CLibrary
 
 _NO_PLACE = "the record has no place for the value, so nothing is read or written"
+_WITHOUT_A_PLACE = ("rdaux", "wraux", "rdlp", "wrlp", "rdlpndx", "wrlpndx", "rddv", "rdsdec", "wrsdec")
 _SERVED = "a served board is booted: booting it anew would make another one than the one that is served"
 _ROUTINE = "the library calls no routine of the program"
 
@@ -52,7 +53,7 @@ MCUG3 = CLibrary(
     },
     failures={"rdSampleTime": Success.FAILED, "rdslsp": Success.FAILED},
     left_out={
-        **dict.fromkeys(("rdaux", "wraux", "rdlp", "wrlp", "rddv", "rdsdec", "wrsdec"), _NO_PLACE),
+        **dict.fromkeys(_WITHOUT_A_PLACE, _NO_PLACE),
         "BootFile": _SERVED,
         "MCUG3_SetBoardIntRoutine": _ROUTINE,
         "MCUG3_ResetBoardIntRoutine": _ROUTINE,
