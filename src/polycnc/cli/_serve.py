@@ -68,7 +68,7 @@ def serve_command(
             mtconnect=mtconnect_version,
         )
     )
-    asyncio.run(_serve(plan))
+    asyncio.run(serve_plan(plan))
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -120,7 +120,8 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def _serve(plan: Plan) -> None:
+async def serve_plan(plan: Plan) -> None:
+    """Serve what a plan says until a signal ends it."""
     import asyncio
     import signal
 

@@ -90,7 +90,7 @@ def _open_calls(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
 _ROWS = (
     focas_kind(),
     DoorKind("http", 8080, _http, shared=True, knows_token=True),
-    DoorKind("calls", 8194, _open_calls, frozenset({"fanuc"}), shared=True),
+    DoorKind("calls", 8194, _open_calls, frozenset({"fanuc", "apci", "imc"}), shared=True),
     DoorKind("grbl", 8123, _open_grbl, _CONTROLS),
     *plant_kinds(),
 )
