@@ -8,6 +8,7 @@ from polycnc.errors import UsageError
 from polycnc.servers.machines import Door, DoorKind, ServedMachine, Wanted
 
 FOCAS_PROFILE = "31i"
+_WITH_CONTROL = frozenset({"bosch", "fanuc", "plain"})
 
 
 def focas_kind(profile: str = FOCAS_PROFILE) -> DoorKind:
@@ -33,6 +34,16 @@ def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
     return HttpDoor(machines, wanted)
 
 
+def _opcua(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    try:
+        from polycnc.servers.opcua import OpcuaDoor
+    except ModuleNotFoundError as error:
+        raise UsageError(
+            f"opcua needs {error.name}, which is not installed", hint="pip install 'polycnc[opcua]'"
+        ) from None
+    return OpcuaDoor(machines, wanted)
+
+
 def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
     from polycnc.servers.grbl import PORT, GrblCore, GrblServer, grbl_dialect
 
@@ -48,8 +59,12 @@ def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
 _ROWS = (
     focas_kind(),
     DoorKind("http", 8080, _http, shared=True, knows_token=True),
+    DoorKind(
+        "opcua", 4840, _opcua, _WITH_CONTROL, shared=True, knows_token=True,
+        lasts="opcua builds its address space of thousands of nodes: this takes a few seconds",
+    ),
     DoorKind("grbl", 8123, _open_grbl, frozenset({"plain"})),
-)
+)  # fmt: skip
 
 DOORS = {row.name: row for row in _ROWS}
 """The doors by name."""
