@@ -37,6 +37,16 @@ def _http(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
     return HttpDoor(machines, wanted)
 
 
+def _opcua(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
+    try:
+        from polycnc.servers.opcua import OpcuaDoor
+    except ModuleNotFoundError as error:
+        raise UsageError(
+            f"opcua needs {error.name}, which is not installed", hint="pip install 'polycnc[opcua]'"
+        ) from None
+    return OpcuaDoor(machines, wanted)
+
+
 def _open_grbl(machines: Sequence[ServedMachine], wanted: Wanted) -> Door:
     from polycnc.servers.grbl import PORT, GrblCore, GrblServer, GrblWatch, grbl_dialect
 
@@ -93,7 +103,11 @@ _ROWS = (
     DoorKind("calls", 8194, _open_calls, frozenset({"fanuc", "apci", "imc"}), shared=True),
     DoorKind("grbl", 8123, _open_grbl, _CONTROLS),
     *plant_kinds(),
-)
+    DoorKind(
+        "opcua", 4840, _opcua, _CONTROLS, shared=True, knows_token=True,
+        lasts="opcua builds its address space of thousands of nodes: this takes a few seconds",
+    ),
+)  # fmt: skip
 
 DOORS = {row.name: row for row in _ROWS}
 """The doors by name."""
