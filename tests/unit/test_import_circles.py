@@ -7,10 +7,6 @@ import pytest
 
 # Circles that are left, by package and the modules in them; a module that leaves its circle leaves this table.
 KNOWN = {
-    "polycnc.controllers.apci.board": (
-        "_axis _axis_commands _beginnings _board _board_snapshot _interpolation _jog_commands _motor_command "
-        "_parameter _path_units _setup _shapes _spool_commands _status"
-    ),
     "polycnc.controllers.imc.card": "_card _status",
     "polycnc.runner": (
         "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
