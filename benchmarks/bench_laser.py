@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 from _measure import Figure, at_most, in_turn, polycnc_command
@@ -15,7 +16,7 @@ RATIO = 2.0
 MACHINE = 'name = "laser"\n[spindle]\nlaser = true\nmax_rpm = 1000\n' + "".join(
     f'[[axis]]\nname = "{name}"\nvmax_mm_s = 400\namax_mm_s2 = 4000\n' for name in "XYZ"
 )
-WORDS = {
+WORDS: dict[str, Callable[[int], str]] = {
     "plain": lambda n: "",
     "S": lambda n: f" S{n * 37 % 1000}",
     "S, M3 or M4, T, D": lambda n: f" S{n * 37 % 1000} M{3 + n % 2} T{n % 30} D{n % 9}",

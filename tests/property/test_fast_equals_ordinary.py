@@ -1,4 +1,4 @@
-"""The compiled modal kernel and the ordinary interpreter give the same queue, bit for bit."""
+"""The compiled modal kernel and the reference interpreter give the same queue, bit for bit."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ from polycnc.machine._toml_locator import KeyPath
 from polycnc.units import whole
 
 EPOCH = datetime(2000, 1, 1)
-WORK_OFFSET = re.compile(r"G[12]?5[4-9]")
+WORK_OFFSET = re.compile(r"G[12]?5[4-9]|G59\.[1-3]")
 IO_ADDRESS = re.compile(r"(IW|OW|I|O)(0|[1-9][0-9]*)")
 Deviation: TypeAlias = Annotated[float, Field(ge=1e-9, le=LARGEST_POSITION)]
 CornerShare: TypeAlias = Annotated[float, Field(gt=0, le=0.5)]
@@ -300,7 +300,7 @@ class MachineConfig(StrictModel):
     )
     offsets: dict[str, dict[str, Position]] = Field(
         default={},
-        description="Work offsets G54 to G59, G154 to G159, G254 to G259, like `G54 = { X = 10, Y = 0 }`.",
+        description="Work offsets G54 to G59, G59.1 to 3, G154 to 9, G254 to 9, like `G54 = { X = 10, Y = 0 }`.",
     )
     start: dict[str, Position] = Field(
         default={}, description="Position of each axis at cycle 0, like `X = 10`; absent: its home position."
@@ -329,7 +329,7 @@ class MachineConfig(StrictModel):
             if not WORK_OFFSET.fullmatch(name):
                 yield problem(
                     f"'{name}' is not a work offset",
-                    hint="use G54 to G59, G154 to G159 or G254 to G259",
+                    hint="use G54 to G59, G59.1 to G59.3, G154 to G159 or G254 to G259",
                     at=("offsets", name),
                 )
             yield from self._unknown_axes(offset, ("offsets", name))

@@ -50,7 +50,7 @@ class MachiningWatch:
     _tool: int = 0
     _clear: float = np.inf  # Z from which the tool was fed in last
     _top: float = -np.inf  # highest Z at which it has cut across
-    _rapid_end: float = np.nan  # Z behind the last segment, if that was a rapid
+    _rapid_end: float = np.nan  # Z after the last segment, if that was a rapid
     _first: dict[str, tuple[str, SourcePosition]] = field(default_factory=dict)
     _counts: Counter[str] = field(default_factory=Counter)
 

@@ -210,7 +210,7 @@ class RunResult:
         return self.cutting_path_mm + self.rapid_path_mm
 
     def raise_for_alarms(self) -> None:
-        """Raise the error behind the first alarm, if there is one; it carries this result as `result`.
+        """Raise the error after the first alarm, if there is one; it carries this result as `result`.
 
         Raises:
             ProgramError: the program cannot be run as written.

@@ -12,7 +12,7 @@ from polycnc.nc.blocks import _feeds as feeds
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._moves import Stop, Wait
-from polycnc.nc.blocks._tool_words import tool_data
+from polycnc.nc.blocks._tool_offsets import tool_data
 from polycnc.nc.blocks._words import GWord, MWord, code_text, whole_number
 from polycnc.nc.modal._actions import SPINDLE_SENSES, Action, Group, MAction
 from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, INCH
@@ -35,6 +35,7 @@ _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_EN
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
+_COOLANT = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD, MAction.COOLANT_OFF)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
 
@@ -207,4 +208,14 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
+    if m.action in _COOLANT:
+        _switch_coolant(block, m)
     return Wait(times.auxiliary_s, block.line, (name,))
+
+
+def _switch_coolant(block: BlockContext, m: MWord) -> None:
+    spindle = block.after.spindle
+    others = tuple(code for code in spindle.coolant if code != m.code)
+    block.after.spindle = replace(
+        spindle, coolant=() if m.action is MAction.COOLANT_OFF else (*others, m.code)
+    )

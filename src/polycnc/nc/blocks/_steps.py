@@ -259,8 +259,8 @@ def codes(block: BlockContext) -> None:
 
 
 STEPS: tuple[Step, ...] = (
-    words, ends, code(Group.UNITS), increments, code(Group.PLANE, Group.FEED_MODE), feed, spindle, tool, functions,
-    code(Group.DWELL), length, radius,
+    words, ends, code(Group.UNITS, Group.DIAMETERS), increments, code(Group.PLANE, Group.FEED_MODE),
+    feed, spindle, tool, functions, code(Group.DWELL), length, radius,
     code(Group.WORK_OFFSET, Group.STOPPING, Group.DISTANCE, Group.ARC_DISTANCE, Group.RETRACT), rest,
     code(Group.ROTATION, Group.POLAR), motion, unused, stops, times, position, codes,
 )  # fmt: skip

@@ -295,10 +295,17 @@ class Dialect(StrictModel):
         """Whether a cycle can name the blocks of a contour that come after it."""
         return not of_family(Family.CONTOUR_CYCLE).isdisjoint(self._by_code.values())
 
+    @cached_property
+    def turns_work(self) -> bool:
+        """Whether a work offset can turn the plane of X and Y."""
+        return Action.SET_TABLES in self._by_code.values()
+
     @property
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""
-        return not {Action.SET_DATA, Action.SET_WORK_ZERO}.isdisjoint(self._by_code.values())
+        return not {Action.SET_DATA, Action.SET_WORK_ZERO, Action.SET_TABLES}.isdisjoint(
+            self._by_code.values()
+        )
 
     def path_tolerance_mm(self, path: PathConfig) -> float:
         """Return how far corners may be rounded where the program says nothing, mm; inf if it is free."""

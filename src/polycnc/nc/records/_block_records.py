@@ -1,8 +1,8 @@
-"""What a segment is part of: block records behind one integer per segment.
+"""What a segment is part of: block records after one integer per segment.
 
 The tag of a segment is a block reference: line in the low bits, one bit that tells two executions in a row of
 the same block apart, and above them the number of a context. A context is what many blocks share: the program,
-the calls that led to it and the modal state. Blocks of the ordinary interpreter have the context that they leave
+the calls that led to it and the modal state. Blocks of the reference interpreter have the context that they leave
 behind. A run of plain blocks shares the context that stood before it; the modal words that such blocks may change
 (motion, absolute or incremental, F, S, T, D, and M codes of a laser) are read again from the text when somebody asks.
 So a plain block costs its integer and nothing else.
@@ -66,7 +66,8 @@ class ModalWords:
     """The modal words in force: G codes by their group, and the other addresses as programmed.
 
     `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
-    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
+    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any,
+    `coolant` those of the coolant that is on.
     `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
     offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
     """
@@ -85,6 +86,7 @@ class ModalWords:
     work: tuple[str, ...] = ()
     placement: Placement = NO_PLACEMENT
     spindle_oriented: bool = False
+    coolant: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -365,6 +367,7 @@ class BlockRecords:
             work=modal.work,
             placement=modal.placement,
             spindle_oriented=spindle.oriented,
+            coolant=spindle.coolant,
         )
 
     def _replay(self, context: _Context, begin: RunBegin) -> Replay:

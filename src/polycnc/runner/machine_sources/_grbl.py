@@ -31,7 +31,7 @@ DEVIATION, ARC_TOLERANCE, SOFT_LIMITS, HOMING, HOME_SIDES, PULL_OFF, TOP_RPM, LA
     30,
     32,
 )
-LEFT_OUT = {f"${ARC_TOLERANCE}": "arcs are gone along as arcs, not as chords"}
+LEFT_OUT = {f"${ARC_TOLERANCE}": "arcs are traversed as arcs, not as chords"}
 
 
 def recognises(text: str) -> bool:
