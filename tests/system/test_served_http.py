@@ -261,20 +261,34 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, tm
         page.close()
 
 
-def test_requests_from_the_description_are_never_an_internal_error(served: Served) -> None:
+def test_requests_from_the_description_are_answered_as_it_says(served: Served) -> None:
+    """Status, type and form of each answer are described; what is not of the form asked for is refused."""
     schemathesis = pytest.importorskip("schemathesis", reason="pip install schemathesis")
     schema = schemathesis.openapi.from_url(f"{served.url}/openapi.json")
     codes: set[int] = set()
     for operation in (found.ok() for found in schema.get_all_operations()):
 
-        @settings(max_examples=4, deadline=None, database=None, derandomize=True, phases=[Phase.generate])
+        @settings(max_examples=2, deadline=None, database=None, derandomize=True, phases=[Phase.generate])
         @given(case=operation.as_strategy())
         def ask(case: Any) -> None:
-            if "machine" in case.path_parameters:
-                case.path_parameters["machine"] = "machine"
             answer = case.call()
+            case.validate_response(answer)
             assert answer.status_code < 500, (case.method, case.path, answer.text)
             codes.add(answer.status_code)
 
         ask()
-    assert {200, 404, 422} <= codes
+    assert {200, 404} <= codes
+
+
+@pytest.mark.long
+def test_schemathesis_finds_nothing() -> None:
+    pytest.importorskip("schemathesis", reason="pip install schemathesis")
+    served = Served()
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "schemathesis.cli", "run", f"{served.url}/openapi.json", "--max-examples", "50"],
+            capture_output=True, text=True, timeout=1800, check=False,
+        )  # fmt: skip
+    finally:
+        served.end()
+    assert done.returncode == 0, done.stdout[-5000:]

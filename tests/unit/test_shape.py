@@ -207,7 +207,7 @@ def way(call: Callable[[], object]) -> tuple[int, int, int]:
 
 
 def of_a_block(text: str) -> Callable[[], object]:
-    """Return what prepares one block behind a short program."""
+    """Return what prepares one block after a short program."""
     lines = ("G21 G90 G94 G54", "G1 X10 F600", text, "M30")
     program = ProgramText.from_text("\n".join(lines) + "\n")
     channel = Channel(program, load_dialect("fanuc"), Machine(load_machine("mill3")))

@@ -39,6 +39,7 @@ def serve_command(
     memory: _options.Memory = None,
     characters: _options.Characters = None,
     faults: _options.Faults = None,
+    mtconnect_version: _options.MTConnectVersion = "2.7",
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
     import asyncio
@@ -64,6 +65,7 @@ def serve_command(
             rate=rate,
             memory=memory,
             faults=faults,
+            mtconnect=mtconnect_version,
         )
     )
     asyncio.run(_serve(plan))

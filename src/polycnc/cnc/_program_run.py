@@ -230,7 +230,7 @@ class ProgramRun:
         """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
 
         With `calculate` everything before is carried out without moving, and with the start the axes go straight at
-        rapid to where that block begins; else modal state and position are what they are. The program ends behind the
+        rapid to where that block begins; else modal state and position are what they are. The program ends after the
         block on line `last`, if one is given. Return the line.
 
         Raises:
@@ -521,7 +521,7 @@ class ProgramRun:
     def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
-        It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
+        It returns early when the run stops (a block's end, a program stop, its end, an alarm), and with
         `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
         is not asked meanwhile, since nothing can have come.
         """

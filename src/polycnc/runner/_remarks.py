@@ -48,7 +48,7 @@ class MachiningWatch:
     _tool: int = 0
     _clear: float = np.inf  # Z from which the tool was fed in last
     _top: float = -np.inf  # highest Z at which it has cut across
-    _rapid_end: float = np.nan  # Z behind the last segment, if that was a rapid
+    _rapid_end: float = np.nan  # Z after the last segment, if that was a rapid
     _first: dict[str, tuple[str, SourcePosition]] = field(default_factory=dict)
     _counts: Counter[str] = field(default_factory=Counter)
 
@@ -56,6 +56,7 @@ class MachiningWatch:
         self._state = self.channel.machine.state
         self._row = self._state.paths.row[self.channel.path]
         self._seen = int(self._row["tail"])
+        self._turning = self.channel.machine.config.spindle.laser  # a laser that is off cuts nothing
         dialect: Dialect = self.channel.dialect
         self._changes_tools = dialect.has_tool_change
         names = self.channel.machine.config.axis_names

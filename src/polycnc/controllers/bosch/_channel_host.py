@@ -189,7 +189,7 @@ class ChannelHost:
 
     @property
     def is_buffered(self) -> bool:
-        """Whether blocks can be put behind those under way."""
+        """Whether blocks can be put after those under way."""
         return self.buffer is not None
 
     @property

@@ -1,4 +1,4 @@
-"""How a program goes on behind a block: calls of sub-programs, returns, stops and ends."""
+"""How a program continues after a block: calls of sub-programs, returns, stops and ends."""
 
 from __future__ import annotations
 

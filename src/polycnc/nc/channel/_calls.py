@@ -258,7 +258,7 @@ class Calls:
         if found is None:
             return (
                 f"there is no sub-program {program}",
-                f"Write it behind the program, beginning with O{program}, or in a file O{program} beside it.",
+                f"Write it after the program, beginning with O{program}, or in a file O{program} beside it.",
                 self._code("PS0078"),
             )
         return None

@@ -196,7 +196,7 @@ class Channel:
     # ------------------------------------------------------------------ preparing
 
     def go_on(self) -> None:
-        """Go on behind the first stop that preparation waits for; it has been executed."""
+        """Go on after the first stop that preparation waits for; it has been executed."""
         self.writer.stops -= 1
 
     def fill(self, blocks: int | None = None, *, compiled: bool = True) -> None:
@@ -230,7 +230,7 @@ class Channel:
         self._calls.begin_at(place)
 
     def bound(self, first: int, last: int) -> None:
-        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
+        """Let the main program, which has not begun, be searched for line `first` and end after line `last`.
 
         Raises:
             UsageError: a language executes it that cannot end there.
@@ -264,7 +264,7 @@ class Channel:
         if self.state.compensation.active:
             raise UsageError(
                 f"radius compensation is active at line {line}",
-                hint="Search a block before G41 or G42, or behind G40.",
+                hint="Search a block before G41 or G42, or after G40.",
             )
         if search.held is None:
             self._reader.jump(place, self._calls.bounds.end)

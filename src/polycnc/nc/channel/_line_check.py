@@ -108,7 +108,7 @@ class LineCheck:
         """Take the blocks of a text as those that come next; refused ones change nothing.
 
         Raises:
-            ProgramError: one of them cannot be executed, or stands behind the end of the program.
+            ProgramError: one of them cannot be executed, or stands after the end of the program.
         """
         before = self.state.copy()
         tables = before.tables.save()

@@ -133,7 +133,7 @@ class Search:
         if self.held is not None:
             raise SnapshotError(
                 "a block of a program with statements has been searched",
-                hint="Take the snapshot behind its start.",
+                hint="Take the snapshot after its start.",
             )
 
     def _fast_forward(self, on: bool) -> None:

@@ -91,7 +91,7 @@ class MacroLanguage:
             kept.clear()
 
     def interrupt(self) -> None:
-        """Give the interrupt signal: the program that M96 names is called behind the block that is executed."""
+        """Give the interrupt signal: the program that M96 names is called after the block that is executed."""
         self._interrupt = self.interrupt_program is not None
 
     def take_interrupt(self) -> bool:

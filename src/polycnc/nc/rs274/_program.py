@@ -24,7 +24,7 @@ _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
 """An O number by itself is the number of a program, and text."""
 _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
-    r"[#\[]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
     r"|\([ \t]*(?:debug|print)[ \t]*,",
     re.IGNORECASE,
 )
@@ -40,7 +40,7 @@ PAUSE_ROUNDS = 20_000
 def holds_language(content: bytes) -> bool:
     """Tell whether a text may hold more than plain words."""
     return (
-        b"#" in content
+        any(char in content for char in b"#@^")
         or b"[" in content
         or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
         or _TEXT_WITH_VALUES.search(content) is not None

@@ -105,7 +105,7 @@ def _letters_and_commas(code: str) -> SyntaxHint | None:
         return SyntaxHint(
             letters.start(),
             f"'{word}' has no number",
-            f"'{_shown(letters[0])}' is no word: write the number right behind the letter, like {word}10.",
+            f"'{_shown(letters[0])}' is no word: write the number right after the letter, like {word}10.",
         )
     if comma is None:
         return None

@@ -225,7 +225,7 @@ def _note(track: Track, listing: Listing) -> str:
 
 
 def _packed(columns: dict[str, npt.NDArray[Any]]) -> tuple[bytes, dict[str, dict[str, Any]]]:
-    """Return arrays one behind the other, each at a multiple of 8 bytes, and where each is."""
+    """Return arrays one after the other, each at a multiple of 8 bytes, and where each is."""
     pieces: list[bytes] = []
     places: dict[str, dict[str, Any]] = {}
     at = 0

@@ -50,7 +50,7 @@ class DoorKind:
 
     `controllers` are the kinds of machines that it can serve, empty: all. `open_door` makes the door, which listens
     once it is started. A `shared` one answers for all machines of the process, another one for a single machine.
-    `knows_token`: its protocol has a place for a secret.
+    `knows_token`: its protocol has a place for a secret. `commands`: its clients can do something to the machine.
     """
 
     name: str
@@ -59,6 +59,7 @@ class DoorKind:
     controllers: frozenset[str] = frozenset()
     shared: bool = False
     knows_token: bool = False
+    commands: bool = True
 
     def serves(self, machine: ServedMachine) -> bool:
         """Tell whether it can answer for a machine."""

@@ -11,7 +11,8 @@ from polycnc.errors import UsageError
 from polycnc.machine import Device
 from polycnc.servers.focas import Faults, load_faults, load_profile
 from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, Wanted
-from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind
+from polycnc.servers.mtconnect import USUAL_VERSION, VERSIONS
+from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind, plant_kinds
 from polycnc.servers.setup._file import MachineTable, load_serve_file
 
 _MOST_PORT = 65535
@@ -39,6 +40,7 @@ class Flags:
     rate: float = 1.0
     memory: Path | None = None
     faults: Path | None = None
+    mtconnect: str = USUAL_VERSION
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,14 +88,28 @@ def _at(name: str, at: str) -> Wanted:
     return Wanted(path=at)
 
 
+def check_version(version: str) -> None:
+    """Refuse a version of MTConnect that is not served.
+
+    Raises:
+        UsageError: It is none.
+    """
+    if version not in VERSIONS:
+        raise UsageError(
+            f"there is no version '{version[:20]}' of MTConnect", hint=f"Versions are {', '.join(VERSIONS)}."
+        )
+
+
 def plan_of(flags: Flags) -> Plan:
     """Return what is to be served.
 
     Raises:
         UsageError: It is not said what, or it cannot be.
     """
-    table = {**DOORS, "focas": focas_kind(flags.profile)}
     load_profile(flags.profile)
+    check_version(flags.mtconnect)
+    rows = (focas_kind(flags.profile), *plant_kinds(flags.mtconnect))
+    table = {**DOORS, **{row.name: row for row in rows}}
     named = [kind for kind, machine in flags.kinds.items() if machine is not None]
     if flags.file is not None:
         if named:
@@ -123,8 +139,9 @@ def plan_of(flags: Flags) -> Plan:
         if not row.knows_token and row.name not in insecure:
             return row, wanted
         if not row.knows_token:
+            does = "command" if row.commands else "read"
             warnings[
-                f"{row.name} on {flags.expose} knows no passwords: whoever reaches it can command the machine"
+                f"{row.name} on {flags.expose} knows no passwords: whoever reaches it can {does} the machine"
             ] = None
         return row, replace(wanted, address=flags.expose)
 

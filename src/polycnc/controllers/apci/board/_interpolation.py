@@ -54,7 +54,7 @@ def queue(board: CommandedBoard, axes: Sequence[int], shape: Shape, speeds: Spee
 def queue_interpolation(
     board: CommandedBoard, units: PathUnits, speeds: Speeds, shape: Shape, *, index: int = -1
 ) -> None:
-    """Put an interpolation behind what the spoolers of its axes hold."""
+    """Put an interpolation after what the spoolers of its axes hold."""
     ac, vl, tvl = units.acceleration(speeds.ac), units.velocity(speeds.vl), units.velocity(speeds.tvl)
     bases = units.velocity_unit, units.acceleration_unit
     if isinstance(shape, Line):

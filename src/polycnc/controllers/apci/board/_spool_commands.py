@@ -36,7 +36,7 @@ RESET_TARGET_VELOCITY = 2001
 def ssms(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Start the spoolers of `axes` together; ends a wait for time or inputs (Manual 002, 4.4.120).
 
-    An axis that still carries out the entry at which sstps will halt it goes on behind that entry.
+    An axis that still carries out the entry at which sstps will halt it continues after that entry.
     """
     board.in_turn(axes, partial(start_spoolers, board, axes))
 
@@ -61,13 +61,13 @@ def _works_on_its_queue(row: Any) -> bool:
 
 
 def sstps(board: CommandedBoard, axes: Sequence[int]) -> None:
-    """Pause the spoolers of `axes` behind what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
+    """Pause the spoolers of `axes` after what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
     for i in axes:
         board.state.axis[i]["running"] = 0
 
 
 def sdels(board: CommandedBoard, axes: Sequence[int]) -> None:
-    """Reject what `axes` have queued behind what they carry out now (Manual 002, 4.4.115)."""
+    """Reject what `axes` have queued after what they carry out now (Manual 002, 4.4.115)."""
     board.in_turn(axes, partial(reject_queued, board, axes))
 
 
@@ -113,7 +113,7 @@ def ssf(board: CommandedBoard, i: int, command: int, value: float, *, index: int
 
 
 def add_special(board: CommandedBoard, i: int, command: int, value: float, *, index: int) -> None:
-    """Put a special function behind what the spooler of an axis holds."""
+    """Put a special function after what the spooler of an axis holds."""
     e = _new(board, i, SPECIAL, index)
     if e < 0:
         return
@@ -155,7 +155,7 @@ def spd(
 
 
 def add_points(board: CommandedBoard, i: int, points: Sequence[float], *, relative: bool, index: int) -> None:
-    """Put a table behind what the spooler of an axis holds."""
+    """Put a table after what the spooler of an axis holds."""
     state, axis = board.state, board.axes[i]
     end = queued_position(state, board.kernel.base, i) + sum(points) if relative else points[-1] + axis.origin
     e = _new(board, i, TABLE, index) if math.isfinite(end) else -1

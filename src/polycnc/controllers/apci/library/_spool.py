@@ -33,7 +33,7 @@ def ssms(asel: Selection) -> None:
 
 @axes_call
 def sstps(asel: Selection) -> None:
-    """Pause the spoolers behind what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
+    """Pause the spoolers after what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
     asel.order(spooler.sstps)
 
 

@@ -225,7 +225,7 @@ class CompiledTurns:
         self._join()
 
     def _join(self) -> None:
-        """Put all programs behind one another."""
+        """Put all programs one after another."""
         rows: list[tuple[Any, ...]] = []
         routines: list[tuple[int, ...]] = []
         cells: list[int] = []

@@ -264,7 +264,7 @@ class Task:
     # Messages
 
     def write(self, text: str) -> None:
-        """Append to the message string, which begins anew behind a complete one; it ends at 512 characters."""
+        """Append to the message string, which begins anew after a complete one; it ends at 512 characters."""
         if self._text_bits & COMPLETE:
             self._text, self._text_bits = "", 0
         self._text = (self._text + text)[:STRING_BYTES]

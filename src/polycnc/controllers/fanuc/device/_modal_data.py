@@ -80,7 +80,7 @@ class ModalData:
         self._units = units
 
     def block(self, ahead: int) -> ModalBlock:
-        """Return what holds with the executed block (0), the next one (1) or the one behind it (2)."""
+        """Return what holds with the executed block (0), the next one (1) or the one after it (2)."""
         executed = self._execution.block
         if executed is None:
             return ModalBlock(self._at_start(), {})

@@ -40,7 +40,7 @@ def number_of(name: str | None) -> int:
 
 
 def comment_of(content: bytes) -> str:
-    """Return the comment behind the program number."""
+    """Return the comment after the program number."""
     found = _COMMENT.match(content)
     return found[1].decode("latin-1") if found else ""
 

@@ -122,7 +122,7 @@ def cnc_rdalminfo(
 ) -> tuple[EW, Annotated[ALMINFO, Out("alarminfo")]]:
     """Read number, axis and, with `type` 1, text of alarms of the chosen groups (Manual 000, cnc_rdalminfo).
 
-    Ruling: as many alarms as `length` has room for, oldest first; behind the last one stands FFFFH.
+    Ruling: as many alarms as `length` has room for, oldest first; after the last one stands FFFFH.
     """
     if type not in (0, 1):
         raise Refused(EW.EW_NUMBER)
