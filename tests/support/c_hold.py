@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from polycnc.controllers.library import Session
+from polycnc.controllers.library import Opaque, Session
 from polycnc.controllers.library.clib import Call, CLibrary, Slot, Way
 from polycnc.errors import UsageError
 from support.c_library import PATTERN, Guarded
@@ -50,6 +50,7 @@ class Hold:
     size: Callable[[Call, Slot, dict[str, Any]], int]
     before: Callable[[Call, list[Passed]], Any] = lambda call, passed: None
     texts: tuple[str, ...] = ("", "A", "abc", "x" * 80)
+    objects: dict[int, Any] = field(default_factory=dict)
     told: list[str] = field(default_factory=list)
     codes: set[Any] = field(default_factory=set)
 
@@ -81,7 +82,10 @@ class Hold:
             if slot.way is Way.VALUE:
                 value = self._value(call, slot)
                 numbers[slot.argument.name] = value
-                passed[slot.argument.name] = Passed(slot, slot.element(value), value)
+                opaque = isinstance(slot.argument.type, Opaque)
+                python = self.objects.get(value, value or None) if opaque else value
+                c = ctypes.c_void_p(value) if opaque else slot.element(value)
+                passed[slot.argument.name] = Passed(slot, c, python)
         for slot in call.slots:
             if slot.way is Way.NUMBERS:
                 made = self._numbers(call, slot, numbers)
@@ -89,7 +93,8 @@ class Hold:
                 passed[slot.argument.name] = made
         for slot in call.slots:
             if slot.argument.name not in passed:
-                passed[slot.argument.name] = self._memory(call, slot, numbers)
+                passed[slot.argument.name] = made = self._memory(call, slot, numbers)
+                numbers[slot.argument.name] = made.python
         return [passed[each.argument.name] for each in call.slots]
 
     def _value(self, call: Call, slot: Slot) -> Any:
@@ -158,7 +163,8 @@ class Hold:
         if early is not None:
             return early, nothing
         function = call.function
-        null = self.library.null if function.coded else None if function.result == "void" else 0
+        failure = self.library.failures.get(function.name, self.library.null)
+        null = failure if function.coded else None if function.result == "void" else 0
         if any(each.is_null and each.slot.writes for each in passed):
             return null, nothing
         values = [each.python for each in passed if each.slot.argument.passed]

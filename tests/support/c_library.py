@@ -17,6 +17,7 @@ from typing import Any
 import pytest
 
 from polycnc.machine import Device
+from polycnc.runner import WallClock
 from polycnc.servers.calls import build_library, library_of, write_library
 from polycnc.servers.machines import Log, Wanted
 from polycnc.servers.process import DOORS, Machinery, MachineWanted, Serving
@@ -65,29 +66,32 @@ class _StandingWall:
 
 
 class Door:
-    """Machines with the door `calls`, in a thread; no time passes by itself."""
+    """Machines with the door `calls`, in a thread; no time passes by itself, unless they are running."""
 
-    def __init__(self, *machines: tuple[str, Machinery], log: Path | None = None, trace: str = "") -> None:
+    def __init__(self, *machines: tuple[str, Machinery], focas: bool = False, running: bool = False) -> None:
         self._ready = threading.Event()
-        self._machines, self._log, self._trace = machines, log, trace
+        self._machines, self._focas, self._running = machines, focas, running
         self._loop: asyncio.AbstractEventLoop | None = None
         self._end: asyncio.Event | None = None
         self.devices: Sequence[Device[Any]] = ()
-        self.place = ""
+        self.place = self.first_place = ""
         self._thread = threading.Thread(target=lambda: asyncio.run(self._serve()), daemon=True)
         self._thread.start()
         assert self._ready.wait(60)
 
     async def _serve(self) -> None:
         self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
-        wanted = [MachineWanted(kind, machinery) for kind, machinery in self._machines]
-        log = Log(self._log)
-        serving = Serving(_StandingWall(), log, lambda _: None)
+        at = Wanted(port=0)
+        own = ((DOORS["focas"], at),) if self._focas else ()
+        wanted = [MachineWanted(kind, machinery, doors=own) for kind, machinery in self._machines]
+        wall = WallClock() if self._running else _StandingWall()
+        serving = Serving(wall, Log(), lambda _: None)
         try:
-            at = Wanted(port=0, path=self._trace, log=log)
             await serving.open(wanted, [(DOORS["calls"], at)])
             self.devices = [each.device for each in serving.machines]
-            self.place = serving.doors[0][1].said
+            self.place, self.first_place = serving.doors[-1][1].said, serving.doors[0][1].said
+            if self._running:
+                serving.begin()
             self._ready.set()
             await self._end.wait()
         finally:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ctypes
 import random
 import socket
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,7 +17,7 @@ from polycnc.controllers.library.clib import Call, Slot, Way
 from polycnc.servers.process import Machinery
 from support.c_hold import Hold, Passed
 from support.c_library import Door, at_door, built, loaded
-from support.command import COMMAND, environment
+from support.focas_line import Line
 
 AXES = 4
 HANDLE = 1
@@ -101,7 +100,7 @@ def test_every_function_answers_and_writes_as_the_facade(
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("seed", range(1))
 def test_many_calls_answer_and_write_as_the_facade(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int
 ) -> None:
@@ -185,6 +184,23 @@ def test_a_control_by_its_address_and_another_by_its_own(
         other.close()
 
 
+def test_an_unchanged_program_finds_its_control_at_the_port_of_focas(tmp_path: Path) -> None:
+    library = loaded("fanuc", tmp_path)
+    door = Door(("fanuc", Machinery(axes=2)), focas=True)
+    try:
+        port = int(door.first_place.rpartition(":")[2])
+        line = Line(port)
+        handle, system = ctypes.c_uint16(), (ctypes.c_char * 18)()
+        assert library.cnc_allclibhndl3(b"localhost", port, 5, ctypes.byref(handle)) == 0
+        assert library.cnc_sysinfo(handle, system) == 0
+        assert bytes(system)[-1:] == b"2"
+        assert line.payload(0x19)
+        line.close()
+        assert library.cnc_freelibhndl(handle) == 0
+    finally:
+        door.close()
+
+
 def test_a_door_that_ends_and_comes_back(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     library = loaded("fanuc", tmp_path)
     first = Door(("fanuc", Machinery(axes=2)))
@@ -205,79 +221,3 @@ def test_a_door_that_ends_and_comes_back(monkeypatch: pytest.MonkeyPatch, tmp_pa
         assert library.cnc_statinfo(other, state) == 0
     finally:
         second.close()
-
-
-PROGRAM = r"""
-#include <stdio.h>
-#include "fwlib32.h"
-
-int main(void)
-{
-    unsigned short handle;
-    ODBAXIS at;
-    ODBM macro;
-    IODBPSD parameter;
-    short code = cnc_allclibhndl(&handle);
-    printf("open %d\n", code);
-    if (code)
-        return 1;
-    printf("write %d\n", cnc_wrmacro(handle, 103, 10, 271828, 5));
-    code = cnc_rdmacro(handle, 103, sizeof macro, &macro);
-    printf("macro %d: %d %d\n", code, (int)macro.mcr_val, macro.dec_val);
-    code = cnc_absolute(handle, ALL_AXES, 4 + 4 * 3, &at);
-    printf("position %d: %d %d %d\n", code, (int)at.data[0], (int)at.data[1], (int)at.data[2]);
-    printf("short %d\n", cnc_absolute(handle, ALL_AXES, 15, &at));
-    code = cnc_rdparam(handle, 1420, 1, 8, &parameter);
-    printf("parameter %d: %d\n", code, (int)parameter.u.ldata);
-    printf("free %d\n", cnc_freelibhndl(handle));
-    return 0;
-}
-"""
-
-
-def _facade_says() -> str:
-    session = fwlib.Session()
-    session.attach(0, PowerMate(3, characters=128_000))
-    _, handle = session.cnc_allclibhndl()
-    write = session.cnc_wrmacro(handle, 103, 10, 271828, 5)
-    code, macro = session.cnc_rdmacro(handle, 103, 10)
-    read, at = session.cnc_absolute(handle, fwlib.ALL_AXES, 16)
-    short, _ = session.cnc_absolute(handle, fwlib.ALL_AXES, 15)
-    found, parameter = session.cnc_rdparam(handle, 1420, 1, 8)
-    lines = (
-        "open 0", f"write {write:d}", f"macro {code:d}: {macro.mcr_val} {macro.dec_val}",
-        f"position {read:d}: {at.data[0]} {at.data[1]} {at.data[2]}", f"short {short:d}",
-        f"parameter {found:d}: {parameter.u.ldata}", "free 0",
-    )  # fmt: skip
-    return "".join(f"{line}\n" for line in lines)
-
-
-@pytest.fixture(scope="module")
-def served() -> Iterator[str]:
-    process = subprocess.Popen(
-        [*COMMAND, "serve", "--fanuc", "--doors", "calls=0"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-    )  # fmt: skip
-    assert process.stdout is not None
-    yield process.stdout.readline().partition(" ")[2].strip()
-    process.terminate()
-    _, error = process.communicate(timeout=20)
-    assert "Traceback" not in error, error
-
-
-def test_a_c_program_prints_what_the_facade_says(tmp_path: Path, served: str) -> None:
-    folder = built("fanuc")
-    source = tmp_path / "client.c"
-    source.write_text(PROGRAM)
-    subprocess.run(
-        ["gcc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic", "-I", folder, "-o", tmp_path / "client",
-         source, "-L", folder, "-lfwlib32", f"-Wl,-rpath,{folder}"], check=True,
-    )  # fmt: skip
-    ran = subprocess.run(
-        [tmp_path / "client"],
-        env=environment(POLYCNC_CALLS=served),
-        capture_output=True,
-        text=True,
-        timeout=60,
-    )
-    assert (ran.stdout, ran.stderr) == (_facade_says(), "")

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
+import json
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +15,8 @@ import pytest
 from polycnc import runner
 from polycnc.errors import ConfigurationError, ProgramError, UsageError
 from polycnc.machine import MachineConfig
+from polycnc.runner import view_program
+from polycnc.runner.view import TrackCollector
 from polycnc.servers.grbl import GrblCore, grbl_control
 from support.grbl_sender import Bench
 from support.programs import LINEAR, TIMES, machine_config, moves, refusal
@@ -19,6 +26,19 @@ DRY = machine_config(LINEAR, "[spindle]\nmax_rpm = 900\n", name="dry")
 MERGING = LASER.model_copy(
     update={"path": LASER.path.model_copy(update={"path_tolerance_mm": 0.2, "merge_mm": 0.02})}
 )
+
+
+def _content(html: str) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Return what a page says, and its columns."""
+
+    def unpacked(name: str) -> bytes:
+        found = re.search(rf'<script type="text/plain" class="data" id="{name}">([^<]*)</script>', html)
+        assert found is not None
+        return gzip.decompress(base64.b64decode(found[1]))
+
+    about, blob = json.loads(unpacked("about")), unpacked("data")
+    places = about["columns"].items()
+    return about, {name: np.frombuffer(blob, f"<{at['type']}", at["length"], at["at"]) for name, at in places}
 
 
 def traced(program: str, config: MachineConfig = LASER) -> runner.Trace:
@@ -180,3 +200,20 @@ def test_a_control_has_the_laser_that_its_machine_file_has(laser: bool) -> None:
     assert bench.send(f"$32={int(laser)}\n", 100)[-1] == "ok"
     assert bench.send(f"$32={int(not laser)}\n", 100)[-1] == "error:3"
     assert f"$32={int(laser)}" in bench.send("$$\n", 100)
+
+
+def test_a_view_has_the_power_of_its_points() -> None:
+    program = "M4 S720\nG1 X60 F6000\nX70 S350\nG0 X90\nX95\nM3 S20\nG1 X99\n"
+    collector = TrackCollector(("mm", "mm", "mm"), laser=LASER)
+    result = runner.run(program, LASER, "grbl", trace=True, tagged_rows=collector.add)
+    track, power = collector.track(collector.execution()), power_of(result.trace)
+    assert track.power is not None
+    thinned = np.interp(result.trace.t_s, track.t_s, track.power)
+    # a step between two cycles is drawn as a slope between the points beside it
+    assert np.abs(thinned - power).max() <= 9.0 + np.abs(np.diff(power)).max()
+    assert np.mean(np.abs(thinned - power) > 9.5) < 0.01
+    about, columns = _content(runner.run(program, LASER, "grbl", trace=True).view().html)
+    assert about["columns"]["power"]["length"] == len(columns["t_s"])
+    np.testing.assert_allclose(columns["power"], track.power, rtol=1e-6)
+    assert "power" in _content(view_program(program, LASER, "grbl").html)[1]
+    assert "power" not in _content(view_program("G1 X5 F300\n", DRY, "grbl").html)[1]

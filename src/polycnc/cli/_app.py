@@ -9,6 +9,7 @@ import typer
 from polycnc import __version__
 from polycnc.cli import (
     _batch,
+    _calls,
     _check,
     _clib,
     _compare,
@@ -74,6 +75,9 @@ app.command("serve", short_help="Serve a simulated control to clients on the net
 )
 app.command("clib", short_help="Write and build a C library that old programs link against.")(
     guarded(_clib.clib_command)
+)
+app.command("calls", short_help="Serve a machine to C programs, and trace what they call.")(
+    guarded(_calls.calls_command)
 )
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)

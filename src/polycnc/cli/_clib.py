@@ -11,7 +11,9 @@ from polycnc.cli._output import say
 
 
 def clib_command(
-    kind: Annotated[str, typer.Argument(help="fanuc (fwlib32).", metavar="KIND")],
+    kind: Annotated[
+        str, typer.Argument(help="fanuc (fwlib32), imc (IMCnet) or apci (mcug3).", metavar="KIND")
+    ],
     folder: Annotated[Path, typer.Option("--output", "-o", help="Where to write.", metavar="DIR")] = Path(),
     target: Annotated[
         str | None, typer.Option(help="linux, win32, win64 or macos; absent: this computer.", metavar="NAME")

@@ -52,6 +52,8 @@ class ManualMotion:
         """Whether each axis is referenced, by its place."""
         self.jog_speeds = self._profiles.jog_speeds
         """How fast a jog key moves each axis with its override (mm/s or deg/s), by its place."""
+        self.feed_overrides = self._profiles.feed_overrides
+        """The feed override that acts on each axis moved by hand (1 is 100 %), by its place."""
 
     @property
     def data(self) -> ManualData:

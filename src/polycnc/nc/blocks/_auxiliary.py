@@ -35,9 +35,7 @@ _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_EN
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
-_COOLANT = {
-    MAction.COOLANT_MIST: (True, None), MAction.COOLANT_FLOOD: (None, True), MAction.COOLANT_OFF: (False, False),
-}  # fmt: skip
+_COOLANT = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD, MAction.COOLANT_OFF)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
 
@@ -210,7 +208,14 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
-    if (coolant := _COOLANT.get(m.action)) is not None:
-        (mist, flood), (old_mist, old_flood) = coolant, block.after.coolant
-        block.after.coolant = old_mist if mist is None else mist, old_flood if flood is None else flood
+    if m.action in _COOLANT:
+        _switch_coolant(block, m)
     return Wait(times.auxiliary_s, block.line, (name,))
+
+
+def _switch_coolant(block: BlockContext, m: MWord) -> None:
+    spindle = block.after.spindle
+    others = tuple(code for code in spindle.coolant if code != m.code)
+    block.after.spindle = replace(
+        spindle, coolant=() if m.action is MAction.COOLANT_OFF else (*others, m.code)
+    )

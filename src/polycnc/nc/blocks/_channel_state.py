@@ -52,7 +52,7 @@ class Plain:
     compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops, `merge_mm` how
     far points may lie off the line that several are merged into. `m_codes` are those of the last block that had
     any. `frame` is how programmed positions are turned, scaled and mirrored, `placement` where they lie besides,
-    `coolant` is mist and flood, `references` are the reference positions that the program has set,
+    `references` are the reference positions that the program has set,
     `skip_position` where the last skip move ended (machine coordinates), `probe` the last probing.
     `corner` is a straight move that waits for the next one, `nurbs` a curve that is being written, `spline_way` leads
     from the end of a cubic spline to its last control point turned about, until anything else moves.
@@ -82,7 +82,6 @@ class Plain:
     spline_way: tuple[float, float] | None = None
     nurbs: Nurbs | None = None
     mode: Family = Family.MOVE
-    coolant: tuple[bool, bool] = (False, False)
     references: tuple[tuple[float, ...] | None, tuple[float, ...] | None] = (None, None)
 
 

@@ -66,7 +66,8 @@ class ModalWords:
     """The modal words in force: G codes by their group, and the other addresses as programmed.
 
     `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
-    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
+    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any,
+    `coolant` those of the coolant that is on.
     `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
     offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
     """
@@ -85,6 +86,7 @@ class ModalWords:
     work: tuple[str, ...] = ()
     placement: Placement = NO_PLACEMENT
     spindle_oriented: bool = False
+    coolant: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -365,6 +367,7 @@ class BlockRecords:
             work=modal.work,
             placement=modal.placement,
             spindle_oriented=spindle.oriented,
+            coolant=spindle.coolant,
         )
 
     def _replay(self, context: _Context, begin: RunBegin) -> Replay:

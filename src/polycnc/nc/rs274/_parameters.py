@@ -12,6 +12,7 @@ from polycnc.nc.rs274._functions import NumberError
 from polycnc.nc.rs274._known_names import KNOWN_NAMES
 
 AXES = "XYZABCUVW"
+LAST_LOCAL = 30
 LAST_COMMON = 5000
 _LAST = 5602
 _REFERENCES = {5160 // 20: 1, 5180 // 20: 2}
@@ -27,6 +28,15 @@ class Parameters:
         self.level = 0
         self._others: dict[int, float] = {}
         self._state: ChannelState | None = None
+
+    def saved(self) -> tuple[dict[int, float], dict[int, float]]:
+        """Return what programs have set by number: common parameters, and further ones."""
+        return {n: value for n, value in enumerate(self.common) if value}, dict(self._others)
+
+    def put_back(self, common: dict[int, float], others: dict[int, float], names: dict[str, float]) -> None:
+        """Go back to what programs had set."""
+        self.common[:] = [common.get(n, 0.0) for n in range(len(self.common))]
+        self._others, self.names = dict(others), dict(names)
 
     def attach(self, state: ChannelState) -> None:
         """Read from the state of a channel."""

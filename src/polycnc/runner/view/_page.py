@@ -143,6 +143,8 @@ def _columns(
         "zero_s": np.array(track.zeros.start, np.float64) * track.cycle_s,
         "zero": np.ascontiguousarray(track.zeros.offsets(len(axes)).T),
     }
+    if track.power is not None:
+        columns["power"] = track.power.astype(np.float32)
     tips = places(track, axes, machine)
     if not np.array_equal(tips, places(track, axes, None)):
         columns["tip"] = _single(tips)

@@ -3,12 +3,13 @@
 from polycnc.controllers.library.clib import PORT
 from polycnc.servers.calls._build import TARGETS, build_command, build_library, target_here, write_library
 from polycnc.servers.calls._caller import Caller
-from polycnc.servers.calls._client import CallClient, Hello, Trace
+from polycnc.servers.calls._client import MAGIC, CallClient, Hello, Trace
 from polycnc.servers.calls._libraries import LIBRARIES, Served, library_of
 from polycnc.servers.calls._server import CallsServer
 
 __all__ = [
     "LIBRARIES",
+    "MAGIC",
     "PORT",
     "TARGETS",
     "CallClient",

@@ -14,6 +14,7 @@ from polycnc.errors import UsageError
 _NULL = 0xFFFFFFFF
 _SIZE = struct.Struct("<I")
 _ANSWER = struct.Struct("<HHI")
+_MOST_HANDLES = 65536  # that a client has ever had
 _CARRIED_OUT, _REFUSED = 0, 1
 
 
@@ -71,10 +72,10 @@ class Caller:
     def _done(self, call: Call, given: list[Given]) -> Done:
         name = call.function.name
         null = Done(name, self._code(call, self.library.null), [], True)
-        if any(each.room is None for each in given if each.slot.writes):
+        if any(each.room is None for each in given if each.slot.writes and not each.slot.holder):
             return null
         function = self.ways.get(name) or getattr(self.session, name)
-        values = {each.slot.argument.name: self._value(each) for each in given if each.slot.argument.passed}
+        values = self._values(given)
         self.session.refused = False
         try:
             answer = function(*values.values())
@@ -84,19 +85,38 @@ class Caller:
         code = None if call.function.result == "void" else results.pop(0)
         if self.session.refused:
             return Done(name, code, [], True)
-        outputs = []
+        return Done(name, code, list(self._outputs(given, values, results)))
+
+    def _values(self, given: list[Given]) -> dict[str, Any]:
+        """Return what the façade is given, by name and in order."""
+        values = {each.slot.argument.name: self._value(each) for each in given if each.slot.argument.passed}
+        for each in given:
+            holder = values.get(each.slot.holder)
+            if holder is not None:
+                held = bytearray(each.room or 0) if each.slot.writes else bytearray(each.content or b"")
+                setattr(holder, each.slot.member, held)
+        return values
+
+    def _outputs(self, given: list[Given], values: dict[str, Any], results: list[Any]) -> Iterator[bytes]:
+        """Go through what is written, each cut to its room."""
         returned = iter(results)
         for each in given:
-            if each.slot.writes:
-                argument = each.slot.argument
+            if not each.slot.writes:
+                continue
+            argument = each.slot.argument
+            if each.slot.holder:
+                value = getattr(values[each.slot.holder], each.slot.member)
+            else:
                 value = next(returned) if argument.returned else values[argument.name]
-                outputs.append(self._bytes(each.slot, value)[: each.room])
-        return Done(name, code, outputs)
+            yield _changed(each, self._bytes(each.slot, value)[: each.room or 0])
 
     def _code(self, call: Call, code: int) -> int | float | None:
         if call.function.result == "void":
             return None
-        return code if call.function.coded else call.function.zero()
+        if call.function.coded:
+            return self.library.failures.get(call.function.name, code)
+        zero: int | float = call.function.zero()
+        return zero
 
     def _value(self, given: Given) -> Any:
         """Return what the façade is given; None for a null pointer."""
@@ -146,9 +166,24 @@ class Caller:
         """Return the number that stands for a handle; 0 for none."""
         if handle is None:
             return 0
-        number = max(self._handles, default=0) + 1
+        number = len(self._handles) + 1
+        if number > _MOST_HANDLES:
+            raise CallError(f"more than {_MOST_HANDLES} handles")
         self._handles[number] = handle
         return number
+
+
+def _changed(given: Given, content: bytes) -> bytes:
+    """Return what has to be written of records: no record behind the last one that the call has changed."""
+    before, width = given.content, given.slot.width
+    if given.slot.way is not Way.RECORDS or not before:
+        return content
+    count = len(content) // width
+    while (
+        count and content[(count - 1) * width : count * width] == before[(count - 1) * width : count * width]
+    ):
+        count -= 1
+    return content[: count * width]
 
 
 def _is_many(slot: Slot) -> bool:

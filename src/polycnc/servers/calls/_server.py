@@ -36,7 +36,6 @@ class CallsServer:
         self._log = log or Log()
         self.trace = None if trace is None else Trace(trace)
         self._server: asyncio.Server | None = None
-        self._names = {LIBRARIES[each.kind].load().name: each.kind for each in machines}
 
     @property
     def said(self) -> str:
@@ -71,9 +70,17 @@ class CallsServer:
         if self.trace is not None:
             self.trace.close()
 
+    def adopt(self, transport: asyncio.Transport, data: bytes) -> None:
+        """Answer a connection that somebody else has taken, and that began with these bytes."""
+        line = _Line(self)
+        transport.set_protocol(line)
+        line.connection_made(transport)
+        line.data_received(data)
+
     def find(self, name: str) -> tuple[Caller, list[ServedMachine]] | None:
         """Return a caller of a library, and the machines that it reaches."""
-        kind = self._names.get(name)
+        kinds = {each.kind for each in self._machines}
+        kind = next((each for each in kinds if LIBRARIES[each].load().name == name), None)
         if kind is None:
             return None
         machines = [each for each in self._machines if each.kind == kind]

@@ -19,7 +19,7 @@ from polycnc.servers.mtconnect._observations import Buffer
 from polycnc.servers.mtconnect._query import MOST_INTERVAL_MS, Asked, asked_of
 from polycnc.servers.mtconnect._recorder import Recorder, time_text
 from polycnc.servers.mtconnect._rows import Version
-from polycnc.servers.mtconnect._xpath import PathError, choose, tree_of
+from polycnc.servers.mtconnect._xpath import Node, PathError, choose, tree_of
 from polycnc.servers.plant import Seen
 
 BUFFER_SIZE = 1 << 16
@@ -67,6 +67,7 @@ class Agent:
         self._since = self._now = "1970-01-01T00:00:00.000Z"
         self._writer = StreamWriter(self.devices, version)
         self._chosen: dict[tuple[str, str], frozenset[Item]] = {}
+        self._trees: dict[tuple[int, ...], Node] = {}
         self._all = frozenset(item for device in devices for item in device.items)
 
     def observe(self, number: int, seen: Seen) -> None:
@@ -137,18 +138,24 @@ class Agent:
             return self._all
         key = asked.device, path if path is not None else ""
         if key not in self._chosen:
-            devices = [self.devices[number] for number in numbers]
             if path is None:
-                found = frozenset(item for device in devices for item in device.items)
+                found = frozenset(item for number in numbers for item in self.devices[number].items)
             else:
                 try:
-                    found = choose(path, tree_of(devices))
+                    found = choose(path, self._tree(numbers))
                 except PathError as error:
                     raise AgentError(Code.INVALID_XPATH, error.what, hint=error.hint) from None
             if len(self._chosen) >= _MOST_CHOSEN:
                 self._chosen.clear()
             self._chosen[key] = found
         return self._chosen[key]
+
+    def _tree(self, numbers: list[int]) -> Node:
+        """Return the description of devices as paths go through it: of all, or of one."""
+        key = tuple(numbers)
+        if key not in self._trees:
+            self._trees[key] = tree_of([self.devices[number] for number in numbers])
+        return self._trees[key]
 
     def _current(self, asked: Asked) -> Answer | StreamAsked:
         wanted = self._wanted(asked)

@@ -63,7 +63,9 @@ class Serving:
         for each in wanted:
             self._make(each, _SHARE_S / len(wanted))
         asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
-        asked += [(kind, at, self.machines) for kind, at in shared]
+        asked += [
+            (kind, at, list(filter(kind.serves, self.machines)) or self.machines) for kind, at in shared
+        ]
         for kind, at, machines in asked:
             if not all(map(kind.serves, machines)):
                 raise UsageError(

@@ -67,6 +67,7 @@ class Session(AnySession):
 
     def __init__(self) -> None:
         super().__init__()
+        self.lines: dict[InstalledBoard, InterruptLine] = {}
         self._memory: Store | None = None
         self._owns_memory = False
         self.attach()
@@ -123,6 +124,7 @@ class Session(AnySession):
             installed.on_new_board.append(connect)
             installed.load_cnc = partial(_load_cnc, kept)
         with self.lock:
+            self._disconnect()
             self.application = Application(pc, folder, path)
             self.messages = Messages(show)
             self.polling, self.lines = Polling(clock, self._boards), lines
@@ -132,6 +134,14 @@ class Session(AnySession):
     def detach(self) -> None:
         """Take all boards out of the PC."""
         self.attach()
+
+    def _disconnect(self) -> None:
+        """Take the interrupt routines of this program from boards that other programs may go on using."""
+        for installed, line in self.lines.items():
+            interrupts = installed.board.interrupts
+            interrupts[:] = [
+                each for each in interrupts if getattr(each, "func", None) != line.raise_interrupt
+            ]
 
     def _close_memory(self) -> None:
         if self._memory is not None and self._owns_memory:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ctypes
 import hashlib
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
 from typing import Any
@@ -14,6 +14,7 @@ from typing import Any
 from polycnc.controllers.library._c_types import Bytes, Opaque, Pointer, Text
 from polycnc.controllers.library._functions import Argument, Direction, Function
 from polycnc.controllers.library._header import Header
+from polycnc.controllers.library._structures import Element
 
 
 class Way(Enum):
@@ -32,7 +33,8 @@ class Slot:
     """An argument as bytes.
 
     `element` is the type of ctypes of a number or a structure; `size` and `room` say in C how many bytes are read and
-    how many may be written.
+    how many may be written. What a pointer in a structure leads to is a slot of its own: `holder` is the argument, and
+    `member` the pointer.
     """
 
     argument: Argument
@@ -40,6 +42,8 @@ class Slot:
     element: Any
     size: str = ""
     room: str = ""
+    holder: str = ""
+    member: str = ""
 
     @property
     def reads(self) -> bool:
@@ -93,11 +97,13 @@ class CLibrary:
         opens_at: The function that connects to an address, its first arguments.
         frees: The function that lets a handle go.
         stdcall: Whether 32-bit Windows programs clean no stack.
-        declarations: C types that prototypes use.
+        declarations: C types that prototypes use, behind the structures.
+        helpers: C functions that extents use.
         in_bytes: Whether a length counts bytes; else elements.
         extents: By function and argument: how many bytes lie behind a pointer, in C.
         aliases: Other names of functions.
         left_out: By function, why it does nothing.
+        failures: By function, what it answers where `null` or `lost` would mean success.
     """
 
     name: str
@@ -117,16 +123,18 @@ class CLibrary:
     frees: str = ""
     stdcall: bool = True
     declarations: str = ""
+    helpers: str = ""
     in_bytes: bool = True
     extents: Mapping[tuple[str, str], str] = field(default_factory=dict)
     aliases: Mapping[str, str] = field(default_factory=dict)
     left_out: Mapping[str, str] = field(default_factory=dict)
+    failures: Mapping[str, int] = field(default_factory=dict)
 
     @cached_property
     def calls(self) -> tuple[Call, ...]:
         """All functions, by name in the order of their numbers."""
         return tuple(
-            Call(number, each, tuple(_slot(self, each, argument) for argument in each.arguments))
+            Call(number, each, tuple(_slots(self, each)))
             for number, (_, each) in enumerate(sorted(self.functions.items()), 1)
             if each.name not in self.left_out
         )
@@ -140,6 +148,26 @@ class CLibrary:
         ]
         rows += [f"{name} {each}" for name, each in self.header.layouts.items()]
         return hashlib.sha256("\n".join(rows).encode()).digest()[:16]
+
+
+def _slots(library: CLibrary, function: Function) -> Iterator[Slot]:
+    for argument in function.arguments:
+        slot = _slot(library, function, argument)
+        held = {name: each for name, each in _elements(slot).items() if each.held}
+        if not held:
+            yield slot
+            continue
+        only_read = replace(argument, direction=Direction.IN)
+        yield replace(slot, argument=only_read)
+        way = Direction.IN if argument.direction is Direction.IN else Direction.OUT
+        for name, each in held.items():
+            behind = replace(argument, name=f"{argument.name}_{name}", direction=way, passed=False)
+            size = f"pc_size({argument.name} ? {argument.name}->{each.counted_by} : 0)"
+            yield Slot(behind, Way.MEMORY, ctypes.c_char, size, size, argument.name, name)
+
+
+def _elements(slot: Slot) -> Mapping[str, Element]:
+    return slot.element._table_.elements if slot.way is Way.RECORD else {}
 
 
 def _slot(library: CLibrary, function: Function, argument: Argument) -> Slot:

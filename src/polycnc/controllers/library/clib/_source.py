@@ -28,7 +28,9 @@ def write_source(library: CLibrary, version: str) -> str:
     bodies += [
         _alias(library, alias, library.functions[name]) for alias, name in sorted(library.aliases.items())
     ]
-    return "\n".join((*_head(library, version), runtime, f'#include "{library.name}.h"\n', *bodies))
+    return "\n".join(
+        (*_head(library, version), runtime, f'#include "{library.name}.h"\n', library.helpers, *bodies)
+    )
 
 
 def _head(library: CLibrary, version: str) -> Iterator[str]:
@@ -75,14 +77,26 @@ def _function(library: CLibrary, call: Call) -> str:
         lines += [f"    {told};", *after]
     else:
         member = "real" if function.result == "double" else "whole"
+        value = f"result.{member}"
+        if not function.coded or function.name in library.failures:
+            value = f"(result.failed ? {library.failures.get(function.name, 0)} : {value})"
         lines += [f"    pc_result result = {told};", *after]
-        lines += [f"    return ({c_type(function.result)})result.{member};"]
+        lines += [f"    return ({c_type(function.result)}){value};"]
     return "\n".join((*lines, "}", ""))
 
 
 def _row(slot: Slot, before: list[str], after: list[str]) -> str:
     """Return what says where an argument lies; a handle, as wide as a pointer, travels as 32 bits."""
     name = slot.argument.name
+    if slot.holder:
+        place = f"{slot.holder} ? {slot.holder}->{slot.member} : 0"
+        return (
+            f"{{PC_WRITE, 0, 0, {place}, {slot.room}}}"
+            if slot.writes
+            else f"{{PC_READ, {place}, {slot.size}, 0, 0}}"
+        )
+    if _holds(slot):
+        return _without_pointers(slot, before)
     opaque = isinstance(slot.argument.type, Opaque)
     if slot.way is Way.VALUE:
         if opaque:
@@ -100,10 +114,28 @@ def _row(slot: Slot, before: list[str], after: list[str]) -> str:
     return f"{{{what[slot.reads, slot.writes]}, {read}, {written}}}"
 
 
+def _holds(slot: Slot) -> bool:
+    return slot.way is Way.RECORD and any(each.held for each in slot.element._table_.elements.values())
+
+
+def _without_pointers(slot: Slot, before: list[str]) -> str:
+    """Return what says where a structure lies whose pointers stay here: a copy of all else."""
+    name = slot.argument.name
+    before.append(f"    unsigned char {name}_[{slot.width}] = {{0}};")
+    before.append(f"    if ({name}) {{")
+    for member, each in slot.element._table_.elements.items():
+        if not each.held:
+            place = getattr(slot.element, member)
+            before.append(f"        memcpy({name}_ + {place.offset}, &{name}->{member}, {place.size});")
+    before.append("    }")
+    return f"{{PC_READ, {name} ? {name}_ : 0, {slot.width}, 0, 0}}"
+
+
 def _left_out(library: CLibrary, function: Function) -> str:
     unused = "".join(f"    (void){each.name};\n" for each in function.arguments)
     reason = library.left_out[function.name]
-    answer = "" if function.result == "void" else f"    return {library.null};\n"
+    code = library.failed if function.coded else 0
+    answer = "" if function.result == "void" else f"    return {code};\n"
     return f"/* {reason} */\n{prototype(library, function)}\n{{\n{unused}{answer}}}\n"
 
 

@@ -82,6 +82,7 @@ typedef struct {
 typedef struct {
     int64_t whole;
     double real;
+    int failed;
 } pc_result;
 
 typedef struct {
@@ -392,7 +393,7 @@ static int pc_usual(int opens, int *code)
         return -1;
     }
     pc_where(place, sizeof place);
-    made = pc_open(place, PC_WAIT_MS, PC_CODE_NOBODY, code);
+    made = pc_open(place, PC_WAIT_MS, opens ? PC_CODE_NOBODY : PC_CODE_LOST, code);
     if (made >= 0)
         pc_default = made;
     return made;
@@ -512,6 +513,7 @@ static pc_result pc_coded(int code)
     pc_result made;
     made.whole = code;
     made.real = 0;
+    made.failed = 1;
     return made;
 }
 
@@ -546,7 +548,7 @@ static void pc_forget(uint16_t handle)
 static pc_result pc_through(uint16_t number, int way, pc_argument *given, int count)
 {
     uint16_t handle, there;
-    pc_result result = {0, 0};
+    pc_result result = {0, 0, 0};
     int connection, code;
     memcpy(&handle, given[0].from, 2);
     pc_enter(&pc_all);
@@ -570,7 +572,7 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
 {
     pc_argument *last = &given[count - 1];
     uint16_t *to = (uint16_t *)last->to, there = 0, here;
-    pc_result result = {0, 0};
+    pc_result result = {0, 0, 0};
     int connection, code = 0;
     if (!to)
         return pc_coded(PC_CODE_NULL);
@@ -610,7 +612,7 @@ static pc_result pc_opening(uint16_t number, int way, pc_argument *given, int co
 
 static pc_result pc_call(uint16_t number, int way, pc_argument *given, int count)
 {
-    pc_result result = {0, 0};
+    pc_result result = {0, 0, 0};
     int connection, code = 0;
 #if PC_HANDLES
     if (way == PC_THROUGH || way == PC_FREES)
