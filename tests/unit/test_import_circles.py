@@ -7,7 +7,6 @@ import pytest
 
 # Circles that are left, by package and the modules in them; a module that leaves its circle leaves this table.
 KNOWN = {
-    "polycnc.controllers.imc.card": "_card _status",
     "polycnc.runner": (
         "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
         "batches._report batches._store batches._sweep batches._thumbnail batches._workers batches._write "
