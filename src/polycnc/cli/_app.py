@@ -9,7 +9,9 @@ import typer
 from polycnc import __version__
 from polycnc.cli import (
     _batch,
+    _calls,
     _check,
+    _clib,
     _compare,
     _conformance,
     _debug,
@@ -70,6 +72,12 @@ app.command("post", short_help="Turn a tool path into a program for a control.")
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
 app.command("serve", short_help="Serve a simulated control to clients on the network.")(
     guarded(_serve.serve_command)
+)
+app.command("clib", short_help="Write and build a C library that old programs link against.")(
+    guarded(_clib.clib_command)
+)
+app.command("calls", short_help="Serve a machine to C programs, and trace what they call.")(
+    guarded(_calls.calls_command)
 )
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)

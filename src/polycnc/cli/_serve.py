@@ -40,6 +40,7 @@ def serve_command(
     characters: _options.Characters = None,
     faults: _options.Faults = None,
     mtconnect_version: _options.MTConnectVersion = "2.7",
+    opcua_nodesets: _options.NodeSets = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
     import asyncio
@@ -66,9 +67,10 @@ def serve_command(
             memory=memory,
             faults=faults,
             mtconnect=mtconnect_version,
+            node_sets=opcua_nodesets,
         )
     )
-    asyncio.run(_serve(plan))
+    asyncio.run(serve_plan(plan))
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -120,7 +122,8 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def _serve(plan: Plan) -> None:
+async def serve_plan(plan: Plan) -> None:
+    """Serve what a plan says until a signal ends it."""
     import asyncio
     import signal
 
@@ -130,6 +133,8 @@ async def _serve(plan: Plan) -> None:
     ended = _end_on_signal(signal.SIGTERM)
     serving = Serving(runner.WallClock(), plan.log, _Late().say)
     try:
+        for why in plan.lasting:
+            say_error(why)
         await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
@@ -153,8 +158,9 @@ def _end_on_signal(number: int) -> list[int]:
     assert task is not None
 
     def end() -> None:
+        if not came:  # who asks twice does not break off the closing
+            task.cancel()
         came.append(number)
-        task.cancel()
 
     with contextlib.suppress(NotImplementedError):  # Windows: the process ends as others do
         asyncio.get_running_loop().add_signal_handler(number, end)

@@ -65,6 +65,14 @@ Memory: TypeAlias = Annotated[
     typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
 ]
 Characters: TypeAlias = Annotated[int | None, typer.Option(help=_CHARACTERS, min=1, max=10**9, metavar="N")]
+NodeSets: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--opcua-nodesets",
+        help="A folder of official node sets for the door opcua; without it, it brings the types it needs.",
+        metavar="DIR",
+    ),
+]
 Faults: TypeAlias = Annotated[
     Path | None,
     typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),

@@ -13,6 +13,7 @@ from polycnc.machine import Device
 from polycnc.servers.machines._owner import Keeper
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import ServedDevice
+from polycnc.servers.machines._values import NO_PARAMETERS, NO_VARIABLES, Values
 
 R = TypeVar("R")
 
@@ -39,6 +40,8 @@ class ServedMachine:
     programs: Programs | None = None
     end: Callable[[], None] = lambda: None
     """Switches the device off and keeps its memory."""
+    parameters: Values = NO_PARAMETERS
+    variables: Values = NO_VARIABLES
 
     def __post_init__(self) -> None:
         if self.programs is None and self.find_control is not None:

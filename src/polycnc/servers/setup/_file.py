@@ -28,10 +28,14 @@ class MachineTable(StrictModel):
 
 
 class ServeFile(StrictModel):
-    """Machines, and `doors` that all of them share (`http`)."""
+    """Machines, and `doors` that all of them share (`http`, `opcua`).
+
+    `opcua_nodesets` is a folder of node sets that `opcua` takes its types from.
+    """
 
     machine: Annotated[tuple[MachineTable, ...], Field(min_length=1, max_length=MOST_MACHINES)]
     doors: dict[str, Port] = Field(default_factory=dict)
+    opcua_nodesets: str | None = None
 
 
 def load_serve_file(path: Path) -> ServeFile:

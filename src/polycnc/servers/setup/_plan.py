@@ -41,16 +41,23 @@ class Flags:
     memory: Path | None = None
     faults: Path | None = None
     mtconnect: str = USUAL_VERSION
+    node_sets: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is to be served, and what the user is warned of."""
+    """What is to be served, what the user is warned of, and why opening the doors lasts."""
 
     machines: tuple[MachineWanted, ...]
     shared: tuple[tuple[DoorKind, Wanted], ...]
     log: Log
     warnings: tuple[str, ...] = ()
+
+    @property
+    def lasting(self) -> tuple[str, ...]:
+        """Return why opening the doors takes seconds; nothing where it does not."""
+        doors = [*self.shared, *(door for each in self.machines for door in each.doors)]
+        return tuple(dict.fromkeys(row.lasts for row, _ in doors if row.lasts))
 
 
 def doors_of(text: str, table: Mapping[str, DoorKind], kind: str) -> list[tuple[DoorKind, Wanted]]:
@@ -114,13 +121,21 @@ def plan_of(flags: Flags) -> Plan:
     if flags.file is not None:
         if named:
             raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
-        machines, shared = _of_file(flags.file, table)
+        if flags.node_sets is not None:
+            raise UsageError(
+                "node sets and a file of machines at once", hint='Write opcua_nodesets = "..." into the file.'
+            )
+        machines, shared, node_sets = _of_file(flags.file, table)
     elif len(named) != 1:
         raise UsageError(
             "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
         )
     else:
         machines, shared = _of_flags(flags, named[0], table)
+        node_sets = flags.node_sets
+    keep = next(
+        (_kept(each.machinery.memory) for each in machines if each.machinery.memory is not None), None
+    )
     token = None if flags.token is None else _token(flags.token)
     insecure = frozenset(filter(None, (flags.insecure or "").split(",")))
     if unknown := insecure - set(table):
@@ -129,7 +144,9 @@ def plan_of(flags: Flags) -> Plan:
     warnings: dict[str, None] = {}
 
     def exposed(row: DoorKind, wanted: Wanted) -> tuple[DoorKind, Wanted]:
-        wanted = replace(wanted, log=log, token=token if row.knows_token else None)
+        wanted = replace(
+            wanted, log=log, token=token if row.knows_token else None, keep=keep, node_sets=node_sets
+        )
         if flags.expose is None:
             return row, wanted
         if row.knows_token and token is None:
@@ -183,7 +200,7 @@ def _of_flags(
 
 def _of_file(
     path: Path, table: Mapping[str, DoorKind]
-) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]]]:
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
     said = load_serve_file(path)
     machines = []
     for each in said.machine:
@@ -198,7 +215,13 @@ def _of_file(
                 tuple(doors),
             )
         )
-    return machines, [_row(table, name, port, shared=True) for name, port in said.doors.items()]
+    shared = [_row(table, name, port, shared=True) for name, port in said.doors.items()]
+    return machines, shared, _beside(path, said.opcua_nodesets)
+
+
+def _kept(memory: Path) -> Path:
+    """Return the folder beside a machine's memory in which doors keep theirs."""
+    return memory.with_name(f"{memory.name}.doors")
 
 
 def _row(table: Mapping[str, DoorKind], name: str, port: int, *, shared: bool) -> tuple[DoorKind, Wanted]:
