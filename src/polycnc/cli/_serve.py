@@ -39,6 +39,7 @@ def serve_command(
     memory: _options.Memory = None,
     characters: _options.Characters = None,
     faults: _options.Faults = None,
+    scenario: _options.Scenario = None,
     opcua_nodesets: _options.NodeSets = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
@@ -65,6 +66,7 @@ def serve_command(
             rate=rate,
             memory=memory,
             faults=faults,
+            scenario=scenario,
             node_sets=opcua_nodesets,
         )
     )

@@ -2,12 +2,13 @@
 
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
-from polycnc.servers.machines._machine import MachineError, ServedMachine
+from polycnc.servers.machines._machine import AS_USUAL, MachineError, ServedMachine, Treatment
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
 
 __all__ = [
+    "AS_USUAL",
     "LOOPBACK",
     "Door",
     "DoorKind",
@@ -23,5 +24,6 @@ __all__ = [
     "Scenario",
     "ServedDevice",
     "ServedMachine",
+    "Treatment",
     "Wanted",
 ]

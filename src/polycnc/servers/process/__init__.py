@@ -2,6 +2,16 @@
 
 from polycnc.servers.process._doors import DOORS, FOCAS_PROFILE, focas_kind
 from polycnc.servers.process._kinds import KINDS, Machinery
+from polycnc.servers.process._rehearsal import rehearse
 from polycnc.servers.process._serving import MachineWanted, Serving
 
-__all__ = ["DOORS", "FOCAS_PROFILE", "KINDS", "MachineWanted", "Machinery", "Serving", "focas_kind"]
+__all__ = [
+    "DOORS",
+    "FOCAS_PROFILE",
+    "KINDS",
+    "MachineWanted",
+    "Machinery",
+    "Serving",
+    "focas_kind",
+    "rehearse",
+]

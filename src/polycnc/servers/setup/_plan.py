@@ -10,8 +10,9 @@ from typing import Any
 from polycnc.errors import UsageError
 from polycnc.machine import Device
 from polycnc.servers.focas import Faults, load_faults, load_profile
-from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, Wanted
+from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, ServedMachine, Wanted
 from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind
+from polycnc.servers.scenarios import Story, load_script
 from polycnc.servers.setup._file import MachineTable, load_serve_file
 
 _MOST_PORT = 65535
@@ -40,6 +41,7 @@ class Flags:
     memory: Path | None = None
     faults: Path | None = None
     node_sets: Path | None = None
+    scenario: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +177,7 @@ def _of_flags(
             flags.rate,
             _scenario(flags.faults, kind),
             tuple((row, replace(at, address=address)) for row, at in own),
+            _story(flags.scenario, flags.faults),
         )
         for number, address in enumerate(flags.addresses, 1)
     ]
@@ -196,6 +199,7 @@ def _of_file(
                 each.rate,
                 _scenario(_beside(path, each.faults), each.controller),
                 tuple(doors),
+                _story(_beside(path, each.scenario), _beside(path, each.faults)),
             )
         )
     shared = [_row(table, name, port, shared=True) for name, port in said.doors.items()]
@@ -234,6 +238,17 @@ def _scenario(path: Path | None, kind: str) -> Callable[[Device[Any]], Scenario[
         raise UsageError(f"no script of faults for a machine of the kind {kind}", hint="Serve a fanuc.")
     script = load_faults(path)
     return lambda device: Faults(script, device.clock.now_s)
+
+
+def _story(path: Path | None, faults: Path | None) -> Callable[[ServedMachine, Log], Scenario[Any]] | None:
+    if path is None:
+        return None
+    if faults is not None:
+        raise UsageError(
+            "a scenario and a script of faults at once", hint="Write the faults as steps of the scenario."
+        )
+    script = load_script(path)
+    return lambda machine, log: Story(script, machine, log)
 
 
 def _token(path: Path) -> str:
