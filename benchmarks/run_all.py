@@ -25,6 +25,7 @@ SCRIPTS = {
     "bench_cpl.py": "CPL",
     "bench_macros.py": "Custom macros",
     "bench_variables.py": "Programs with variables",
+    "bench_laser.py": "Laser programs",
     "bench_lookahead.py": "Look-ahead",
     "bench_profile.py": "Point-to-point planning",
     "bench_machine.py": "Whole virtual machine",

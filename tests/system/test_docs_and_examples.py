@@ -33,6 +33,9 @@ ELSEWHERE = {
     "docs/how-to/add-a-g-code.md",
     "docs/how-to/add-a-cpl-function.md",
     "docs/how-to/add-a-library-function.md",
+    "docs/how-to/add-a-dialect.md",
+    "docs/how-to/add-a-planner-rule.md",
+    "docs/how-to/add-a-controller.md",
 }
 
 

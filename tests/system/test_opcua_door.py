@@ -90,7 +90,10 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     made = Served("--scenario", str(scenario))
     yield made
     error = made.end()
-    said, late = "opcua builds its address space of thousands of nodes: this takes a few seconds\n", "the clocks of the"
+    said, late = (
+        "opcua builds its address space of thousands of nodes: this takes a few seconds\n",
+        "the clocks of the",
+    )
     assert error.startswith(said)
     assert all(line.startswith(late) for line in error[len(said) :].splitlines()), error
 

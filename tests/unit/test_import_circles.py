@@ -7,15 +7,6 @@ import pytest
 
 # Circles that are left, by package and the modules in them; a module that leaves its circle leaves this table.
 KNOWN = {
-    "polycnc.controllers.apci.board": (
-        "_axis _axis_commands _beginnings _board _board_snapshot _interpolation _jog_commands _motor_command "
-        "_parameter _path_units _setup _shapes _spool_commands _status"
-    ),
-    "polycnc.controllers.fanuc": (
-        "data._bindings data._tool_offsets device._axis_motion device._device_state device._execution "
-        "device._history device._macros device._mdi device._modal_data device._panel device._pmc_memory "
-        "device._positions device._power_mate device._programs device._signals device._snapshot device._transfer"
-    ),
     "polycnc.controllers.imc.card": "_card _status",
     "polycnc.runner": (
         "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "

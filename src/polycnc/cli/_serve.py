@@ -40,6 +40,7 @@ def serve_command(
     characters: _options.Characters = None,
     faults: _options.Faults = None,
     scenario: _options.Scenario = None,
+    mtconnect_version: _options.MTConnectVersion = "2.7",
     opcua_nodesets: _options.NodeSets = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
@@ -67,10 +68,11 @@ def serve_command(
             memory=memory,
             faults=faults,
             scenario=scenario,
+            mtconnect=mtconnect_version,
             node_sets=opcua_nodesets,
         )
     )
-    asyncio.run(_serve(plan))
+    asyncio.run(serve_plan(plan))
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -122,7 +124,8 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def _serve(plan: Plan) -> None:
+async def serve_plan(plan: Plan) -> None:
+    """Serve what a plan says until a signal ends it."""
     import asyncio
     import signal
 

@@ -81,3 +81,6 @@ Faults: TypeAlias = Annotated[
     Path | None,
     typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
 ]
+MTConnectVersion: TypeAlias = Annotated[
+    str, typer.Option(help="What clients of mtconnect and shdr see: 2.7, 2.2, 1.8 or 1.3.", metavar="VERSION")
+]

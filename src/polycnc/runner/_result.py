@@ -78,6 +78,7 @@ class Trace:
     simulated servos. The first row is the end of the first cycle, the last row the end of the run.
     `execution` tells the block of each row apart from its neighbours, in whatever program it stands; None in a trace
     that was read from a file. `program` [cycles] names the program of each row; None where there is only one.
+    `power` [cycles] is that of a laser, in units of S; None for a machine without one.
     """
 
     axes: tuple[str, ...]
@@ -90,6 +91,7 @@ class Trace:
     actual: Floats | None = None
     execution: Execution | None = field(default=None, repr=False)
     program: npt.NDArray[np.object_] | None = field(default=None, repr=False)
+    power: Floats | None = field(default=None, repr=False)
 
     def __len__(self) -> int:
         return len(self.t_s)
@@ -208,7 +210,7 @@ class RunResult:
         return self.cutting_path_mm + self.rapid_path_mm
 
     def raise_for_alarms(self) -> None:
-        """Raise the error behind the first alarm, if there is one; it carries this result as `result`.
+        """Raise the error after the first alarm, if there is one; it carries this result as `result`.
 
         Raises:
             ProgramError: the program cannot be run as written.

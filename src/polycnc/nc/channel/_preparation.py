@@ -186,7 +186,7 @@ class Preparation:
                 pass
 
     def _go_behind(self, place: Place | None, block: Block) -> None:
-        """Go on behind the contour that a cycle has cut.
+        """Go on after the contour that a cycle has cut.
 
         Raises:
             ProgramError: statements stand before that place.
@@ -201,7 +201,7 @@ class Preparation:
         self._reader.jump(place, self._reader.end)
 
     def _return(self) -> None:
-        """Return to the block behind the call."""
+        """Return to the block after the call."""
         source = self._calls.running.source
         if source is not None and source.leave():
             self._reader.stop()

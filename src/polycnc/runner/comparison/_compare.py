@@ -94,7 +94,7 @@ class Comparison:
 
     `a_from_b` is the greatest distance of a point of path A from path B, `b_from_a` the other way round.
     `cuts_a_from_b` and `cuts_b_from_a` look at everything but rapids alone; they are None where nobody knows what was
-    a rapid. `same_order` says whether both paths, cuts as cuts and rapids as rapids, can be gone along together within
+    a rapid. `same_order` says whether both paths, cuts as cuts and rapids as rapids, can be traversed together within
     the tolerance, with the same tools; where not, `parts_at` are the blocks (program, line) of A and B up to which they
     can. `same_order` is None where the paths are too far apart anyway. `lone_axes` move in one run and do not exist in
     the other.
@@ -365,7 +365,7 @@ class _Lines:
     def order_with(
         self, other: _Lines, reach: float, *, kinds: bool
     ) -> tuple[bool, tuple[tuple[str, int], tuple[str, int]] | None]:
-        """Say whether both can be gone along together, and if not, up to which blocks."""
+        """Say whether both can be traversed together, and if not, up to which blocks."""
         if not len(self.point) or not len(other.point):
             return len(self.point) == len(other.point), None
         looser = reach + 2.0 * max(self._path.step, other._path.step)  # a rapid ends within one control cycle

@@ -2,6 +2,7 @@
 
 from polycnc.runner.view._page import Beside, Mark, page
 from polycnc.runner.view._part_frame import turns, with_part_frame
+from polycnc.runner.view._preview import Preview, preview
 from polycnc.runner.view._thin import kept_rows
 from polycnc.runner.view._track import MOST_POINTS, Track, TrackCollector
 from polycnc.runner.view._view import (
@@ -18,6 +19,7 @@ __all__ = [
     "VIEW_FORMATS",
     "Beside",
     "Mark",
+    "Preview",
     "Track",
     "TrackCollector",
     "View",
@@ -25,6 +27,7 @@ __all__ = [
     "kept_rows",
     "open_in_browser",
     "page",
+    "preview",
     "turns",
     "view_of_trace",
     "view_program",

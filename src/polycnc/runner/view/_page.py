@@ -143,6 +143,8 @@ def _columns(
         "zero_s": np.array(track.zeros.start, np.float64) * track.cycle_s,
         "zero": np.ascontiguousarray(track.zeros.offsets(len(axes)).T),
     }
+    if track.power is not None:
+        columns["power"] = track.power.astype(np.float32)
     tips = places(track, axes, machine)
     if not np.array_equal(tips, places(track, axes, None)):
         columns["tip"] = _single(tips)
@@ -225,7 +227,7 @@ def _note(track: Track, listing: Listing) -> str:
 
 
 def _packed(columns: dict[str, npt.NDArray[Any]]) -> tuple[bytes, dict[str, dict[str, Any]]]:
-    """Return arrays one behind the other, each at a multiple of 8 bytes, and where each is."""
+    """Return arrays one after the other, each at a multiple of 8 bytes, and where each is."""
     pieces: list[bytes] = []
     places: dict[str, dict[str, Any]] = {}
     at = 0

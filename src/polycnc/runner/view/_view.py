@@ -83,7 +83,7 @@ def open_in_browser(path: Path) -> bool:
 
 def view_of_trace(result: RunResult, trace: Trace, execution: Execution) -> View:
     """Return the view of a result with its trace."""
-    collector = TrackCollector(trace.units)
+    collector = TrackCollector(trace.units, laser=None if trace.power is None else result.config)
     collector.add_trace(trace, execution)
     axes = tuple(zip(trace.axes, trace.units, strict=True))
     shown = page(result, axes, collector.track(execution), execution.texts)
@@ -111,7 +111,7 @@ def view_program(
     """
     text = program_text(program)
     config = load_machine(machine)
-    collector = TrackCollector(tuple(axis.unit for axis in config.axes))
+    collector = TrackCollector(tuple(axis.unit for axis in config.axes), laser=config)
     settings = RunSettings(
         config, dialect, skip_levels=frozenset(skip_levels), stock=stock, resolution_mm=resolution_mm
     )

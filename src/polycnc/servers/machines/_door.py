@@ -55,7 +55,8 @@ class DoorKind:
 
     `controllers` are the kinds of machines that it can serve, empty: all. `open_door` makes the door, which listens
     once it is started. A `shared` one answers for all machines of the process, another one for a single machine.
-    `knows_token`: its protocol has a place for a secret. `lasts` says why opening it takes seconds, if it does.
+    `knows_token`: its protocol has a place for a secret. `commands`: its clients can do something to the machine.
+    `lasts` says why opening it takes seconds, if it does.
     """
 
     name: str
@@ -64,6 +65,7 @@ class DoorKind:
     controllers: frozenset[str] = frozenset()
     shared: bool = False
     knows_token: bool = False
+    commands: bool = True
     lasts: str = ""
 
     def serves(self, machine: ServedMachine) -> bool:

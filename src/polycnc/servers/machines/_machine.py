@@ -13,6 +13,7 @@ from polycnc.machine import Device
 from polycnc.servers.machines._owner import Keeper
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import ServedDevice
+from polycnc.servers.machines._values import NO_PARAMETERS, NO_VARIABLES, Values
 
 R = TypeVar("R")
 
@@ -50,6 +51,8 @@ class ServedMachine:
     programs: Programs | None = None
     end: Callable[[], None] = lambda: None
     """Switches the device off and keeps its memory."""
+    parameters: Values = NO_PARAMETERS
+    variables: Values = NO_VARIABLES
     treat: Callable[[str], Treatment] = lambda door: AS_USUAL
     """A door tells its name with every request, and does with it what is said."""
 

@@ -11,7 +11,8 @@ from polycnc.errors import UsageError
 from polycnc.machine import Device
 from polycnc.servers.focas import Faults, load_faults, load_profile
 from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, ServedMachine, Wanted
-from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind
+from polycnc.servers.mtconnect import USUAL_VERSION, VERSIONS
+from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind, plant_kinds
 from polycnc.servers.scenarios import Story, load_script
 from polycnc.servers.setup._file import MachineTable, load_serve_file
 
@@ -40,6 +41,7 @@ class Flags:
     rate: float = 1.0
     memory: Path | None = None
     faults: Path | None = None
+    mtconnect: str = USUAL_VERSION
     node_sets: Path | None = None
     scenario: Path | None = None
 
@@ -95,30 +97,29 @@ def _at(name: str, at: str) -> Wanted:
     return Wanted(path=at)
 
 
+def check_version(version: str) -> None:
+    """Refuse a version of MTConnect that is not served.
+
+    Raises:
+        UsageError: It is none.
+    """
+    if version not in VERSIONS:
+        raise UsageError(
+            f"there is no version '{version[:20]}' of MTConnect", hint=f"Versions are {', '.join(VERSIONS)}."
+        )
+
+
 def plan_of(flags: Flags) -> Plan:
     """Return what is to be served.
 
     Raises:
         UsageError: It is not said what, or it cannot be.
     """
-    table = {**DOORS, "focas": focas_kind(flags.profile)}
     load_profile(flags.profile)
-    named = [kind for kind, machine in flags.kinds.items() if machine is not None]
-    if flags.file is not None:
-        if named:
-            raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
-        if flags.node_sets is not None:
-            raise UsageError(
-                "node sets and a file of machines at once", hint='Write opcua_nodesets = "..." into the file.'
-            )
-        machines, shared, node_sets = _of_file(flags.file, table)
-    elif len(named) != 1:
-        raise UsageError(
-            "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
-        )
-    else:
-        machines, shared = _of_flags(flags, named[0], table)
-        node_sets = flags.node_sets
+    check_version(flags.mtconnect)
+    rows = (focas_kind(flags.profile), *plant_kinds(flags.mtconnect))
+    table = {**DOORS, **{row.name: row for row in rows}}
+    machines, shared, node_sets = _asked(flags, table)
     keep = next(
         (_kept(each.machinery.memory) for each in machines if each.machinery.memory is not None), None
     )
@@ -142,8 +143,9 @@ def plan_of(flags: Flags) -> Plan:
         if not row.knows_token and row.name not in insecure:
             return row, wanted
         if not row.knows_token:
+            does = "command" if row.commands else "read"
             warnings[
-                f"{row.name} on {flags.expose} knows no passwords: whoever reaches it can command the machine"
+                f"{row.name} on {flags.expose} knows no passwords: whoever reaches it can {does} the machine"
             ] = None
         return row, replace(wanted, address=flags.expose)
 
@@ -153,6 +155,27 @@ def plan_of(flags: Flags) -> Plan:
         log,
         tuple(warnings),
     )
+
+
+def _asked(
+    flags: Flags, table: Mapping[str, DoorKind]
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
+    """Return the machines, the doors that they share, and the folder of node sets."""
+    named = [kind for kind, machine in flags.kinds.items() if machine is not None]
+    if flags.file is None:
+        if len(named) != 1:
+            raise UsageError(
+                "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
+            )
+        return *_of_flags(flags, named[0], table), flags.node_sets
+    if named:
+        raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
+    for key, given in (("opcua_nodesets", flags.node_sets), ("scenario", flags.scenario)):
+        if given is not None:
+            raise UsageError(
+                f"{given} and a file of machines at once", hint=f'Write {key} = "..." into the file.'
+            )
+    return _of_file(flags.file, table)
 
 
 def _of_flags(

@@ -340,7 +340,7 @@ class Card:
         arrays = self._arrays()
         snapshot.check(_KIND, self._made_from, arrays)
         epoch = snapshot.moment("epoch")
-        snapshot.put_back(arrays)
+        snapshot.restore_state(arrays)
         self.clock.go_back(snapshot.cycle, epoch)
 
     @property
