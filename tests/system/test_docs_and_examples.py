@@ -53,6 +53,7 @@ def test_what_a_page_shows_runs(page: Path, tmp_path: Path) -> None:
 
 def test_readme_and_tutorial_have_something_to_run() -> None:
     running = {_name(page) for page in PAGES if _runs_something(page)}
+    assert {"docs/tutorials/a-bad-day-at-the-plant.md"} <= running
     assert {"README.md", "docs/tutorials/first-program.md", "docs/reference/command-line.md"} <= running
 
 
