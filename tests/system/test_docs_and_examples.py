@@ -29,6 +29,7 @@ def _name(page: Path) -> str:
 ELSEWHERE = {
     "docs/tutorials/a-machine-with-a-page.md",
     "docs/tutorials/test-your-collector.md",
+    "docs/tutorials/your-old-program.md",
     "docs/tutorials/your-sender.md",
     "docs/how-to/add-a-g-code.md",
     "docs/how-to/add-a-cpl-function.md",
