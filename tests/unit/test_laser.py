@@ -217,3 +217,37 @@ def test_a_view_has_the_power_of_its_points() -> None:
     np.testing.assert_allclose(columns["power"], track.power, rtol=1e-6)
     assert "power" in _content(view_program(program, LASER, "grbl").html)[1]
     assert "power" not in _content(view_program("G1 X5 F300\n", DRY, "grbl").html)[1]
+
+
+@pytest.mark.parametrize("seed", [3, 8])
+def test_each_cycle_of_a_long_program_has_the_power_that_its_line_says(seed: int) -> None:
+    """Read again by hand, line by line, through blocks that are read one by one and blocks that are read together."""
+    rng = np.random.default_rng(seed)
+    lines, said = ["G21 G90 G1 F1200"], [(0.0, 0, 20.0, False)]
+    power, direction, feed, rapid = 0.0, 0, 20.0, False
+    for n in range(700):
+        words = [f"X{n % 9 + rng.integers(1, 9) * 0.1:.1f} Y{n % 4}"]
+        if rng.random() < 0.02:
+            words = ["G4 P0.01"]  # moves nothing, and is read by itself
+        elif rng.random() < 0.3:
+            rapid = bool(rng.random() < 0.3)
+            words.insert(0, f"G{int(not rapid)}")
+        if rng.random() < 0.2:
+            feed = float(rng.integers(5, 60))
+            words.append(f"F{feed * 60.0:.0f}")
+        if rng.random() < 0.6:
+            power = float(rng.integers(0, 900))
+            words.append(f"S{power:.0f}")
+        if rng.random() < 0.2:
+            direction = int(rng.choice((1, -1, 0)))
+            words.append({1: "M3", -1: "M4", 0: "M5"}[direction])
+        lines.append(" ".join(words))
+        said.append((power, direction, feed, rapid))
+    trace = traced("\n".join(lines) + "\n")
+    speed, sense, feeds, rapids = (np.array(column) for column in zip(*said, strict=True))
+    at = trace.block - 1
+    assert len(set(at.tolist())) > 600
+    follows = np.where(sense[at] > 0, 1.0, np.where(sense[at] < 0, trace.feed_mm_s / feeds[at], 0.0))
+    waits = np.array([line.startswith("G4") for line in lines])[at]
+    expected = np.where(rapids[at] & ~waits, 0.0, np.minimum(speed[at] * follows, 900.0))
+    np.testing.assert_allclose(power_of(trace), expected, atol=1e-9)
