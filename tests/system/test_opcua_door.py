@@ -73,12 +73,29 @@ class Served:
         return error
 
 
+SCENARIO = """
+[[step]]
+name = "the network is cut"
+when = { value = "channels.0.switches.optional_stop", equals = true }
+do = "drop"
+door = "opcua"
+for_s = 0.5
+"""
+
+
 @pytest.fixture(scope="module")
-def served() -> Iterator[Served]:
-    made = Served()
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    scenario = tmp_path_factory.mktemp("scenario") / "cut.toml"
+    scenario.write_text(SCENARIO)
+    made = Served("--scenario", str(scenario))
     yield made
     error = made.end()
-    assert error == "opcua builds its address space of thousands of nodes: this takes a few seconds\n"
+    said, late = (
+        "opcua builds its address space of thousands of nodes: this takes a few seconds\n",
+        "the clocks of the",
+    )
+    assert error.startswith(said)
+    assert all(line.startswith(late) for line in error[len(said) :].splitlines()), error
 
 
 @pytest.fixture(autouse=True)
@@ -353,6 +370,26 @@ def test_a_subscription_follows_without_being_asked_and_alarms_are_events(served
         await subscription.delete()
 
     with_client(served, visit)
+
+
+def test_a_scenario_cuts_the_connections_for_as_long_as_it_says(served: Served) -> None:
+    async def cut() -> None:
+        client = Client(served.opcua, timeout=30)
+        await client.connect()
+        served.command("set_switches", optional_stop=True)
+        served.step(40)
+        with pytest.raises((ConnectionError, asyncio.TimeoutError, ua.UaError)):
+            await value(client, f"{CHANNEL}/Id")
+        with suppress(Exception):
+            await client.disconnect()
+        served.command("set_switches", optional_stop=False)
+        served.step(500)
+
+    async def again(client: Client) -> None:
+        assert await value(client, f"{CHANNEL}/Id") == 1
+
+    asyncio.run(cut())
+    with_client(served, again)
 
 
 def _hello(more: int = 0) -> bytes:

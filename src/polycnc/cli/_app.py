@@ -19,6 +19,7 @@ from polycnc.cli import (
     _machine,
     _mtconnect,
     _post,
+    _rehearse,
     _run,
     _sap,
     _schema,
@@ -72,6 +73,9 @@ app.command("post", short_help="Turn a tool path into a program for a control.")
 app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_machine.machine_command))
 app.command("serve", short_help="Serve a simulated control to clients on the network.")(
     guarded(_serve.serve_command)
+)
+app.command("rehearse", short_help="Say what happens in a scenario, without waiting for it.")(
+    guarded(_rehearse.rehearse_command)
 )
 app.command("clib", short_help="Write and build a C library that old programs link against.")(
     guarded(_clib.clib_command)

@@ -39,6 +39,7 @@ def serve_command(
     memory: _options.Memory = None,
     characters: _options.Characters = None,
     faults: _options.Faults = None,
+    scenario: _options.Scenario = None,
     mtconnect_version: _options.MTConnectVersion = "2.7",
     opcua_nodesets: _options.NodeSets = None,
 ) -> None:
@@ -66,6 +67,7 @@ def serve_command(
             rate=rate,
             memory=memory,
             faults=faults,
+            scenario=scenario,
             mtconnect=mtconnect_version,
             node_sets=opcua_nodesets,
         )

@@ -65,6 +65,10 @@ Memory: TypeAlias = Annotated[
     typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
 ]
 Characters: TypeAlias = Annotated[int | None, typer.Option(help=_CHARACTERS, min=1, max=10**9, metavar="N")]
+Scenario: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(help="What happens to the machine and its doors, and when.", metavar="FILE"),
+]
 NodeSets: TypeAlias = Annotated[
     Path | None,
     typer.Option(

@@ -2,7 +2,7 @@
 
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
-from polycnc.servers.machines._machine import MachineError, ServedMachine
+from polycnc.servers.machines._machine import AS_USUAL, MachineError, ServedMachine, Treatment
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
@@ -18,6 +18,7 @@ from polycnc.servers.machines._values import (
 from polycnc.servers.machines._watch import BUSY_S, IDLE_S, Watch
 
 __all__ = [
+    "AS_USUAL",
     "BUSY_S",
     "IDLE_S",
     "LOOPBACK",
@@ -40,6 +41,7 @@ __all__ = [
     "ServedDevice",
     "ServedMachine",
     "Single",
+    "Treatment",
     "Values",
     "Wanted",
     "Watch",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Awaitable, Callable
 from typing import Any
 
@@ -36,6 +37,19 @@ class Connection(OPCUAProtocol):
             transport.abort()
             return
         super().data_received(data)
+
+    async def _process_one_msg(self, header: Any, buf: Buffer) -> bool:
+        """Answer a message, unless a scenario wants something else."""
+        if header.MessageType == ua.MessageType.SecureMessage and header.ChunkType == ua.ChunkType.Single:
+            treatment = await self.iserver.treat()
+            if treatment.drop:
+                if self.transport is not None:
+                    self.transport.abort()
+                return False
+            if treatment.delay_s:
+                await asyncio.sleep(treatment.delay_s)
+        answered: bool = await super()._process_one_msg(header, buf)
+        return answered
 
 
 def _is_bounded(data: bytes) -> bool:

@@ -16,7 +16,7 @@ from asyncua.server.internal_session import InternalSession
 
 from polycnc import __version__
 from polycnc.errors import PolycncError, UsageError
-from polycnc.servers.machines import LOOPBACK, ServedMachine, Wanted
+from polycnc.servers.machines import LOOPBACK, ServedMachine, Treatment, Wanted
 from polycnc.servers.opcua import _cnc as cnc
 from polycnc.servers.opcua import _machine_tool as tool
 from polycnc.servers.opcua._alarms import AlarmEvents
@@ -143,6 +143,7 @@ class OpcuaDoor:
              _POLICY.Basic256Sha256_SignAndEncrypt, _POLICY.Basic256Sha256_Sign]
         )  # fmt: skip
         server.set_identity_tokens(_TOKENS[local and self._wanted.token is None])
+        inner.treat = self._treat
         inner.callback_service.addListener(CallbackType.PreRead, self._before_read)
 
     async def _name(self, server: Server) -> None:
@@ -195,6 +196,14 @@ class OpcuaDoor:
         for publisher in self._publishers:
             with contextlib.suppress(PolycncError):
                 await publisher.refresh()
+
+    async def _treat(self) -> Treatment:
+        """Tell the scenarios of all machines of a request, and join what they want."""
+        wanted = []
+        for each in self._machines:
+            with contextlib.suppress(PolycncError):
+                wanted.append(await each.ask(lambda each=each: each.treat("opcua")))  # type: ignore[misc]
+        return Treatment(any(each.drop for each in wanted), sum(each.delay_s for each in wanted))
 
     async def _before_read(self, event: Any, _: Any) -> None:
         if event.is_external:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Awaitable, Callable
 from typing import Any
 
 from asyncua import ua
 from asyncua.server.internal_server import InternalServer
 from asyncua.server.standard_address_space import standard_address_space
+
+from polycnc.servers.machines import AS_USUAL, Treatment
 
 
 class _GivenUpError(Exception):
@@ -27,8 +30,14 @@ class _GivingUp:
         return getattr(self._service, name)
 
 
+async def _as_usual() -> Treatment:
+    return AS_USUAL
+
+
 class BoundedServer(InternalServer):
-    """What a server holds, with bounds for what clients may ask for."""
+    """What a server holds, with bounds for what clients may ask for; `treat` says what happens to a request."""
+
+    treat: Callable[[], Awaitable[Treatment]] = staticmethod(_as_usual)
 
     async def load_standard_address_space(self, shelf_file: Any = None) -> None:
         """Fill the address space in a thread; a cancelled one ends within milliseconds, not seconds."""

@@ -3,6 +3,7 @@
 from polycnc.servers.process._doors import DOORS, FOCAS_PROFILE, focas_kind, plant_kinds
 from polycnc.servers.process._kinds import KINDS
 from polycnc.servers.process._made import Machinery
+from polycnc.servers.process._rehearsal import rehearse
 from polycnc.servers.process._serving import MachineWanted, Serving
 
 __all__ = [
@@ -14,4 +15,5 @@ __all__ = [
     "Serving",
     "focas_kind",
     "plant_kinds",
+    "rehearse",
 ]

@@ -31,7 +31,10 @@ Load = Callable[[str, bytes], None]
 
 @dataclass(frozen=True, slots=True)
 class MachineWanted:
-    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device."""
+    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device.
+
+    `story` makes what happens to the machine and its doors, once it is made.
+    """
 
     kind: str
     machinery: Machinery = field(default_factory=Machinery)
@@ -39,6 +42,7 @@ class MachineWanted:
     rate: float = 1.0
     scenario: Callable[[Device[Any]], Scenario[Any]] | None = None
     doors: tuple[tuple[DoorKind, Wanted], ...] = ()
+    story: Callable[[ServedMachine, Log], Scenario[Any]] | None = None
 
 
 @dataclass(slots=True)
@@ -79,11 +83,16 @@ class Serving:
 
     def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
+        self.start_programs()
+        for machine in self.machines:
+            machine.served.advance(1)
+            machine.keeper.start()
+
+    def start_programs(self) -> None:
+        """Start the programs, without letting time pass."""
         for machine in self.machines:
             if (found := self.programs.get(machine.name)) is not None:
                 _start(machine, *found)
-            machine.served.advance(1)
-            machine.keeper.start()
 
     async def run(self) -> None:
         """Serve until the time of a machine cannot pass any more, or this is cancelled."""
@@ -126,21 +135,23 @@ class Serving:
             again=None if wanted.program is None else _again(made),
         )
         keeper = Keeper(served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late)
-        self.machines.append(
-            ServedMachine(
-                name,
-                wanted.kind,
-                made.device,
-                served,
-                keeper,
-                made.find_control,
-                made.own,
-                None,
-                made.end,
-                made.parameters,
-                made.variables,
-            )
+        machine = ServedMachine(
+            name,
+            wanted.kind,
+            made.device,
+            served,
+            keeper,
+            made.find_control,
+            made.own,
+            None,
+            made.end,
+            made.parameters,
+            made.variables,
         )
+        self.machines.append(machine)
+        if wanted.story is not None:
+            served.scenario = wanted.story(machine, self.log)
+            served.scenario.look(made.device)
 
 
 def _again(made: Made) -> Callable[[], None]:

@@ -21,6 +21,7 @@ class MachineTable(StrictModel):
     file: str | None = None
     program: str | None = None
     faults: str | None = None
+    scenario: str | None = None
     memory: str | None = None
     rate: Annotated[float, Field(ge=0.0, le=1000.0)] = 1.0
     axes: Annotated[int, Field(ge=1, le=6)] = 3

@@ -10,9 +10,10 @@ from typing import Any
 from polycnc.errors import UsageError
 from polycnc.machine import Device
 from polycnc.servers.focas import Faults, load_faults, load_profile
-from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, Wanted
+from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, ServedMachine, Wanted
 from polycnc.servers.mtconnect import USUAL_VERSION, VERSIONS
 from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind, plant_kinds
+from polycnc.servers.scenarios import Story, load_script
 from polycnc.servers.setup._file import MachineTable, load_serve_file
 
 _MOST_PORT = 65535
@@ -42,6 +43,7 @@ class Flags:
     faults: Path | None = None
     mtconnect: str = USUAL_VERSION
     node_sets: Path | None = None
+    scenario: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,22 +119,7 @@ def plan_of(flags: Flags) -> Plan:
     check_version(flags.mtconnect)
     rows = (focas_kind(flags.profile), *plant_kinds(flags.mtconnect))
     table = {**DOORS, **{row.name: row for row in rows}}
-    named = [kind for kind, machine in flags.kinds.items() if machine is not None]
-    if flags.file is not None:
-        if named:
-            raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
-        if flags.node_sets is not None:
-            raise UsageError(
-                "node sets and a file of machines at once", hint='Write opcua_nodesets = "..." into the file.'
-            )
-        machines, shared, node_sets = _of_file(flags.file, table)
-    elif len(named) != 1:
-        raise UsageError(
-            "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
-        )
-    else:
-        machines, shared = _of_flags(flags, named[0], table)
-        node_sets = flags.node_sets
+    machines, shared, node_sets = _asked(flags, table)
     keep = next(
         (_kept(each.machinery.memory) for each in machines if each.machinery.memory is not None), None
     )
@@ -170,6 +157,27 @@ def plan_of(flags: Flags) -> Plan:
     )
 
 
+def _asked(
+    flags: Flags, table: Mapping[str, DoorKind]
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
+    """Return the machines, the doors that they share, and the folder of node sets."""
+    named = [kind for kind, machine in flags.kinds.items() if machine is not None]
+    if flags.file is None:
+        if len(named) != 1:
+            raise UsageError(
+                "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
+            )
+        return *_of_flags(flags, named[0], table), flags.node_sets
+    if named:
+        raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
+    for key, given in (("opcua_nodesets", flags.node_sets), ("scenario", flags.scenario)):
+        if given is not None:
+            raise UsageError(
+                f"{given} and a file of machines at once", hint=f'Write {key} = "..." into the file.'
+            )
+    return _of_file(flags.file, table)
+
+
 def _of_flags(
     flags: Flags, kind: str, table: Mapping[str, DoorKind]
 ) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]]]:
@@ -192,6 +200,7 @@ def _of_flags(
             flags.rate,
             _scenario(flags.faults, kind),
             tuple((row, replace(at, address=address)) for row, at in own),
+            _story(flags.scenario, flags.faults),
         )
         for number, address in enumerate(flags.addresses, 1)
     ]
@@ -213,6 +222,7 @@ def _of_file(
                 each.rate,
                 _scenario(_beside(path, each.faults), each.controller),
                 tuple(doors),
+                _story(_beside(path, each.scenario), _beside(path, each.faults)),
             )
         )
     shared = [_row(table, name, port, shared=True) for name, port in said.doors.items()]
@@ -251,6 +261,17 @@ def _scenario(path: Path | None, kind: str) -> Callable[[Device[Any]], Scenario[
         raise UsageError(f"no script of faults for a machine of the kind {kind}", hint="Serve a fanuc.")
     script = load_faults(path)
     return lambda device: Faults(script, device.clock.now_s)
+
+
+def _story(path: Path | None, faults: Path | None) -> Callable[[ServedMachine, Log], Scenario[Any]] | None:
+    if path is None:
+        return None
+    if faults is not None:
+        raise UsageError(
+            "a scenario and a script of faults at once", hint="Write the faults as steps of the scenario."
+        )
+    script = load_script(path)
+    return lambda machine, log: Story(script, machine, log)
 
 
 def _token(path: Path) -> str:
