@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from polycnc.controllers.fanuc.data._increment import Scale
 from polycnc.controllers.fanuc.device._device_state import AxisMotionState
 from polycnc.controllers.fanuc.device._power import Power
 from polycnc.controllers.fanuc.device._units import Units
@@ -43,7 +42,7 @@ class Positions:
 
         Acceleration is planned before the path is interpolated on this control, so nothing is delayed by it.
         """
-        shift, scales, shifted = self._shift(), self._scales(), self._shifted.shift
+        shift, scales, shifted = self._shift(), self._units.by_kind(), self._shifted.shift
         return tuple(
             AxisPositions(
                 absolute=scales[each.unit][0].counts(each.work + shift.get(each.name, 0.0)) + shifted[k],
@@ -55,11 +54,6 @@ class Positions:
             )
             for k, each in enumerate(self._power.control.axes().values())
         )
-
-    def _scales(self) -> dict[str, tuple[Scale, Scale]]:
-        """Return the scales of input and output by the unit of an axis."""
-        input_, output = self._units.input, self._units.output
-        return {"mm": (input_(), output()), "deg": (input_(linear=False), output(linear=False))}
 
     def feed(self) -> int:
         """Return the actual feed: mm/min, with inch input 0.01 inch/min; of rotary axes alone deg/min."""

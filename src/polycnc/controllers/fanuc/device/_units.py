@@ -64,3 +64,10 @@ class Units:
     def output_scale(self, axis: int) -> Scale:
         """Return the scale of machine positions and stroke limits of an axis."""
         return self.output(linear=not self.is_rotary(axis))
+
+    def by_kind(self) -> dict[str, tuple[Scale, Scale]]:
+        """Return the scales of input and output of all axes by the unit of an axis: mm or deg."""
+        increment, inch = self.increment, (self.inch_input, self.inch_output)
+        turning = scale(increment, linear=False, inch=False)
+        program, machine = (scale(increment, linear=True, inch=each) for each in inch)
+        return {"mm": (program, machine), "deg": (turning, turning)}
