@@ -88,6 +88,12 @@ def dialects_page() -> str:
     return page()
 
 
+def c_library_page() -> str:
+    """Return the page of the C libraries."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_c_library_page.py"))["page"]
+    return page()
+
+
 def stub(module: str, kind: str = "stub") -> str:
     """Return the type stub of a module that reads structures from a header, or functions from rows."""
     made: Callable[[str], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_stubs.py"))[kind]
@@ -111,6 +117,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/apci-functions.md": apci_functions_page,
     "docs/reference/apci-system-file.md": apci_system_file_page,
     "docs/reference/bosch-ncs.md": bosch_ncs_page,
+    "docs/reference/c-libraries.md": c_library_page,
     "docs/reference/conformance.md": conformance_page,
     "docs/reference/cpl.md": cpl_page,
     "docs/reference/data-items.md": data_items_page,

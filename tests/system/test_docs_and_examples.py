@@ -30,6 +30,7 @@ ELSEWHERE = {
     "docs/tutorials/a-machine-for-your-collector.md",
     "docs/tutorials/a-machine-with-a-page.md",
     "docs/tutorials/test-your-collector.md",
+    "docs/tutorials/your-old-program.md",
     "docs/tutorials/your-sender.md",
     "docs/how-to/read-a-machine-with-your-agent.md",
     "docs/how-to/add-a-g-code.md",
