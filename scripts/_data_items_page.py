@@ -68,7 +68,8 @@ the buffer. Tools of the tool table are assets (`CuttingTool`).
 """
 _END = """
 From 2.6 on an error is an element of its own name (`OutOfRange`); a wrong value of a parameter is
-`InvalidParameterValue` then. MTConnect reads: nothing here commands a machine.
+`InvalidParameterValue` then. Clients
+that accept JSON alone get the documents as JSON (version 1). MTConnect reads: nothing here commands a machine.
 
 ## SHDR
 

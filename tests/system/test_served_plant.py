@@ -197,6 +197,17 @@ def test_a_stream_sends_what_changes_and_a_heartbeat(served: Served) -> None:
     assert (code, b"InvalidParameterValue" in document) == (400, True)
 
 
+def test_pymtconnect_reads_it(served: Served) -> None:
+    client = pytest.importorskip("pymtconnect.mtconnect_client", reason="pip install pymtconnect requests")
+    url = f"http://127.0.0.1:{served.ports['mtconnect']}"
+    header, (device,) = client.probe(url)
+    assert device.name == "machine"
+    for header, events, conditions in (client.current(url), client.sample(url, count=300)):
+        assert int(header.next_sequence) > int(header.first_sequence)
+        assert {"Execution", "ControllerMode", "EmergencyStop"} <= {each.type for each in events}
+        assert conditions
+
+
 def test_bad_requests_are_refused_with_documents(served: Served) -> None:
     documents = []
     for path, status, word in (

@@ -7,9 +7,10 @@ from xml.etree import ElementTree
 
 import pytest
 
-from polycnc.cnc import Mode
+from polycnc.cnc import ALARMS, AlarmKind, ChannelData, Control, Mode
 from polycnc.nc import ProgramText
-from polycnc.servers.mtconnect import VERSIONS
+from polycnc.servers.mtconnect import VERSIONS, Agent, Answer, model_of, value_text
+from polycnc.servers.plant import see
 from support.mtconnect import Rig, assert_valid, header_of, plain, values_of
 
 PROGRAM = "N10 G90 G1 F1200 X40 S800 M3\nN20 Y30\nM1\nN30 G2 X0 Y0 R30\nM30\n"
@@ -194,6 +195,33 @@ def test_conditions_come_and_go_one_by_one() -> None:
     assert values_of(rig.tree("/current", f"at={at}"))["Xtravel"] == "Fault"
 
 
+@pytest.mark.parametrize("kind", ALARMS)
+def test_alarms_of_every_kind_in_every_channel_are_conditions(kind: str) -> None:
+    control = Control("mill5", channels=(ChannelData(("X", "Y", "Z"), spindle=True), ChannelData(("A", "C"))))
+    device = model_of("m", control, VERSIONS["2.7"])
+    agent, look = Agent([device], VERSIONS["2.7"], 3), see(lambda: control)
+    agent.observe(0, look())
+    for axis, channel in ((None, None), (None, 1), ("A", None), ("X", None)):
+        control.alarms.put(kind, axis=axis, channel=channel, detail="?")
+        agent.observe(0, look())
+    current = agent.get("/current")
+    assert isinstance(current, Answer)
+    assert_valid(current.document, "2.7")
+    faults = [each for each in ElementTree.fromstring(current.document).iter() if plain(each.tag) == "Fault"]
+    assert len(faults) == len(control.alarms.active) == 4
+    assert {each.attrib["nativeCode"] for each in faults} == {str(ALARMS[kind].number)}
+    names = {each.attrib["name"] for each in faults}
+    if ALARMS[kind].kind is AlarmKind.PROGRAM:
+        assert names == {"motion", "motion2"}
+    elif ALARMS[kind].kind is AlarmKind.TRAVEL:
+        assert names == {"Xtravel", "Atravel", "system"}
+    control.alarms.reset()
+    control.alarms.cause_gone(kind, "A")
+    agent.observe(0, look())
+    left = [plain(each.tag) for each in ElementTree.fromstring(agent.get("/current").document).iter()]  # type: ignore[union-attr]
+    assert left.count("Fault") == len(control.alarms.active)
+
+
 def test_assets_follow_the_tool_table() -> None:
     rig = lived(machine="mill3")
     tree = rig.tree("/asset/mill.T3")
@@ -227,3 +255,12 @@ def test_observations_carry_the_time_of_the_machine() -> None:
              if "dataItemId" in each.attrib}  # fmt: skip
     assert times == {now}
     assert header_of(answer.document)["creationTime"] == now
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1 / 3, "0.3333"), (-1e-9, "0"), (1e6, "1000000"), (-7.25, "-7.25"), (float("nan"), None), (float("inf"), None),
+     (None, None), (41, "41"), ((0.5, -2.0, 1e-7), "0.5 -2 0"), ("a\x07\n|", "a??|"), ("x" * 300, "x" * 255)],
+)  # fmt: skip
+def test_values_are_written_as_documents_have_them(value: Any, text: str | None) -> None:
+    assert value_text(value) == text

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
@@ -121,6 +122,38 @@ def test_several_machines_are_several_devices() -> None:
     assert [each.attrib["name"] for each in current[1]] == ["a", "9-b"]
     assert values_of(one)["Fovr"] == "60"
     assert [each.attrib["uuid"] for each in other[1]] == ["polycnc.a"]
+
+
+def test_clients_that_ask_for_json_get_it() -> None:
+    async def visit(app: Any, machines: list[ServedMachine]) -> list[Asked]:
+        asked = [("/current", ""), ("/probe", ""), ("/current", "at=0")]
+        return [await Asked(app, path, query, accept="application/json").run() for path, query in asked]
+
+    current, probe, error = with_door({"m": "plain"}, visit)
+    for each in (current, probe, error):
+        assert (b"content-type", b"application/json") in each.sent[0]["headers"]
+    streams = json.loads(current.body)["MTConnectStreams"]
+    assert streams["Header"]["nextSequence"] == streams["Header"]["lastSequence"] + 1
+    (device,) = (each["DeviceStream"] for each in streams["Streams"])
+    parts = {each["ComponentStream"]["name"]: each["ComponentStream"] for each in device["ComponentStreams"]}
+    values = {
+        body["name"]: body["value"]
+        for group in ("Samples", "Events")
+        for each in parts["path1"][group]
+        for body in each.values()
+    }
+    assert (values["path_position"], values["f_program"]) == ([0.0, 0.0, 0.0], 0.0)
+    assert (values["Fovr"], values["mode"]) == ("100", "AUTOMATIC")
+    assert [list(each) for each in parts["path1"]["Condition"]] == [["Normal"]]
+    (described,) = json.loads(probe.body)["MTConnectDevices"]["Devices"]
+    assert described["Device"]["DataItems"][0]["DataItem"]["id"] == "m.avail"
+    (refused,) = json.loads(error.body)["MTConnectError"]["Errors"]
+    assert refused["OutOfRange"]["QueryParameter"] == {
+        "name": "from",
+        "Value": "0",
+        "Minimum": "1",
+        "Maximum": "73",
+    }
 
 
 def test_a_slow_reader_is_told_what_it_has_missed(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from polycnc.on_demand import names_on_demand
 from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
-from polycnc.servers.mtconnect._device import DeviceModel, Item, asset_id, device_model, model_of
+from polycnc.servers.mtconnect._device import DeviceModel, Item, asset_id, device_model, model_of, value_text
 from polycnc.servers.mtconnect._documents import Header, asset_text, devices_document
 from polycnc.servers.mtconnect._errors import AgentError, Code
 from polycnc.servers.mtconnect._observations import Buffer, Observation
@@ -57,6 +57,7 @@ __all__ = [
     "model_of",
     "time_text",
     "tree_of",
+    "value_text",
 ]
 
 __getattr__ = names_on_demand(__name__, {"_door": ("MTConnectDoor",)})

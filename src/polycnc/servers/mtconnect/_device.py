@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from math import isfinite
 
 from polycnc.cnc import Control
 from polycnc.servers.mtconnect._rows import (
@@ -135,7 +136,7 @@ def value_text(value: Value) -> str | None:
         case int():
             return str(value)
         case float():
-            return number_text(value)
+            return number_text(value) if isfinite(value) else None
         case _:
             return " ".join(map(number_text, value))
 

@@ -15,12 +15,13 @@ from polycnc.servers.machines import LOOPBACK, ServedMachine, Wanted
 from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
 from polycnc.servers.mtconnect._device import model_of
 from polycnc.servers.mtconnect._errors import AgentError, Code
+from polycnc.servers.mtconnect._json import as_json
 from polycnc.servers.mtconnect._query import Asked, asked_of
 from polycnc.servers.mtconnect._rows import USUAL_VERSION, VERSIONS, Version
 from polycnc.servers.plant import Seen, see
 
 PORT = 5000
-_XML = b"text/xml; charset=utf-8"
+_XML, _JSON = b"text/xml; charset=utf-8", b"application/json"
 _BOUNDARY = b"polycnc-a1f04c9b7d3e"
 _LEAST_BEAT_S = 0.01  # between two pieces of a stream, whatever interval is asked for
 _MOST_STREAMS = 100
@@ -100,12 +101,13 @@ class App:
                 raise AgentError(Code.TOO_MANY, f"{_MOST_STREAMS} streams are open", hint="End one.")
         except AgentError as error:
             answer = self._observed.agent.refusal(error, path)
+        kind = _kind_of(scope)
         if isinstance(answer, Answer):
-            await _send_document(send, answer)
+            await _send_document(send, answer, kind)
             return
         self._streams += 1
         try:
-            await self._stream(asked, answer, receive, send)
+            await self._stream(asked, answer, kind, receive, send)
         finally:
             self._streams -= 1
 
@@ -126,7 +128,9 @@ class App:
                 Code.INVALID_REQUEST, "this host is not served here", hint="Ask by the address of the door."
             )
 
-    async def _stream(self, asked: Asked, stream: StreamAsked, receive: Receive, send: Send) -> None:
+    async def _stream(
+        self, asked: Asked, stream: StreamAsked, kind: bytes, receive: Receive, send: Send
+    ) -> None:
         """Send documents until the client leaves, or reads so slowly that what it would get next is lost."""
         await send({
             "type": "http.response.start", "status": 200,
@@ -143,10 +147,10 @@ class App:
                     document, number = stream.next(number, due)
                 except AgentError as error:
                     document = self._observed.agent.refusal(error, f"/{asked.request}").document
-                    await _send_part(send, document)
+                    await _send_part(send, document, kind)
                     break
                 if document is not None:
-                    await _send_part(send, document)
+                    await _send_part(send, document, kind)
                     last = time.monotonic()
                 wait_s = max(
                     _LEAST_BEAT_S, min(stream.interval_s, last + stream.heartbeat_s - time.monotonic())
@@ -166,26 +170,34 @@ async def _until_gone(receive: Receive) -> None:
         pass
 
 
-async def _send_part(send: Send, document: bytes) -> None:
+async def _send_part(send: Send, document: bytes, kind: bytes) -> None:
     """Send a piece of a stream.
 
     Raises:
         TimeoutError: The client does not read.
     """
-    head = b"--%b\r\nContent-type: %b\r\nContent-length: %d\r\n\r\n" % (_BOUNDARY, _XML, len(document))
+    document = as_json(document) if kind == _JSON else document
+    head = b"--%b\r\nContent-type: %b\r\nContent-length: %d\r\n\r\n" % (_BOUNDARY, kind, len(document))
     message = {"type": "http.response.body", "body": head + document + b"\r\n", "more_body": True}
     await asyncio.wait_for(send(message), _MOST_WAIT_S)
 
 
-async def _send_document(send: Send, answer: Answer) -> None:
+def _kind_of(scope: Scope) -> bytes:
+    """Return the type of what a client wants: JSON if it asks for that alone, XML otherwise."""
+    accepted = b",".join(value for name, value in scope["headers"] if name == b"accept").lower()
+    return _JSON if b"json" in accepted and b"xml" not in accepted else _XML
+
+
+async def _send_document(send: Send, answer: Answer, kind: bytes) -> None:
+    document = as_json(answer.document) if kind == _JSON else answer.document
     headers = [
-        (b"content-type", _XML), (b"content-length", str(len(answer.document)).encode()),
+        (b"content-type", kind), (b"content-length", str(len(document)).encode()),
         (b"cache-control", b"no-store"), (b"x-content-type-options", b"nosniff"),
     ]  # fmt: skip
     if answer.status == Code.UNSUPPORTED.status:
         headers.append((b"allow", ", ".join(_METHODS).encode()))
     await send({"type": "http.response.start", "status": answer.status, "headers": headers})
-    await send({"type": "http.response.body", "body": answer.document})
+    await send({"type": "http.response.body", "body": document})
 
 
 class MTConnectDoor(AsgiDoor):

@@ -60,4 +60,5 @@ def _trouble(alarm: Alarm) -> Trouble:
     qualifier = next((each for each in ("low", "high") if alarm.name.endswith(f"_{each}")), "")
     key = ":".join(str(each) for each in (alarm.name, alarm.axis or "", alarm.channel or 0, alarm.cycle))
     axis = alarm.axis or "" if about in _OF_AN_AXIS else ""
-    return Trouble(about, key, str(alarm.number), alarm.text, axis, alarm.channel or 0, qualifier)
+    channel = alarm.channel or 0 if about is About.MOTION else 0
+    return Trouble(about, key, str(alarm.number), alarm.text, axis, channel, qualifier)
