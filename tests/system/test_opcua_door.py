@@ -24,6 +24,7 @@ pytest.importorskip("asyncua", reason="pip install 'polycnc[opcua]'")
 pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
 
 from asyncua import Client, ua  # noqa: E402
+from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256  # noqa: E402
 
 from polycnc.servers.opcua import CNC_TYPES, MACHINE_TOOL_TYPES  # noqa: E402
 
@@ -422,6 +423,63 @@ def test_floods_and_nonsense_end_the_connection_and_nothing_else(
         assert await value(client, f"{CHANNEL}/Id") == 1
 
     with_client(served, visit)
+
+
+async def _secured(served: Served, folder: Path) -> Client:
+    """Return a client with a certificate of its own, which signs and encrypts."""
+    from asyncua.crypto.cert_gen import setup_self_signed_certificate
+    from cryptography.x509.oid import ExtendedKeyUsageOID
+
+    key, certificate, uri = folder / "key.pem", folder / "certificate.der", "urn:test:client"
+    await setup_self_signed_certificate(
+        key, certificate, uri, "localhost", [ExtendedKeyUsageOID.CLIENT_AUTH], {"organizationName": "test"}
+    )
+    client = Client(served.opcua.replace("0.0.0.0", "127.0.0.1"), timeout=30)
+    client.application_uri = uri
+    await client.set_security(SecurityPolicyBasic256Sha256, certificate, key)
+    return client
+
+
+def test_on_this_computer_a_client_may_encrypt(served: Served, tmp_path: Path) -> None:
+    async def visit() -> None:
+        async with await _secured(served, tmp_path) as client:
+            assert await value(client, f"{CHANNEL}/Id") == 1
+            assert await write(client, f"{CHANNEL}/CmdOverride", 84.0, ua.VariantType.Double) == GOOD
+
+    asyncio.run(visit())
+    assert served.status()["overrides"]["feed"] == pytest.approx(0.84)
+
+
+@pytest.mark.long
+def test_for_other_computers_there_is_no_door_without_encryption_and_the_secret(tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("a secret of many letters".replace(" ", "-"))
+    own = Served("--expose", "0.0.0.0", "--token", str(secret))
+
+    async def visit() -> None:
+        with pytest.raises((ua.UaError, ConnectionError, asyncio.TimeoutError)):
+            async with Client(own.opcua.replace("0.0.0.0", "127.0.0.1"), timeout=10):
+                pass
+        for user, shown in (("me", "another-secret-of-many"), (None, None), ("me", "")):
+            client = await _secured(own, tmp_path)
+            if user is not None:
+                client.set_user(user)
+                client.set_password(shown)
+            with pytest.raises((ua.UaError, ConnectionError, asyncio.TimeoutError)):
+                async with client:
+                    pass
+        client = await _secured(own, tmp_path)
+        client.set_user("me")
+        client.set_password(secret.read_text())
+        async with client:
+            assert await value(client, f"{CHANNEL}/Id") == 1
+            endpoints = await client.get_endpoints()
+            assert {each.SecurityMode.name for each in endpoints} == {"Sign", "SignAndEncrypt"}
+
+    try:
+        asyncio.run(visit())
+    finally:
+        own.end()
 
 
 @pytest.mark.long
