@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import math
 import os
 import random
@@ -42,6 +43,8 @@ GOOD, OUT_OF_RANGE = ua.StatusCodes.Good, ua.StatusCodes.BadOutOfRange
 class Served:
     """A process that serves a mill, and a client of its page."""
 
+    log: Path
+
     def __init__(self, *more: str) -> None:
         self.process = subprocess.Popen(
             [*COMMAND, "serve", "--plain", "mill3", "--doors", "opcua=0,http=0", *more],
@@ -76,6 +79,12 @@ class Served:
 
 SCENARIO = """
 [[step]]
+name = "at the begin"
+at_s = 0.0005
+do = "message"
+with = { number = 1, text = "good morning" }
+
+[[step]]
 name = "the network is cut"
 when = { value = "channels.0.switches.optional_stop", equals = true }
 do = "drop"
@@ -88,7 +97,8 @@ for_s = 0.5
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     scenario = tmp_path_factory.mktemp("scenario") / "cut.toml"
     scenario.write_text(SCENARIO)
-    made = Served("--scenario", str(scenario))
+    made = Served("--scenario", str(scenario), "--log", str(scenario.with_name("log.jsonl")))
+    made.log = scenario.with_name("log.jsonl")
     yield made
     error = made.end()
     said, late = (
@@ -391,6 +401,12 @@ def test_a_scenario_cuts_the_connections_for_as_long_as_it_says(served: Served) 
 
     asyncio.run(cut())
     with_client(served, again)
+
+
+def test_no_machine_time_passes_while_the_door_opens(served: Served) -> None:
+    """The scenario began at cycle 0, and so did its first step, although the door took seconds to open."""
+    first = next(json.loads(line) for line in served.log.read_text().splitlines() if "at the begin" in line)
+    assert first["cycle"] == 1  # the one that makes the machine ready
 
 
 def _hello(more: int = 0) -> bytes:
