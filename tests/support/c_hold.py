@@ -17,7 +17,7 @@ from support.c_library import PATTERN, Guarded
 _RESULTS = {"void": None, "double": ctypes.c_double, "short": ctypes.c_int16}
 _EDGES = (0, 1, -1, 2, 3, 7, 32767, -32768, 255)
 _NULL_SHARE = 0.03
-_FEW = 40  # elements behind a pointer, where another argument says how many
+_MANY = 4096  # elements behind a pointer, where another argument says how many
 
 
 @dataclass
@@ -109,7 +109,7 @@ class Hold:
     def _numbers(self, call: Call, slot: Slot, numbers: dict[str, Any]) -> Passed:
         if self._is_null(slot):
             return Passed(slot, None)
-        count = max(1, min(_FEW, self.size(call, slot, numbers) // slot.width))
+        count = max(1, min(_MANY, self.size(call, slot, numbers) // slot.width))
         values = [self._value(call, slot) for _ in range(count)]
         content = b"".join(bytes(slot.element(each)) for each in values) if slot.reads else b""
         memory = Guarded(count * slot.width, content)

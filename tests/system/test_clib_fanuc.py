@@ -107,7 +107,7 @@ def test_many_calls_answer_and_write_as_the_facade(
     built("fanuc")
     door = Door(("fanuc", Machinery(axes=AXES)))
     try:
-        _hold(door, monkeypatch, tmp_path, 365, seed)
+        _hold(door, monkeypatch, tmp_path, 150, seed)
     finally:
         door.close()
 

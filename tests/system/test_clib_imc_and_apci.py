@@ -47,7 +47,7 @@ def _imc_number(call: Call, slot: Slot, dice: random.Random) -> Any:
     if name == "Handle":
         return 1 if dice.random() < 0.95 else dice.choice((0, 2, 77))
     if slot.argument.length_of:
-        return dice.choice((1, 2, 3, 5, 0, 32, 33))
+        return dice.choice((1, 2, 3, 5, 0, 32, 33, 127, 4000, -1 if name in ("rdnum", "nWords") else 6))
     if name == "paramloc" and dice.random() < 0.7:
         return dice.choice((imclib.runLoc, imclib.mcstgposLoc, imclib.mcsgoLoc, imclib.encpLoc))
     if dice.random() < 0.7:

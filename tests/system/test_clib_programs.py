@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import shutil
 import subprocess
 from collections.abc import Iterator
@@ -99,7 +101,23 @@ def test_a_program_against_the_command(tmp_path: Path) -> None:
     process.terminate()
     _, error = process.communicate(timeout=30)
     assert (process.returncode, error) == (143, "")
-    assert len(trace.read_text().splitlines()) == 7
+    lines = trace.read_text().splitlines()
+    assert len(lines) == 7
+    shown = json.loads(_shown("traced"))
+    assert {**json.loads(lines[1]), "time_s": shown["time_s"]} == shown
+
+
+def _shown(title: str) -> str:
+    """Return what the tutorial shows under a title."""
+    text = (EXAMPLES.parent / "docs" / "tutorials" / "your-old-program.md").read_text("utf-8")
+    found = re.search(rf'^```\w+ title="{title}"\n(.*?)^```$', text, re.MULTILINE | re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+def test_the_tutorial_shows_the_program_and_what_it_prints() -> None:
+    assert _shown("program") == (EXAMPLES / "c" / "fanuc_macro.c").read_text("utf-8")
+    assert _shown("output") == _facade_says()
 
 
 @pytest.mark.long

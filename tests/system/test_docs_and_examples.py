@@ -27,9 +27,12 @@ def _name(page: Path) -> str:
 
 # Pages that need a server, or change polycnc itself, run by a test of their own.
 ELSEWHERE = {
+    "docs/tutorials/a-machine-for-your-collector.md",
     "docs/tutorials/a-machine-with-a-page.md",
     "docs/tutorials/test-your-collector.md",
+    "docs/tutorials/your-old-program.md",
     "docs/tutorials/your-sender.md",
+    "docs/how-to/read-a-machine-with-your-agent.md",
     "docs/how-to/add-a-g-code.md",
     "docs/how-to/add-a-cpl-function.md",
     "docs/how-to/add-a-library-function.md",

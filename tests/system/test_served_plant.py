@@ -5,9 +5,12 @@ from __future__ import annotations
 import http.client
 import json
 import random
+import re
 import socket
 import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -225,3 +228,46 @@ def test_commands_of_agents_may_be_cut_anywhere(served: Served) -> None:
     assert other.values == served.shdr.values
     assert other.assets == served.shdr.assets
     other.line.close()
+
+
+def test_the_pages_show_what_happens(tmp_path: Path) -> None:
+    docs = Path(__file__).parents[2] / "docs"
+    pages = [
+        docs / "tutorials" / "a-machine-for-your-collector.md",
+        docs / "how-to" / "read-a-machine-with-your-agent.md",
+    ]
+    shown = {
+        name: text
+        for page in pages
+        for name, text in re.findall(r'```\w+ title="([^"]+)"\n(.*?)```', page.read_text("utf-8"), re.DOTALL)
+        if name != "prints"
+    }
+    prints = [
+        re.findall(r'title="prints"\n(.*?)```', page.read_text("utf-8"), re.DOTALL)[0] for page in pages
+    ]
+    (tmp_path / "plate.nc").write_text(shown["plate.nc"])
+    program = str(tmp_path / "plate.nc")
+    process = subprocess.Popen(
+        [*COMMAND, "serve", "--plain", "mill3", "--program", program, "--doors", "mtconnect=0,shdr=0"],
+        stdout=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
+    )  # fmt: skip
+    try:
+        assert process.stdout is not None
+        shdr, agent = (process.stdout.readline().strip() for _ in range(2))
+        assert shdr.startswith("shdr: 127.0.0.1:")
+        assert agent.startswith("mtconnect: http://127.0.0.1:")
+        ports = {"5000": agent.rpartition(":")[2], "7878": shdr.rpartition(":")[2]}
+        for name, expected in (
+            ("read_it.py", prints[0]), ("follow_it.py", shown["follows"]), ("is_it_there.py", prints[1]),
+        ):  # fmt: skip
+            script = re.sub(r"5000|7878", lambda found: ports[found[0]], shown[name])
+            done = subprocess.run(
+                [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
+            )
+            assert done.stdout == expected, name
+    finally:
+        process.terminate()
+        process.communicate(timeout=20)
+    command = re.findall(r"```sh\npolycnc (mtconnect .*?)\n```", pages[1].read_text("utf-8"))[0]
+    subprocess.run([*COMMAND, *command.split()], cwd=tmp_path, check=True, timeout=60, env=environment())
+    assert 'name="Mill4"' in (tmp_path / "Devices.xml").read_text("utf-8")

@@ -18,8 +18,8 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
 from polycnc.outputs import check_output, complete_or_absent, format_of
 from polycnc.runner._blocks import Execution, ExecutionCollector
+from polycnc.runner._outcome import Trace
 from polycnc.runner._power import POWER, powers
-from polycnc.runner._result import Trace
 from polycnc.runner._trace_formats import (
     COLUMN_NAMES,
     PROGRAM,

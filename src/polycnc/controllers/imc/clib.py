@@ -37,6 +37,13 @@ IMCNET = CLibrary(
     opens=frozenset(("IMC_FindNetCard", "IMC_Open", "IMC_OpenX", "IMC_OpenUsePassword")),
     in_bytes=False,
     declarations=_DECLARATIONS,
+    extents={
+        # More than a call takes is refused by its number, without a look at all of it.
+        ("IMC_GetMulParam", "pdes"): "(NumofArr < 33 ? NumofArr : 33) * (int64_t)sizeof(WR_MUL_DES)",
+        ("IMC_InstallEvent", "pEvent"): "(EventNum < 32 ? EventNum : 32) * (int64_t)sizeof(EventInfo)",
+        ("IMC_PutContourData", "pdata"): "(nWords < 127 ? nWords : 127) * (int64_t)2",
+        ("IMC_GetCapData", "pdata"): "(rdnum < 121 ? rdnum : 121) * (int64_t)4",
+    },
     aliases={
         alias: next(name for name in imclib.FUNCTIONS if _CALLS[name] is call)
         for alias, call in _CALLS.items()

@@ -70,6 +70,10 @@ class Preparation:
             return
         if not self.begun:
             self.begun = True
+            if (error := self._reader.text.endless_line()) is not None:
+                self._note(error)
+                self.close()
+                return
             self._calls.begin()
         if prepared.writer.backlog and not prepared.writer.catch_up():
             return

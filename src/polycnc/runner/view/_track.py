@@ -11,8 +11,8 @@ from polycnc.kernel import FEED_MM_S, IS_RAPID, LEADING, TIME_S
 from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import Blocks, Execution, ExecutionCollector
+from polycnc.runner._outcome import Trace
 from polycnc.runner._power import powers
-from polycnc.runner._result import Trace
 from polycnc.runner._zeros import NO_ZEROS, Zeros
 from polycnc.runner.view._motion import Motion, MotionCollector
 from polycnc.runner.view._thin import Floats, kept_rows

@@ -66,7 +66,8 @@ class AsgiDoor:
             UsageError: The address or port cannot be listened on.
         """
         family = socket.AF_INET6 if ":" in self._address else socket.AF_INET
-        listening = socket.socket(family, socket.SOCK_STREAM)
+        # with the protocol named, asyncio sends each piece at once: a head does not wait for the body's acknowledgement
+        listening = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
         listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listening.bind((self._address, self._port))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from xml.sax.saxutils import escape, quoteattr
 
 from polycnc.servers.mtconnect._assets import Asset
@@ -51,8 +52,11 @@ def number_of(version: Version) -> str:
     return ".".join(map(str, version))
 
 
+_quoted = lru_cache(4096)(quoteattr)  # names and ids come in every document
+
+
 def _attributes(pairs: Mapping[str, object]) -> str:
-    return "".join(f" {name}={quoteattr(str(value))}" for name, value in pairs.items() if value != "")
+    return "".join([f" {name}={_quoted(str(value))}" for name, value in pairs.items() if value != ""])
 
 
 def _document(kind: str, version: Version, header: str, body: Iterable[str]) -> bytes:
@@ -113,8 +117,10 @@ class StreamWriter:
         self._slots: dict[Item, _Slot] = {}
         for device in devices:
             for component in device.root.walk():
+                told = {"component": component.tag, "name": component.name, "componentId": component.id}
+                begin = f"      <ComponentStream{_attributes(told)}>\n"
                 for item in sorted(component.items, key=lambda each: _ORDER[each.category]):
-                    self._slots[item] = _Slot(device, component, len(self._slots), *_opening(item))
+                    self._slots[item] = _Slot(device, component, begin, len(self._slots), *_opening(item))
         self._written: dict[Item, tuple[tuple[Observation, ...], str]] = {}
 
     def current(
@@ -153,8 +159,7 @@ class StreamWriter:
                     device = slot.device
                     yield f"    <DeviceStream{_attributes({'name': device.name, 'uuid': device.uuid})}>\n"
                 component, category = slot.component, ""
-                told = {"component": component.tag, "name": component.name, "componentId": component.id}
-                yield f"      <ComponentStream{_attributes(told)}>\n"
+                yield slot.begin
             if item.category != category:
                 yield from _close(category, None, None)
                 category = item.category
@@ -175,10 +180,11 @@ class StreamWriter:
 
 @dataclass(frozen=True, slots=True)
 class _Slot:
-    """Where a data item stands in documents, and what its observations begin with."""
+    """Where a data item stands in documents, and what its component and observations begin with."""
 
     device: DeviceModel
     component: Component
+    begin: str
     rank: int
     opening: str
     element: str

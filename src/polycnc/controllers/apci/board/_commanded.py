@@ -160,9 +160,9 @@ class CommandedBoard:
         self.pending.append(Command(self.clock.cycles + LATENCY_SCANS, axes, orders, begin))
 
     def in_turn(self, axes: Sequence[int], carry_out: partial[None]) -> None:
-        """Carry out a command of the spoolers of `axes`, behind the direct commands that they have been given.
+        """Carry out a command of the spoolers of `axes`, after the direct commands that they have been given.
 
-        A direct command rejects what is queued when it takes effect; what is queued behind it stays.
+        A direct command rejects what is queued when it takes effect; what is queued after it stays.
         """
         on_the_way = [each.due for each in self.pending if not set(axes).isdisjoint(each.axes)]
         if not on_the_way:
