@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import math
 import os
 import random
@@ -24,6 +25,7 @@ pytest.importorskip("asyncua", reason="pip install 'polycnc[opcua]'")
 pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
 
 from asyncua import Client, ua  # noqa: E402
+from asyncua.crypto.security_policies import SecurityPolicyBasic256Sha256  # noqa: E402
 
 from polycnc.servers.opcua import CNC_TYPES, MACHINE_TOOL_TYPES  # noqa: E402
 
@@ -40,6 +42,8 @@ GOOD, OUT_OF_RANGE = ua.StatusCodes.Good, ua.StatusCodes.BadOutOfRange
 
 class Served:
     """A process that serves a mill, and a client of its page."""
+
+    log: Path
 
     def __init__(self, *more: str) -> None:
         self.process = subprocess.Popen(
@@ -75,6 +79,12 @@ class Served:
 
 SCENARIO = """
 [[step]]
+name = "at the begin"
+at_s = 0.0005
+do = "message"
+with = { number = 1, text = "good morning" }
+
+[[step]]
 name = "the network is cut"
 when = { value = "channels.0.switches.optional_stop", equals = true }
 do = "drop"
@@ -87,7 +97,8 @@ for_s = 0.5
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     scenario = tmp_path_factory.mktemp("scenario") / "cut.toml"
     scenario.write_text(SCENARIO)
-    made = Served("--scenario", str(scenario))
+    made = Served("--scenario", str(scenario), "--log", str(scenario.with_name("log.jsonl")))
+    made.log = scenario.with_name("log.jsonl")
     yield made
     error = made.end()
     said, late = (
@@ -392,6 +403,12 @@ def test_a_scenario_cuts_the_connections_for_as_long_as_it_says(served: Served) 
     with_client(served, again)
 
 
+def test_no_machine_time_passes_while_the_door_opens(served: Served) -> None:
+    """The scenario began at cycle 0, and so did its first step, although the door took seconds to open."""
+    first = next(json.loads(line) for line in served.log.read_text().splitlines() if "at the begin" in line)
+    assert first["cycle"] == 1  # the one that makes the machine ready
+
+
 def _hello(more: int = 0) -> bytes:
     url = b"opc.tcp://127.0.0.1"
     body = struct.pack("<IIIIII", 0, 65536, 65536, 0, 0, len(url)) + url
@@ -422,6 +439,63 @@ def test_floods_and_nonsense_end_the_connection_and_nothing_else(
         assert await value(client, f"{CHANNEL}/Id") == 1
 
     with_client(served, visit)
+
+
+async def _secured(served: Served, folder: Path) -> Client:
+    """Return a client with a certificate of its own, which signs and encrypts."""
+    from asyncua.crypto.cert_gen import setup_self_signed_certificate
+    from cryptography.x509.oid import ExtendedKeyUsageOID
+
+    key, certificate, uri = folder / "key.pem", folder / "certificate.der", "urn:test:client"
+    await setup_self_signed_certificate(
+        key, certificate, uri, "localhost", [ExtendedKeyUsageOID.CLIENT_AUTH], {"organizationName": "test"}
+    )
+    client = Client(served.opcua.replace("0.0.0.0", "127.0.0.1"), timeout=30)
+    client.application_uri = uri
+    await client.set_security(SecurityPolicyBasic256Sha256, certificate, key)
+    return client
+
+
+def test_on_this_computer_a_client_may_encrypt(served: Served, tmp_path: Path) -> None:
+    async def visit() -> None:
+        async with await _secured(served, tmp_path) as client:
+            assert await value(client, f"{CHANNEL}/Id") == 1
+            assert await write(client, f"{CHANNEL}/CmdOverride", 84.0, ua.VariantType.Double) == GOOD
+
+    asyncio.run(visit())
+    assert served.status()["overrides"]["feed"] == pytest.approx(0.84)
+
+
+@pytest.mark.long
+def test_for_other_computers_there_is_no_door_without_encryption_and_the_secret(tmp_path: Path) -> None:
+    secret = tmp_path / "secret"
+    secret.write_text("a secret of many letters".replace(" ", "-"))
+    own = Served("--expose", "0.0.0.0", "--token", str(secret))
+
+    async def visit() -> None:
+        with pytest.raises((ua.UaError, ConnectionError, asyncio.TimeoutError)):
+            async with Client(own.opcua.replace("0.0.0.0", "127.0.0.1"), timeout=10):
+                pass
+        for user, shown in (("me", "another-secret-of-many"), (None, None), ("me", "")):
+            client = await _secured(own, tmp_path)
+            if user is not None:
+                client.set_user(user)
+                client.set_password(shown)
+            with pytest.raises((ua.UaError, ConnectionError, asyncio.TimeoutError)):
+                async with client:
+                    pass
+        client = await _secured(own, tmp_path)
+        client.set_user("me")
+        client.set_password(secret.read_text())
+        async with client:
+            assert await value(client, f"{CHANNEL}/Id") == 1
+            endpoints = await client.get_endpoints()
+            assert {each.SecurityMode.name for each in endpoints} == {"Sign", "SignAndEncrypt"}
+
+    try:
+        asyncio.run(visit())
+    finally:
+        own.end()
 
 
 @pytest.mark.long

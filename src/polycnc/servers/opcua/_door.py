@@ -187,7 +187,7 @@ class OpcuaDoor:
         for each in bound:
             if each.member.write is not None:
                 writes.add(publisher, each)
-        await publisher.refresh()
+        await publisher.begin()
         self._publishers.append(publisher)
 
     # ------------------------------------------------------------------ serving

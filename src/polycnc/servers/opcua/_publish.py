@@ -9,7 +9,7 @@ from typing import Any
 from asyncua import ua
 from asyncua.server.address_space import AddressSpace
 
-from polycnc.cnc import Status
+from polycnc.cnc import PastAlarm, Status
 from polycnc.servers.machines import ServedMachine
 from polycnc.servers.opcua._alarms import AlarmEvents
 from polycnc.servers.opcua._cnc import POSITION
@@ -47,11 +47,18 @@ class Publisher:
         Raises:
             MachineError: The machine's time cannot pass any more.
         """
+        await self._publish(*await self.machine.ask(self._read))
+
+    async def begin(self) -> None:
+        """Write everything for the first time; no machine time passes."""
+        await self._publish(*self._read())
+
+    def _read(self) -> tuple[Status, tuple[PastAlarm, ...], int]:
         control = self.machine.control
         assert control is not None
-        status, past, revision = await self.machine.ask(
-            lambda: (control.status(), control.inventory().alarms, control.alarms.revision)
-        )
+        return control.status(), control.inventory().alarms, control.alarms.revision
+
+    async def _publish(self, status: Status, past: Sequence[PastAlarm], revision: int) -> None:
         if status is self._last:
             return
         self._last = status
