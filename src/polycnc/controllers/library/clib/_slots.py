@@ -186,11 +186,7 @@ def _slot(library: CLibrary, function: Function, argument: Argument) -> Slot:
 
 
 def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
-    """Return how an argument travels, and what its elements are.
-
-    Raises:
-        TypeError: It cannot.
-    """
+    """Return how an argument travels, and what its elements are; a routine does not travel, its address is memory."""
     kind = argument.type
     star = argument.c.rstrip().endswith("*")
     match kind:
@@ -199,7 +195,7 @@ def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
         case Bytes():
             return Way.MEMORY, library.header.classes.get(argument.c.rstrip(" *"), ctypes.c_char)
         case Pointer(of=of) if of is callable:
-            raise TypeError(f"{argument.declaration}: a routine is no bytes")
+            return Way.MEMORY, ctypes.c_char
         case Pointer(ctype=None, of=of):
             return (Way.NUMBERS, ctypes.c_int16) if of is int else (Way.RECORDS, of)
         case Pointer(ctype=ctype):
