@@ -26,6 +26,7 @@ settings.load_profile("polycnc")
 HOW_TO_GET = {
     "rs274": "the interpreter of LinuxCNC is not installed (Debian: apt-get install linuxcnc-uspace)",
     "POLYCNC_DATA to": "no public NC programs: put them into nc/ of a folder and name it by POLYCNC_DATA",
+    "MTConnect schemas": "no schemas of MTConnect: put them into mtconnect/ of a folder and name it by POLYCNC_DATA",
     "inventory": "no inventory of the manuals: put it beside the checkout as shared/inventory",
     "Chromium": "no browser on the PATH (Debian: apt-get install chromium)",
     "Playwright": "no Playwright (pip install -e '.[test]')",

@@ -17,7 +17,9 @@ from polycnc.cli import (
     _debug,
     _focas,
     _machine,
+    _mtconnect,
     _post,
+    _rehearse,
     _run,
     _sap,
     _schema,
@@ -72,6 +74,9 @@ app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_
 app.command("serve", short_help="Serve a simulated control to clients on the network.")(
     guarded(_serve.serve_command)
 )
+app.command("rehearse", short_help="Say what happens in a scenario, without waiting for it.")(
+    guarded(_rehearse.rehearse_command)
+)
 app.command("clib", short_help="Write and build a C library that old programs link against.")(
     guarded(_clib.clib_command)
 )
@@ -91,6 +96,10 @@ _focas.focas_app.command("dissect", short_help="Explain captured bytes of the pr
     guarded(_focas.dissect_command)
 )
 app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
+_mtconnect.mtconnect_app.command("devices", short_help="Write the Devices.xml of a machine for an agent.")(
+    guarded(_mtconnect.devices_command)
+)
+app.add_typer(_mtconnect.mtconnect_app, name="mtconnect", short_help="Tools around MTConnect.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 

@@ -59,7 +59,7 @@ class FocasServer:
         """Return the door of a served Power Mate; faults of its scenario act on the connections too."""
         scenario, control = machine.served.scenario, machine.device
         assert isinstance(control, PowerMate)
-        faults = scenario if isinstance(scenario, Faults) else None
+        faults = scenario if isinstance(scenario, Faults) else getattr(scenario, "faults", None)
         made = cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
         made.calls = CallsServer([machine])
         return made

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Status, TransferCode
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._environment import InterruptLine, Messages, Show
 from polycnc.controllers.apci.board._records import AS, TSRP
 from polycnc.controllers.apci.core._registers import Axst
@@ -46,7 +46,7 @@ class Exchange:
     """A record, and the axis that it names."""
 
     record: TSRP
-    axis: Axis
+    axis: BoardAxis
     session: Session
 
 
@@ -193,7 +193,7 @@ class Session(AnySession):
         self.polling.read(board, self.asked, until=EVENTS)
         return board
 
-    def axis(self, number: int) -> Axis:
+    def axis(self, number: int) -> BoardAxis:
         """Return an axis of the selected board.
 
         Raises:
@@ -204,14 +204,14 @@ class Session(AnySession):
             raise Refused(UNKNOWN_ERROR)
         return board.axes[number]
 
-    def polled_axis(self, number: int) -> Axis:
+    def polled_axis(self, number: int) -> BoardAxis:
         """Return an axis of the selected board after time has passed.
 
         Raises:
             Refused: There is none, or the board is not reached.
         """
         axis = self.axis(number)
-        self.polling.read(axis.board, (self.asked, number), until=EVENTS)
+        self.polling.read(self.usable(), (self.asked, number), until=EVENTS)
         return axis
 
     def named_in(self, record: TSRP) -> Exchange:
@@ -281,7 +281,7 @@ class Session(AnySession):
         slot = self.application.slot
         return slot.revision if slot else ""
 
-    def status_of(self, axis: Axis) -> int:
+    def status_of(self, axis: BoardAxis) -> int:
         """Return the status of an axis, without bits that the operating system does not have yet."""
         return axis.status_word & _status_mask(self.revision)
 
