@@ -45,20 +45,18 @@ class Slot:
     holder: str = ""
     member: str = ""
 
-    @property
-    def reads(self) -> bool:
-        """Whether what lies there goes in."""
-        return self.way is Way.VALUE or self.argument.direction is not Direction.OUT
+    reads: bool = field(init=False)
+    """Whether what lies there goes in."""
+    writes: bool = field(init=False)
+    """Whether something is written there."""
+    width: int = field(init=False)
+    """Bytes of an element."""
 
-    @property
-    def writes(self) -> bool:
-        """Whether something is written there."""
-        return self.way is not Way.VALUE and self.argument.direction is not Direction.IN
-
-    @property
-    def width(self) -> int:
-        """Bytes of an element."""
-        return ctypes.sizeof(self.element)
+    def __post_init__(self) -> None:
+        value, direction = self.way is Way.VALUE, self.argument.direction
+        object.__setattr__(self, "reads", value or direction is not Direction.OUT)
+        object.__setattr__(self, "writes", not value and direction is not Direction.IN)
+        object.__setattr__(self, "width", ctypes.sizeof(self.element))
 
     @property
     def row(self) -> str:
