@@ -18,7 +18,7 @@ import pytest
 
 from polycnc.machine import Device
 from polycnc.runner import WallClock
-from polycnc.servers.calls import build_library, library_of, write_library
+from polycnc.servers.calls import CallsServer, build_library, library_of, write_library
 from polycnc.servers.machines import Log, Wanted
 from polycnc.servers.process import DOORS, Machinery, MachineWanted, Serving
 
@@ -75,6 +75,7 @@ class Door:
         self._end: asyncio.Event | None = None
         self.devices: Sequence[Device[Any]] = ()
         self.place = self.first_place = ""
+        self._door: object = None
         self._thread = threading.Thread(target=lambda: asyncio.run(self._serve()), daemon=True)
         self._thread.start()
         assert self._ready.wait(60)
@@ -89,6 +90,7 @@ class Door:
         try:
             await serving.open(wanted, [(DOORS["calls"], at)])
             self.devices = [each.device for each in serving.machines]
+            self._door = serving.doors[-1][1]
             self.place, self.first_place = serving.doors[-1][1].said, serving.doors[0][1].said
             if self._running:
                 serving.begin()
@@ -96,6 +98,18 @@ class Door:
             await self._end.wait()
         finally:
             await serving.close()
+
+    def clients(self) -> int:
+        """Return how many clients are there, once all that has come before has been looked at."""
+        assert self._loop is not None
+        assert isinstance(self._door, CallsServer)
+
+        async def look() -> None:
+            for _ in range(200):
+                await asyncio.sleep(0)  # one look at all sockets
+
+        asyncio.run_coroutine_threadsafe(look(), self._loop).result(20)
+        return len(self._door.lines)
 
     def close(self) -> None:
         """End it, and every connection."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 import random
 import socket
+import struct
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -221,3 +223,57 @@ def test_a_door_that_ends_and_comes_back(monkeypatch: pytest.MonkeyPatch, tmp_pa
         assert library.cnc_statinfo(other, state) == 0
     finally:
         second.close()
+
+
+def test_threads_of_a_program_get_each_its_own_answers(
+    door: Door, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    library = loaded("fanuc", tmp_path)
+    at_door(monkeypatch, door)
+    wrong: list[tuple[int, int]] = []
+
+    def talk(number: int) -> None:
+        handle, macro = ctypes.c_uint16(), fwlib.ODBM()
+        codes = [library.cnc_allclibhndl(ctypes.byref(handle))]
+        for k in range(12):
+            value = 1000 * number + k
+            codes.append(library.cnc_wrmacro(handle, 500 + number, 10, value, 1))
+            codes.append(library.cnc_rdmacro(handle, 500 + number, 10, ctypes.byref(macro)))
+            if macro.mcr_val != value:
+                wrong.append((number, k))
+        codes.append(library.cnc_freelibhndl(handle))
+        if any(codes):
+            wrong.append((number, -1))
+
+    threads = [threading.Thread(target=talk, args=(number,)) for number in range(1, 65)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join(60)
+    assert wrong == []
+
+
+def _clients(rounds: int) -> None:
+    """Let clients come and go, many of them in the middle of a call; the door knows none of them afterwards."""
+    door = Door(("fanuc", Machinery(axes=2)))
+    port = int(door.place.rpartition(":")[2])
+    hello = b"PNCCALL1\x08\0\0\0" + b"fwlib32".ljust(16, b"\0") + bytes(16) + FWLIB.table_hash
+    call = next(each for each in FWLIB.calls if each.function.name == "cnc_allclibhndl")
+    opening = struct.pack("<IHHI", 8, call.number, 1, 2)
+    try:
+        for number in range(rounds):
+            with socket.create_connection(("127.0.0.1", port), timeout=20) as line:
+                line.sendall(hello + opening[: number % (len(opening) + 1)])
+                assert line.recv(12, socket.MSG_WAITALL) == b"PNCCALL1" + bytes(4)
+        assert door.clients() <= 1
+    finally:
+        door.close()
+
+
+def test_clients_that_end_in_the_middle_of_a_call_leave_nothing() -> None:
+    _clients(60)
+
+
+@pytest.mark.long
+def test_a_thousand_clients_leave_nothing() -> None:
+    _clients(1000)

@@ -137,6 +137,11 @@ def test_the_same_program_as_a_windows_one(
         [WINDOWS[target], "-std=c11", *WARNINGS, "-I", tmp_path, "-o", program, source,
          tmp_path / f"{library.name}.lib", "-static-libgcc"], check=True,
     )  # fmt: skip
+    dump = WINDOWS[target].replace("gcc", "objdump")
+    imports = subprocess.run([dump, "-p", program], capture_output=True, text=True, check=True).stdout
+    names = re.findall(r"\s(\w+(?:@\d+)?)$", imports.partition(f"{library.name}.dll")[2], re.MULTILINE)
+    assert len(set(names) & set(library.functions)) >= 5
+    assert not any("@" in name for name in names)
     if shutil.which("wine") is None:
         pytest.skip("no wine here")
     if target == "win32" and not any(Path(each).exists() for each in ROOTS_OF_32):

@@ -18,13 +18,17 @@ _LIMIT_S = 300
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """What a library is built for: its compilers in order, options behind `-o FILE NAME.c`, and how to get one."""
+    """What a library is built for: its compilers in order, options behind `-o FILE NAME.c`, and how to get one.
+
+    `only_on` is the one system that can build it, `then` a second command.
+    """
 
     compilers: tuple[str, ...]
     made: str
     options: tuple[str, ...]
     get: str
     only_on: str = ""
+    then: tuple[str, ...] = ()
 
 
 _WINDOWS = ("-shared", "-s", "{name}.def", "-Wl,--out-implib,{name}.lib", "-lws2_32")
@@ -47,6 +51,8 @@ TARGETS = {
         "{name}.dll",
         (*_WINDOWS, "-Wl,--kill-at,--enable-stdcall-fixup", "-static-libgcc"),
         "Install mingw-w64: on Debian, apt-get install gcc-mingw-w64-i686.",
+        # Clients name their functions with the size of the stack, which no DLL of the makers does.
+        then=("i686-w64-mingw32-dlltool", "--kill-at", "-d", "{name}_win32.def", "-l", "{name}.lib"),
     ),
     "win64": Target(
         ("x86_64-w64-mingw32-gcc",),
@@ -75,6 +81,7 @@ def write_library(library: CLibrary, folder: Path) -> list[Path]:
         f"{library.name}.h": write_header(library),
         f"{library.name}.c": write_source(library, __version__),
         f"{library.name}.def": write_definitions(library),
+        f"{library.name}_win32.def": write_definitions(library, decorated=True),
     }
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -115,12 +122,21 @@ def build_library(library: CLibrary, folder: Path, target: str) -> Path:
             f"{row.compilers[0]}, the compiler for {target}, is not found; the source is in {folder}",
             hint=f"{row.get} Then, there: {' '.join(command)}",
         )
-    ran = subprocess.run(
-        [compiler, *command[1:]], cwd=folder, capture_output=True, text=True, timeout=_LIMIT_S, check=False
-    )
+    _run(folder, [compiler, *command[1:]])
+    if row.then:
+        _run(folder, [each.format(name=library.name) for each in row.then])
+    return folder / row.made.format(name=library.name)
+
+
+def _run(folder: Path, command: list[str]) -> None:
+    """Run a command of the compiler.
+
+    Raises:
+        UsageError: It fails.
+    """
+    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_LIMIT_S, check=False)
     if ran.returncode:
         raise UsageError(
-            f"{Path(compiler).name} does not build {library.name} for {target}: {ran.stderr.strip()[:_MOST_SHOWN]}",
+            f"{Path(command[0]).name} fails: {ran.stderr.strip()[:_MOST_SHOWN]}",
             hint=f"In {folder}: {' '.join(command)}",
         )
-    return folder / row.made.format(name=library.name)

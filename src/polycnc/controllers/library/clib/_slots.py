@@ -45,20 +45,18 @@ class Slot:
     holder: str = ""
     member: str = ""
 
-    @property
-    def reads(self) -> bool:
-        """Whether what lies there goes in."""
-        return self.way is Way.VALUE or self.argument.direction is not Direction.OUT
+    reads: bool = field(init=False)
+    """Whether what lies there goes in."""
+    writes: bool = field(init=False)
+    """Whether something is written there."""
+    width: int = field(init=False)
+    """Bytes of an element."""
 
-    @property
-    def writes(self) -> bool:
-        """Whether something is written there."""
-        return self.way is not Way.VALUE and self.argument.direction is not Direction.IN
-
-    @property
-    def width(self) -> int:
-        """Bytes of an element."""
-        return ctypes.sizeof(self.element)
+    def __post_init__(self) -> None:
+        value, direction = self.way is Way.VALUE, self.argument.direction
+        object.__setattr__(self, "reads", value or direction is not Direction.OUT)
+        object.__setattr__(self, "writes", not value and direction is not Direction.IN)
+        object.__setattr__(self, "width", ctypes.sizeof(self.element))
 
     @property
     def row(self) -> str:
@@ -186,11 +184,7 @@ def _slot(library: CLibrary, function: Function, argument: Argument) -> Slot:
 
 
 def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
-    """Return how an argument travels, and what its elements are.
-
-    Raises:
-        TypeError: It cannot.
-    """
+    """Return how an argument travels, and what its elements are; a routine does not travel, its address is memory."""
     kind = argument.type
     star = argument.c.rstrip().endswith("*")
     match kind:
@@ -199,7 +193,7 @@ def slot_of(library: CLibrary, argument: Argument) -> tuple[Way, Any]:
         case Bytes():
             return Way.MEMORY, library.header.classes.get(argument.c.rstrip(" *"), ctypes.c_char)
         case Pointer(of=of) if of is callable:
-            raise TypeError(f"{argument.declaration}: a routine is no bytes")
+            return Way.MEMORY, ctypes.c_char
         case Pointer(ctype=None, of=of):
             return (Way.NUMBERS, ctypes.c_int16) if of is int else (Way.RECORDS, of)
         case Pointer(ctype=ctype):
