@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import ipaddress
+import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from polycnc.cli import _serve_options as _options
+from polycnc.cli._errors import INTERRUPTED
 from polycnc.cli._output import say, say_error
 
 if TYPE_CHECKING:
@@ -66,7 +68,20 @@ def serve_command(
             faults=faults,
         )
     )
-    asyncio.run(_serve(plan))
+    try:
+        asyncio.run(_serve(plan))
+    except KeyboardInterrupt:
+        say_error("interrupted")
+        _leave(INTERRUPTED)
+    except SystemExit as ended:
+        _leave(ended.code if isinstance(ended.code, int) else 1)
+
+
+def _leave(status: int) -> NoReturn:
+    """End the process at once: doors and memories are closed, taking compiled code apart takes long under load."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -126,14 +141,14 @@ async def _serve(plan: Plan) -> None:
     from polycnc.servers.process import Serving
 
     ended = _end_on_signal(signal.SIGTERM)
-    serving = Serving(runner.WallClock(), plan.log, _Late().say)
+    serving = Serving(runner.WallClock(), plan.log, _Late().say, say_error)
     try:
         await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
         _say_doors([(name, door.said) for name, door in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
-        serving.begin()
+        await serving.begin()
         await serving.run()
     except asyncio.CancelledError:
         if ended:

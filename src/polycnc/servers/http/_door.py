@@ -12,10 +12,10 @@ import uvicorn
 
 from polycnc.errors import UsageError
 from polycnc.servers.http._app import make_app
+from polycnc.servers.http._connection import Connection
 from polycnc.servers.machines import ServedMachine, Wanted
 
 PORT = 8080
-_MOST_CONNECTIONS = 200
 _END_S = 0.5
 
 
@@ -46,7 +46,7 @@ class HttpDoor:
                 lifespan="off",
                 ws="websockets-sansio",
                 ws_max_size=1 << 16,
-                limit_concurrency=_MOST_CONNECTIONS,
+                http=Connection,
                 timeout_keep_alive=30,
                 timeout_graceful_shutdown=None,
                 server_header=False,
