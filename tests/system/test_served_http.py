@@ -206,9 +206,60 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, tm
         page.evaluate("window.dispatchEvent(new Event('blur'))")
         while served.status()["axes"]["X"]["manual"] != "none":
             page.wait_for_timeout(20)
+        operate_the_pages(page, served)
         assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
         assert wrong == []
         page.close()
+
+
+def operate_the_pages(page: Any, served: Served) -> None:
+    """Set an offset, teach one, watch and set a variable, find a parameter, keep and restore, set a breakpoint."""
+    page.click("#tab-offsets")
+    page.fill("[aria-label='G55 Y']", "-12.5")
+    page.press("[aria-label='G55 Y']", "Enter")
+    until(page, lambda: served.http.get("/offsets").json().get("G55", {}).get("Y") == -12.5)
+    page.fill("[aria-label='G55 X']", "much")
+    page.press("[aria-label='G55 X']", "Enter")
+    page.wait_for_selector("[aria-label='G55 X'].refused")
+    page.click("#teach-G56")
+    until(page, lambda: "X" in served.http.get("/offsets").json().get("G56", {}))
+    page.click("#tab-variables")
+    page.fill("#watched", "#500,#501")
+    page.press("#watched", "Enter")
+    page.fill("[aria-label='#501']", "7.25")
+    page.press("[aria-label='#501']", "Enter")
+    until(page, lambda: served.http.get("/variables/501").json()["value"] == 7.25)
+    page.click("#tab-parameters")
+    page.fill("#filter", "1320")
+    page.wait_for_selector("[aria-label='1320 X']")
+    page.click("#tab-tools")
+    page.click("#tab-alarms")
+    page.wait_for_selector("#page-alarms td:has-text('EMERGENCY'), #page-alarms td:has-text('mergency')")
+    page.click("#tab-snapshots")
+    page.click("#keep")
+    page.click("#restore-snapshot")
+    until(page, lambda: served.http.get("/snapshots").json()[0]["name"] == "snapshot")
+    page.click("#lines li:nth-child(2)")
+    page.click("#breakpoint")
+    page.wait_for_selector("#lines li:nth-child(2).breakpoint")
+    page.click("#breakpoint")
+    page.wait_for_selector("#lines li:nth-child(2):not(.breakpoint)")
+    page.select_option("#rate", "5")
+    until(page, lambda: served.http.get("/clock").json()["rate"] == 5.0)
+    page.select_option("#rate", "1")
+    page.click("#far")
+    page.wait_for_selector("#keys", state="hidden")
+    assert page.locator("#X-work").bounding_box()["height"] > 30
+    page.click("#far")
+
+
+def until(page: Any, holds: Any) -> None:
+    """Wait until something holds."""
+    for _ in range(500):
+        if holds():
+            return
+        page.wait_for_timeout(20)
+    raise AssertionError("it does not come")
 
 
 def test_requests_from_the_description_are_answered_as_it_says(served: Served) -> None:

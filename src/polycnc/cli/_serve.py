@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import ipaddress
+import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from polycnc.cli import _serve_options as _options
+from polycnc.cli._errors import INTERRUPTED
 from polycnc.cli._output import say, say_error
 
 if TYPE_CHECKING:
@@ -72,7 +74,20 @@ def serve_command(
             node_sets=opcua_nodesets,
         )
     )
-    asyncio.run(serve_plan(plan))
+    try:
+        asyncio.run(serve_plan(plan))
+    except KeyboardInterrupt:
+        say_error("interrupted")
+        _leave(INTERRUPTED)
+    except SystemExit as ended:
+        _leave(ended.code if isinstance(ended.code, int) else 1)
+
+
+def _leave(status: int) -> NoReturn:
+    """End the process at once: doors and memories are closed, taking compiled code apart takes long under load."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -133,7 +148,7 @@ async def serve_plan(plan: Plan) -> None:
     from polycnc.servers.process import Serving
 
     ended = _end_on_signal(signal.SIGTERM)
-    serving = Serving(runner.WallClock(), plan.log, _Late().say)
+    serving = Serving(runner.WallClock(), plan.log, _Late().say, say_error)
     try:
         for why in plan.lasting:
             say_error(why)
@@ -142,7 +157,7 @@ async def serve_plan(plan: Plan) -> None:
             say_error(warning)
         _say_doors([(name, door.said) for name, door in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
-        serving.begin()
+        await serving.begin()
         await serving.run()
     except asyncio.CancelledError:
         if ended:

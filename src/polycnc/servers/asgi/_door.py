@@ -30,9 +30,17 @@ class _Server(uvicorn.Server):
 
 
 class AsgiDoor:
-    """Serve an application on one port; `name` is the door's."""
+    """Serve an application on one port; `name` is the door's, `connection` bounds its connections in its own words."""
 
-    def __init__(self, name: str, app: ASGIApp, address: str, port: int) -> None:
+    def __init__(
+        self,
+        name: str,
+        app: ASGIApp,
+        address: str,
+        port: int,
+        *,
+        connection: type[asyncio.Protocol] | None = None,
+    ) -> None:
         self._name = name
         self._address = address
         self._port = port
@@ -44,7 +52,8 @@ class AsgiDoor:
                 lifespan="off",
                 ws="websockets-sansio",
                 ws_max_size=1 << 16,
-                limit_concurrency=_MOST_CONNECTIONS,
+                http="auto" if connection is None else connection,
+                limit_concurrency=_MOST_CONNECTIONS if connection is None else None,
                 timeout_keep_alive=30,
                 timeout_graceful_shutdown=None,
                 server_header=False,

@@ -46,8 +46,11 @@ def _macro(view: View, number: int) -> float | None:
 
 
 def _readable_macro(view: View, number: int) -> float | None:
-    if number in _LOCALS or number in view.control.macros or not view.profile.system_variables:
+    try:
         return _macro(view, number)
+    except RefusedError:
+        if not view.profile.system_variables:
+            raise
     try:
         return system_variable(view, number)
     except KeyError:

@@ -18,12 +18,16 @@ from polycnc.servers.calls import MAGIC, CallsServer
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._faults import FaultKind, Faults
 from polycnc.servers.focas._profile import Profile
-from polycnc.servers.focas._session import Ending, Session
-from polycnc.servers.machines import HostOwner, Keeper, Owner, ServedMachine
+from polycnc.servers.focas._session import Ending, Session, State
+from polycnc.servers.machines import HostOwner, Keeper, Owner, Patience, ServedMachine, notice_loss
 
 PORT = 8193
 LOOPBACK = "127.0.0.1"
 _LISTEN_BEAT_S = 0.05
+MOST_LINES = 1000
+LEAST_PATIENCE_S = 30.0
+"""How long a connection may stand before it is opened, and a program may stop coming: others wait for it."""
+_HALF = frozenset({State.NEW, State.DOWNLOADING})
 
 
 class FocasServer:
@@ -126,6 +130,11 @@ class FocasServer:
             await self.calls.close()
         await asyncio.sleep(0)  # lets the connections tell that they are lost
 
+    @property
+    def crowded(self) -> bool:
+        """Whether there are more connections than it takes."""
+        return len(self._lines) > MOST_LINES
+
     def joined(self, line: _Line) -> None:
         """Note a connection."""
         self._lines.add(line)
@@ -149,11 +158,17 @@ class _Line(asyncio.Protocol):
         self._session = Session(server.control)
         self._full = self._waiting = self._gone = False
         self._new = True
+        self._patience = Patience(self.abort)
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
         self._server.joined(self)
+        notice_loss(transport)
+        if self._server.crowded:
+            transport.abort()
+        else:
+            self._patience.begin(LEAST_PATIENCE_S)
 
     def data_received(self, data: bytes) -> None:
         session, calls = self._session, self._server.calls
@@ -180,6 +195,10 @@ class _Line(asyncio.Protocol):
         session = self._session
         if self._gone:
             return
+        if session.state in _HALF:
+            self._patience.begin(LEAST_PATIENCE_S)
+        else:
+            self._patience.end()
         if sent:
             self._transport.write(sent)
         if session.ending is Ending.RESET:
@@ -235,6 +254,7 @@ class _Line(asyncio.Protocol):
     def _end(self) -> None:
         """End the session."""
         self._gone = True
+        self._patience.end()
         self._server.left(self)
         self._server.owner.submit(self._session.lost, lambda _: None)
 

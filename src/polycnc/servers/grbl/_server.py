@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from polycnc.errors import UsageError
+from polycnc.servers.machines import notice_loss
 
 R = TypeVar("R")
 PORT = 8123
@@ -120,6 +121,7 @@ class GrblServer:
             writer.close()
             return
         self._client, self._from_terminal = writer, False
+        notice_loss(writer.transport)
         self._owner.submit(self._core.greet, self._answer)
         try:
             while data := await reader.read(_PIECE_BYTES):

@@ -28,6 +28,7 @@ FILES = {
     "icon.svg": ("icon.svg", "image/svg+xml"),
     "page.css": ("page.css", "text/css; charset=utf-8"),
     "page.js": ("page.js", "text/javascript; charset=utf-8"),
+    "pages.js": ("pages.js", "text/javascript; charset=utf-8"),
     "path.js": ("path.js", "text/javascript; charset=utf-8"),
     "texts.js": ("texts.js", "text/javascript; charset=utf-8"),
 }

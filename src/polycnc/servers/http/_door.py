@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from polycnc.servers.asgi import AsgiDoor
 from polycnc.servers.http._app import make_app
+from polycnc.servers.http._connection import Connection
 from polycnc.servers.machines import ServedMachine, Wanted
 
 PORT = 8080
@@ -16,4 +17,6 @@ class HttpDoor(AsgiDoor):
 
     def __init__(self, machines: Sequence[ServedMachine], wanted: Wanted) -> None:
         app = make_app(machines, token=wanted.token, log=wanted.log, hosts=(wanted.address,))
-        super().__init__("http", app, wanted.address, PORT if wanted.port is None else wanted.port)
+        super().__init__(
+            "http", app, wanted.address, PORT if wanted.port is None else wanted.port, connection=Connection
+        )

@@ -1,5 +1,6 @@
 """Served machines: a device, who lets its time pass, what happens to it by itself, and the doors to it."""
 
+from polycnc.servers.machines._connections import Patience, notice_loss, tell_errors
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
 from polycnc.servers.machines._machine import AS_USUAL, MachineError, ServedMachine, Treatment
@@ -35,6 +36,7 @@ __all__ = [
     "NamedValue",
     "Nothing",
     "Owner",
+    "Patience",
     "Programs",
     "ReadValues",
     "Scenario",
@@ -46,4 +48,6 @@ __all__ = [
     "Wanted",
     "Watch",
     "no_such",
+    "notice_loss",
+    "tell_errors",
 ]

@@ -20,6 +20,7 @@ from polycnc.servers.machines import (
     ServedDevice,
     ServedMachine,
     Wanted,
+    tell_errors,
 )
 from polycnc.servers.process._kinds import KINDS
 from polycnc.servers.process._made import Machinery, Made
@@ -52,9 +53,12 @@ class Serving:
     wall: Wall
     log: Log
     on_late: Callable[[float], None]
+    on_error: Callable[[str], None] = lambda text: None
     machines: list[ServedMachine] = field(default_factory=list)
     doors: list[tuple[str, Door]] = field(default_factory=list)
     programs: dict[str, tuple[Load, Path]] = field(default_factory=dict)
+    told: set[str] = field(default_factory=set)
+    """Kinds of errors that `on_error` has been told of, once each."""
 
     async def open(
         self, wanted: Sequence[MachineWanted], shared: Sequence[tuple[DoorKind, Wanted]] = ()
@@ -64,6 +68,7 @@ class Serving:
         Raises:
             UsageError: A machine cannot be made, or a door cannot be opened; `close` closes the others.
         """
+        tell_errors(asyncio.get_running_loop(), self._tell)
         for each in wanted:
             self._make(each, _SHARE_S / len(wanted))
         asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
@@ -81,7 +86,7 @@ class Serving:
             self.doors.append((kind.name, door))
             self.log.write("open", door=kind.name, address=door.said)
 
-    def begin(self) -> None:
+    async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
         self.start_programs()
         for machine in self.machines:
@@ -91,6 +96,7 @@ class Serving:
     def start_programs(self) -> None:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
+            await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
             if (found := self.programs.get(machine.name)) is not None:
                 _start(machine, *found)
 
@@ -110,6 +116,12 @@ class Serving:
             machine.close()
         self.log.write("end")
         self.log.close()
+
+    def _tell(self, kind: str, text: str) -> None:
+        self.log.write(kind, text=text)
+        if kind not in self.told:
+            self.told.add(kind)
+            self.on_error(text)
 
     def _of(self, wanted: MachineWanted) -> ServedMachine:
         return next(each for each in self.machines if each.name == wanted.machinery.name)
