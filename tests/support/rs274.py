@@ -40,6 +40,7 @@ _IGNORED = {
     "MIST_OFF",  # M9 is both, in this order
     "ON_RESET",
     "SET_TOOL_TABLE_ENTRY",
+    "CHANGE_TOOL_NUMBER",
     "SET_FEED_REFERENCE",
     "SET_MOTION_CONTROL_MODE",
     "SET_NAIVECAM_TOLERANCE",
@@ -145,7 +146,7 @@ class _Canon:
 
     def move(self, step: Traverse | Feed | Turn) -> None:
         # A move to where the machine stands is no move, unless it is a full circle.
-        if isinstance(step, Turn) or math.dist(step.end, self.at) > 2.0 * RESOLUTION_MM:
+        if isinstance(step, Turn) or math.dist(step.end, self.at) > 2.0 * RESOLUTION_MM * SCALE / self.scale:
             self.steps.append(step)
         self.at = step.end
 
@@ -161,7 +162,9 @@ class _Canon:
         first = math.atan2(self.at[q] - center[1], self.at[p] - center[0])
         last = math.atan2(end[q] - center[1], end[p] - center[0])
         radius = math.dist((self.at[p], self.at[q]), center)
-        nothing = 8.0 * RESOLUTION_MM / radius  # an angle that printing may have made or hidden
+        nothing = (
+            8.0 * RESOLUTION_MM * SCALE / self.scale / radius
+        )  # an angle that printing may have made or hidden
         turn = (last - first) * math.copysign(1.0, turns) % (2.0 * math.pi)
         if turn < nothing or turn > 2.0 * math.pi - nothing:
             turn = 2.0 * math.pi

@@ -49,8 +49,6 @@ REFUSED: dict[str, str] = {
         "radius compensation starts with an arc",
     ),
     "nestedcall": "'u' is no function",  # an O-word `callsub`, which rs274 refuses too
-    "offsets": "'Q' has no meaning in this block",
-    "roparams": "#<_speed_override> has no value",
     "skeleton": "a dwell (G4) and a move in one block",
 }
 """Programs that polycnc refuses, with what its error says."""

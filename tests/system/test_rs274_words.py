@@ -15,6 +15,7 @@ from polycnc.machine import Machine, MachineConfig, parse_toml, validate
 from polycnc.nc import Channel, ProgramText, language_for, load_dialect
 from support import rs274
 from support.canonical import Step, first_difference, queued_steps
+from support.random_ngc_words import RandomWords
 
 pytestmark = pytest.mark.skipif(rs274.COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
 
@@ -152,3 +153,37 @@ def test_both_refuse_the_same(blocks: str, tmp_path: Path) -> None:
     assert error is not None
     assert error.position is not None
     assert error.position.line == 1 + len(blocks.splitlines())
+
+
+def compare(seed: int, count: int, folder: Path) -> str:
+    """Return how random sequences differ between the two; '' if they do not."""
+    program = whole(RandomWords(seed).sequences(count))
+    theirs = rs274.interpret(program, folder)
+    ours, error = prepare(program)
+    refused = None if error is None or error.position is None else error.position.line
+    if refused is not None and theirs.block == program.splitlines()[refused - 1]:
+        return ""  # a position by radius and angle where the tool stands at zero
+    if error is not None or theirs.error:
+        return f"seed {seed}: refused\n  ours   {error}\n  theirs {theirs.error}: {theirs.block}\n{program}"
+    found = first_difference(ours, rs274.canonical_steps(theirs, 3, scale=1), 5.0 * TOLERANCE_MM)
+    return f"seed {seed}: {found}\n{program}" if found else ""
+
+
+@pytest.mark.parametrize("first", range(0, 20, 5))
+def test_random_words_ask_for_the_same_moves(
+    first: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ten sequences each: a sequence begins with all modes set anew."""
+    monkeypatch.setattr(rs274, "tool_table", lambda: TABLE)
+    found = [text for seed in range(first, first + 5) if (text := compare(seed, 10, tmp_path))]
+    assert not found, f"{len(found)} of 5\n" + found[0]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("first", range(10_000, 10_500, 50))
+def test_many_random_words_ask_for_the_same_moves(
+    first: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(rs274, "tool_table", lambda: TABLE)
+    found = [text for seed in range(first, first + 50) if (text := compare(seed, 10, tmp_path))]
+    assert not found, f"{len(found)} of 50\n" + found[0]

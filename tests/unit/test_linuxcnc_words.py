@@ -117,3 +117,50 @@ def test_a_probe_may_miss_where_the_program_says_so(tmp_path: Path) -> None:
     assert (end["X"], end["Y"], end["Z"]) == (17.0, 3.0, 17.0)
     end = probing(tmp_path, "G0 X22\nG38.5 X25 F600\nG0 Y[3 + #5070]").end_position_mm
     assert (end["X"], end["Y"]) == (25.0, 3.0)
+
+
+MODES = [
+    # what M70 keeps comes back by M72, with the units that the feed was said in
+    (
+        "F300\nM70\nG20 G91 G7 F2 G64 P.01 G55\nM72\nG1 X25.4\nG1 Y[#<_feed>] Z[#<_coord_system> / 10]",
+        (25.4, 300.0, 54.0),
+    ),
+    ("o1 sub\nM73\nG91 G20 G43.1 Z1\nG0 X1\no1 endsub\no1 call\nG0 X7 Y2 Z3", (7.0, 2.0, 3.0)),
+    (
+        "o1 sub\nM73\nG91\no2 if [#1 gt 0]\no1 return\no2 endif\nG90\no1 endsub\no1 call [1]\nG0 X4\nG0 X6",
+        (6.0, 0.0, 0.0),
+    ),
+    ("G43.1 Z4\nM70\nG49\nM72\nG0 Z3\nG0 X#<_tool_offset>", (1.0, 0.0, 7.0)),
+    ("M61 Q3\nG0 X#<_current_tool> Y#5400", (3.0, 3.0, 0.0)),
+]
+
+
+@pytest.mark.parametrize(("program", "end"), MODES)
+def test_modes_that_are_kept_come_back(program: str, end: tuple[float, float, float], tmp_path: Path) -> None:
+    found = run(tmp_path, program).end_position_mm
+    assert tuple(found.values()) == pytest.approx(end, abs=1e-9)
+
+
+def test_functions_have_their_words_in_their_events(tmp_path: Path) -> None:
+    path = tmp_path / "part.ngc"
+    path.write_text("M62 P3 G1 X2 F100\nM67 E1 Q-2.5\nM101 P4.5 Q7\nM2\n", encoding="ascii")
+    words = [event.word for event in polycnc.run(path).events]
+    assert [word for word in words if word[0] == "M"][:3] == ["M62 P3", "M67 Q-2.5 E1", "M101 P4.5 Q7"]
+
+
+@pytest.mark.parametrize(
+    ("program", "what"),
+    [
+        ("M72", "no modes have been kept"),
+        ("M70\nM71\nM72", "no modes have been kept"),
+        ("o1 sub\nM72\no1 endsub\nM70\no1 call", "no modes have been kept"),
+        ("G41.1 D3\nM70\nG40\nM72", "radius compensation cannot be put in force again"),
+        ("M61", "M61 without Q"),
+        ("M66 P1 L0", "M66 is not supported yet"),
+        ("M98 P100", "M98 is not supported yet"),
+        ("M62 P1 M62 P2", "stands twice"),
+    ],
+)
+def test_what_functions_refuse(program: str, what: str, tmp_path: Path) -> None:
+    with pytest.raises(polycnc.ProgramError, match=what):
+        run(tmp_path, program)

@@ -6,6 +6,7 @@ motion of the block; then program stops and the program end. The power of a lase
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from polycnc.nc.blocks import _feeds as feeds
@@ -29,11 +30,15 @@ _BEFORE_MOTION = (
     MAction.COOLANT_FLOOD,
     MAction.COOLANT_OFF,
     MAction.RIGID_TAP,
+    MAction.SET_TOOL,
     MAction.AUXILIARY,
+    MAction.AUXILIARY_WORDS,
 )
 _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
 _DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
+_PARAMETERS = "PQREL"
+"""What a function with words takes, in the order in which its event names them."""
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
 _COOLANT = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD, MAction.COOLANT_OFF)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
@@ -179,6 +184,10 @@ def _set_speed(block: BlockContext, word: Word) -> None:
     block.after.spindle = replace(spindle, speed=speed)
 
 
+def _with_words(name: str, words: Sequence[Word]) -> str:
+    return " ".join((name, *(f"{word.letter}{code_text(word.value)}" for word in words)))
+
+
 def _function(block: BlockContext, m: MWord) -> tuple[Wait, ...]:
     """Carry out an M code; return the wait for it, none for what passes at speed."""
     if m.action in SPINDLE_SENSES and _has_laser(block):
@@ -195,6 +204,16 @@ def _wait(block: BlockContext, m: MWord) -> Wait:
         block.after.tool = block.after.selected_tool
         tool_data(block, block.after.tool)
         return Wait(times.tool_change_s, block.line, (f"{name} T{block.after.tool}",))
+    if m.action is MAction.SET_TOOL:
+        number = block.words.take("Q")
+        if number is None:
+            raise block.problem(f"{name} without Q", "Add Q and the number of the tool.", m.word)
+        block.after.tool = block.after.selected_tool = whole_number(number, "a tool number", block.problem)
+        tool_data(block, block.after.tool)
+        return Wait(times.auxiliary_s, block.line, (f"{name} Q{block.after.tool}",))
+    if m.action is MAction.AUXILIARY_WORDS:
+        words = [each for letter in _PARAMETERS if (each := block.words.take(letter)) is not None]
+        return Wait(times.auxiliary_s, block.line, (_with_words(name, words),))
     if m.action is MAction.RIGID_TAP:
         turned = block.after.spindle.direction != 0
         block.after.rigid_tap = True

@@ -8,7 +8,7 @@ from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._compensation import Side
 from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._tool_offsets import OFFSETS, diameter_of, shift_by_tool, tool_data
-from polycnc.nc.blocks._words import whole_number
+from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action, Group
 from polycnc.nc.modal._modal import NO_AXIS
 
@@ -22,12 +22,16 @@ def compensate_length(block: BlockContext) -> None:
         ProgramError: there is no Z axis, or H is no tool.
     """
     g = block.words.g.get(Group.LENGTH_COMPENSATION)
+    if g is not None and g.action in OFFSETS:
+        shift_by_tool(block, g)
+    elif g is not None or not block.dialect.shifts_by_code_alone:
+        _compensate_along_z(block, g)
+
+
+def _compensate_along_z(block: BlockContext, g: GWord | None) -> None:
     state, coordinates = block.after, block.after.coordinates
     sign = coordinates.length_sign if g is None else g.value
     if g is None and "H" not in block.words.by_letter:
-        return
-    if g is not None and g.action in OFFSETS:
-        shift_by_tool(block, g)
         return
     if g is None and sign == 0:
         if not block.dialect.h_compensates:

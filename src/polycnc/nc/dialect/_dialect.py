@@ -300,6 +300,11 @@ class Dialect(StrictModel):
         """Whether a work offset can turn the plane of X and Y."""
         return Action.SET_TABLES in self._by_code.values()
 
+    @cached_property
+    def shifts_by_code_alone(self) -> bool:
+        """Whether H compensates the tool length beside its code only."""
+        return Action.TOOL_OFFSET in self._by_code.values()
+
     @property
     def sets_work_offsets(self) -> bool:
         """Whether programs can set work offsets: then they begin in G54."""

@@ -245,6 +245,8 @@ class MAction(Enum):
     SUB_RETURN = ("sub_return", "stop")
     RIGID_TAP = ("rigid_tap", "")
     AUXILIARY = ("auxiliary", "")
+    AUXILIARY_WORDS = ("auxiliary_words", "")
+    SET_TOOL = ("set_tool", "tool")
     UNSUPPORTED = ("unsupported", "")
     LEFT_OUT = ("left_out", "")
 

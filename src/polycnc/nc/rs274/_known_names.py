@@ -98,6 +98,10 @@ KNOWN_NAMES: dict[str, Value] = {
     "_flood": lambda of: float(8 in of.state.spindle.coolant),
     "_call_level": lambda of: float(of.level),
     "_ccomp": lambda of: {0: 400.0, 1: 410.0, -1: 420.0}[of.state.side],
+    "_speed_override": lambda _: 1.0,  # M48 to M53 are functions for others: these never change
+    "_feed_override": lambda _: 1.0,
+    "_adaptive_feed": lambda _: 0.0,
+    "_feed_hold": lambda _: 1.0,
     "_line": lambda _: 0.0,  # the translation puts the number of the line in its place
     "_vmajor": lambda _: 2.9,
     "_vminor": lambda _: 0.0,

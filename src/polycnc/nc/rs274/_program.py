@@ -13,11 +13,13 @@ from typing import TypeAlias
 
 from polycnc.errors import ProgramError
 from polycnc.language import Emitter, Flaw, Traced
+from polycnc.nc.rs274._kept_modes import KEEPING
 from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
 from polycnc.nc.text._program import ProgramText
 
 _TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print)")
 _O = re.compile(rb"[Oo]")
+_KEEPS_MODES = re.compile(rb"[Mm][ \t]*0*7[0-3](?![0-9.])")
 _LONGEST_BEFORE_O = 256
 _BEFORE_O = re.compile(rb"[ \t/]*(?:[Nn][0-9. \t]+)?")
 _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
@@ -25,6 +27,7 @@ _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
 _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
     r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"|M[ \t]*0*7[0-3](?![0-9.])"
     r"|\([ \t]*(?:debug|print)[ \t]*,",
     re.IGNORECASE,
 )
@@ -44,6 +47,7 @@ def holds_language(content: bytes) -> bool:
         or b"[" in content
         or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
         or _TEXT_WITH_VALUES.search(content) is not None
+        or _KEEPS_MODES.search(content) is not None
     )
 
 
@@ -308,8 +312,11 @@ class _Writer:
             own = target.removesuffix(" = {}")
             if own.startswith("N[") and any(own in each.python for _, each in line.settings):
                 put(f"if {own[2:-1]} not in N:", f"    {own} = 0.0")
+        keeping = [word for word in line.words if word[0] == "M" and word[1].python in KEEPING]
         words = ", ".join(
-            f"({letter!r}, {value.python}, {row.offset + at})" for letter, value, at in line.words
+            f"({letter!r}, {value.python}, {row.offset + at})"
+            for letter, value, at in line.words
+            if (letter, value, at) not in keeping
         )
         if len(line.settings) == 1 and not line.words:
             target, value = line.settings[0]
@@ -323,6 +330,12 @@ class _Writer:
                 put(f"yield block({row.number}, {row.offset}, w, {message})")
         elif words:
             put(f"yield block({row.number}, {row.offset}, ({words},), {message})")
+        put(
+            *(
+                f"yield modes({KEEPING[code.python]}, {row.number}, {row.offset + at})"
+                for _, code, at in keeping
+            )
+        )
         if line.o_word is not None:
             self._o_word(row, line.o_word)
 

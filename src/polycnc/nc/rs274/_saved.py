@@ -23,15 +23,18 @@ class SavedLevel:
     calls: tuple[Call, ...]
     line: int | None
     names: dict[str, object]
+    kept: tuple[tuple[tuple[str, float], ...], ...]
+    goes_back: tuple[int, int, int] | None
 
 
 @dataclass(frozen=True, slots=True)
 class SavedProgram:
-    """Hold one execution: its levels, the outermost first."""
+    """Hold one execution: its levels, the outermost first, and the blocks that put kept modes in force again."""
 
     levels: tuple[SavedLevel, ...]
     pauses: int
     over: bool
+    back: tuple[tuple[tuple[tuple[str, float, int], ...], int, int, tuple[Call, ...]], ...]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from polycnc.errors import ProgramError, UsageError
 from polycnc.language import Traced, frame_of, line_of, names_of
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.rs274._functions import FUNCTIONS, NumberError
+from polycnc.nc.rs274._kept_modes import Words, modes_of, words_back
 from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
 from polycnc.nc.rs274._program import Program
 from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
@@ -24,7 +25,7 @@ LONGEST_LOOP_PAUSES = 2_500
 _LARGEST = 1e12
 _PARAMETERS = ("L", "N")
 _PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
-Suspended: TypeAlias = Generator["SourceItem | CallRequest", None, "float | None"]
+Suspended: TypeAlias = Generator["SourceItem | CallRequest | ModesRequest", None, "float | None"]
 Function: TypeAlias = Callable[[list[float], dict[str, float]], Suspended]
 
 
@@ -52,9 +53,21 @@ class CallRequest:
     line: int
 
 
+@dataclass(frozen=True, slots=True)
+class ModesRequest:
+    """What M70 to M73 ask for, on a line and at a byte of the text."""
+
+    code: int
+    line: int
+    offset: int
+
+
 @dataclass(slots=True)
 class _Level:
-    """A program or sub-program under way: its own parameters, and the generator that gives its items."""
+    """A program or sub-program under way: its own parameters, and the generator that gives its items.
+
+    `kept` are the modes that M70 or M73 has kept; with `goes_back` they are in force again when it returns.
+    """
 
     program: Program
     label: str
@@ -62,6 +75,8 @@ class _Level:
     named: dict[str, float]
     calls: tuple[Call, ...]
     run: Suspended
+    kept: tuple[Words, ...] = ()
+    goes_back: ModesRequest | None = None
 
 
 class RunningProgram:
@@ -87,11 +102,13 @@ class RunningProgram:
             "times": lambda number: max(0, round(number)),
             "label": lambda number: str(round(number)),
             "call": self._asked,
+            "modes": ModesRequest,
         }
         self._functions: dict[int, tuple[Traced[int], Function]] = {}
         self._pauses = 0
         self._over = False
         self._levels: list[_Level] = []
+        self._back: list[WordsBlock] = []
         self._begin(program, "", [0.0] * (LAST_LOCAL + 1), ())
 
     # ------------------------------------------------------------------ what the channel asks
@@ -104,20 +121,27 @@ class RunningProgram:
         """
         if self._over:
             return EndSource.END
-        item: SourceItem | CallRequest | None = None
-        while item is None or isinstance(item, CallRequest):
+        item: SourceItem | CallRequest | ModesRequest | None = None
+        while item is None or isinstance(item, CallRequest | ModesRequest):
             item = None
+            if self._back:
+                return self._back.pop(0)
             try:
                 item = next(self._levels[-1].run)
             except StopIteration as ended:
                 if len(self._levels) == 1:
                     self._over = True
                     return None
+                level = self._levels[-1]
+                if level.goes_back is not None:
+                    self._put_back(level, level.goes_back)
                 self._return(ended.value)
             except _PROBLEMS as error:
                 raise self._refused(error) from None
             if isinstance(item, CallRequest):
                 self._enter(item)
+            elif isinstance(item, ModesRequest):
+                self._keep(item)
         self._pauses = self._pauses + 1 if item is Pause.PAUSE else 0
         if self._pauses > LONGEST_LOOP_PAUSES:
             endless = NumberError("a loop goes round without a block", "Add what ends it.")
@@ -167,6 +191,32 @@ class RunningProgram:
         parameters.names["_value"] = 0.0 if value is None else value
         parameters.names["_value_returned"] = float(value is not None)
 
+    def _keep(self, asked: ModesRequest) -> None:
+        """Keep the modes in force (M70, M73), forget them (M71), or put them in force again (M72).
+
+        Raises:
+            ProgramError: there are none, or they cannot be in force again.
+        """
+        level = self._levels[-1]
+        if asked.code == 72:
+            self._put_back(level, asked)
+            return
+        level.kept = () if asked.code == 71 else modes_of(self._owner.parameters.state)
+        level.goes_back = asked if asked.code == 73 else None
+
+    def _put_back(self, level: _Level, asked: ModesRequest) -> None:
+        text = level.program.text
+        try:
+            if not level.kept:
+                raise NumberError("no modes have been kept", "Write M70 before M72, in the same sub-program.")
+            blocks = words_back(level.kept, self._owner.parameters.state)
+        except NumberError as error:
+            self._over = True
+            raise ProgramError(error.what, position=text.position(asked.offset), hint=error.hint) from None
+        for words in blocks:
+            made = tuple(Word(letter, value, asked.offset, True) for letter, value in words)
+            self._back.append(WordsBlock(made, asked.line, asked.offset, text=text, calls=level.calls))
+
     # ------------------------------------------------------------------ where it stands
 
     def saved(self) -> SavedProgram:
@@ -181,10 +231,16 @@ class RunningProgram:
                 level.calls,
                 line_of(level.run),
                 {name: value for name, value in names_of(level.run).items() if name not in _PARAMETERS},
+                level.kept,
+                None if (asked := level.goes_back) is None else (asked.code, asked.line, asked.offset),
             )
             for level in self._levels
         )
-        return SavedProgram(levels, self._pauses, self._over)
+        back = tuple(
+            (tuple((w.letter, w.value, w.place) for w in each.words), each.line, each.offset, each.calls)
+            for each in self._back
+        )
+        return SavedProgram(levels, self._pauses, self._over, back)
 
     def go_to(
         self, saved: SavedProgram, codes: Sequence[tuple[Program, Traced[int] | None]]
@@ -196,12 +252,19 @@ class RunningProgram:
             self._begin(program, level.label, list(level.numbered), level.calls)
             made = self._levels[-1]
             made.named.update(level.named)
+            made.kept = level.kept
+            made.goes_back = None if level.goes_back is None else ModesRequest(*level.goes_back)
             if traced is not program.functions[level.label]:
                 made.run.close()
             if traced is not None and traced is not program.functions[level.label]:
                 made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
                 next(made.run)
         self._pauses, self._over = saved.pauses, saved.over
+        text = self._levels[-1].program.text
+        self._back = [
+            WordsBlock(tuple(Word(*each, True) for each in words), line, offset, text=text, calls=calls)
+            for words, line, offset, calls in saved.back
+        ]
         return self
 
     # ------------------------------------------------------------------ what the Python calls
