@@ -19,9 +19,9 @@ _Key = tuple[int, str, str | None]
 
 
 class AlarmEvents:
-    """Send the alarms of a machine; `kinds` are events to be filled in, with the objects that emit each.
+    """Send the alarms of a machine.
 
-    `number` says in which field the number of an alarm stands, by the event.
+    `kinds` are events to be filled in, each with the name of its field for the number and the objects that emit it.
     """
 
     def __init__(
