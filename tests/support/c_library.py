@@ -93,7 +93,7 @@ class Door:
             self._door = serving.doors[-1][1]
             self.place, self.first_place = serving.doors[-1][1].said, serving.doors[0][1].said
             if self._running:
-                serving.begin()
+                await serving.begin()
             self._ready.set()
             await self._end.wait()
         finally:

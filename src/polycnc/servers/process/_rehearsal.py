@@ -39,7 +39,7 @@ def rehearse(
         serving = Serving(_Still(), Log(), lambda lag_s: None)
         try:
             await serving.open([MachineWanted(kind, machinery, program, story=story)])
-            serving.start_programs()
+            await serving.start_programs()
             served = serving.machines[0].served
             _advance(served.advance, round(seconds / served.clock.cycle_s))
             return [(each.cycle * served.clock.cycle_s, each) for each in stories[0].happened]

@@ -88,12 +88,12 @@ class Serving:
 
     async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
-        self.start_programs()
+        await self.start_programs()
         for machine in self.machines:
             machine.served.advance(1)
             machine.keeper.start()
 
-    def start_programs(self) -> None:
+    async def start_programs(self) -> None:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
             await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
