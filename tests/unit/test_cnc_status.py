@@ -233,7 +233,7 @@ def test_the_public_commands_are_all_tried() -> None:
         "inventory",
         "snapshot",
         "advance",
-        "be_watched",
+        "set_observer",
         "be_shared",
         "waiting_functions",
         "tool_in_use",

@@ -41,10 +41,11 @@ def serve_command(
     memory: _options.Memory = None,
     characters: _options.Characters = None,
     faults: _options.Faults = None,
+    scenario: _options.Scenario = None,
+    mtconnect_version: _options.MTConnectVersion = "2.7",
+    opcua_nodesets: _options.NodeSets = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
-    import asyncio
-
     from polycnc.servers.setup import Flags, plan_of
 
     _check_addresses(address, count, port, memory)
@@ -66,10 +67,20 @@ def serve_command(
             rate=rate,
             memory=memory,
             faults=faults,
+            scenario=scenario,
+            mtconnect=mtconnect_version,
+            node_sets=opcua_nodesets,
         )
     )
+    _run(plan)
+
+
+def _run(plan: Plan) -> None:
+    """Serve until a signal ends it."""
+    import asyncio
+
     try:
-        asyncio.run(_serve(plan))
+        asyncio.run(serve_plan(plan))
     except KeyboardInterrupt:
         say_error("interrupted")
         _leave(INTERRUPTED)
@@ -133,7 +144,8 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def _serve(plan: Plan) -> None:
+async def serve_plan(plan: Plan) -> None:
+    """Serve what a plan says until a signal ends it."""
     import asyncio
     import signal
 
@@ -143,6 +155,8 @@ async def _serve(plan: Plan) -> None:
     ended = _end_on_signal(signal.SIGTERM)
     serving = Serving(runner.WallClock(), plan.log, _Late().say, say_error)
     try:
+        for why in plan.lasting:
+            say_error(why)
         await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
@@ -166,8 +180,9 @@ def _end_on_signal(number: int) -> list[int]:
     assert task is not None
 
     def end() -> None:
+        if not came:  # who asks twice does not break off the closing
+            task.cancel()
         came.append(number)
-        task.cancel()
 
     with contextlib.suppress(NotImplementedError):  # Windows: the process ends as others do
         asyncio.get_running_loop().add_signal_handler(number, end)

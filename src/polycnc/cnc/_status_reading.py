@@ -146,6 +146,7 @@ class StatusReader:
                     kinds[index],
                     min(100.0, 100.0 * abs(speed) / self._most[index]) if speed else 0.0,
                     manual.jog_speeds[index],
+                    manual.feed_overrides[index],
                 )
             )
         self._axes = FrozenDict(zip(self._names, rows, strict=True))

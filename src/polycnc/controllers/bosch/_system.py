@@ -87,7 +87,7 @@ class BoschSystem:
         self.clock = clock
         self.axes = axes or SystemAxes(config.axis_names)
         self.directory = Directory(root)
-        self.channels: ChannelPorts = channels or AttachedRuns(config.axis_names)
+        self.channels: ChannelPorts = channels or AttachedRuns()
         self.clients = Clients()
         self.open_files: dict[Path, StoredFile] = {}
         self.programs: dict[int, Programs] = {}

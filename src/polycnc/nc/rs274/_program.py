@@ -1,4 +1,4 @@
-"""A file of RS274/NGC as Python: one generator for its main program, and one for each sub-program in it.
+"""A file of RS274/NGC as Python: a generator for its main program, and one for each sub-program in it.
 
 Runs of plain lines stay text. A loop is a loop of Python; `j` names the loop that BREAK (above 0) or CONTINUE (below)
 is for, where that is not the innermost one.
@@ -24,7 +24,7 @@ _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
 """An O number by itself is the number of a program, and text."""
 _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
-    r"[#\[]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
     r"|\([ \t]*(?:debug|print)[ \t]*,",
     re.IGNORECASE,
 )
@@ -40,7 +40,7 @@ PAUSE_ROUNDS = 20_000
 def holds_language(content: bytes) -> bool:
     """Tell whether a text may hold more than plain words."""
     return (
-        b"#" in content
+        any(char in content for char in b"#@^")
         or b"[" in content
         or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
         or _TEXT_WITH_VALUES.search(content) is not None
@@ -98,11 +98,11 @@ Item: TypeAlias = "Block | Span | tuple[Row, Line]"
 
 @dataclass(slots=True)
 class Program:
-    """A translated file: its sub-programs by name with the Python names of their generators, and the Python itself."""
+    """A translated file: its main program under the name "" and its sub-programs, each a function `program`."""
 
     text: ProgramText
-    subs: dict[str, str]
-    traced: Traced[int]
+    offset: int
+    functions: dict[str, Traced[int]]
     plain: bool
 
 
@@ -115,7 +115,7 @@ def translate(text: ProgramText, offset: int) -> Program:
     try:
         rows = _rows(text, offset)
         items, subs = _Structure(text).read(rows)
-        return _Writer(text).write(items, subs)
+        return _Writer(text, offset).write(items, subs)
     except Flaw as flaw:
         raise ProgramError(flaw.what, position=text.position(flaw.at), hint=flaw.hint) from None
 
@@ -250,8 +250,9 @@ def _read(row: Row) -> Line:
 class _Writer:
     """Write the Python of a file; the place of each line is a byte offset."""
 
-    def __init__(self, text: ProgramText) -> None:
+    def __init__(self, text: ProgramText, offset: int) -> None:
         self._text = text
+        self._offset = offset
         self._out: Emitter[int] = Emitter(0)
         self._loops: list[tuple[str, int, bool]] = []  # label, number, whether it is a REPEAT
         self._numbers = 0
@@ -259,23 +260,22 @@ class _Writer:
         self._in_sub = False
 
     def write(self, items: list[Item], subs: dict[str, Block]) -> Program:
-        names: dict[str, str] = {}
-        for number, (label, block) in enumerate(subs.items()):
-            names[label] = f"sub_{number}"
-            self._in_sub = True
-            self._function(names[label], block.bodies[0][2], block)
-        self._in_sub = False
-        self._function("main", items, None)
+        functions = {"": self._function("", items, None)}
+        self._in_sub = True
+        for label, block in subs.items():
+            functions[label] = self._function(label, block.bodies[0][2], block)
         plain = not subs and all(isinstance(item, Span) for item in items)
-        return Program(self._text, names, self._out.compile(f"<rs274 {self._text.name}>"), plain)
+        return Program(self._text, self._offset, functions, plain)
 
-    def _function(self, name: str, items: list[Item], block: Block | None) -> None:
-        with self._out.block(f"def {name}(L, N):"):
+    def _function(self, label: str, items: list[Item], block: Block | None) -> Traced[int]:
+        self._out = Emitter(0)
+        with self._out.block("def program(L, N):"):
             self._out.put("j = 0", f"c = {PAUSE_ROUNDS}", "if c < 0:", "    yield PAUSE")
             self._items(items)
             if block is not None and block.end is not None and block.end_row is not None:
                 self._at(block.end_row, block.end.at)
                 self._return(block.end.arguments)
+        return self._out.compile(f"<rs274 {self._text.name} {label}>")
 
     def _at(self, row: Row, column: int = 0) -> None:
         blanks = len(row.text) - len(row.text.lstrip())
@@ -362,7 +362,7 @@ class _Writer:
                     )
                 label = f"label({word.label})" if word.computed else repr(word.label)
                 given = "".join(f"{each.python}, " for each in word.arguments)
-                self._out.put(f"yield from call({label}, ({given}), {row.number})")
+                self._out.put(f"yield call({label}, ({given}), {row.number})")
             case "return":
                 if self._in_sub:
                     self._return(word.arguments)
@@ -413,11 +413,13 @@ class _Writer:
             return
         self._numbers += 1
         number = self._numbers
-        first = ""
+        first = rounds = ""
         if keyword == "while":
             head = f"while {_condition(block.row, block.word)}:"
         elif keyword == "repeat":
-            head = f"for _ in times({_argument(block.row, block.word)}):"
+            rounds = f"r{number}"
+            self._out.put(f"{rounds} = times({_argument(block.row, block.word)})")
+            head = f"while {rounds} > 0:"
         else:
             assert block.end is not None
             assert block.end_row is not None
@@ -428,6 +430,8 @@ class _Writer:
         with self._out.block(head):
             if first:
                 self._out.put(f"{first} = False")
+            if rounds:
+                self._out.put(f"{rounds} -= 1")
             self._out.put("c -= 1")
             with self._out.block("if c < 0:"):
                 self._out.put("yield PAUSE", f"c = {PAUSE_ROUNDS}")

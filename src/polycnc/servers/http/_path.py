@@ -88,7 +88,7 @@ def _work(control: Control, programs: Programs, name: str) -> Callable[[Check], 
     if isinstance(live, MacroLanguage) and isinstance(language, MacroLanguage):
         copy = MacroVariables()
         copy.ranges = live.variables.ranges
-        copy.put_back(live.variables.saved(lasting=True))
+        copy.restore_state(live.variables.saved(lasting=True))
         copy.leave_all()
         language = MacroLanguage(copy)
     dialect = control.dialect

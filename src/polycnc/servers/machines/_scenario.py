@@ -8,6 +8,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from polycnc.cnc import Control, ControlError, ControlEvent, RunState
 from polycnc.machine import Clock, Device, Snapshot
+from polycnc.servers.machines._watch import Watch
 
 _LOOK_CYCLES = 20
 _ANY_EVENT = int(ControlEvent.RUN_STATE | ControlEvent.ALARM | ControlEvent.MANUAL | ControlEvent.FUNCTION)
@@ -59,7 +60,12 @@ class ServedDevice(Generic[D]):
         self._control = control
         self.scenario: Scenario[D] = scenario or Nothing()
         self.again = again
+        self._watches: list[Watch] = []
         self.scenario.look(device)
+
+    def watch(self, look: Callable[[], object]) -> None:
+        """Call `look` from now on at times of the device's own clock, 10 times a second while something happens."""
+        self._watches.append(Watch(self.clock, lambda: self.busy, look))
 
     @property
     def clock(self) -> Clock:
@@ -92,6 +98,8 @@ class ServedDevice(Generic[D]):
             self.scenario.look(self.device)
             if self.again is not None:
                 self._start_again(self.again)
+            for watch in self._watches:
+                watch.passed()
             if passed < asked or (is_enough is not None and is_enough()) or self._has_happened(until):
                 break
         return done
@@ -102,6 +110,7 @@ class ServedDevice(Generic[D]):
         # a program's end is looked for at cycles that do not depend on how time is cut
         looks = self.again is not None and (self.busy or self._is_over)
         most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if looks else 1 << 30
+        most = min([most, *(watch.cycles_left() for watch in self._watches)])
         next_s = self.scenario.next_s()
         if next_s == math.inf:
             return most

@@ -32,7 +32,10 @@ Load = Callable[[str, bytes], None]
 
 @dataclass(frozen=True, slots=True)
 class MachineWanted:
-    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device."""
+    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device.
+
+    `story` makes what happens to the machine and its doors, once it is made.
+    """
 
     kind: str
     machinery: Machinery = field(default_factory=Machinery)
@@ -40,6 +43,7 @@ class MachineWanted:
     rate: float = 1.0
     scenario: Callable[[Device[Any]], Scenario[Any]] | None = None
     doors: tuple[tuple[DoorKind, Wanted], ...] = ()
+    story: Callable[[ServedMachine, Log], Scenario[Any]] | None = None
 
 
 @dataclass(slots=True)
@@ -68,7 +72,9 @@ class Serving:
         for each in wanted:
             self._make(each, _SHARE_S / len(wanted))
         asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
-        asked += [(kind, at, self.machines) for kind, at in shared]
+        asked += [
+            (kind, at, list(filter(kind.serves, self.machines)) or self.machines) for kind, at in shared
+        ]
         for kind, at, machines in asked:
             if not all(map(kind.serves, machines)):
                 raise UsageError(
@@ -82,12 +88,17 @@ class Serving:
 
     async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
+        self.start_programs()
         for machine in self.machines:
             await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
-            if (found := self.programs.get(machine.name)) is not None:
-                _start(machine, *found)
             machine.served.advance(1)
             machine.keeper.start()
+
+    def start_programs(self) -> None:
+        """Start the programs, without letting time pass."""
+        for machine in self.machines:
+            if (found := self.programs.get(machine.name)) is not None:
+                _start(machine, *found)
 
     async def run(self) -> None:
         """Serve until the time of a machine cannot pass any more, or this is cancelled."""
@@ -136,21 +147,23 @@ class Serving:
             again=None if wanted.program is None else _again(made),
         )
         keeper = Keeper(served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late)
-        self.machines.append(
-            ServedMachine(
-                name,
-                wanted.kind,
-                made.device,
-                served,
-                keeper,
-                made.find_control,
-                made.own,
-                None,
-                made.end,
-                made.parameters,
-                made.variables,
-            )
+        machine = ServedMachine(
+            name,
+            wanted.kind,
+            made.device,
+            served,
+            keeper,
+            made.find_control,
+            made.own,
+            None,
+            made.end,
+            made.parameters,
+            made.variables,
         )
+        self.machines.append(machine)
+        if wanted.story is not None:
+            served.scenario = wanted.story(machine, self.log)
+            served.scenario.look(made.device)
 
 
 def _again(made: Made) -> Callable[[], None]:
