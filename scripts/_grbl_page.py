@@ -11,10 +11,11 @@ grbl's own, as its project documents it; where a machine is more than a grbl, th
 
 ## On a control with programs of its own
 
-On a `plain` machine the door changes the dialect of the control to `grbl`. A `fanuc` or `bosch` keeps its own, in which a line of a
-sender would mean something else (`X10` may be 0.01 mm): the door then shows the machine and presses its keys. `?`, `~`, `!`, Ctrl-X and
-the bytes of the overrides act, `$` and `$I` answer, every other line is `error:20` with the reason. `Alarm` lasts as long as the control
-has an alarm or an emergency stop; `Jog` and `Home` are axes that are moved by hand, `Check` is a machine lock.
+On a `plain` machine the door changes the dialect of the control to `grbl`. A `fanuc` or `bosch` keeps its own, in
+which a line of a sender would mean something else (`X10` may be 0.01 mm): the door then shows the machine and presses
+its keys. `?`, `~`, `!`, Ctrl-X and the bytes of the overrides act, `$` and `$I` answer, every other line is
+`error:20` with the reason. `Alarm` lasts as long as the control has an alarm or an emergency stop; `Jog` and `Home`
+are axes that are moved by hand, `Check` is a machine lock.
 
 ## Lines
 

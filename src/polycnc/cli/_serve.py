@@ -46,8 +46,6 @@ def serve_command(
     opcua_nodesets: _options.NodeSets = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
-    import asyncio
-
     from polycnc.servers.setup import Flags, plan_of
 
     _check_addresses(address, count, port, memory)
@@ -74,6 +72,13 @@ def serve_command(
             node_sets=opcua_nodesets,
         )
     )
+    _run(plan)
+
+
+def _run(plan: Plan) -> None:
+    """Serve until a signal ends it."""
+    import asyncio
+
     try:
         asyncio.run(serve_plan(plan))
     except KeyboardInterrupt:

@@ -30,16 +30,10 @@ class _Server(uvicorn.Server):
 
 
 class AsgiDoor:
-    """Serve an application on one port; `name` is the door's, `connection` bounds its connections in its own words."""
+    """Serve an application on one port; `name` is the door's, `http` a protocol whose connections bound themselves."""
 
     def __init__(
-        self,
-        name: str,
-        app: ASGIApp,
-        address: str,
-        port: int,
-        *,
-        connection: type[asyncio.Protocol] | None = None,
+        self, name: str, app: ASGIApp, address: str, port: int, *, http: type[asyncio.Protocol] | None = None
     ) -> None:
         self._name = name
         self._address = address
@@ -52,8 +46,8 @@ class AsgiDoor:
                 lifespan="off",
                 ws="websockets-sansio",
                 ws_max_size=1 << 16,
-                http="auto" if connection is None else connection,
-                limit_concurrency=_MOST_CONNECTIONS if connection is None else None,
+                http=http or "auto",
+                limit_concurrency=_MOST_CONNECTIONS if http is None else None,
                 timeout_keep_alive=30,
                 timeout_graceful_shutdown=None,
                 server_header=False,

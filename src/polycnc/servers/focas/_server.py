@@ -157,8 +157,8 @@ class _Line(asyncio.Protocol):
         self._server = server
         self._session = Session(server.control)
         self._full = self._waiting = self._gone = False
-        self._new = True
         self._patience = Patience(self.abort)
+        self._new = True
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)

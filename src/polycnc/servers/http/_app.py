@@ -95,9 +95,22 @@ def _add_errors(app: FastAPI, log: Log) -> None:
         return said
 
     @app.exception_handler(Exception)
-    async def internal(_: Request, error: Exception) -> Response:
+    async def internal(request: Request, error: Exception) -> Response:
+        if _is_too_large(error):  # while the rest of it was not waited for
+            return await too_large(request, TooLargeError())
         log.write("internal error", error=repr(error)[:500])
         return problem(503, "an internal error", "Please report it; it is in the log.")
+
+
+def _is_too_large(error: BaseException | None) -> bool:
+    """Tell whether an error is, holds or comes of a body that is too large."""
+    while error is not None:
+        if isinstance(error, TooLargeError):
+            return True
+        if isinstance(error, BaseExceptionGroup) and any(map(_is_too_large, error.exceptions)):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _methods(app: FastAPI, request: Request) -> set[str]:

@@ -17,6 +17,5 @@ class HttpDoor(AsgiDoor):
 
     def __init__(self, machines: Sequence[ServedMachine], wanted: Wanted) -> None:
         app = make_app(machines, token=wanted.token, log=wanted.log, hosts=(wanted.address,))
-        super().__init__(
-            "http", app, wanted.address, PORT if wanted.port is None else wanted.port, connection=Connection
-        )
+        port = PORT if wanted.port is None else wanted.port
+        super().__init__("http", app, wanted.address, port, http=Connection)

@@ -13,6 +13,7 @@ from polycnc.errors import PolycncError
 from polycnc.servers.commands import NUMBERS, NotMeantError
 from polycnc.servers.machines import MachineError
 
+_TOO_LARGE = 413
 _STATUS = {Refusal.NOT_FOUND: 404, Refusal.PROTECTED: 403}
 """Status codes of a control's refusals; the others are 409: what was asked is well-formed."""
 
@@ -33,7 +34,8 @@ def problem(status: int, detail: str, hint: str = "", **more: Any) -> Response:
     """Return a refusal."""
     said = Problem(title=_TITLES.get(status, "refused"), status=status, detail=detail, hint=hint, **more)
     body = json.dumps(said.model_dump()).encode()
-    return Response(body, status, media_type="application/problem+json")
+    closing = {"connection": "close"} if status == _TOO_LARGE else None  # the rest of it is not read
+    return Response(body, status, closing, media_type="application/problem+json")
 
 
 def of_error(error: PolycncError) -> Response:

@@ -90,13 +90,13 @@ class Serving:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
         await self.start_programs()
         for machine in self.machines:
+            await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
             machine.served.advance(1)
             machine.keeper.start()
 
     async def start_programs(self) -> None:
         """Start the programs, without letting time pass."""
         for machine in self.machines:
-            await asyncio.sleep(0)  # whoever wants it to end does not wait for the others
             if (found := self.programs.get(machine.name)) is not None:
                 _start(machine, *found)
 
