@@ -229,6 +229,10 @@ class CplLanguage:
         executions = [source.execution for source in self.running]
         return self._loop.repeats(self._host.effects, executions, (self.globals, self._host.permanent))
 
+    def only_reckons(self) -> bool:
+        """Tell whether the programs have done nothing but reckon since `loops` was asked first."""
+        return self._loop.only_reckons(self._host.effects)
+
     def moves_on(self) -> None:
         """Take note that something has happened since `loops` was asked."""
         self._loop.forget()

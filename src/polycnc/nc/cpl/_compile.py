@@ -309,11 +309,25 @@ class Compiler:
     def _nc_block(self, statement: NcBlock) -> None:
         boxes = self._stores.new_boxes()
         first = self._source.begin(statement.line) - 1
-        words = "".join([f"{self._word(word, word.at - first)}, " for word in statement.words])
+        words = [f"{self._word(word, word.at - first)}," for word in statement.words]
         self._stores.open_boxes(boxes)
-        fixed = f"{statement.line}, {statement.number}, {statement.skip}"
-        self._out.put(f"yield NcValues({fixed}, ({words}), {statement.message!r})")
+        begun = f"yield NcValues({statement.line}, {statement.number}, {statement.skip}, ("
+        ended = f"), {statement.message!r})"
+        if all(isinstance(word.value, float) for word in statement.words):
+            self._out.put(f"{begun}{' '.join(words)}{ended}")
+        else:
+            self._put_words(begun, list(zip(statement.words, words, strict=True)), ended)
         self._stores.close_boxes(boxes)
+
+    def _put_words(self, begun: str, words: list[tuple[NcWord, str]], ended: str) -> None:
+        """Write a block on several lines: what goes wrong in brackets is said there."""
+        at = self._out.place
+        self._out.put(begun)
+        for word, python in words:
+            self._out.place = at if isinstance(word.value, float) else self._source.text.index("[", word.at)
+            self._out.put(python)
+        self._out.place = at
+        self._out.put(ended)
 
     def _word(self, word: NcWord, column: int) -> str:
         if isinstance(word.value, float):
