@@ -33,12 +33,14 @@ _FUNCTIONS = {
     "PROGRAM_STOP": "M0",
     "OPTIONAL_PROGRAM_STOP": "M1",
 }
+_DIRECTIONS = {"START_SPINDLE_CLOCKWISE": 1, "START_SPINDLE_COUNTERCLOCKWISE": -1, "STOP_SPINDLE_TURNING": 0}
 _IGNORED = {
     "COMMENT",
     "MESSAGE",
     "MIST_OFF",  # M9 is both, in this order
     "ON_RESET",
-    "SET_XY_ROTATION",
+    "SET_TOOL_TABLE_ENTRY",
+    "CHANGE_TOOL_NUMBER",
     "SET_FEED_REFERENCE",
     "SET_MOTION_CONTROL_MODE",
     "SET_NAIVECAM_TOLERANCE",
@@ -106,6 +108,9 @@ class _Canon:
     rpm: float = 0.0
     plane: tuple[int, int, int] = (0, 1, 2)
     offsets: dict[str, list[float]] = field(default_factory=dict)
+    lead: float = 0.0  # that the spindle turns
+    direction: int = 0
+    rotation: float = 0.0  # of a work offset, degrees
     at: Point = ()
     steps: list[Step] = field(default_factory=list)
 
@@ -118,10 +123,20 @@ class _Canon:
         return value + sum(offset[axis] for offset in self.offsets.values())
 
     def point(self, texts: list[str]) -> Point:
-        return tuple(self.coordinate(axis, text) for axis, text in enumerate(texts[: self.axes]))
+        values = [self.length(text) if axis < 3 else float(text) for axis, text in enumerate(texts)]
+        for axis, value in enumerate(self.offsets.get("shift", [0.0] * 6)):
+            values[axis] += value
+        cosine, sine = math.cos(math.radians(self.rotation)), math.sin(math.radians(self.rotation))
+        values[:2] = values[0] * cosine - values[1] * sine, values[0] * sine + values[1] * cosine
+        others = [offset for name, offset in self.offsets.items() if name != "shift"]
+        return tuple(
+            value + sum(offset[axis] for offset in others) for axis, value in enumerate(values[: self.axes])
+        )
 
     def speed(self, end: Point, arc: bool = False) -> float:
         """Return the speed of a feed move to `end`."""
+        if self.lead:
+            return self.lead * self.rpm
         straight = arc or math.dist(end[:3], self.at[:3]) > 2.0 * RESOLUTION_MM
         feed = self.feed if straight else self.number
         return feed * self.rpm if self.per_revolution else feed
@@ -131,26 +146,30 @@ class _Canon:
 
     def move(self, step: Traverse | Feed | Turn) -> None:
         # A move to where the machine stands is no move, unless it is a full circle.
-        if isinstance(step, Turn) or math.dist(step.end, self.at) > 2.0 * RESOLUTION_MM:
+        if isinstance(step, Turn) or math.dist(step.end, self.at) > 2.0 * RESOLUTION_MM * SCALE / self.scale:
             self.steps.append(step)
         self.at = step.end
 
     def arc(self, texts: list[str]) -> None:
         p, q, r = self.plane
-        end = list(self.at)
-        end[p], end[q], end[r] = (self.coordinate(axis, texts[n]) for axis, n in ((p, 0), (q, 1), (r, 5)))
-        end[3:] = [self.coordinate(axis, texts[3 + axis]) for axis in range(3, self.axes)]
-        center = (self.coordinate(p, texts[2]), self.coordinate(q, texts[3]))
+        words, middle = ["0"] * 6, ["0"] * 6
+        words[p], words[q], words[r] = texts[0], texts[1], texts[5]
+        words[3:] = texts[6 : 6 + len(words[3:])]
+        middle[p], middle[q] = texts[2], texts[3]
+        end, axis = self.point(words), self.point(middle)
+        center = (axis[p], axis[q])
         turns = int(texts[4])
         first = math.atan2(self.at[q] - center[1], self.at[p] - center[0])
         last = math.atan2(end[q] - center[1], end[p] - center[0])
         radius = math.dist((self.at[p], self.at[q]), center)
-        nothing = 8.0 * RESOLUTION_MM / radius  # an angle that printing may have made or hidden
+        nothing = (
+            8.0 * RESOLUTION_MM * SCALE / self.scale / radius
+        )  # an angle that printing may have made or hidden
         turn = (last - first) * math.copysign(1.0, turns) % (2.0 * math.pi)
         if turn < nothing or turn > 2.0 * math.pi - nothing:
             turn = 2.0 * math.pi
         sweep = math.copysign(turn + 2.0 * math.pi * (abs(turns) - 1), turns)
-        self.move(Turn(tuple(end), center, (p, q), sweep, self.speed(tuple(end), arc=True)))
+        self.move(Turn(end, center, (p, q), sweep, self.speed(end, arc=True)))
 
     def call(self, name: str, texts: list[str]) -> None:
         match name:
@@ -163,12 +182,23 @@ class _Canon:
             case "SET_G92_OFFSET":
                 self.offset("shift", texts)
             case "USE_TOOL_LENGTH_OFFSET":
-                assert not any(float(t) for text in texts for t in text.split())
+                self.offset("tool", [t for text in texts for t in text.split()])
+            case "SET_XY_ROTATION":
+                self.rotation = float(texts[0])
             case "SET_FEED_RATE":
                 self.feed, self.number = self.length(texts[0]), float(texts[0]) / self.scale
             case "SET_SPINDLE_SPEED":
                 self.rpm = float(texts[1])
                 self.steps.append(Function(f"S{self.rpm:g}"))
+            case "START_SPEED_FEED_SYNC":
+                self.lead = self.length(texts[0])
+            case "STOP_SPEED_FEED_SYNCH":
+                self.lead = 0.0
+            case "RIGID_TAP":
+                start, end = self.at, self.point([*texts, "0", "0", "0"])
+                turn = {1: ("M4", "M3"), -1: ("M3", "M4")}[self.direction]
+                self.steps += [Feed(end, self.speed(end)), Function(turn[0])]
+                self.steps += [Feed(start, self.speed(start)), Function(turn[1])]
             case "SET_FEED_MODE":  # a feed of inverse time comes as a feed per minute
                 self.per_revolution = texts[1] == "1"
             case "STRAIGHT_TRAVERSE":
@@ -189,6 +219,7 @@ class _Canon:
             case "FLOOD_OFF":
                 self.steps.append(Function("M9"))
             case _:
+                self.direction = _DIRECTIONS.get(name, self.direction)
                 if name in _FUNCTIONS:
                     self.steps.append(Function(_FUNCTIONS[name]))
                 else:

@@ -39,10 +39,8 @@ CONFIG = _config()
 DIALECT = load_dialect("linuxcnc")
 
 REFUSED: dict[str, str] = {
-    **dict.fromkeys(("gridprobe", "tool-length-probe", "x-trim"), "G38.2 is not supported yet"),
-    "smartprobe": "G38.5 is not supported yet",
-    "threading": "G33 is not supported yet",
-    "cone": "G43.1 is not supported yet",
+    "tool-length-probe": "G38.2 to where the probe stands",  # it begins where the operator has moved to
+    "cone": "there is no axis 'W'",
     "lathe_g70_71_demo": "G71.1 is not known",
     "lathe_g7x_face_boring": "G72 is not known",
     "lathe_g7x_quadrants": "G70 is not known",
@@ -50,18 +48,16 @@ REFUSED: dict[str, str] = {
         ("comp311_2", "g76", "lathe-g76", "gmoccapy_2_tools_with_cutter_radius_compensation"),
         "radius compensation starts with an arc",
     ),
-    "hole-circle": "'^' may not stand in a block",
-    "polar": "'^' has no meaning here",
-    "spiral": "'@' may not stand in a block",
     "nestedcall": "'u' is no function",  # an O-word `callsub`, which rs274 refuses too
-    "offsets": "'Q' has no meaning in this block",
-    "roparams": "#<_tool_offset> has no value",
     "skeleton": "a dwell (G4) and a move in one block",
 }
 """Programs that polycnc refuses, with what its error says."""
 REFUSED_BY_RS274 = {"increment", "lathecomp", "mmount", "probe-hole"}
 """Programs that polycnc takes and rs274 does not."""
-OTHER_WAYS = {"systems": "rs274 does not print where splines (G5.1) end"}
+OTHER_WAYS = {
+    "systems": "rs274 does not print where splines (G5.1) end",
+    **dict.fromkeys(("gridprobe", "smartprobe", "x-trim"), "polycnc waits for the probe, rs274 has none"),
+}
 """Programs that both take and that cannot be compared, and why."""
 
 

@@ -294,3 +294,16 @@ def test_the_slider_cuts_back_and_forth(chromium: Any, tmp_path: Path) -> None:
     view.page.locator("#section").select_option("1")
     assert view.page.locator("#cut").is_visible()
     view.close()
+
+
+def test_a_laser_is_coloured_by_its_power_first(chromium: Any, tmp_path: Path) -> None:
+    program, machine = tmp_path / "shades.nc", tmp_path / "laser.toml"
+    program.write_text("G21 G90\nM3 S240\nG1 X40 F3000\nX40 Y30 S720\nX7 S0\nG0 X0 Y0\nM30\n")
+    axes = "".join(f'[[axis]]\nname = "{name}"\nvmax_mm_s = 200\namax_mm_s2 = 2000\n' for name in "XYZ")
+    machine.write_text(f'name = "laser"\n[spindle]\nlaser = true\nmax_rpm = 1000\n{axes}')
+    view = Opened(chromium, tmp_path, str(program), str(machine))
+    assert view.page.locator("#colour").input_value() == "power"
+    assert "S720" in view.page.locator("#legend").inner_text()
+    view.page.locator("#colour").select_option("speed")
+    assert "S720" not in view.page.locator("#legend").inner_text()
+    view.close()

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import contextlib
 import ipaddress
+import os
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NoReturn
 
 from polycnc.cli import _serve_options as _options
+from polycnc.cli._errors import INTERRUPTED
 from polycnc.cli._output import say, say_error
 
 if TYPE_CHECKING:
@@ -39,6 +41,9 @@ def serve_command(
     memory: _options.Memory = None,
     characters: _options.Characters = None,
     faults: _options.Faults = None,
+    scenario: _options.Scenario = None,
+    mtconnect_version: _options.MTConnectVersion = "2.7",
+    opcua_nodesets: _options.NodeSets = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
     import asyncio
@@ -64,9 +69,25 @@ def serve_command(
             rate=rate,
             memory=memory,
             faults=faults,
+            scenario=scenario,
+            mtconnect=mtconnect_version,
+            node_sets=opcua_nodesets,
         )
     )
-    asyncio.run(_serve(plan))
+    try:
+        asyncio.run(serve_plan(plan))
+    except KeyboardInterrupt:
+        say_error("interrupted")
+        _leave(INTERRUPTED)
+    except SystemExit as ended:
+        _leave(ended.code if isinstance(ended.code, int) else 1)
+
+
+def _leave(status: int) -> NoReturn:
+    """End the process at once: doors and memories are closed, taking compiled code apart takes long under load."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 def _check_addresses(address: str, count: int, port: int, memory: Path | None) -> None:
@@ -118,7 +139,8 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def _serve(plan: Plan) -> None:
+async def serve_plan(plan: Plan) -> None:
+    """Serve what a plan says until a signal ends it."""
     import asyncio
     import signal
 
@@ -126,14 +148,16 @@ async def _serve(plan: Plan) -> None:
     from polycnc.servers.process import Serving
 
     ended = _end_on_signal(signal.SIGTERM)
-    serving = Serving(runner.WallClock(), plan.log, _Late().say)
+    serving = Serving(runner.WallClock(), plan.log, _Late().say, say_error)
     try:
+        for why in plan.lasting:
+            say_error(why)
         await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
         _say_doors([(name, door.said) for name, door in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
-        serving.begin()
+        await serving.begin()
         await serving.run()
     except asyncio.CancelledError:
         if ended:
@@ -151,8 +175,9 @@ def _end_on_signal(number: int) -> list[int]:
     assert task is not None
 
     def end() -> None:
+        if not came:  # who asks twice does not break off the closing
+            task.cancel()
         came.append(number)
-        task.cancel()
 
     with contextlib.suppress(NotImplementedError):  # Windows: the process ends as others do
         asyncio.get_running_loop().add_signal_handler(number, end)

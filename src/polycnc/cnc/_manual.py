@@ -30,7 +30,7 @@ _SIDE = {DOWN: "low", UP: "high"}
 class ManualMotion:
     """Move the axes of a machine by hand; the machine's time passes elsewhere, in stretches that this limits.
 
-    Before time passes ask `horizon` for the most cycles, let it stop for `REASONS`, and call `after` behind it.
+    Before time passes ask `horizon` for the most cycles, let it stop for `REASONS`, and call `after` after it.
     """
 
     REASONS = Reason.PROFILE_ENDED | Reason.SWITCH_EDGE

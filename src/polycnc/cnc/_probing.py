@@ -33,9 +33,15 @@ class Probing:
         A `signal` from outside is a contact where the axes are.
         """
         now, config = positions(machine), channel.state.machine
-        found = first_contact(config.surfaces, config.axis_names, self.before, now) or (
-            now if signal else None
-        )
+        probe = channel.state.probe
+        if probe is not None and probe.leaves:
+            found = None
+            if first_contact(config.surfaces, config.axis_names, now, now) is None:
+                found = first_contact(config.surfaces, config.axis_names, now, self.before) or now
+        else:
+            found = first_contact(config.surfaces, config.axis_names, self.before, now) or (
+                now if signal else None
+            )
         self.before = now
         if found is None:
             return False
@@ -48,8 +54,18 @@ class Probing:
         return True
 
 
+def cannot_begin(machine: Machine, channel: Channel) -> bool:
+    """Tell whether a move whose program is told cannot begin: the probe is in contact already, or free already."""
+    probe, config = channel.state.probe, channel.state.machine
+    if probe is None or not probe.code:
+        return False
+    now = positions(machine)
+    in_contact = first_contact(config.surfaces, config.axis_names, now, now) is not None
+    return in_contact != probe.leaves
+
+
 def delete_rest(machine: Machine, channel: Channel, feed: PathFeed) -> None:
-    """Drop the move along which a path stands; functions, stops and the program behind it go on from there."""
+    """Drop the move along which a path stands; functions, stops and the program after it go on from there."""
     drop_queue(machine.state.seg, machine.state.paths, channel.path)
     channel.writer.put_again()
     feed.drop_probing()

@@ -25,8 +25,7 @@ class EventLog:
             return
         self.found.append((run.machine.time_s, event))
         records = run.channel.records
-        record = records.block(event.tag)
-        if record is not None and not record.stack and record.program == run.program.name:
+        if records.program(event.tag) == run.program.name and records.depth(event.tag) == 0:
             tool = records.tool(event.tag)
             changes = _changes_tool(event, run)
             self._operations.function(event.line, tool, changes, run.machine.time_s, run.path_times)

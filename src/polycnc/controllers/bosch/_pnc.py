@@ -89,7 +89,7 @@ class Pnc:
         self.ncs = NcsServer(self.services)
         """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
         self.server = server or self.ncs
-        self._control.be_watched(self.ncs)
+        self._control.set_observer(self.ncs)
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
                 self.system, number, keys=keys if number == 1 else (), server=self.server, in_device=True,

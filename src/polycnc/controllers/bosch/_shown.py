@@ -62,7 +62,7 @@ class Programs(Protocol):
 
     @property
     def is_buffered(self) -> bool:
-        """Whether blocks can be put behind those under way."""
+        """Whether blocks can be put after those under way."""
 
     @property
     def buffer_is_empty(self) -> bool:

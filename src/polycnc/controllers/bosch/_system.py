@@ -179,6 +179,14 @@ class BoschSystem:
         channel, (found, _) = next(iter(self._macoda.items()))
         return found.parameters.get((number, channel)) or found.parameters[number, BASIC_SETTING]
 
+    def all_parameters(self) -> dict[str, object]:
+        """Return the values of all MACODA parameters by number; those of a channel are named like `701000010.2`."""
+        _, (found, _) = next(iter(self._macoda.items()))
+        return {
+            str(number) if channel == BASIC_SETTING else f"{number}.{channel}": values
+            for (number, channel), values in sorted(found.parameters.items())
+        }
+
     @property
     def search_path(self) -> tuple[str, ...]:
         """The folders of the root that programs are searched for in, without / at their ends."""

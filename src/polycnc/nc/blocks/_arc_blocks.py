@@ -75,6 +75,13 @@ def arc(block: BlockContext, end: Point, clockwise: bool) -> Arc | None:
     start = block.start
     frame = block.after.frame
     if frame.active:
+        turn = frame.outer
+        if block.dialect.turns_work and turn is not None and {p, q} != {turn.p, turn.q}:
+            raise block.problem(
+                "an arc outside the plane that the work offset turns",
+                "Take R out of G10 L2, or write lines.",
+                block.move_word,
+            )
         clockwise ^= frame.turns_over(p, q)
         if center and abs(frame.factor(p)) != abs(frame.factor(q)):
             raise block.problem(

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
+import numpy as np
 import numpy.typing as npt
 
 from polycnc.machine import MachineConfig
@@ -20,8 +21,8 @@ from polycnc.nc.blocks._tables import ProgramTables
 from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.modal._actions import Family
-from polycnc.nc.modal._frame import UNTURNED, Frame
-from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, changing, copy_modal
+from polycnc.nc.modal._frame import UNTURNED, Frame, Rotation
+from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, NO_AXIS, Modal, changing, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
 
@@ -51,6 +52,7 @@ class Plain:
     compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops, `merge_mm` how
     far points may lie off the line that several are merged into. `m_codes` are those of the last block that had
     any. `frame` is how programmed positions are turned, scaled and mirrored, `placement` where they lie besides,
+    `references` are the reference positions that the program has set,
     `skip_position` where the last skip move ended (machine coordinates), `probe` the last probing.
     `corner` is a straight move that waits for the next one, `nurbs` a curve that is being written, `spline_way` leads
     from the end of a cubic spline to its last control point turned about, until anything else moves.
@@ -80,6 +82,7 @@ class Plain:
     spline_way: tuple[float, float] | None = None
     nurbs: Nurbs | None = None
     mode: Family = Family.MOVE
+    references: tuple[tuple[float, ...] | None, tuple[float, ...] | None] = (None, None)
 
 
 class SavedState(NamedTuple):
@@ -151,6 +154,22 @@ class ChannelState(Plain):
             int(getattr(each, "revision", 0)) for each in (machine.offsets, machine.tools)
         )
 
+    def turn_work(self) -> None:
+        """Turn the plane of X and Y as the active work offset says, where the program has turned one."""
+        angle = self.tables.turn_of(self.coordinates.work[0])
+        if angle == 0.0 and self.frame.outer is None:
+            return
+        letters = self.modal.letter_axis
+        x, y = (int(letters[ord(name) - ord("A")]) for name in "XY")
+        turn = Rotation(x, y, 0.0, 0.0, angle) if angle else None
+        self.frame = replace(self.frame, outer=turn)
+        self.place_zero(replace(self.coordinates, turn=turn))
+
+    def reference(self, number: int) -> tuple[float, ...]:
+        """Return a reference position, 1 or 2 (mm or degree): the program's, else the machine's."""
+        kept = self.references[number - 1]
+        return tuple(axis.reference_position(number) for axis in self.machine.axes) if kept is None else kept
+
     @property
     def tool_offset(self) -> Floats:
         """What tools shift every axis by (mm)."""
@@ -160,6 +179,17 @@ class ChannelState(Plain):
     def zero_offset(self) -> Floats:
         """What zero offsets, without those of the program, shift every axis by (mm or degree)."""
         return self.coordinates.zero_offset(self.tables)
+
+    def length_said_again(self) -> int | None:
+        """Return the H word that would change nothing, None where there is none."""
+        coordinates, tool = self.coordinates, self.length_tool
+        axis = int(self.modal.letter_axis[ord("Z") - ord("A")])
+        if coordinates.length_sign == 0 or tool == 0 or axis == NO_AXIS or not self.tables.has_tool(tool):
+            return None
+        data = self.tables.tool(tool)
+        shift = coordinates.length_sign * (data.length_mm + data.wear_length_mm)
+        same = coordinates.with_length({axis: shift}, coordinates.length_sign)
+        return tool if np.array_equal(same.length, coordinates.length) else None
 
     def leave_drilling(self) -> None:
         """Leave a drilling cycle, and forget its words."""

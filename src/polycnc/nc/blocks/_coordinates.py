@@ -28,10 +28,10 @@ def work_group(code: float) -> int:
 class Coordinates:
     """Hold the zero shifts of one channel; every vector has one value per axis, mm or degree, and is never changed.
 
-    `work` names the active work offset of each group, MACHINE_ZERO for none. `shift` is that of G92, `local` that of
-    G52. `length_sign` is 1 or -1 while tool length compensation is active, else 0. `inner` are shifts of programmed
-    positions besides, `outer` those of a workpiece that `turn` turns; `external` names further offsets in force,
-    `compensations` codes of further tool data.
+    `work` names the active work offset of each group, MACHINE_ZERO for none. `shift` is that of G92, which counts while
+    `shifted` and is kept while not, `local` that of G52. `length_sign` is 1 or -1 while tool length compensation is
+    active, else 0. `inner` are shifts of programmed positions besides, `outer` those of a workpiece that `turn` turns;
+    `external` names further offsets in force, `compensations` codes of further tool data.
     """
 
     shift: Floats
@@ -44,6 +44,7 @@ class Coordinates:
     turn: Rotation | None = None
     external: tuple[str, ...] = ()
     compensations: tuple[int, ...] = ()
+    shifted: bool = False
 
     @classmethod
     def none(cls, axes: int) -> Coordinates:
@@ -57,11 +58,21 @@ class Coordinates:
 
     def with_shift(self, ways: dict[int, float]) -> Coordinates:
         """Return the same with program zero shifted further along some axes."""
-        return replace(self, shift=_changed(self.shift, ways, add=True))
+        old = self.shift if self.shifted else np.zeros_like(self.shift)
+        return replace(self, shift=_changed(old, ways, add=True), shifted=True)
+
+    def with_shift_of(self, values: dict[int, float]) -> Coordinates:
+        """Return the same with the shift of some axes as these values say."""
+        old = self.shift if self.shifted else np.zeros_like(self.shift)
+        return replace(self, shift=_changed(old, values), shifted=True)
+
+    def keeping_shift(self, values: dict[int, float]) -> Coordinates:
+        """Return the same with other values of that shift, which count when they did."""
+        return replace(self, shift=_changed(self.shift, values))
 
     def without_shift(self) -> Coordinates:
         """Return the same without that shift."""
-        return replace(self, shift=np.zeros_like(self.shift))
+        return replace(self, shift=np.zeros_like(self.shift), shifted=False)
 
     def with_local(self, values: dict[int, float], *, add: bool = False) -> Coordinates:
         """Return the same with the zero of a local coordinate system in every work coordinate system."""
@@ -84,7 +95,7 @@ class Coordinates:
 
     def total(self, tables: ProgramTables, modal: Modal) -> Floats:
         """Return the sum of all shifts."""
-        within = self.shift + self.local + self.inner
+        within = self.shift + self.local + self.inner if self.shifted else self.local + self.inner
         if (turn := self.turn) is not None:
             within[turn.p], within[turn.q] = turn.turned(float(within[turn.p]), float(within[turn.q]))
         return self._with_offsets(within + self.tool_offset(tables, modal) + self.outer, tables)

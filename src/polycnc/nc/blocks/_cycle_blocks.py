@@ -25,6 +25,7 @@ from polycnc.nc.blocks._cycles import (
     expand_cycle,
 )
 from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
+from polycnc.nc.blocks._polar_words import POLAR_LETTERS, further_polar_places
 from polycnc.nc.blocks._words import GWord, dwell_seconds, whole_number
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._modal import (
@@ -83,15 +84,18 @@ def moves(block: BlockContext) -> list[QueueItem]:
             "Select a plane of the machine's axes with G17, G18 or G19.",
             block.move_word,
         )
-    drills = "R" in words.by_letter or any(name in words.by_letter for name in block.after.axis_names)
+    drills = any(name in words.by_letter for name in ("R", *POLAR_LETTERS, *block.after.axis_names))
     cycle = replace(block.after.cycle, words=block.after.cycle.words.then(_words(block, axes)))
     block.after.cycle = cycle
     if not drills:
         return []
     _refuse_state(block, cycle, axes[2], code)
     start = block.start
+    further = further_polar_places(block, cycle.words.repeats)
     hole = motion.target(block, motion.axis_words(block))
     place = _place(block, cycle, start, hole, axes)
+    if further:
+        place = replace(place, further_mm=further)
     try:
         settings = block.dialect.cycle_settings()
         steps = expand_cycle(cycle.action, _with_pitch(block, cycle), place, settings, code=code)

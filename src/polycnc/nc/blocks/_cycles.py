@@ -96,7 +96,8 @@ class CycleWords:
 class CyclePlace:
     """Where and how the machine stands when a cycle block starts.
 
-    `hole_mm` is the first hole in the plane, `increment_mm` the way to each further one (G91 with repeats).
+    `hole_mm` is the first hole in the plane, `increment_mm` the way to each further one (G91 with repeats), unless
+    `further_mm` says where they are.
     Levels are on the drilling axis: `initial_mm` before the first cycle block, `level_mm` now. `retract` is
     G98 (initial) or G99 (r). `rigid`: a tapping cycle turns the spindle itself, and leaves it at rest.
     """
@@ -109,6 +110,7 @@ class CyclePlace:
     spindle: Spindle = "forward"
     spindle_rpm: float = 0.0
     rigid: bool = False
+    further_mm: tuple[tuple[float, float], ...] = ()
 
 
 class CycleError(ProgramError):
@@ -296,6 +298,8 @@ def expand_cycle(
     for number in range(words.repeats):
         first = place.hole_mm[0] + number * place.increment_mm[0]
         second = place.hole_mm[1] + number * place.increment_mm[1]
+        if number and place.further_mm:
+            first, second = place.further_mm[number - 1]
         level = _expand_hole(row, _moved(hole, first, second), level, steps)
     return steps
 

@@ -8,7 +8,8 @@ from dataclasses import replace
 from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._handlers import carries_out
-from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, additional_offset
+from polycnc.nc.blocks._tables import ADDITIONAL_OFFSETS, COMMON_OFFSET, WORK_SYSTEMS, additional_offset
+from polycnc.nc.blocks._tool_offsets import set_tool
 from polycnc.nc.blocks._turning_data import set_turning_data
 from polycnc.nc.blocks._word_checks import refuse_rest
 from polycnc.nc.blocks._words import GWord, code_text, whole_number
@@ -18,6 +19,7 @@ from polycnc.nc.modal._modal import ABSOLUTE, NO_AXIS
 
 LARGEST_FACTOR = 1000.0
 LARGEST_OFFSET_NUMBER = 999
+LARGEST_ANGLE = 360_000.0
 _FACTORS = "IJK"
 _TOOL_FIELDS = {
     1: "length_mm",
@@ -210,6 +212,58 @@ def set_work_zero(block: BlockContext, g: GWord) -> None:
     refuse_rest(block, g)
     block.after.tables.set_offset(name, values)
     block.after.take_changes()
+
+
+@carries_out(Action.SET_TABLES)
+def set_tables(block: BlockContext, g: GWord) -> None:
+    """Set a work offset (L2, L20) or a tool (L1, L10, L11)."""
+    table_word, number_word = block.words.take("L"), block.words.take("P")
+    if table_word is None or number_word is None:
+        raise block.problem(f"G{g.code} without L and P", "Add L1, L2, L10, L11 or L20, and P.", g.word)
+    table = whole_number(table_word, "a kind of data", block.problem)
+    if table in (1, 10, 11):
+        number = whole_number(number_word, "a tool number", block.problem)
+        set_tool(block, g, table, number)
+    elif table in (2, 20):
+        number = whole_number(number_word, "a work offset", block.problem, len(WORK_SYSTEMS))
+        _set_system(block, g, table, WORK_SYSTEMS[number - 1] if number else block.after.coordinates.work[0])
+    else:
+        raise block.problem(
+            f"G{g.code} L{table} is not there",
+            "L2 and L20 set work offsets, L1, L10 and L11 tools.",
+            table_word,
+        )
+
+
+def _set_system(block: BlockContext, g: GWord, table: int, name: str) -> None:
+    state, modal, tables = block.after, block.after.modal, block.after.tables
+    values = motion.axis_words(block)
+    angle = block.words.value("R")
+    if angle is not None and not abs(angle) <= LARGEST_ANGLE:
+        raise block.problem(
+            f"the angle R{angle:g} is too large", "Write up to a turn.", block.words.first("R")
+        )
+    if table == 20:
+        if angle is not None or state.frame.active:
+            raise block.problem(
+                f"G{g.code} L20 with a work offset that turns",
+                "Set it with L2.",
+                block.words.first("R") or g.word,
+            )
+        within = modal.offset - tables.work_offset(state.coordinates.work[0])
+        here = (modal.position - within).tolist()
+        values = {axis: here[axis] - value for axis, value in values.items()}
+    if not values and angle is None:
+        raise block.problem(f"G{g.code} without an axis", "Name the axes.", g.word)
+    if angle is not None and NO_AXIS in (modal.letter_axis[ord("X") - 65], modal.letter_axis[ord("Y") - 65]):
+        raise block.problem("the machine has no plane XY to turn", "Take R out.", block.words.first("R"))
+    refuse_rest(block, g)
+    tables.set_offset(name, values)
+    if angle is not None:
+        tables.set_turn(name, angle)
+    state.take_changes()
+    if name == state.coordinates.work[0]:
+        state.turn_work()
 
 
 def _set_work_offset(block: BlockContext, g: GWord, table: int, number: int) -> None:

@@ -21,7 +21,9 @@ from polycnc.nc.modal._modal import (
     FEED,
     FEED_MODE,
     INCH,
+    NO_AXIS,
     PLANE,
+    set_diameter,
     set_inch,
     set_plane,
 )
@@ -37,6 +39,16 @@ _TIME_LETTERS_WITH_INCREMENTS = "XU"
 def set_units(block: BlockContext, g: GWord) -> None:
     """Carry out inch or metric words."""
     set_inch(block.after.modal, bool(g.value))
+
+
+@carries_out(Group.DIAMETERS)
+def set_diameters(block: BlockContext, g: GWord) -> None:
+    """Carry out what X words are: diameters or radii."""
+    modal = block.after.modal
+    axis = int(modal.letter_axis[ord("X") - ord("A")])
+    if axis == NO_AXIS:
+        raise block.problem(f"G{g.code} on a machine without an X axis", "Take it out.", g.word)
+    set_diameter(modal, axis, g.action is Action.DIAMETERS)
 
 
 def count_increments(block: BlockContext) -> None:
@@ -142,6 +154,8 @@ def set_work_offset(block: BlockContext, g: GWord) -> None:
     if not state.tables.has_offset(name) and (offsets or name != _DEFAULT_WORK_OFFSET):
         block.note(f"{name}: the machine has no such work offset; zero is used")
     state.place_zero(state.coordinates.with_work_offset(group, name))
+    if block.dialect.turns_work:
+        state.turn_work()
 
 
 def _additional_number(block: BlockContext) -> int:

@@ -12,6 +12,7 @@ from polycnc.nc.blocks._arc_blocks import arc
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._corner_blocks import held
 from polycnc.nc.blocks._moves import Feed, Line, Point, QueueItem, Wait
+from polycnc.nc.blocks._polar_words import polar_words
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Polar
@@ -74,6 +75,8 @@ def axis_words(block: BlockContext) -> dict[int, float]:
     """Take the axis words of the block: axis index -> value in mm or degree, not placed yet."""
     found = {}
     modal, names = block.after.modal, block.after.axis_names
+    if "@" in block.words.by_letter or "^" in block.words.by_letter:
+        found.update(polar_words(block))
     for letter, value in block.words.lengths(names):
         index = names.index(letter)
         found[index] = value * float(modal.scale[index])

@@ -13,9 +13,16 @@ from polycnc.nc.blocks._moves import Feed, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._probe import Probe
 from polycnc.nc.blocks._words import GWord, whole_number
 from polycnc.nc.modal._actions import Action
-from polycnc.nc.modal._modal import MOTION, MOTION_LINEAR, MOTION_RAPID
+from polycnc.nc.modal._modal import FEED_INVERSE_TIME, FEED_MODE, MOTION, MOTION_LINEAR, MOTION_RAPID
 
 REFERENCE_POSITIONS = 4
+PROBES = {
+    Action.PROBE_CONTACT: (False, True),
+    Action.PROBE_TOWARDS: (False, False),
+    Action.PROBE_LEAVE: (True, True),
+    Action.PROBE_AWAY: (True, False),
+}
+"""Probing moves that tell the program: whether each leaves the workpiece, and whether a miss is an error."""
 
 
 @carries_out(Action.SKIP_MOVE)
@@ -39,6 +46,25 @@ def probe_move(block: BlockContext, g: GWord) -> list[QueueItem]:
     move = _measuring_move(block, g, one_axis=in_passing)
     stop = Stop.PROBE_IN_PASSING if in_passing else Stop.PROBE
     return [Wait(0.0, block.line, stop=stop), move, Wait(0.0, block.line, stop=Stop.DRAIN)]
+
+
+@carries_out(*PROBES)
+def probe(block: BlockContext, g: GWord) -> list[QueueItem]:
+    """Go straight at feed until the probe switches; the program is told where it does not."""
+    if block.after.modal.whole[FEED_MODE] == FEED_INVERSE_TIME:
+        raise block.problem(f"G{g.code} with inverse time feed (G93)", "Select G94 first.", g.word)
+    move = _measuring_move(block, g)
+    if move.end == move.start:
+        raise block.problem(f"G{g.code} to where the probe stands", "Say how far to go at the most.", g.word)
+    leaves, needed = PROBES[g.action]
+    block.after.probe = Probe(
+        frozenset(range(len(block.after.axis_names))),
+        leaves=leaves,
+        code=g.code,
+        place=g.word.place,
+        needed=needed,
+    )
+    return [Wait(0.0, block.line, stop=Stop.PROBE), move, Wait(0.0, block.line, stop=Stop.DRAIN)]
 
 
 @carries_out(Action.PROBE_FIXED_STOP)
@@ -72,11 +98,36 @@ def clear_position(block: BlockContext, g: GWord) -> None:
     block.after.place_zero(block.after.coordinates.without_shift())
 
 
+@carries_out(Action.SUSPEND_POSITION, Action.RESUME_POSITION)
+def suspend_position(block: BlockContext, g: GWord) -> None:
+    """Suspend the shift of program zero, or put it in force again."""
+    refuse_compensation(block, g, side=False)
+    shifted = g.action is Action.RESUME_POSITION
+    block.after.place_zero(replace(block.after.coordinates, shifted=shifted))
+
+
+@carries_out(Action.SET_SHIFT)
+def set_shift(block: BlockContext, g: GWord) -> None:
+    """Put the shift of some axes where the words say, in place of what set it before."""
+    refuse_compensation(block, g, side=False)
+    values = motion.named_axes(block, g)
+    block.after.place_zero(block.after.coordinates.with_shift_of(values))
+
+
+@carries_out(Action.KEEP_REFERENCE, Action.KEEP_REFERENCE_POINT)
+def keep_reference(block: BlockContext, g: GWord) -> None:
+    """Make the present position the first or second reference position."""
+    refuse_compensation(block, g, stage=False)
+    first, second = block.after.references
+    here = block.start
+    block.after.references = (here, second) if g.action is Action.KEEP_REFERENCE else (first, here)
+
+
 @carries_out(Action.SET_POSITION)
 def set_position(block: BlockContext, g: GWord) -> None:
     """Shift program zero so that the present position reads these values."""
     refuse_compensation(block, g, side=False)
-    if block.after.frame.active:
+    if block.after.frame.active and not block.dialect.turns_work:
         raise block.problem(
             f"G{g.code} while positions are turned, scaled or mirrored", "Cancel that first.", g.word
         )
@@ -86,9 +137,10 @@ def set_position(block: BlockContext, g: GWord) -> None:
             f"G{g.code} without an axis", "Name the axes and the positions they shall read.", g.word
         )
     state, modal = block.after, block.after.modal
-    for axis, value in values.items():
-        way = float(modal.position[axis] - modal.offset[axis]) - value
-        state.place_zero(state.coordinates.with_shift({axis: way}))
+    here = state.frame.back((modal.position - modal.offset).tolist())
+    if values:
+        ways = {axis: here[axis] - value for axis, value in values.items()}
+        state.place_zero(state.coordinates.with_shift(ways))
 
 
 def _reference_number(block: BlockContext, g: GWord) -> int:
@@ -99,7 +151,8 @@ def _reference_number(block: BlockContext, g: GWord) -> int:
         raise block.problem(
             f"there is no reference position P{number}", f"Write P2 to P{REFERENCE_POSITIONS}.", word
         )
-    if not any(len(axis.reference_positions) > number - 2 for axis in block.after.machine.axes):
+    known = any(len(axis.reference_positions) > number - 2 for axis in block.after.machine.axes)
+    if not known and not (number == 2 and block.after.references[1] is not None):
         block.note(
             f"G{g.code}: the machine file has no reference position {number}: the home position stands for it"
         )
@@ -115,14 +168,18 @@ def return_to_reference(block: BlockContext, g: GWord) -> list[Line]:
     start = block.start
     middle = motion.target(block, values)
     limits.check(block, middle, "would pass")
+    kept = block.after.references[number - 1] if number <= len(block.after.references) else None
     home = tuple(
-        motion.turned(block, index, axis.reference_position(number), middle[index])
+        motion.turned(
+            block, index, axis.reference_position(number) if kept is None else kept[index], middle[index]
+        )
         if index in values or not values
         else middle[index]
         for index, axis in enumerate(block.after.machine.axes)
     )
     limits.check(block, home, "would go home to")
-    _remark_home(block, g, [index for index in range(len(home)) if index in values or not values])
+    if kept is None:
+        _remark_home(block, g, [index for index in range(len(home)) if index in values or not values])
     return [
         Line(start, middle, Feed(), True, True, block.line),
         Line(middle, home, Feed(), True, True, block.line),

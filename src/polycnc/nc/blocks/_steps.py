@@ -130,9 +130,10 @@ def tool(block: BlockContext) -> None:
 
 
 def functions(block: BlockContext) -> None:
-    """Carry out M codes that come before the motion."""
+    """Carry out M codes that come before the motion, and let a laser's power change."""
     if block.words.m:
         auxiliary.functions(block)
+    auxiliary.laser_power(block)
 
 
 def length(block: BlockContext) -> None:
@@ -258,8 +259,8 @@ def codes(block: BlockContext) -> None:
 
 
 STEPS: tuple[Step, ...] = (
-    words, ends, code(Group.UNITS), increments, code(Group.PLANE, Group.FEED_MODE), feed, spindle, tool, functions,
-    code(Group.DWELL), length, radius,
+    words, ends, code(Group.UNITS, Group.DIAMETERS), increments, code(Group.PLANE, Group.FEED_MODE),
+    feed, spindle, tool, functions, code(Group.DWELL), length, radius,
     code(Group.WORK_OFFSET, Group.STOPPING, Group.DISTANCE, Group.ARC_DISTANCE, Group.RETRACT), rest,
     code(Group.ROTATION, Group.POLAR), motion, unused, stops, times, position, codes,
 )  # fmt: skip

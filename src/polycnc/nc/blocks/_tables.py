@@ -13,6 +13,8 @@ from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, Modal
 
 COMMON_OFFSET = "EXT"
 """The work offset that counts with every other one."""
+WORK_SYSTEMS = (*(f"G{number}" for number in range(54, 60)), "G59.1", "G59.2", "G59.3")
+"""The work offsets that a number from 1 means."""
 ADDITIONAL_OFFSETS = 300
 """How many additional work offsets (G54.1 P) there are."""
 
@@ -28,6 +30,7 @@ class SavedTables(NamedTuple):
     tools: dict[int, dict[str, float]]
     offsets: dict[str, tuple[float, ...]]
     changes: int
+    turns: dict[str, float]
 
 
 class ProgramTables:
@@ -37,12 +40,13 @@ class ProgramTables:
         self._machine = machine
         self._tools: dict[int, ToolConfig] = {}
         self._offsets: dict[str, tuple[float, ...]] = {}
+        self._turns: dict[str, float] = {}
         self.changes = 0
 
     def save(self) -> SavedTables:
         """Return what the program has set; what it has set in the machine's tables is there."""
         tools = {number: dict(tool.__dict__) for number, tool in self._tools.items()}
-        return SavedTables(tools, dict(self._offsets), self.changes)
+        return SavedTables(tools, dict(self._offsets), self.changes, dict(self._turns))
 
     def restore(self, saved: SavedTables) -> None:
         """Go back to what the program had set."""
@@ -50,6 +54,7 @@ class ProgramTables:
             number: ToolConfig.model_construct(**dict[str, Any](each)) for number, each in saved.tools.items()
         }
         self._offsets = dict(saved.offsets)
+        self._turns = dict(saved.turns)
         self.changes = saved.changes
 
     def has_tool(self, number: int) -> bool:
@@ -95,6 +100,14 @@ class ProgramTables:
         """Return a work offset of every axis; zeros if there is none of this name."""
         found = self._offsets.get(name)
         return self._machine.work_offset(name) if found is None else found
+
+    def turn_of(self, name: str) -> float:
+        """Return by what a work offset turns the plane of X and Y (degrees)."""
+        return self._turns.get(name, 0.0)
+
+    def set_turn(self, name: str, angle_deg: float) -> None:
+        """Let a work offset turn the plane of X and Y."""
+        self._turns[name] = angle_deg
 
     def has_offset(self, name: str) -> bool:
         """Tell whether a work offset has been given by the machine or the program."""

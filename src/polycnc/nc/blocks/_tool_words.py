@@ -7,21 +7,12 @@ from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._compensation import Side
 from polycnc.nc.blocks._tip import TIPS, TipShift
-from polycnc.nc.blocks._words import whole_number
-from polycnc.nc.modal._actions import Group
+from polycnc.nc.blocks._tool_offsets import OFFSETS, diameter_of, shift_by_tool, tool_data
+from polycnc.nc.blocks._words import GWord, whole_number
+from polycnc.nc.modal._actions import Action, Group
 from polycnc.nc.modal._modal import NO_AXIS
 
-
-def tool_data(block: BlockContext, tool: int) -> ToolConfig:
-    """Return the data of a tool, zeros with a message if there are none; tool 0 is no tool."""
-    tools = block.after.machine.tools
-    if block.after.tables.has_tool(tool):
-        return block.after.tables.tool(tool)
-    if tool and not tools:
-        block.note("the machine has no tool table: lengths and radii of all tools are 0 mm")
-    elif tool:
-        block.note(f"tool {tool} is not in the machine's tool table: its length and radius are 0 mm")
-    return ToolConfig()
+_BY_DIAMETER = (Action.COMP_LEFT_DIAMETER, Action.COMP_RIGHT_DIAMETER)
 
 
 def compensate_length(block: BlockContext) -> None:
@@ -31,6 +22,13 @@ def compensate_length(block: BlockContext) -> None:
         ProgramError: there is no Z axis, or H is no tool.
     """
     g = block.words.g.get(Group.LENGTH_COMPENSATION)
+    if g is not None and g.action in OFFSETS:
+        shift_by_tool(block, g)
+    elif g is not None or not block.dialect.shifts_by_code_alone:
+        _compensate_along_z(block, g)
+
+
+def _compensate_along_z(block: BlockContext, g: GWord | None) -> None:
     state, coordinates = block.after, block.after.coordinates
     sign = coordinates.length_sign if g is None else g.value
     if g is None and "H" not in block.words.by_letter:
@@ -47,12 +45,12 @@ def compensate_length(block: BlockContext) -> None:
         if sign and of_another_channel("Z") in block.after.axis_names:
             raise block.problem(
                 "tool length compensation along axis Z, which belongs to another channel",
-                "Take it out, or execute the program in that channel.",
+                "Remove it, or execute the program in that channel.",
                 h_word if g is None else g.word,
             )
         if sign and g is not None:
             raise block.problem(
-                "tool length compensation on a machine without a Z axis", "Take it out.", g.word
+                "tool length compensation on a machine without a Z axis", "Remove it.", g.word
             )
         return
     if sign == 0:
@@ -74,6 +72,7 @@ def compensate_radius(block: BlockContext) -> None:
     """
     state = block.after
     g = block.words.g.get(Group.RADIUS_COMPENSATION)
+    given = None if g is None or g.action not in _BY_DIAMETER else diameter_of(block, g)
     d_word = block.words.take("D")
     if d_word is not None:
         state.compensation_tool = whole_number(d_word, "a tool offset number", block.problem)
@@ -86,7 +85,7 @@ def compensate_radius(block: BlockContext) -> None:
         return
     plane = block.plane("radius compensation", None if g is None else g.word)
     tool = state.tool if state.compensation_tool is None else state.compensation_tool
-    data = tool_data(block, tool)
+    data = tool_data(block, tool) if given is None else given
     radius = data.radius_mm + data.wear_radius_mm
     radius += state.tables.tool_radius(state.placement.compensations)
     tip = _tip(block, data, radius)

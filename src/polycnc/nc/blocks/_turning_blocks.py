@@ -11,6 +11,8 @@ from polycnc.nc.blocks import _motion as motion
 from polycnc.nc.blocks import _turning_moves as turns
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._moves import Line, Point, QueueItem
+from polycnc.nc.blocks._synchronized import SYNCHRONIZED
+from polycnc.nc.blocks._synchronized import moves as synchronized
 from polycnc.nc.blocks._turning import MOST_PASSES, SAME_MM, Step, TurningError, box, exchanged
 from polycnc.nc.blocks._words import GWord
 from polycnc.nc.modal._actions import Family
@@ -32,6 +34,8 @@ def moves(block: BlockContext) -> list[QueueItem]:
         ProgramError: a word is missing, or the spindle is at rest, or a limit would be passed.
     """
     turning = block.after.turning
+    if turning.motion in SYNCHRONIZED:
+        return synchronized(block)
     is_thread = turning.motion in ("thread", "thread_changing")
     taper_word = block.words.by_letter.get("R") if not is_thread else None
     taper = turns.length(block, "R") if taper_word is not None else None

@@ -49,7 +49,7 @@ def refuse_contradictions(block: BlockContext) -> None:
         return
     is_straight = motion.action in (Action.RAPID, Action.LINEAR)
     if non_modal and (
-        non_modal.action is Action.SET_POSITION
+        non_modal.action in (Action.SET_POSITION, Action.SET_SHIFT)
         or motion.action.family in _CURVED
         or (non_modal.action is not Action.MACHINE_COORDINATES and not is_straight)
     ):
@@ -112,4 +112,4 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
     """Refuse what is left in the block before anything is written that cannot be taken back."""
     for name, word in block.words.unused():
         if name not in block.dialect.ignored_addresses:
-            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Take it out.", word)
+            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Remove it.", word)

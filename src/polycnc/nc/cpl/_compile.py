@@ -316,18 +316,8 @@ class Compiler:
         if all(isinstance(word.value, float) for word in statement.words):
             self._out.put(f"{begun}{' '.join(words)}{ended}")
         else:
-            self._put_words(begun, list(zip(statement.words, words, strict=True)), ended)
+            _put_words(self._out, self._source, begun, list(zip(statement.words, words, strict=True)), ended)
         self._stores.close_boxes(boxes)
-
-    def _put_words(self, begun: str, words: list[tuple[NcWord, str]], ended: str) -> None:
-        """Write a block on several lines: what goes wrong in brackets is said there."""
-        at = self._out.place
-        self._out.put(begun)
-        for word, python in words:
-            self._out.place = at if isinstance(word.value, float) else self._source.text.index("[", word.at)
-            self._out.put(python)
-        self._out.place = at
-        self._out.put(ended)
 
     def _word(self, word: NcWord, column: int) -> str:
         if isinstance(word.value, float):
@@ -365,3 +355,16 @@ def _sign(step: Expression) -> int | None:
     if isinstance(operand, Number) and getattr(step, "operator", "") in ("+", "-"):
         return -1 if getattr(step, "operator", "") == "-" else 1
     return None
+
+
+def _put_words(
+    out: Emitter[int], source: Source, begun: str, words: list[tuple[NcWord, str]], ended: str
+) -> None:
+    """Write a block on several lines: what goes wrong in brackets is said there."""
+    at = out.place
+    out.put(begun)
+    for word, python in words:
+        out.place = at if isinstance(word.value, float) else source.text.index("[", word.at)
+        out.put(python)
+    out.place = at
+    out.put(ended)

@@ -58,7 +58,7 @@ class WatchedHost:
 
 
 class LoopWatch:
-    """Compare states of programs that only reckon; each is kept for twice as many comparisons as the one before."""
+    """Compare states of programs that only compute; each is kept for twice as many comparisons as the one before."""
 
     def __init__(self) -> None:
         self._kept: tuple[tuple[object, ...], tuple[object, ...]] | None = None
@@ -70,7 +70,7 @@ class LoopWatch:
         """Begin anew: something has happened."""
         self._kept, self._left, self._power, self._since = None, 0, 1, None
 
-    def only_reckons(self, effects: int) -> bool:
+    def only_computes(self, effects: int) -> bool:
         """Tell whether nothing was done, nor asked for that may be answered otherwise, since it was looked at first."""
         return self._since == effects
 

@@ -93,12 +93,11 @@ class MacroVariables:
 
     def kind(self, number: int) -> Kind | None:
         """Return what sort of variable a number is, None if this control has none (or it is a system variable)."""
-        if number == 0:
-            return "null"
-        if 1 <= number <= LOCALS:
-            return "local"
-        if any(first <= number <= last for first, last in self.ranges):
-            return "permanent" if number >= _FIRST_PERMANENT else "common"
+        if 0 <= number <= LOCALS:
+            return "local" if number else "null"
+        for first, last in self.ranges:
+            if first <= number <= last:
+                return "permanent" if number >= _FIRST_PERMANENT else "common"
         return None
 
     def get(self, number: int) -> Value:
@@ -222,7 +221,7 @@ class MacroVariables:
             and lasting
         )
 
-    def put_back(self, saved: SavedVariables) -> None:
+    def restore_state(self, saved: SavedVariables) -> None:
         """Go back to variables; a store keeps those from #500 on."""
         self._levels[:] = [list(each) for each in saved.levels]
         self.common[:_FIRST_PERMANENT] = saved.common

@@ -19,6 +19,7 @@ class Group(StrEnum):
     DWELL = "dwell"
     PLANE = "plane"
     UNITS = "units"
+    DIAMETERS = "diameters"
     DISTANCE = "distance"
     ARC_DISTANCE = "arc_distance"
     FEED_MODE = "feed_mode"
@@ -91,6 +92,9 @@ class Action(IntEnum):
     MOTION_OFF = Family.MOVE, "", "No motion in force: axis words alone are an error", modal.MOTION_NONE
     THREAD = Family.TURNING, "axes", "Thread with the lead F"
     THREAD_CHANGING = Family.TURNING, "axes K", "Thread whose lead changes by K with each turn"
+    SYNCHRONIZED = Family.TURNING, "axes K", "Straight, by K with each turn of the spindle"
+    TAP_AND_BACK = Family.TURNING, "axes K", "The same and back, with the spindle turning the other way"
+    THREADING = Family.TURNING, "Z P I J K R Q H E L", "Cut a thread in several passes down to K"
     TURN_CYCLE = Family.TURNING, "axes R", "Turning in one cut and back; R is the taper"
     THREAD_CYCLE = Family.TURNING, "axes R", "Threading in one cut and back"
     FACE_CYCLE = Family.TURNING, "axes R", "Facing in one cut and back"
@@ -101,14 +105,23 @@ class Action(IntEnum):
     PLANE_YZ = Group.PLANE, "", "Working plane Y Z", modal.PLANE_YZ
     INCH = Group.UNITS, "", "Lengths and feeds are inches", 1
     METRIC = Group.UNITS, "", "Lengths and feeds are millimetres", 0
+    DIAMETERS = Group.DIAMETERS, "", "X is a diameter"
+    RADII = Group.DIAMETERS, "", "X is a radius"
     REFERENCE_RETURN = Family.PATH, "axes", "Go to the reference position through a point"
     REFERENCE_POINT = Family.PATH, "axes P", "The same to reference position P, 2 without it"
+    KEEP_REFERENCE = Family.PATH, "", "Make the present position the reference position"
+    KEEP_REFERENCE_POINT = Family.PATH, "", "Make it the second reference position"
     COMP_OFF = Group.RADIUS_COMPENSATION, "D", "Radius compensation off", 0
     COMP_LEFT = Group.RADIUS_COMPENSATION, "D", "Tool left of the path by its radius", 1
     COMP_RIGHT = Group.RADIUS_COMPENSATION, "D", "Tool right of the path by its radius", -1
+    COMP_LEFT_DIAMETER = Group.RADIUS_COMPENSATION, "D L", "Tool left of the path by half of D; L places its tip", 1
+    COMP_RIGHT_DIAMETER = Group.RADIUS_COMPENSATION, "D L", "The same on the right", -1
     LENGTH_PLUS = Group.LENGTH_COMPENSATION, "H", "Add the length of tool H", 1
     LENGTH_MINUS = Group.LENGTH_COMPENSATION, "H", "Subtract the length of tool H", -1
     LENGTH_OFF = Group.LENGTH_COMPENSATION, "H", "Length compensation off", 0
+    TOOL_OFFSET = Group.LENGTH_COMPENSATION, "H", "Shift axes by the offsets of tool H, or of the present one", 1
+    TOOL_OFFSET_VALUES = Group.LENGTH_COMPENSATION, "axes", "Shift these axes as if by a tool", 1
+    TOOL_OFFSET_ADD = Group.LENGTH_COMPENSATION, "H", "Add the offsets of tool H to those in force", 1
     MACHINE_COORDINATES = Family.PATH, "axes", "A straight move of this block is in machine coordinates"
     WORK_OFFSET = Group.WORK_OFFSET, "", "Select the work offset of this code"
     WORK_OFFSET_OFF = Group.WORK_OFFSET, "", "Leave the work offset of this group"
@@ -121,6 +134,9 @@ class Action(IntEnum):
     ARC_CENTER_INCREMENTAL = Group.ARC_DISTANCE, "", "I J K are ways from an arc's start to its centre", 0
     SET_POSITION = Family.PATH, "axes S", "Make the present position read these values; S clamps the spindle"
     CLEAR_SET_POSITION = Family.PATH, "", "Cancel that shift"
+    SUSPEND_POSITION = Family.PATH, "", "Suspend that shift, and keep it"
+    RESUME_POSITION = Family.PATH, "", "Put a shift that was kept in force again"
+    SET_SHIFT = Family.PATH, "axes", "Make the shift of these axes what the words say"
     FEED_INVERSE_TIME = Group.FEED_MODE, "", "1/F minutes for each block", modal.FEED_INVERSE_TIME
     FEED_PER_MINUTE = Group.FEED_MODE, "", "F is a way per minute", modal.FEED_PER_MINUTE
     FEED_PER_REVOLUTION = Group.FEED_MODE, "", "F is a way per revolution of the spindle", modal.FEED_PER_REVOLUTION
@@ -144,6 +160,7 @@ class Action(IntEnum):
     RETRACT_R = Group.RETRACT, "", "Cycles retract to level R", 0
     SET_DATA = Family.FRAME, "axes L P Q R C", "Set work offsets (L2, L20) and tool offsets (L10 to L13)"
     SET_WORK_ZERO = Family.FRAME, "axes L P", "Set G54 to G59 by value (L2) or by position (L20)"
+    SET_TABLES = Family.FRAME, "axes L P R Q", "Set work offsets (L2, L20; R turns) and tools (L1, L10, L11)"
     LOCAL_COORDINATES = Family.FRAME, "axes", "Shift every work coordinate system"
     SCALING = Family.FRAME, "axes P I J K", "Scale about a point, by P or by I J K"
     SCALING_OFF = Family.FRAME, "", "Scaling off"
@@ -186,6 +203,10 @@ class Action(IntEnum):
     SELECT_TABLES = Family.PLACING, "K V", "Select tables of tools (K) and work offsets (V)"
     PLANE_BY_AXES = Family.PLACING, "axes", "Working plane by two axes, main axis first"
     PROBE_MOVE = Family.PATH, "axes", "Straight at feed until the probe switches"
+    PROBE_CONTACT = Family.PATH, "axes", "The same; refused without a contact, or one from the beginning"
+    PROBE_TOWARDS = Family.PATH, "axes", "The same, but without a contact the program goes on"
+    PROBE_LEAVE = Family.PATH, "axes", "Straight at feed until the probe is free; refused where it does not come free"
+    PROBE_AWAY = Family.PATH, "axes", "The same, but the program goes on where it does not come free"
     PROBE_IN_PASSING = Family.PATH, "axes", "Measure one axis in passing"
     PROBE_FIXED_STOP = Family.PATH, "axes", "Straight at feed up to a fixed stop"
     LEFT_OUT = Group.IGNORED, "", "As if it were not there"
@@ -224,6 +245,8 @@ class MAction(Enum):
     SUB_RETURN = ("sub_return", "stop")
     RIGID_TAP = ("rigid_tap", "")
     AUXILIARY = ("auxiliary", "")
+    AUXILIARY_WORDS = ("auxiliary_words", "")
+    SET_TOOL = ("set_tool", "tool")
     UNSUPPORTED = ("unsupported", "")
     LEFT_OUT = ("left_out", "")
 
@@ -237,6 +260,10 @@ class MAction(Enum):
         """The name in dialect files."""
         return self.value[0]
 
+
+NO_SENSE = 2
+SPINDLE_SENSES = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
+"""Which way M codes let the spindle turn, 1 clockwise; NO_SENSE stands for all others."""
 
 M_ACTIONS: dict[str, MAction] = {action.title: action for action in MAction}
 """M actions by their name in dialect files."""

@@ -39,7 +39,7 @@ MOTION_RAPID = 0
 MOTION_LINEAR = 1
 MOTION_ARC_CW = 2
 MOTION_ARC_CCW = 3
-MOTION_CUBIC = 4  # a spline is gone along by its own block only: these are never in force behind it
+MOTION_CUBIC = 4  # a spline is traversed by its own block only: these are never in force after it
 MOTION_QUADRATIC = 5
 MOTION_NURBS = 6  # up to the block that ends it
 
@@ -138,6 +138,11 @@ def set_diameters(modal: Modal, axes: Sequence[int]) -> None:
     """Let words of these axes be diameters: positions are radii."""
     for axis in axes:
         modal.scale[axis] *= 0.5
+
+
+def set_diameter(modal: Modal, axis: int, diameter: bool) -> None:
+    """Let words of an axis be diameters, or what they are to others."""
+    modal.scale[axis] = length_scale(modal) * (0.5 if diameter else 1.0)
 
 
 def length_scale(modal: Modal) -> float:

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
+from polycnc.errors import ProgramError
+from polycnc.language import Traced, standing
+from polycnc.machine import SnapshotError
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.rs274._parameters import Parameters
 from polycnc.nc.rs274._program import Program, holds_language, is_numbered_within, translate
+from polycnc.nc.rs274._saved import SAVED_CLASSES, SavedLanguage, SavedProgram
 from polycnc.nc.rs274._source import RunningProgram, sub_program_file
+from polycnc.nc.sources._block_source import BlockSource, Returning
 from polycnc.nc.text._program import ProgramText
 
 
@@ -62,6 +68,60 @@ class NgcLanguage:
             path = sub_program_file(name, main, self._folders)
             self._files[name] = None if path is None else self._of(ProgramText.from_path(path), 0)
         return self._files[name]
+
+    # ------------------------------------------------------------------ where it stands
+
+    @property
+    def classes(self) -> Sequence[type]:
+        """The classes of which its state is made."""
+        return SAVED_CLASSES
+
+    def save(self, under_way: Sequence[tuple[object, BlockSource | None]]) -> SavedLanguage:
+        """Return all that it holds, with where its programs stand."""
+        common, others = self.parameters.saved()
+        return SavedLanguage(
+            common,
+            others,
+            dict(self.parameters.names),
+            self.parameters.level,
+            tuple(source.saved() if isinstance(source, RunningProgram) else None for _, source in under_way),
+        )
+
+    def way_back(self, channel: Host, saved: object) -> Returning:
+        """Return what goes back to a state; nothing changes yet.
+
+        Raises:
+            SnapshotError: A program of the state cannot go on from there.
+        """
+        if not isinstance(saved, SavedLanguage):
+            raise SnapshotError("this is a snapshot of another language", hint="use another one")
+        programs = [None if each is None else (each, self._standing(each)) for each in saved.under_way]
+        return lambda: self._go_to(saved, programs)
+
+    def _standing(self, saved: SavedProgram) -> list[tuple[Program, Traced[int] | None]]:
+        found: list[tuple[Program, Traced[int] | None]] = []
+        for level in saved.levels:
+            try:
+                program = self._of(level.text, level.offset)
+                found.append((program, standing(program.functions[level.label], level.line, level.names)))
+            except (ProgramError, LookupError, ValueError) as error:
+                raise SnapshotError(
+                    f"{level.text.name} cannot go on where the snapshot says", hint="use another snapshot"
+                ) from error
+        return found
+
+    def _go_to(
+        self,
+        saved: SavedLanguage,
+        programs: Sequence[tuple[SavedProgram, list[tuple[Program, Traced[int] | None]]] | None],
+    ) -> list[tuple[object, BlockSource | None]]:
+        """Go back to a state; return the programs under way."""
+        self.parameters.put_back(saved.common, saved.others, saved.names)
+        sources = [
+            None if each is None else RunningProgram(self, each[1][0][0]).go_to(*each) for each in programs
+        ]
+        self.parameters.level = saved.level
+        return [(None, source) for source in sources]
 
     def _of(self, text: ProgramText, offset: int) -> Program:
         key = id(text), offset

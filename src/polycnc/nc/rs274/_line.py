@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass, field
 
 from polycnc.language import Flaw
+from polycnc.nc.blocks._polar_words import POLAR_LETTERS
 
 _OPERATOR = re.compile(r"\*\*|[*/+-]|(?:mod|eq|ne|gt|ge|lt|le|and|or|xor)", re.IGNORECASE)
 _POWERS = {
@@ -122,7 +123,7 @@ class LineReader:
             elif char.lower() == "o":
                 self._at += 1
                 line.o_word = self._o_word(at)
-            elif char.isalpha():
+            elif char.isalpha() or char in POLAR_LETTERS:
                 self._at += 1
                 line.words.append((char.upper(), self.value(), at))
             else:

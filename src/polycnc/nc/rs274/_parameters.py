@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Sequence
 
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.modal._modal import (
-    ABSOLUTE,
-    FEED_INVERSE_TIME,
-    FEED_MODE,
-    FEED_NUMBER,
-    FEED_PER_MINUTE,
-    FEED_PER_REVOLUTION,
-    INCH,
-    MOTION,
-    PLANE,
-)
+from polycnc.nc.blocks._tables import WORK_SYSTEMS
+from polycnc.nc.blocks._tool_offsets import TURNED_TIPS, offsets_of
+from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.rs274._functions import NumberError
+from polycnc.nc.rs274._known_names import KNOWN_NAMES
 
 AXES = "XYZABCUVW"
+LAST_LOCAL = 30
 LAST_COMMON = 5000
 _LAST = 5602
-_SYSTEMS = (*(f"G{number}" for number in range(54, 60)), "G59.1", "G59.2", "G59.3")
-_MOTIONS = {-1: 800.0, 0: 0.0, 1: 10.0, 2: 20.0, 3: 30.0, 4: 50.0, 5: 51.0, 6: 52.0}
-_PLANES = {0: 170.0, 1: 180.0, 2: 190.0}
+_REFERENCES = {5160 // 20: 1, 5180 // 20: 2}
+"""Which reference position the parameters from #5161 and #5181 are."""
 
 
 class Parameters:
@@ -35,6 +28,15 @@ class Parameters:
         self.level = 0
         self._others: dict[int, float] = {}
         self._state: ChannelState | None = None
+
+    def saved(self) -> tuple[dict[int, float], dict[int, float]]:
+        """Return what programs have set by number: common parameters, and further ones."""
+        return {n: value for n, value in enumerate(self.common) if value}, dict(self._others)
+
+    def put_back(self, common: dict[int, float], others: dict[int, float], names: dict[str, float]) -> None:
+        """Go back to what programs had set."""
+        self.common[:] = [common.get(n, 0.0) for n in range(len(self.common))]
+        self._others, self.names = dict(others), dict(names)
 
     def attach(self, state: ChannelState) -> None:
         """Read from the state of a channel."""
@@ -64,18 +66,33 @@ class Parameters:
             raise NumberError(f"parameter #{index} can only be read")
         else:
             self._others[index] = value
-            system, axis = divmod(index - 5221, 20)
-            if 0 <= system < len(_SYSTEMS) and axis < len(AXES) and AXES[axis] in self.state.axis_names:
-                at = list(self.state.axis_names).index(AXES[axis])
-                self.state.tables.set_offset(
-                    _SYSTEMS[system], {at: value * float(self.state.modal.scale[at])}
-                )
+            self._set_system(index, value)
+
+    def _set_system(self, index: int, value: float) -> None:
+        """Take over a parameter that stands for a work offset, a kept shift or a reference position."""
+        state = self.state
+        system, place = divmod(index - 5221, 20)
+        if 0 <= system < len(WORK_SYSTEMS) and place == len(AXES):
+            state.tables.set_turn(WORK_SYSTEMS[system], value)
+        elif 0 <= system < len(WORK_SYSTEMS) and (at := self._axis_of(place)) is not None:
+            state.tables.set_offset(WORK_SYSTEMS[system], {at: value * self.unit(at)})
+        elif 5211 <= index <= 5219 and (at := self._axis_of(index - 5211)) is not None:
+            kept = state.coordinates.keeping_shift({at: value * self.unit(at)})
+            if state.coordinates.shifted:
+                raise NumberError(f"#{index} while its shift is in force", "Suspend it with G92.2 first.")
+            state.coordinates = kept
+        elif number := _REFERENCES.get(index // 20):
+            point = list(state.reference(number))
+            if (at := self._axis_of((index - 1) % 20)) is not None:
+                point[at] = value * self.unit(at)
+            first, second = state.references
+            state.references = (tuple(point), second) if number == 1 else (first, tuple(point))
 
     def named(self, name: str) -> float:
         """Return a global name: one that a program has set, or that the control knows."""
         if (found := self.names.get(name)) is not None:
             return found
-        if (known := _NAMED.get(name)) is not None:
+        if (known := KNOWN_NAMES.get(name)) is not None:
             return float(known(self))
         if name.startswith(("_ini[", "_hal[")):
             raise NumberError(f"#<{name}> is not there: no INI file and no HAL", "Set a parameter instead.")
@@ -83,49 +100,91 @@ class Parameters:
 
     def name(self, name: str, value: float) -> None:
         """Set a global name."""
-        if name in _NAMED:
+        if name in KNOWN_NAMES:
             raise NumberError(f"#<{name}> can only be read")
         self.names[name] = value
 
     def exists(self, name: str, frame: dict[str, float]) -> float:
         """Tell whether a name has a value."""
-        return 1.0 if name in frame or name in self.names or name in _NAMED else 0.0
+        return 1.0 if name in frame or name in self.names or name in KNOWN_NAMES else 0.0
 
     def _system(self, index: int) -> float:
         state = self.state
-        if 5221 <= index <= 5389:
+        shifts = state.coordinates
+        if 5221 <= index <= 5400 - 10:
             system, axis = divmod(index - 5221, 20)
             if axis < len(AXES):
-                return self._axis(axis, state.tables.work_offset(_SYSTEMS[system]))
+                return self._axis(axis, state.tables.work_offset(WORK_SYSTEMS[system]))
+            if axis == len(AXES):
+                return state.tables.turn_of(WORK_SYSTEMS[system])
         elif 5211 <= index <= 5219:
-            return self._axis(index - 5211, state.coordinates.shift)
+            return self._axis(index - 5211, shifts.shift.tolist())
+        elif index == 5210:
+            return float(shifts.shifted)
         elif index == 5220:
-            return (
-                _SYSTEMS.index(state.coordinates.work[0]) + 1.0
-                if state.coordinates.work[0] in _SYSTEMS
-                else 1.0
-            )
-        elif index == 5400:
-            return float(state.tool)
-        elif 5401 <= index <= 5409:
-            return self._axis(index - 5401, state.coordinates.length)
-        elif index == 5410:
-            return 2.0 * state.tables.tool(state.tool).radius_mm / (25.4 if state.modal.whole[INCH] else 1.0)
+            return WORK_SYSTEMS.index(shifts.work[0]) + 1.0 if shifts.work[0] in WORK_SYSTEMS else 1.0
+        elif (number := _REFERENCES.get(index // 20)) and (index - 1) % 20 < len(AXES):
+            return self._axis((index - 1) % 20, state.reference(number))
+        elif 5400 <= index <= 5413:
+            return self._tool(index)
         elif 5420 <= index <= 5428:
             return self.position(index - 5420)
+        elif 5061 <= index <= 5070:
+            return self._probed(index - 5061)
         return self._others.get(index, 0.0)
+
+    def _tool(self, index: int) -> float:
+        """Return what the tool in the spindle has: its number, offsets, diameter, where its tip lies."""
+        state = self.state
+        tool = state.tables.tool(state.tool)
+        if index == 5400:
+            return float(state.tool)
+        if index == 5410:
+            return 2.0 * tool.radius_mm / length_scale(state.modal)
+        if index == 5413:
+            return float(TURNED_TIPS[tool.tip])
+        shifts = offsets_of(state, tool)
+        at = self._axis_of(index - 5401) if index < 5410 else None
+        return 0.0 if at is None else shifts.get(at, 0.0) / self.unit(at)
+
+    def _probed(self, place: int) -> float:
+        """Return where the last probing move met something, by axis, or whether it did."""
+        probe = self.state.probe
+        met = None if probe is None else probe.position
+        if place == len(AXES):
+            return float(met is not None)
+        if probe is None:
+            return self._others.get(5061 + place, 0.0)
+        modal = self.state.modal
+        found = modal.position.tolist() if met is None else list(met)
+        return self._axis(place, self.programmed(found))
+
+    def programmed(self, position: list[float]) -> list[float]:
+        """Return a machine position in the coordinates in force."""
+        modal = self.state.modal
+        return self.state.frame.back(
+            [at - shift for at, shift in zip(position, modal.offset.tolist(), strict=True)]
+        )
 
     def position(self, axis: int, *, machine: bool = False) -> float:
         """Return the programmed position of an axis, in the coordinates in force or in those of the machine."""
-        modal = self.state.modal
-        return self._axis(axis, modal.position if machine else modal.position - modal.offset)
+        found = self.state.modal.position.tolist()
+        return self._axis(axis, found if machine else self.programmed(found))
 
-    def _axis(self, axis: int, vector: object) -> float:
+    def unit(self, axis: int) -> float:
+        """Return what 1 counts along an axis, mm or degree: radii, whatever X words are."""
+        modal = self.state.modal
+        return 1.0 if modal.rotary[axis] else length_scale(modal)
+
+    def _axis_of(self, place: int) -> int | None:
+        if not 0 <= place < len(AXES):
+            return None
         names = list(self.state.axis_names)
-        if AXES[axis] not in names:
-            return 0.0
-        at = names.index(AXES[axis])
-        return float(vector[at]) / float(self.state.modal.scale[at])  # type: ignore[index]
+        return names.index(AXES[place]) if AXES[place] in names else None
+
+    def _axis(self, place: int, vector: Sequence[float]) -> float:
+        at = self._axis_of(place)
+        return 0.0 if at is None else float(vector[at]) / self.unit(at)
 
 
 def _index(number: float) -> int:
@@ -135,39 +194,3 @@ def _index(number: float) -> int:
     if not 0 < index < _LAST:
         raise NumberError(f"there is no parameter #{index}", f"Numbers are 1 to {_LAST - 1}.")
     return index
-
-
-def _mode(column: int, value: int) -> Callable[[Parameters], float]:
-    return lambda of: float(of.state.modal.whole[column] == value)
-
-
-def _at(axis: int, machine: bool) -> Callable[[Parameters], float]:
-    return lambda of: of.position(axis, machine=machine)
-
-
-_NAMED: dict[str, Callable[[Parameters], float]] = {
-    **{f"_{letter.lower()}": _at(axis, False) for axis, letter in enumerate(AXES)},
-    **{f"_abs_{letter.lower()}": _at(axis, True) for axis, letter in enumerate(AXES)},
-    "_feed": lambda of: float(of.state.modal.real[FEED_NUMBER]),
-    "_rpm": lambda of: float(of.state.spindle.speed),
-    "_selected_tool": lambda of: float(of.state.selected_tool),
-    "_current_tool": lambda of: float(of.state.tool),
-    "_metric": _mode(INCH, 0),
-    "_imperial": _mode(INCH, 1),
-    "_absolute": _mode(ABSOLUTE, 1),
-    "_incremental": _mode(ABSOLUTE, 0),
-    "_inverse_time": _mode(FEED_MODE, FEED_INVERSE_TIME),
-    "_units_per_minute": _mode(FEED_MODE, FEED_PER_MINUTE),
-    "_units_per_rev": _mode(FEED_MODE, FEED_PER_REVOLUTION),
-    "_plane": lambda of: _PLANES[int(of.state.modal.whole[PLANE])],
-    "_motion_mode": lambda of: _MOTIONS[int(of.state.modal.whole[MOTION])],
-    "_coord_system": lambda of: 10.0 * float((of.state.coordinates.work[0] or "G54")[1:]),
-    "_call_level": lambda of: float(of.level),
-    "_ccomp": lambda of: {0: 400.0, 1: 410.0, -1: 420.0}[of.state.side],
-    "_line": lambda _: 0.0,  # the translation puts the number of the line in its place
-    "_vmajor": lambda _: 2.9,
-    "_vminor": lambda _: 0.0,
-    "_task": lambda _: 0.0,
-    "_remap_level": lambda _: 0.0,
-}
-"""Names that the control knows. Source: LinuxCNC G-code manual, "Predefined Named Parameters"."""

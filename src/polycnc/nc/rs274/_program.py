@@ -1,4 +1,4 @@
-"""A file of RS274/NGC as Python: one generator for its main program, and one for each sub-program in it.
+"""A file of RS274/NGC as Python: a generator for its main program, and one for each sub-program in it.
 
 Runs of plain lines stay text. A loop is a loop of Python; `j` names the loop that BREAK (above 0) or CONTINUE (below)
 is for, where that is not the innermost one.
@@ -13,18 +13,21 @@ from typing import TypeAlias
 
 from polycnc.errors import ProgramError
 from polycnc.language import Emitter, Flaw, Traced
+from polycnc.nc.rs274._kept_modes import KEEPING
 from polycnc.nc.rs274._line import Expression, Line, LineReader, OWord
 from polycnc.nc.text._program import ProgramText
 
 _TEXT_WITH_VALUES = re.compile(rb"\([ \t]*(?i:debug|print)")
 _O = re.compile(rb"[Oo]")
+_KEEPS_MODES = re.compile(rb"[Mm][ \t]*0*7[0-3](?![0-9.])")
 _LONGEST_BEFORE_O = 256
 _BEFORE_O = re.compile(rb"[ \t/]*(?:[Nn][0-9. \t]+)?")
 _O_NUMBER = re.compile(rb"[Oo][ \t]*[0-9]+[ \t]*(?=[(;\r\n]|\Z)")
 """An O number by itself is the number of a program, and text."""
 _O_WORD = re.compile(rb"[Oo][ \t]*[0-9<]")
 _IS_CODE = re.compile(
-    r"[#\[]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"[#\[@^]|^[ \t/]*(?:[Nn][0-9.]+[ \t]*)?[Oo][ \t]*(?![0-9]+[ \t]*(?:[(;\r\n]|$))[0-9<\[#]"
+    r"|M[ \t]*0*7[0-3](?![0-9.])"
     r"|\([ \t]*(?:debug|print)[ \t]*,",
     re.IGNORECASE,
 )
@@ -40,10 +43,11 @@ PAUSE_ROUNDS = 20_000
 def holds_language(content: bytes) -> bool:
     """Tell whether a text may hold more than plain words."""
     return (
-        b"#" in content
+        any(char in content for char in b"#@^")
         or b"[" in content
         or any(_O_WORD.match(content, at) and not _O_NUMBER.match(content, at) for at in _o_lines(content))
         or _TEXT_WITH_VALUES.search(content) is not None
+        or _KEEPS_MODES.search(content) is not None
     )
 
 
@@ -98,11 +102,11 @@ Item: TypeAlias = "Block | Span | tuple[Row, Line]"
 
 @dataclass(slots=True)
 class Program:
-    """A translated file: its sub-programs by name with the Python names of their generators, and the Python itself."""
+    """A translated file: its main program under the name "" and its sub-programs, each a function `program`."""
 
     text: ProgramText
-    subs: dict[str, str]
-    traced: Traced[int]
+    offset: int
+    functions: dict[str, Traced[int]]
     plain: bool
 
 
@@ -115,7 +119,7 @@ def translate(text: ProgramText, offset: int) -> Program:
     try:
         rows = _rows(text, offset)
         items, subs = _Structure(text).read(rows)
-        return _Writer(text).write(items, subs)
+        return _Writer(text, offset).write(items, subs)
     except Flaw as flaw:
         raise ProgramError(flaw.what, position=text.position(flaw.at), hint=flaw.hint) from None
 
@@ -250,8 +254,9 @@ def _read(row: Row) -> Line:
 class _Writer:
     """Write the Python of a file; the place of each line is a byte offset."""
 
-    def __init__(self, text: ProgramText) -> None:
+    def __init__(self, text: ProgramText, offset: int) -> None:
         self._text = text
+        self._offset = offset
         self._out: Emitter[int] = Emitter(0)
         self._loops: list[tuple[str, int, bool]] = []  # label, number, whether it is a REPEAT
         self._numbers = 0
@@ -259,23 +264,22 @@ class _Writer:
         self._in_sub = False
 
     def write(self, items: list[Item], subs: dict[str, Block]) -> Program:
-        names: dict[str, str] = {}
-        for number, (label, block) in enumerate(subs.items()):
-            names[label] = f"sub_{number}"
-            self._in_sub = True
-            self._function(names[label], block.bodies[0][2], block)
-        self._in_sub = False
-        self._function("main", items, None)
+        functions = {"": self._function("", items, None)}
+        self._in_sub = True
+        for label, block in subs.items():
+            functions[label] = self._function(label, block.bodies[0][2], block)
         plain = not subs and all(isinstance(item, Span) for item in items)
-        return Program(self._text, names, self._out.compile(f"<rs274 {self._text.name}>"), plain)
+        return Program(self._text, self._offset, functions, plain)
 
-    def _function(self, name: str, items: list[Item], block: Block | None) -> None:
-        with self._out.block(f"def {name}(L, N):"):
+    def _function(self, label: str, items: list[Item], block: Block | None) -> Traced[int]:
+        self._out = Emitter(0)
+        with self._out.block("def program(L, N):"):
             self._out.put("j = 0", f"c = {PAUSE_ROUNDS}", "if c < 0:", "    yield PAUSE")
             self._items(items)
             if block is not None and block.end is not None and block.end_row is not None:
                 self._at(block.end_row, block.end.at)
                 self._return(block.end.arguments)
+        return self._out.compile(f"<rs274 {self._text.name} {label}>")
 
     def _at(self, row: Row, column: int = 0) -> None:
         blanks = len(row.text) - len(row.text.lstrip())
@@ -308,8 +312,11 @@ class _Writer:
             own = target.removesuffix(" = {}")
             if own.startswith("N[") and any(own in each.python for _, each in line.settings):
                 put(f"if {own[2:-1]} not in N:", f"    {own} = 0.0")
+        keeping = [word for word in line.words if word[0] == "M" and word[1].python in KEEPING]
         words = ", ".join(
-            f"({letter!r}, {value.python}, {row.offset + at})" for letter, value, at in line.words
+            f"({letter!r}, {value.python}, {row.offset + at})"
+            for letter, value, at in line.words
+            if (letter, value, at) not in keeping
         )
         if len(line.settings) == 1 and not line.words:
             target, value = line.settings[0]
@@ -323,6 +330,12 @@ class _Writer:
                 put(f"yield block({row.number}, {row.offset}, w, {message})")
         elif words:
             put(f"yield block({row.number}, {row.offset}, ({words},), {message})")
+        put(
+            *(
+                f"yield modes({KEEPING[code.python]}, {row.number}, {row.offset + at})"
+                for _, code, at in keeping
+            )
+        )
         if line.o_word is not None:
             self._o_word(row, line.o_word)
 
@@ -362,7 +375,7 @@ class _Writer:
                     )
                 label = f"label({word.label})" if word.computed else repr(word.label)
                 given = "".join(f"{each.python}, " for each in word.arguments)
-                self._out.put(f"yield from call({label}, ({given}), {row.number})")
+                self._out.put(f"yield call({label}, ({given}), {row.number})")
             case "return":
                 if self._in_sub:
                     self._return(word.arguments)
@@ -413,11 +426,13 @@ class _Writer:
             return
         self._numbers += 1
         number = self._numbers
-        first = ""
+        first = rounds = ""
         if keyword == "while":
             head = f"while {_condition(block.row, block.word)}:"
         elif keyword == "repeat":
-            head = f"for _ in times({_argument(block.row, block.word)}):"
+            rounds = f"r{number}"
+            self._out.put(f"{rounds} = times({_argument(block.row, block.word)})")
+            head = f"while {rounds} > 0:"
         else:
             assert block.end is not None
             assert block.end_row is not None
@@ -428,6 +443,8 @@ class _Writer:
         with self._out.block(head):
             if first:
                 self._out.put(f"{first} = False")
+            if rounds:
+                self._out.put(f"{rounds} -= 1")
             self._out.put("c -= 1")
             with self._out.block("if c < 0:"):
                 self._out.put("yield PAUSE", f"c = {PAUSE_ROUNDS}")

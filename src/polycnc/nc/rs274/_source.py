@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
 from polycnc.errors import ProgramError, UsageError
-from polycnc.language import frame_of
+from polycnc.language import Traced, frame_of, line_of, names_of
 from polycnc.nc.records._block_records import Call
 from polycnc.nc.rs274._functions import FUNCTIONS, NumberError
-from polycnc.nc.rs274._parameters import Parameters
+from polycnc.nc.rs274._kept_modes import Words, modes_of, words_back
+from polycnc.nc.rs274._parameters import LAST_LOCAL, Parameters
 from polycnc.nc.rs274._program import Program
+from polycnc.nc.rs274._saved import SavedLevel, SavedProgram
 from polycnc.nc.sources._block_source import EndSource, Pause, SourceItem, TextSpan, WordsBlock
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Word
@@ -20,7 +23,10 @@ MOST_LEVELS = 10
 """How deep calls may be nested. Source: LinuxCNC `interp_internal.hh`, INTERP_SUB_ROUTINE_LEVELS."""
 LONGEST_LOOP_PAUSES = 2_500
 _LARGEST = 1e12
-_Run: TypeAlias = Generator[SourceItem, None, "float | None"]
+_PARAMETERS = ("L", "N")
+_PROBLEMS = (NumberError, KeyError, OverflowError, ValueError, UsageError)
+Suspended: TypeAlias = Generator["SourceItem | CallRequest | ModesRequest", None, "float | None"]
+Function: TypeAlias = Callable[[list[float], dict[str, float]], Suspended]
 
 
 class Owner(Protocol):
@@ -37,19 +43,73 @@ class Owner(Protocol):
         ...
 
 
+@dataclass(frozen=True, slots=True)
+class CallRequest:
+    """What an O-word asks for: the program of a file, its sub-program, the arguments, and the line of the call."""
+
+    program: Program
+    label: str
+    arguments: tuple[float, ...]
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class ModesRequest:
+    """What M70 to M73 ask for, on a line and at a byte of the text."""
+
+    code: int
+    line: int
+    offset: int
+
+
+@dataclass(slots=True)
+class _Level:
+    """A program or sub-program under way: its own parameters, and the generator that gives its items.
+
+    `kept` are the modes that M70 or M73 has kept; with `goes_back` they are in force again when it returns.
+    """
+
+    program: Program
+    label: str
+    numbered: list[float]
+    named: dict[str, float]
+    calls: tuple[Call, ...]
+    run: Suspended
+    kept: tuple[Words, ...] = ()
+    goes_back: ModesRequest | None = None
+
+
 class RunningProgram:
     """Execute one program: its Python runs until it gives an item."""
 
     def __init__(self, owner: Owner, program: Program) -> None:
         self._owner = owner
         self._main = program
-        self._scopes: dict[str, dict[str, Any]] = {}
-        self._programs = {program.text.name: program}
-        self._program = program
-        self._calls: tuple[Call, ...] = ()
+        self._names: dict[str, object] = {
+            **FUNCTIONS,
+            "V": owner.parameters.common,
+            "get": owner.parameters.get,
+            "put": owner.parameters.put,
+            "name": owner.parameters.name,
+            "named": owner.parameters.named,
+            "exists": owner.parameters.exists,
+            "PAUSE": Pause.PAUSE,
+            "skips": owner.skips,
+            "span": self._span,
+            "block": self._block,
+            "says": self._says,
+            "six": "{:f}".format,
+            "times": lambda number: max(0, round(number)),
+            "label": lambda number: str(round(number)),
+            "call": self._asked,
+            "modes": ModesRequest,
+        }
+        self._functions: dict[int, tuple[Traced[int], Function]] = {}
         self._pauses = 0
         self._over = False
-        self._run: _Run = self._scope(program)["main"]([0.0] * 31, {})
+        self._levels: list[_Level] = []
+        self._back: list[WordsBlock] = []
+        self._begin(program, "", [0.0] * (LAST_LOCAL + 1), ())
 
     # ------------------------------------------------------------------ what the channel asks
 
@@ -61,22 +121,34 @@ class RunningProgram:
         """
         if self._over:
             return EndSource.END
-        try:
-            item = next(self._run)
-        except StopIteration:
-            self._over = True
-            return None
-        except (NumberError, KeyError, OverflowError, ValueError, RecursionError, UsageError) as error:
-            self._over = True
-            raise self._placed(error) from None
+        item: SourceItem | CallRequest | ModesRequest | None = None
+        while item is None or isinstance(item, CallRequest | ModesRequest):
+            item = None
+            if self._back:
+                return self._back.pop(0)
+            try:
+                item = next(self._levels[-1].run)
+            except StopIteration as ended:
+                if len(self._levels) == 1:
+                    self._over = True
+                    return None
+                level = self._levels[-1]
+                if level.goes_back is not None:
+                    self._put_back(level, level.goes_back)
+                self._return(ended.value)
+            except _PROBLEMS as error:
+                raise self._refused(error) from None
+            if isinstance(item, CallRequest):
+                self._enter(item)
+            elif isinstance(item, ModesRequest):
+                self._keep(item)
         self._pauses = self._pauses + 1 if item is Pause.PAUSE else 0
         if self._pauses > LONGEST_LOOP_PAUSES:
-            self._over = True
             endless = NumberError("a loop goes round without a block", "Add what ends it.")
             try:
-                self._run.throw(endless)  # it comes back with the place of the loop
+                self._levels[-1].run.throw(endless)  # it comes back with the place of the loop
             except NumberError as error:
-                raise self._placed(error) from None
+                raise self._refused(error) from None
         return item
 
     def leave(self) -> bool:
@@ -89,40 +161,117 @@ class RunningProgram:
 
     def close(self) -> None:
         """End the program."""
-        self._run.close()
+        for level in self._levels:
+            level.run.close()
         self._owner.parameters.level = 0
+
+    # ------------------------------------------------------------------ levels
+
+    def _begin(self, program: Program, label: str, numbered: list[float], calls: tuple[Call, ...]) -> None:
+        named: dict[str, float] = {}
+        run = self._function(program.functions[label])(numbered, named)
+        self._levels.append(_Level(program, label, numbered, named, calls, run))
+
+    def _function(self, traced: Traced[int]) -> Function:
+        if id(traced) not in self._functions:
+            self._functions[id(traced)] = traced, traced.load(self._names)["program"]
+        return self._functions[id(traced)][1]
+
+    def _enter(self, asked: CallRequest) -> None:
+        caller = self._levels[-1]
+        numbered = [0.0, *asked.arguments, *[0.0] * (LAST_LOCAL - len(asked.arguments))]
+        calls = (*caller.calls, Call(caller.program.text.name, asked.line, 0))
+        self._owner.parameters.level += 1
+        self._begin(asked.program, asked.label, numbered, calls)
+
+    def _return(self, value: float | None) -> None:
+        self._levels.pop()
+        parameters = self._owner.parameters
+        parameters.level -= 1
+        parameters.names["_value"] = 0.0 if value is None else value
+        parameters.names["_value_returned"] = float(value is not None)
+
+    def _keep(self, asked: ModesRequest) -> None:
+        """Keep the modes in force (M70, M73), forget them (M71), or put them in force again (M72).
+
+        Raises:
+            ProgramError: there are none, or they cannot be in force again.
+        """
+        level = self._levels[-1]
+        if asked.code == 72:
+            self._put_back(level, asked)
+            return
+        level.kept = () if asked.code == 71 else modes_of(self._owner.parameters.state)
+        level.goes_back = asked if asked.code == 73 else None
+
+    def _put_back(self, level: _Level, asked: ModesRequest) -> None:
+        text = level.program.text
+        try:
+            if not level.kept:
+                raise NumberError("no modes have been kept", "Write M70 before M72, in the same sub-program.")
+            blocks = words_back(level.kept, self._owner.parameters.state)
+        except NumberError as error:
+            self._over = True
+            raise ProgramError(error.what, position=text.position(asked.offset), hint=error.hint) from None
+        for words in blocks:
+            made = tuple(Word(letter, value, asked.offset, True) for letter, value in words)
+            self._back.append(WordsBlock(made, asked.line, asked.offset, text=text, calls=level.calls))
+
+    # ------------------------------------------------------------------ where it stands
+
+    def saved(self) -> SavedProgram:
+        """Return where the program stands."""
+        levels = tuple(
+            SavedLevel(
+                level.program.text,
+                level.program.offset,
+                level.label,
+                tuple(level.numbered),
+                dict(level.named),
+                level.calls,
+                line_of(level.run),
+                {name: value for name, value in names_of(level.run).items() if name not in _PARAMETERS},
+                level.kept,
+                None if (asked := level.goes_back) is None else (asked.code, asked.line, asked.offset),
+            )
+            for level in self._levels
+        )
+        back = tuple(
+            (tuple((w.letter, w.value, w.place) for w in each.words), each.line, each.offset, each.calls)
+            for each in self._back
+        )
+        return SavedProgram(levels, self._pauses, self._over, back)
+
+    def go_to(
+        self, saved: SavedProgram, codes: Sequence[tuple[Program, Traced[int] | None]]
+    ) -> RunningProgram:
+        """Stand where another execution stood; `codes` are the programs of its levels, and what `standing` has made."""
+        self.close()
+        self._levels.clear()
+        for level, (program, traced) in zip(saved.levels, codes, strict=True):
+            self._begin(program, level.label, list(level.numbered), level.calls)
+            made = self._levels[-1]
+            made.named.update(level.named)
+            made.kept = level.kept
+            made.goes_back = None if level.goes_back is None else ModesRequest(*level.goes_back)
+            if traced is not program.functions[level.label]:
+                made.run.close()
+            if traced is not None and traced is not program.functions[level.label]:
+                made.run = traced.load(self._names)["program"](made.numbered, made.named, level.names)
+                next(made.run)
+        self._pauses, self._over = saved.pauses, saved.over
+        text = self._levels[-1].program.text
+        self._back = [
+            WordsBlock(tuple(Word(*each, True) for each in words), line, offset, text=text, calls=calls)
+            for words, line, offset, calls in saved.back
+        ]
+        return self
 
     # ------------------------------------------------------------------ what the Python calls
 
-    def _scope(self, program: Program) -> dict[str, Any]:
-        name = program.text.name
-        if name not in self._scopes:
-            parameters = self._owner.parameters
-            self._programs[name] = program
-            self._scopes[name] = program.traced.load(
-                {
-                    **FUNCTIONS,
-                    "V": parameters.common,
-                    "get": parameters.get,
-                    "put": parameters.put,
-                    "name": parameters.name,
-                    "named": parameters.named,
-                    "exists": parameters.exists,
-                    "PAUSE": Pause.PAUSE,
-                    "skips": self._owner.skips,
-                    "span": self._span,
-                    "block": self._block,
-                    "says": self._says,
-                    "six": "{:f}".format,
-                    "times": lambda number: range(max(0, round(number))),
-                    "label": lambda number: str(round(number)),
-                    "call": self._call,
-                }
-            )
-        return self._scopes[name]
-
     def _span(self, offset: int, line: int, end: int) -> TextSpan:
-        return TextSpan(offset, line, end, self._program.text, self._calls)
+        level = self._levels[-1]
+        return TextSpan(offset, line, end, level.program.text, level.calls)
 
     def _block(
         self, line: int, offset: int, words: tuple[tuple[str, float, int], ...], message: str
@@ -131,40 +280,38 @@ class RunningProgram:
             if not abs(value) < _LARGEST:
                 raise NumberError(f"the number {value:g} of {letter} is too large")
         made = tuple(Word(letter, value, place, True) for letter, value, place in words)
-        return WordsBlock(made, line, offset, message, text=self._program.text, calls=self._calls)
+        level = self._levels[-1]
+        return WordsBlock(made, line, offset, message, text=level.program.text, calls=level.calls)
 
     def _says(self, line: int, offset: int, text: str) -> WordsBlock:
-        return WordsBlock((), line, offset, text, text=self._program.text, calls=self._calls)
+        level = self._levels[-1]
+        return WordsBlock((), line, offset, text, text=level.program.text, calls=level.calls)
 
-    def _call(self, label: str, arguments: tuple[float, ...], line: int) -> _Run:
-        owner, caller, calls = self._owner, self._program, self._calls
-        program = caller if label in caller.subs else self._main if label in self._main.subs else None
-        program = program or owner.file_of(label, self._main.text)
-        if program is None or label not in program.subs:
+    def _asked(self, label: str, arguments: tuple[float, ...], line: int) -> CallRequest:
+        level = self._levels[-1]
+        found = [each for each in (level.program, self._main) if label in each.functions]
+        program = found[0] if found and label else self._owner.file_of(label, self._main.text)
+        if program is None or not label or label not in program.functions:
             raise NumberError(
                 f"there is no sub-program O<{label}>",
                 f"Write O<{label}> SUB in this file, or put it into {label}.ngc beside the program or in --root.",
             )
-        if len(calls) >= MOST_LEVELS:
+        if len(level.calls) >= MOST_LEVELS:
             raise NumberError(
                 f"sub-programs are nested more than {MOST_LEVELS} deep", "Does one call itself?"
             )
-        parameters = owner.parameters
-        frame = [0.0, *arguments, *[0.0] * (30 - len(arguments))]
-        self._program, self._calls = program, (*calls, Call(caller.text.name, line, 0))
-        parameters.level += 1
-        value = yield from self._scope(program)[program.subs[label]](frame, {})
-        parameters.level -= 1
-        self._program, self._calls = caller, calls
-        parameters.names["_value"] = 0.0 if value is None else value
-        parameters.names["_value_returned"] = float(value is not None)
-        return None
+        return CallRequest(program, label, arguments, line)
 
-    def _placed(self, error: Exception) -> ProgramError:
-        """Return an error with the place in the program that it came from."""
-        traced = {each.traced.name: each for each in self._programs.values()}
-        frame = frame_of(error, lambda name: traced[name].traced if name in traced else None)
-        position = None if frame is None else traced[frame.name].text.position(frame.place)
+    def _refused(self, error: Exception) -> ProgramError:
+        """Return an error with the place in the program that it came from; nothing more is asked for."""
+        self._over = True
+        traced = {
+            each.name: (each, level.program)
+            for level in self._levels
+            for each in level.program.functions.values()
+        }
+        frame = frame_of(error, lambda name: traced[name][0] if name in traced else None)
+        position = None if frame is None else traced[frame.name][1].text.position(frame.place)
         match error:
             case NumberError():
                 return ProgramError(error.what, position=position, hint=error.hint)
@@ -172,8 +319,6 @@ class RunningProgram:
                 return ProgramError(
                     f"#<{error.args[0]}> has no value", position=position, hint="Set it first."
                 )
-            case RecursionError():
-                return ProgramError("the program is nested too deeply", position=position, hint="Split it.")
             case UsageError():
                 return ProgramError(error.what, position=position, hint=error.hint)
         return ProgramError("the number is too large", position=position, hint="Look at the expression.")

@@ -46,8 +46,11 @@ def _macro(view: View, number: int) -> float | None:
 
 
 def _readable_macro(view: View, number: int) -> float | None:
-    if number in _LOCALS or number in view.control.macros or not view.profile.system_variables:
+    try:
         return _macro(view, number)
+    except RefusedError:
+        if not view.profile.system_variables:
+            raise
     try:
         return system_variable(view, number)
     except KeyError:
@@ -181,7 +184,7 @@ def settings(view: View, request: Request) -> Content:
 
 @answers(0x10)
 def parameter_types(view: View, request: Request) -> Content:
-    """Return numbers and type words of so many parameters from one on, and the numbers before and behind."""
+    """Return numbers and type words of so many parameters from one on, and the numbers before and after."""
     first, count = request.arguments[:2]
     if not 0 < count <= MOST_NUMBERS:
         raise RefusedError(LENGTH)
@@ -202,7 +205,7 @@ _PLAIN = {"unit": 0, "dimension": 0, "input": 0, "display": 0}
 
 
 def _infos(request: Request, rows: Mapping[int, tuple[Kind, int, int]]) -> Content:
-    """Return what so many rows are, from a number on, with the numbers before and behind.
+    """Return what so many rows are, from a number on, with the numbers before and after.
 
     A row is its kind, how it is repeated (once, for each axis, for each spindle), and its other attributes.
     """

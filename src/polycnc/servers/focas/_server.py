@@ -14,21 +14,27 @@ from typing import Any
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
 from polycnc.machine import Host
+from polycnc.servers.calls import MAGIC, CallsServer
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._faults import FaultKind, Faults
 from polycnc.servers.focas._profile import Profile
-from polycnc.servers.focas._session import Ending, Session
-from polycnc.servers.machines import HostOwner, Keeper, Owner, ServedMachine
+from polycnc.servers.focas._session import Ending, Session, State
+from polycnc.servers.machines import HostOwner, Keeper, Owner, Patience, ServedMachine, notice_loss
 
 PORT = 8193
 LOOPBACK = "127.0.0.1"
 _LISTEN_BEAT_S = 0.05
+MOST_LINES = 1000
+LEAST_PATIENCE_S = 30.0
+"""How long a connection may stand before it is opened, and a program may stop coming: others wait for it."""
+_HALF = frozenset({State.NEW, State.DOWNLOADING})
 
 
 class FocasServer:
     """Serve a control on `address`:`port`; port 0 takes a free one, see `port`.
 
     `owner` lets its time pass: a running host, or a `Keeper`. `faults` are those of the script that it follows.
+    Programs that come through the C library, told by their first bytes, are answered by `calls`.
     """
 
     def __init__(
@@ -46,6 +52,7 @@ class FocasServer:
         self.owner: Owner = HostOwner(owner) if isinstance(owner, Host) else owner
         keep = isinstance(owner, Keeper) and owner.pace.rate >= 1.0
         self.control = FocasControl(control, profile, faults, keep=keep)
+        self.calls: CallsServer | None = None
         self._server: asyncio.Server | None = None
         self._lines: set[_Line] = set()
         self._watch: asyncio.TimerHandle | None = None
@@ -56,8 +63,10 @@ class FocasServer:
         """Return the door of a served Power Mate; faults of its scenario act on the connections too."""
         scenario, control = machine.served.scenario, machine.device
         assert isinstance(control, PowerMate)
-        faults = scenario if isinstance(scenario, Faults) else None
-        return cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
+        faults = scenario if isinstance(scenario, Faults) else getattr(scenario, "faults", None)
+        made = cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
+        made.calls = CallsServer([machine])
+        return made
 
     @property
     def said(self) -> str:
@@ -117,7 +126,14 @@ class FocasServer:
             self._server.close()
         for line in tuple(self._lines):
             line.abort()
+        if self.calls is not None:
+            await self.calls.close()
         await asyncio.sleep(0)  # lets the connections tell that they are lost
+
+    @property
+    def crowded(self) -> bool:
+        """Whether there are more connections than it takes."""
+        return len(self._lines) > MOST_LINES
 
     def joined(self, line: _Line) -> None:
         """Note a connection."""
@@ -141,14 +157,26 @@ class _Line(asyncio.Protocol):
         self._server = server
         self._session = Session(server.control)
         self._full = self._waiting = self._gone = False
+        self._new = True
+        self._patience = Patience(self.abort)
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
         self._transport = transport
         self._server.joined(self)
+        notice_loss(transport)
+        if self._server.crowded:
+            transport.abort()
+        else:
+            self._patience.begin(LEAST_PATIENCE_S)
 
     def data_received(self, data: bytes) -> None:
-        session = self._session
+        session, calls = self._session, self._server.calls
+        if self._new and calls is not None and data[:1] == MAGIC[:1]:
+            self._end()
+            calls.adopt(self._transport, data)
+            return
+        self._new = False
         if session.ending is None:
             self._server.owner.submit(lambda: session.receive(data), self._answer)
 
@@ -167,6 +195,10 @@ class _Line(asyncio.Protocol):
         session = self._session
         if self._gone:
             return
+        if session.state in _HALF:
+            self._patience.begin(LEAST_PATIENCE_S)
+        else:
+            self._patience.end()
         if sent:
             self._transport.write(sent)
         if session.ending is Ending.RESET:
@@ -217,7 +249,12 @@ class _Line(asyncio.Protocol):
             self._go_on()
 
     def connection_lost(self, error: Exception | None) -> None:
+        self._end()
+
+    def _end(self) -> None:
+        """End the session."""
         self._gone = True
+        self._patience.end()
         self._server.left(self)
         self._server.owner.submit(self._session.lost, lambda _: None)
 

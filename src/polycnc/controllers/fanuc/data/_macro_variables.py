@@ -11,6 +11,7 @@ from polycnc.machine import Store
 from polycnc.nc.macro import LARGEST, LOCALS, MacroVariables
 
 _AREA = "fanuc.macro_pairs"
+_SHARED = ("common", "permanent")
 MOST_MANTISSA = 99_999_999
 MOST_DECIMALS = 8
 VACANT = 0, -1
@@ -50,7 +51,7 @@ class SharedMacros:
         self._pairs = {int(key): _pair(text) for key, text in self._area.load().items()}
 
     def __contains__(self, number: object) -> bool:
-        return isinstance(number, int) and self.variables.kind(number) in ("common", "permanent")
+        return isinstance(number, int) and self.variables.kind(number) in _SHARED
 
     def block(self, number: int) -> range | None:
         """Return the numbers that belong together with `number`: locals, volatile or permanent ones."""
@@ -59,9 +60,9 @@ class SharedMacros:
 
     def get(self, number: int) -> float | None:
         """Return a common variable; KeyError if there is none of this number."""
-        if number not in self:
+        if self.variables.kind(number) not in _SHARED:
             raise KeyError(number)
-        return self.variables.get(number)
+        return self.variables.common[number]
 
     def pair(self, number: int) -> tuple[int, int] | None:
         """Return the decimal pair that a variable was written with, if it has not changed since."""

@@ -1,8 +1,10 @@
 // The operator's page: one screen that shows what the stream sends and asks the commands of REST.
 import { TEXTS } from "/texts.js";
+import { Pages } from "/pages.js";
 import { Path } from "/path.js";
 
-const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete"];
+const SWITCHES = ["single_block", "dry_run", "optional_stop", "block_delete", "machine_lock"];
+const RATES = [0, 0.1, 0.5, 1, 2, 5, 10, 50];
 const RATE = 20, STALE_MS = 900, AGAIN_MS = 1000, BEAT_MS = 200, MOST_LINES = 2000;
 const $ = (id) => document.getElementById(id);
 const make = (tag, attributes = {}, ...inside) => {
@@ -42,7 +44,8 @@ class Axes extends HTMLElement {
 }
 customElements.define("cnc-axes", Axes);
 
-const state = { machine: "", status: null, socket: null, seen: 0, lines: "", held: new Map(), stamp: 0 };
+const state = { machine: "", status: null, socket: null, seen: 0, lines: "", held: new Map(), stamp: 0, chosen: 0, breakpoints: [] };
+let pages = null;
 const path = new Path($("path"));
 const url = (rest) => `/api/machines/${encodeURIComponent(state.machine)}/${rest}`;
 
@@ -70,6 +73,7 @@ async function command(name, values = {}) {
 
 function show(status) {
   state.status = status;
+  if (pages) pages.status = status;
   const channel = status.channels?.[0];
   put($("clock"), `${status.time_s.toFixed(1)} s`);
   if (!channel) return;
@@ -93,7 +97,7 @@ function show(status) {
   const pressed = status.emergency === "on";
   $("stop").setAttribute("aria-pressed", pressed);
   put($("stop"), pressed ? TEXTS.release : TEXTS.stop);
-  for (const key of document.querySelectorAll("[data-jog]")) key.disabled = !["jog", "inc"].includes(status.mode);
+  for (const key of document.querySelectorAll("[data-jog]")) key.disabled = !["jog", "inc", "ref"].includes(status.mode) || (status.mode === "ref" && key.dataset.way === "-1");
   showLine(channel);
 }
 
@@ -131,10 +135,32 @@ async function loadLines(name) {
   const answer = await fetch(url(`programs/${encodeURIComponent(name)}`)).catch(() => null);
   if (!answer?.ok || state.lines !== name) return;
   const lines = (await answer.text()).split("\n").slice(0, MOST_LINES);
-  $("lines").replaceChildren(...lines.map((line) => make("li", {}, line)));
+  $("lines").replaceChildren(...lines.map((line, index) => make("li", { onclick: () => choose(index + 1) }, line)));
+  state.chosen = 0;
+  showBreakpoints();
+}
+
+function choose(line) {
+  const { children } = $("lines");
+  children[state.chosen - 1]?.removeAttribute("aria-selected");
+  state.chosen = Math.max(1, Math.min(line, children.length));
+  children[state.chosen - 1]?.setAttribute("aria-selected", "true");
+  children[state.chosen - 1]?.scrollIntoView({ block: "nearest" });
+  for (const id of ["from_line", "breakpoint"]) $(id).disabled = !children.length;
+}
+function linesWithBreakpoints() { return state.breakpoints.filter((each) => each.program === state.lines).map((each) => each.line); }
+function showBreakpoints() {
+  const marked = new Set(linesWithBreakpoints());
+  [...$("lines").children].forEach((line, index) => line.classList.toggle("breakpoint", marked.has(index + 1)));
+}
+function toggleBreakpoint() {
+  const there = linesWithBreakpoints(), line = state.chosen;
+  command("set_breakpoints", { program: state.lines, lines: there.includes(line) ? there.filter((each) => each !== line) : [...there, line] });
 }
 
 function showInventory(parts) {
+  pages?.inventory(parts);
+  if (parts.breakpoints) { state.breakpoints = parts.breakpoints; showBreakpoints(); }
   if (!parts.programs) return;
   const chosen = $("names").value;
   $("names").replaceChildren(...parts.programs.map((entry) => make("option", { value: entry.name }, `${entry.name} ${entry.comment}`)));
@@ -155,6 +181,7 @@ function connect() {
     document.body.classList.remove("lost");
     put($("connection"), TEXTS.connected);
     show(message.status);
+    if (document.activeElement !== $("rate")) $("rate").value = String(message.rate);
     showInventory(message.inventory);
   };
   socket.onclose = () => { if (state.socket === socket) { releaseAll(); setTimeout(connect, AGAIN_MS); } };
@@ -178,6 +205,7 @@ function press(axis, direction) {
     command("increment", { axis, direction, size: Number($("size").value) });
     return;
   }
+  if (state.status.mode === "ref") { command("reference", { axis }); return; }
   if (state.status.mode !== "jog" || state.held.has(axis)) return;
   const rapid = $("rapidly").getAttribute("aria-pressed") === "true";
   send(axis, direction, rapid);
@@ -217,6 +245,7 @@ function build(axes) {
   };
   $("keys").replaceChildren(
     ...["cycle_start", "feed_hold", "reset"].map((name) => button(name, () => command(name))),
+    button("step", () => command("cycle_start", { step: "over" })),
     ...SWITCHES.map((name) => button(name, toggled(name))),
     ...Object.entries(TEXTS.modes).map(([mode, text]) => make("button", { "data-mode": mode, onclick: () => command("select_mode", { mode }) }, text)),
     make("p", { class: "hint" }, TEXTS.keys));
@@ -234,7 +263,7 @@ function build(axes) {
     if (await command("set_mdi", { text: `${mdi.value}\n` })) { history.prepend(make("option", { value: mdi.value })); command("cycle_start"); }
   };
   mdi.addEventListener("keydown", (event) => { if (event.key === "Enter") enter(); });
-  const jogs = axes.flatMap((axis) => [1, -1].map((direction) => make("button", { "data-jog": axis, onpointerdown: () => press(axis, direction),
+  const jogs = axes.flatMap((axis) => [1, -1].map((direction) => make("button", { "data-jog": axis, "data-way": direction, onpointerdown: () => press(axis, direction),
     onpointerup: () => release(axis), onpointerleave: () => release(axis), onpointercancel: () => release(axis) }, `${axis}${direction > 0 ? "+" : "−"}`)));
   const rapidly = make("button", { id: "rapidly", "aria-pressed": "false",
     onclick: () => rapidly.setAttribute("aria-pressed", rapidly.getAttribute("aria-pressed") !== "true") }, TEXTS.rapidly);
@@ -246,9 +275,30 @@ function build(axes) {
     const answer = names.value && (await ask(`programs/${encodeURIComponent(names.value)}`));
     if (answer) { text.value = await answer.text(); name.value = names.value; }
   };
+  const remove = () => names.value && ask(`programs/${encodeURIComponent(names.value)}`, { method: "DELETE" });
   const save = () => ask(`programs/${encodeURIComponent(name.value)}`, { method: "PUT", body: text.value });
-  $("store").replaceChildren(names, button("select", () => command("select_program", { program: names.value })), button("edit", edit), name, button("save", save), text);
+  const programs = make("div", { id: "page-programs", role: "tabpanel", "aria-labelledby": "tab-programs" }, names, button("select", () => command("select_program", { program: names.value })), button("edit", edit), name, button("save", save), button("remove", remove), text);
+  programs.addEventListener("dragover", (event) => event.preventDefault());
+  programs.addEventListener("drop", async (event) => {
+    event.preventDefault();
+    const file = event.dataTransfer.files[0];
+    if (file) { name.value = file.name.replace(/\.[^.]*$/, ""); text.value = await file.text(); }
+  });
+  pages = new Pages($("store"), programs, { make, ask, command, say });
+  pages.status = state.status;
   $("path").setAttribute("aria-label", TEXTS.path);
+  $("steps").replaceChildren(
+    button("from_line", () => command("search", { line: state.chosen, calculate: true }).then((done) => done && say(TEXTS.searched))),
+    button("breakpoint", toggleBreakpoint));
+  for (const each of $("steps").children) each.disabled = true;
+  $("lines").onkeydown = (event) => {
+    const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
+    if (step) { event.preventDefault(); choose(state.chosen + step); }
+  };
+  const rate = make("select", { id: "rate", "aria-label": TEXTS.rate }, ...RATES.map((value) => make("option", { value: String(value) }, value ? `${value} ×` : TEXTS.frozen)));
+  rate.onchange = () => ask("clock", { method: "POST", body: JSON.stringify({ rate: Number(rate.value) }) });
+  const far = make("button", { id: "far", "aria-pressed": "false", onclick: () => far.setAttribute("aria-pressed", document.body.classList.toggle("far")) }, TEXTS.far);
+  $("tools").replaceChildren(rate, far);
 }
 
 async function begin() {

@@ -1,4 +1,4 @@
-"""What a program run does along its path: lets it go, meets what stands on it, and brings it to a stand.
+"""What a program run does along its path: lets it go, meets what stands on it, and stops it.
 
 Nothing here changes where the path leads; see `ProgramRun`, which has the commands.
 """
@@ -6,6 +6,7 @@ Nothing here changes where the path leads; see `ProgramRun`, which has the comma
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TypeAlias
 
 import numpy as np
@@ -15,8 +16,8 @@ from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
-from polycnc.cnc._probing import Probing, delete_rest, positions
-from polycnc.cnc._run_moment import RunMoment
+from polycnc.cnc._probing import Probing, cannot_begin, delete_rest, positions
+from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Step, Stopper
 from polycnc.cnc._tool_times import ToolTime
@@ -43,15 +44,21 @@ RESTS_PER_CYCLE = 16
 """Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
 
 
-class Conduct:
-    """Conduct one path of a machine along what its channel prepares, as `moment` says.
+class PathRunner:
+    """PathRunner one path of a machine along what its channel prepares, as `moment` says.
 
     `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes. `rows`, `on_event` and
     `on_skip` are told what happens, see `ProgramRun`.
     """
 
     def __init__(
-        self, machine: Machine, channel: Channel, options: RunOptions, moment: RunMoment, *, ahead: int | None
+        self,
+        machine: Machine,
+        channel: Channel,
+        options: RunOptions,
+        moment: RunProgress,
+        *,
+        ahead: int | None,
     ) -> None:
         self.machine = machine
         self.path = channel.path
@@ -120,7 +127,7 @@ class Conduct:
     def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
-        It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
+        It returns early when the run stops (a block's end, a program stop, its end, an alarm), and with
         `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
         is not asked meanwhile, since nothing can have come.
         """
@@ -291,7 +298,7 @@ class Conduct:
                 self.feed.replan()
 
     def _stand_at_marks(self) -> bool:
-        """Carry out the blocks without segments that come next; return whether the program stops behind one."""
+        """Carry out the blocks without segments that come next; return whether the program stops after one."""
         for _ in range(_MOST_MARKS):  # a loop may have no other blocks
             if (tag := self.feed.take_mark()) is None:
                 break
@@ -342,13 +349,19 @@ class Conduct:
             self._pass_barrier()
         if event.stop in (Stop.PROBE, Stop.PROBE_IN_PASSING):
             self.moment.probing = Probing(event.stop is Stop.PROBE, positions(self.machine))
+            if cannot_begin(self.machine, self.channel):
+                self.moment.probing.met = True  # what is left of the move is dropped
+                self._tell_probe(at_once=True)
+                self.set_hold()
         elif event.stop is Stop.DRAIN:
             if self.moment.probing is not None:
+                if not self.moment.probing.met:
+                    self._tell_probe(missed=True)
                 self.moment.probing = None
                 self.feed.keep_box()
                 self.set_hold()
             if self.stopper.alone:
-                self.feed.let_pass()  # what is read behind it belongs to it
+                self.feed.let_pass()  # what is read after it belongs to it
             self._go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self.moment.stop = event
@@ -357,6 +370,12 @@ class Conduct:
         elif event.stop is not None and self.options.stands_at_stops:
             self._go_on()
 
+    def _tell_probe(self, *, missed: bool = False, at_once: bool = False) -> None:
+        """Note in the channel's state how a probing move went wrong, where the program asks for it."""
+        state = self.channel.state
+        if state.probe is not None and state.probe.code:
+            state.probe = replace(state.probe, missed=missed, at_once=at_once)
+
     def answered(self) -> None:
         """Let the path, and preparation, go on from an auxiliary function."""
         self.moment.unanswered = False
@@ -364,13 +383,13 @@ class Conduct:
         self.set_hold()
 
     def _pass_barrier(self) -> None:
-        """Let preparation go on behind functions that have been answered: what they change counts for what follows."""
+        """Continue preparing after functions that have been answered: what they change counts for what follows."""
         if self.moment.barrier and not self.moment.unanswered:
             self.moment.barrier = False
             self._go_on()
 
     def _go_on(self) -> None:
-        """Let preparation go on behind what has been met."""
+        """Let preparation continue after what has been met."""
         self.channel.go_on()
         self.feed.wake()
 

@@ -1,0 +1,62 @@
+"""What holds for every connection of a client: one that has vanished is noticed, one that only waits ends."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import socket
+from collections.abc import Callable
+from typing import Any
+
+VANISHED_AFTER_S = 60
+_PROBES, _BETWEEN_S = 4, 10
+_OPTIONS = (
+    ("TCP_KEEPIDLE", VANISHED_AFTER_S - _PROBES * _BETWEEN_S),
+    ("TCP_KEEPINTVL", _BETWEEN_S),
+    ("TCP_KEEPCNT", _PROBES),
+    ("TCP_USER_TIMEOUT", VANISHED_AFTER_S * 1000),
+)
+_NO_MORE = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
+
+
+def notice_loss(transport: asyncio.BaseTransport) -> None:
+    """Let the system end a connection whose client has vanished without a word, after a minute."""
+    line: socket.socket | None = transport.get_extra_info("socket")
+    if line is None or line.family not in (socket.AF_INET, socket.AF_INET6):
+        return
+    line.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
+    for name, value in _OPTIONS:  # what the system knows of them
+        if (option := getattr(socket, name, None)) is not None:
+            line.setsockopt(socket.IPPROTO_TCP, option, value)
+
+
+class Patience:
+    """End something that a client leaves half done: `expired` is called when `limit_s` have passed since `begin`."""
+
+    def __init__(self, expired: Callable[[], None]) -> None:
+        self._expired = expired
+        self._timer: asyncio.TimerHandle | None = None
+
+    def begin(self, limit_s: float) -> None:
+        """Count anew."""
+        self.end()
+        self._timer = asyncio.get_running_loop().call_later(limit_s, self._expired)
+
+    def end(self) -> None:
+        """Wait for nothing any more."""
+        if self._timer is not None:
+            self._timer.cancel()
+            self._timer = None
+
+
+def tell_errors(loop: asyncio.AbstractEventLoop, tell: Callable[[str, str], None]) -> None:
+    """Let what goes wrong in the event loop be told in a word: `tell` gets its kind and text; no traceback comes."""
+
+    def handle(_: asyncio.AbstractEventLoop, context: dict[str, Any]) -> None:
+        error = context.get("exception")
+        if isinstance(error, OSError) and error.errno in _NO_MORE:
+            tell("crowded", "no more connections can be taken: the system gives this process no more files")
+        else:
+            tell("internal error", f"{context.get('message', '')}: {error!r}"[:500])
+
+    loop.set_exception_handler(handle)

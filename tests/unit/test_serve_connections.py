@@ -1,0 +1,156 @@
+"""Clients that vanish, stop half way, or come in crowds: bounded in time and number, and nobody else waits for them."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+import pytest
+
+from polycnc.servers.focas import Frame, FrameType
+from polycnc.servers.machines import Wanted, tell_errors
+from polycnc.servers.process import DOORS, Machinery
+from support.http_app import served_machine
+
+pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
+
+R = TypeVar("R")
+SHORT_S = 0.05
+
+
+def with_door(name: str, kind: str, machinery: Machinery, visit: Callable[[int], Awaitable[R]]) -> R:
+    """Open a door of a machine on a free port, and visit it in the same event loop."""
+
+    async def run() -> R:
+        machine = served_machine(kind, machinery)
+        door = DOORS[name].open_door([machine], Wanted(port=0))
+        await door.start()
+        try:
+            return await visit(int(door.said.rpartition(":")[2]))
+        finally:
+            await door.close()
+            machine.close()
+
+    return asyncio.run(run())
+
+
+async def ended(reader: asyncio.StreamReader) -> bytes:
+    """Return what still comes until the connection ends."""
+    try:
+        return await asyncio.wait_for(reader.read(), 20)
+    except ConnectionError:
+        return b""
+
+
+@pytest.mark.parametrize(
+    "begun",
+    [
+        "",
+        "GET /hea",
+        "PUT /api/machines/m/programs/O1 HTTP/1.1\r\nHost: localhost\r\nContent-Length: 9\r\n\r\nO1",
+    ],
+)
+def test_a_question_that_never_comes_ends_its_connection(begun: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.servers.http._connection.MOST_WAIT_S", SHORT_S)
+    monkeypatch.setattr("polycnc.servers.http._connection._LOOK_S", SHORT_S)
+
+    async def visit(port: int) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(begun.encode())
+        assert await ended(reader) == b""
+        writer.close()
+
+    with_door("http", "plain", Machinery("m", "mill3"), visit)
+
+
+def test_beyond_the_number_of_connections_each_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.servers.http._connection.MOST_CONNECTIONS", 3)
+    ask = b"GET /health HTTP/1.1\r\nHost: localhost\r\n\r\n"
+
+    async def visit(port: int) -> None:
+        lines = [await asyncio.open_connection("127.0.0.1", port) for _ in range(3)]
+        for reader, writer in lines:
+            writer.write(ask)
+            assert (await reader.readline()).startswith(b"HTTP/1.1 200 ")
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(ask)
+        said = await ended(reader)
+        assert said.startswith(b"HTTP/1.1 503 ")
+        assert b"application/problem+json" in said
+        for _, other in (*lines, (reader, writer)):
+            other.close()
+        await asyncio.sleep(SHORT_S)
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(ask)
+        assert (await reader.readline()).startswith(b"HTTP/1.1 200 ")
+        writer.close()
+
+    with_door("http", "plain", Machinery("m", "mill3"), visit)
+
+
+@pytest.mark.parametrize(
+    "sent", [b"\x16\x03\x01\x02\x00\x01", b"GET / SPDY/3\r\n\r\n", b"\r\n\r\n\x00\x00\xff\r\n\r\n"]
+)
+def test_what_is_no_http_is_refused_as_a_problem(sent: bytes) -> None:
+    async def visit(port: int) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(sent + b"\r\n\r\n")
+        said = await ended(reader)
+        assert said.startswith(b"HTTP/1.1 400 ")
+        assert b"application/problem+json" in said
+        writer.close()
+
+    with_door("http", "plain", Machinery("m", "mill3"), visit)
+
+
+def test_a_download_that_stops_half_way_blocks_no_other_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.servers.focas._server.LEAST_PATIENCE_S", 0.3)
+    opening = bytes(Frame(FrameType.OPEN, b"\0\1"))
+    start = bytes(Frame(FrameType.DOWNLOAD_START, b"\0\0\0\1" + b"N:".ljust(512, b"\0")))
+
+    async def open_line(port: int) -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        writer.write(opening)
+        assert await asyncio.wait_for(reader.read(4096), 20)
+        writer.write(start)
+        return reader, writer
+
+    async def visit(port: int) -> None:
+        reader, writer = await open_line(port)
+        first = await asyncio.wait_for(reader.read(4096), 20)
+        other, other_writer = await open_line(port)
+        assert await asyncio.wait_for(other.read(4096), 20) != first  # refused: one comes in already
+        assert await ended(reader) == b""
+        again, again_writer = await open_line(port)
+        assert await asyncio.wait_for(again.read(4096), 20) == first
+        for each in (writer, other_writer, again_writer):
+            each.close()
+
+    with_door("focas", "fanuc", Machinery("m"), visit)
+
+
+def test_a_connection_that_is_never_opened_ends(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("polycnc.servers.focas._server.LEAST_PATIENCE_S", SHORT_S)
+
+    async def visit(port: int) -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        assert await ended(reader) == b""
+        writer.close()
+
+    with_door("focas", "fanuc", Machinery("m"), visit)
+
+
+def test_a_system_without_files_is_told_once_in_a_word() -> None:
+    told: list[tuple[str, str]] = []
+
+    async def run() -> None:
+        loop = asyncio.get_running_loop()
+        tell_errors(loop, lambda kind, text: told.append((kind, text)))
+        context: dict[str, Any] = {"message": "accept", "exception": OSError(24, "Too many open files")}
+        loop.call_exception_handler(context)
+
+    asyncio.run(run())
+    assert told == [
+        ("crowded", "no more connections can be taken: the system gives this process no more files")
+    ]
