@@ -219,8 +219,6 @@ class CplLanguage:
             found.append((handed, source))
         return found
 
-    # Loops
-
     def loops(self) -> bool:
         """Tell whether the programs under way loop without end: to be asked now and then while nothing moves."""
         running, shared = (each.execution for each in self.running), (self.globals, self._host.permanent)
