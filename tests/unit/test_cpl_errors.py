@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from polycnc.nc import ProgramText
+from polycnc.runner import run
 from support.cpl_runs import Root
 
 LONG = '1 DIM A$(1024) : FOR I%=1 TO {} : MID$(A$,I%,1)="X" : NEXT I%\n'
@@ -100,3 +102,55 @@ def test_the_serial_interface_is_a_file_like_any_other_and_signals_have_groups(t
     assert root.read("TTY") == b"X\n\x03\n"
     assert root.error("1 A?=IC(5,10)") == "1: INVALID PARAMETER"
     assert root.error("1 A?=IC(5,1,65)") == "1: INVALID PARAMETER"
+
+
+@pytest.mark.parametrize(
+    ("block", "column", "what"),
+    [
+        ("N20 G1 X[Q%*2] Y3", 9, "INVALID VARIABLE: Q% has no value (NUL)"),
+        ("N20 G1 F600 X[A%] Y[SQRT(B)]", 20, "INVALID VARIABLE: B has no value (NUL)"),
+        ("N20 G1 X5 Y[#G!+A%] F[A%]", 12, "INVALID VARIABLE: #G! has no value (NUL)"),
+        ("N20 G1 X5 F[P2]", 12, "INVALID VARIABLE: P2 has no value (NUL)"),
+        ("N20 G1 X[1/(A%-3)] Y[Q%]", 9, "division by zero"),
+        ("N20 G1 X[A%] Y[1/(A%-3)]", 15, "division by zero"),
+        ("N20 G1 X[A%] Y[F%(7)] Z[A%]", 15, "INVALID FIELD LIMIT"),
+        ("N20 G1 X[A%] Y[F%(2)]", 15, "INVALID VARIABLE"),  # an element has no name of its own
+        ("N20 [A$] G1 X[A%]", 5, "INVALID VARIABLE: A$ has no value (NUL)"),
+        ("N20 G1 X[A%]  Y[SQRT(-A%)]", 16, "INVALID PARAMETER"),
+    ],
+)
+def test_an_error_in_brackets_stands_at_its_bracket_and_names_the_variable(
+    tmp_path: Path, block: str, column: int, what: str
+) -> None:
+    alarms = run(
+        ProgramText.from_text(f"10 DIM F%(3) : A%=3\n{block}\n", "main"),
+        "mill3",
+        "bosch",
+        root=tmp_path,
+        check=False,
+    ).alarms
+    assert (alarms[0].line, alarms[0].column) == (2, column)
+    assert alarms[0].text.startswith(what)
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "20 WHILE X!>0 DO\n30 X!=X!+1\n40 END",
+        "20 REPEAT\n30 A%=A%+2\n40 UNTIL A%=4",
+        "20 A%=A%+3\n30 GOTO 20",
+    ],
+)
+def test_a_loop_that_only_counts_is_told_after_4_million_jumps(tmp_path: Path, loop: str) -> None:
+    text = ProgramText.from_text(f"10 X!=1 : A%=1\n{loop}\n", "main")
+    (alarm,) = run(text, "mill3", "bosch", root=tmp_path, check=False).alarms
+    assert alarm.text == "the program has looped for 0.2 s without a block or a WAIT"
+    assert alarm.line in (2, 3, 4)
+
+
+def test_a_loop_that_asks_the_clock_has_longer(tmp_path: Path) -> None:
+    text = ProgramText.from_text(
+        "10 T%=CLOCK\n20 WHILE CLOCK-T%<230 DO\n30 A%=3\n40 END\nN50 G1 X7 F6000\n", "main"
+    )
+    result = run(text, "mill3", "bosch", root=tmp_path)
+    assert (result.alarms, result.end_position_mm["X"]) == ([], 7)

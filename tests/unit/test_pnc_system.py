@@ -592,3 +592,14 @@ def test_one_axis_is_measured_in_passing_and_a_stop_is_reached(measuring: Cell) 
 @pytest.mark.parametrize("word", ["G131", "G192 S500", "G292 S50", "G328", "G352", "G354", "G510", "G511"])
 def test_words_that_are_not_simulated_are_refused(cell: Cell, word: str) -> None:
     assert word.split()[0] in cell.error(f"1 A=1\nN10 {word}")
+
+
+@pytest.mark.covers("cpl.SD.12.val.0", "cpl.SD.12.val.3", "cpl.SD.12.val.4")
+def test_the_sense_of_the_spindle_is_that_of_its_last_word(cell: Cell) -> None:
+    found = cell.values(
+        "N1 S700 M4\nN2 G1 X1 F900\n3 WAIT\n4 A%=SD(12,2)\nN5 M3\n6 B%=SD(12,2)\nN7 M5\n8 C%=SD(12,2)",
+        "A%",
+        "B%",
+        "C%",
+    )
+    assert found == [4, 3, 0]

@@ -219,15 +219,14 @@ class CplLanguage:
             found.append((handed, source))
         return found
 
-    # Loops
-
     def loops(self) -> bool:
-        """Tell whether the programs under way are in a loop without end, if nothing else changes what they read.
+        """Tell whether the programs under way loop without end: to be asked now and then while nothing moves."""
+        running, shared = (each.execution for each in self.running), (self.globals, self._host.permanent)
+        return self._loop.repeats(self._host.effects, running, shared)
 
-        To be asked now and then while nothing moves; `moves_on` begins anew.
-        """
-        executions = [source.execution for source in self.running]
-        return self._loop.repeats(self._host.effects, executions, (self.globals, self._host.permanent))
+    def only_computes(self) -> bool:
+        """Tell whether the programs have done nothing but compute since `loops` was asked first."""
+        return self._loop.only_computes(self._host.effects)
 
     def moves_on(self) -> None:
         """Take note that something has happened since `loops` was asked."""

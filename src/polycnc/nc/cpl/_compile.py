@@ -309,10 +309,14 @@ class Compiler:
     def _nc_block(self, statement: NcBlock) -> None:
         boxes = self._stores.new_boxes()
         first = self._source.begin(statement.line) - 1
-        words = "".join([f"{self._word(word, word.at - first)}, " for word in statement.words])
+        words = [f"{self._word(word, word.at - first)}," for word in statement.words]
         self._stores.open_boxes(boxes)
-        fixed = f"{statement.line}, {statement.number}, {statement.skip}"
-        self._out.put(f"yield NcValues({fixed}, ({words}), {statement.message!r})")
+        begun = f"yield NcValues({statement.line}, {statement.number}, {statement.skip}, ("
+        ended = f"), {statement.message!r})"
+        if all(isinstance(word.value, float) for word in statement.words):
+            self._out.put(f"{begun}{' '.join(words)}{ended}")
+        else:
+            _put_words(self._out, self._source, begun, list(zip(statement.words, words, strict=True)), ended)
         self._stores.close_boxes(boxes)
 
     def _word(self, word: NcWord, column: int) -> str:
@@ -351,3 +355,16 @@ def _sign(step: Expression) -> int | None:
     if isinstance(operand, Number) and getattr(step, "operator", "") in ("+", "-"):
         return -1 if getattr(step, "operator", "") == "-" else 1
     return None
+
+
+def _put_words(
+    out: Emitter[int], source: Source, begun: str, words: list[tuple[NcWord, str]], ended: str
+) -> None:
+    """Write a block on several lines: what goes wrong in brackets is said there."""
+    at = out.place
+    out.put(begun)
+    for word, python in words:
+        out.place = at if isinstance(word.value, float) else source.text.index("[", word.at)
+        out.put(python)
+    out.place = at
+    out.put(ended)

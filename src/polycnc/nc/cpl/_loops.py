@@ -64,15 +64,22 @@ class LoopWatch:
         self._kept: tuple[tuple[object, ...], tuple[object, ...]] | None = None
         self._left = 0
         self._power = 1
+        self._since: int | None = None
 
     def forget(self) -> None:
         """Begin anew: something has happened."""
-        self._kept, self._left, self._power = None, 0, 1
+        self._kept, self._left, self._power, self._since = None, 0, 1, None
+
+    def only_computes(self, effects: int) -> bool:
+        """Tell whether nothing was done, nor asked for that may be answered otherwise, since it was looked at first."""
+        return self._since == effects
 
     def repeats(
         self, effects: int, running: Iterable[Execution], shared: Iterable[Mapping[str, Any]]
     ) -> bool:
         """Tell whether the present state is one that was kept."""
+        if self._since is None:
+            self._since = effects
         simple: list[object] = [effects]
         large: list[object] = []
         for values in (*(execution.state() for execution in running), *shared):

@@ -31,6 +31,7 @@ from polycnc.nc.cpl._host import (
     Waiting,
     wait_for,
 )
+from polycnc.nc.cpl._nul_names import nul_name
 from polycnc.nc.cpl._program import NESTING, Linker, Program, shown_call
 from polycnc.nc.cpl._variables import SUFFIXES, Kind
 
@@ -154,6 +155,8 @@ class Execution:
 
     def _explained(self, error: Exception, at: int) -> ProgramError:
         what, hint, code = _meaning(error)
+        if what == _numbers.not_assigned().what and (name := nul_name(error, self.program)):
+            what = f"INVALID VARIABLE: {name} has no value (NUL)"
         return self.program.source.error(Flaw(at, what, hint, code=code))
 
 
