@@ -11,7 +11,7 @@ from _programs import write_program
 from _report import run_script
 
 RUNS = 3
-MEMORY_MB = 600.0
+MEMORY_MB = 250.0
 GROWTH_MB = 100.0
 
 

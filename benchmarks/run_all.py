@@ -25,6 +25,7 @@ SCRIPTS = {
     "bench_cpl.py": "CPL",
     "bench_macros.py": "Custom macros",
     "bench_variables.py": "Programs with variables",
+    "bench_laser.py": "Laser programs",
     "bench_lookahead.py": "Look-ahead",
     "bench_profile.py": "Point-to-point planning",
     "bench_machine.py": "Whole virtual machine",
@@ -33,6 +34,7 @@ SCRIPTS = {
     "bench_cycle_calls.py": "One cycle per call",
     "bench_post.py": "Post-processor macros",
     "bench_focas.py": "FOCAS server",
+    "bench_plants.py": "MTConnect agent",
     "bench_batch.py": "Batches",
     "bench_stock.py": "Stock",
 }

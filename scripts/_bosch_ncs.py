@@ -28,7 +28,7 @@ def page() -> str:
             row = DATA_SERVICES[number]
             parts.append(f"| {number} | {row.name} | {_KINDS[row.kind]} | {row.refresh} | {row.scope} |\n")
     parts.append(
-        "\n## Services: MCOPS\n\n| number | service | parameters behind the channel |\n| --- | --- | --- |\n"
+        "\n## Services: MCOPS\n\n| number | service | parameters after the channel |\n| --- | --- | --- |\n"
     )
     for service in PROCESS_SERVICES.values():
         kinds = ", ".join(

@@ -69,7 +69,7 @@ def page() -> str:
         _HEAD
         + "## Settings\n\nThose of the axes are the axes' own and act when they are written; the speed of the "
     )
-    text += "spindle is shown.\nThe others are kept and shown; "
+    text += "spindle and the laser mode are shown.\nThe others are kept and shown; "
     text += "$10, $13 and $22 act on the door.\n\n| setting | what it is | unit |\n| --- | --- | --- |\n"
     text += "".join(f"| ${row.number} | {row.text} | {row.unit} |\n" for row in SETTINGS)
     text += "\n## Errors\n\n| error | why |\n| --- | --- |\n"

@@ -22,7 +22,7 @@ PLACES = ("/src", "/opt/polycnc-cache", "/work")
 
 
 def instructions(text: str) -> Iterator[tuple[str, str]]:
-    """Yield the instructions of a Dockerfile and what stands behind them."""
+    """Yield the instructions of a Dockerfile and what stands after them."""
     for line in text.splitlines():
         if line and not line.startswith("#"):
             word, _, rest = line.partition(" ")

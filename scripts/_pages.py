@@ -58,6 +58,12 @@ def grbl_page() -> str:
     return page()
 
 
+def data_items_page() -> str:
+    """Return the page of the data items that plants read."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_data_items_page.py"))["page"]
+    return page()
+
+
 def post_events_page() -> str:
     """Return the page of the post-processor's events."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_post_events.py"))["page"]
@@ -79,6 +85,12 @@ def cpl_page() -> str:
 def dialects_page() -> str:
     """Return the page of the dialects, its tables written anew."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_dialect_page.py"))["page"]
+    return page()
+
+
+def c_library_page() -> str:
+    """Return the page of the C libraries."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_c_library_page.py"))["page"]
     return page()
 
 
@@ -105,8 +117,10 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/apci-functions.md": apci_functions_page,
     "docs/reference/apci-system-file.md": apci_system_file_page,
     "docs/reference/bosch-ncs.md": bosch_ncs_page,
+    "docs/reference/c-libraries.md": c_library_page,
     "docs/reference/conformance.md": conformance_page,
     "docs/reference/cpl.md": cpl_page,
+    "docs/reference/data-items.md": data_items_page,
     "docs/reference/dialects.md": dialects_page,
     "docs/reference/fanuc-functions.md": partial(fanuc_page, "functions_page"),
     "docs/reference/fanuc-parameters.md": partial(fanuc_page, "parameters_page"),

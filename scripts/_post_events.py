@@ -22,7 +22,7 @@ Macros marked + are additions to those of Manual 001, as are the words marked so
 [control file](post-control-file.md) there are none of them, and their names are free for variables.
 
 A record that nothing here takes calls `WORD`. A condition cannot compare texts, so a macro of its own can take it: by
-its name, like `WORD_AUXFUN`, or by its name and the first word behind the slash, like `WORD_OPSKIP_ON`. The narrowest
+its name, like `WORD_AUXFUN`, or by its name and the first word after the slash, like `WORD_OPSKIP_ON`. The narrowest
 is called; without any the record is remarked, or an error where it would change the part (`PREFUN`, `SYNC`, ...:
 [tool paths](post-tool-paths.md)). What moves the tool or its coordinates is an error, whatever macros there are.
 

@@ -34,7 +34,7 @@ def refusals(program: Path) -> tuple[list[ProgramError], bool]:
     run = Run(main, linker, host)
     with pytest.raises(ProgramError) as caught:
         list(zip(range(STEPS), iter(run.step, None), strict=False))
-    assert run.stack == []  # nothing goes on behind an error
+    assert run.stack == []  # nothing continues after an error
     return [caught.value], True
 
 

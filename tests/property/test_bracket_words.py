@@ -64,7 +64,7 @@ def test_a_variable_in_brackets_means_what_it_means_in_a_statement(seed: int) ->
 
 
 def places(channel: Channel) -> list[tuple[str, int, int]]:
-    """Return the errors of a channel with line and column, without the blanks behind brackets."""
+    """Return the errors of a channel with line and column, without the blanks after brackets."""
     found = []
     for error in channel.errors:
         assert error.position is not None

@@ -1,4 +1,4 @@
-"""CPL read twice: a grammar for lark takes the same programs, and reckons the same values."""
+"""CPL read twice: a grammar for lark takes the same programs, and computes the same values."""
 
 from __future__ import annotations
 

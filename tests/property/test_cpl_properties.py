@@ -1,4 +1,4 @@
-"""Random CPL: values as an independent evaluator reckons them, flow as a slow interpreter goes, no crash."""
+"""Random CPL: values as an independent evaluator computes them, flow as a slow interpreter goes, no crash."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from polycnc.errors import ProgramError
 from polycnc.nc.cpl import Linker, Run
 from support.cpl_host import Ran, RecordingHost
 
-# Expressions: a node is (text, power of its loosest operator, how its value is reckoned, type)
+# Expressions: a node is (text, power of its loosest operator, how its value is computed, type)
 
 Reckon = Callable[[dict[str, Any], type], Any]
 Node = tuple[str, int, Reckon, str]
@@ -29,7 +29,7 @@ POWERS = {"+": 2, "-": 2, "OR": 2, "XOR": 2, "*": 3, "/": 3, "AND": 3}
 
 
 def number(value: Any, real: type) -> Any:
-    """Return a value as it is reckoned with: INTEGER stays, all else is `real`."""
+    """Return a value as it is computed with: INTEGER stays, all else is `real`."""
     return value if isinstance(value, int) else real(value)
 
 

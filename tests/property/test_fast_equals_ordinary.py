@@ -1,4 +1,4 @@
-"""The compiled modal kernel and the ordinary interpreter give the same queue, bit for bit."""
+"""The compiled modal kernel and the reference interpreter give the same queue, bit for bit."""
 
 from __future__ import annotations
 
@@ -8,11 +8,23 @@ import hypothesis.strategies as st
 import pytest
 from hypothesis import HealthCheck, example, given, settings
 
+from polycnc.machine import MachineConfig
 from polycnc.nc import DIALECTS, Block, Channel, Dialect, EndSource, load_dialect
 from polycnc.nc.channel._reader import Reader
 from polycnc.nc.channel._running import Running
-from support.block_strategies import programs
-from support.programs import FIVE, channel_state, prepare, queue_bytes
+from support.block_strategies import half_circles, modes, programs, straight
+from support.programs import (
+    FIVE,
+    LINEAR,
+    OFFSETS,
+    ROTARY,
+    TIMES,
+    TOOLS,
+    channel_state,
+    machine_config,
+    prepare,
+    queue_bytes,
+)
 
 INCREMENTS = load_dialect("fanuc").model_copy(
     update={"numbers": load_dialect("fanuc").numbers.model_copy(update={"decimal_point": "least_input"})}
@@ -76,3 +88,68 @@ def test_the_fast_path_takes_plain_blocks_and_only_those(monkeypatch: pytest.Mon
     plain = "".join(f"N{n} G1 X{n % 50} Y.{n} F1000\n" for n in range(500))
     prepare("G21 G90\n" + plain + "M8\nG2 X9 I-20.05 J.001\n")
     assert taken == [1, 502, 503]
+
+
+LASER = machine_config(
+    LINEAR, ROTARY, "[spindle]\nmax_rpm = 1000\nlaser = true\n", TIMES, TOOLS, OFFSETS, name="laser"
+)
+ROUNDED = LASER.model_copy(
+    update={"path": LASER.path.model_copy(update={"path_tolerance_mm": 0.5, "merge_mm": 0.05})}
+)
+
+lasting = st.sampled_from(
+    (
+        *("", "", "S300", "S300", "S17.5", "S0", "S1000", "S1001", "S-2", "S5 S6", "M3", "M4", "M4 S250"),
+        *("M5", "M3 M5", "M3 M8", "M8", "M03", "M3.5", "M19", "T1", "T2.5", "T7 T8", "D1", "D9", "D-1"),
+        *("T2 D2", "H1", "H2", "H0", "T2 M6", "S20 M5 T3"),
+    )
+)
+worded = st.builds("{} {}".format, st.one_of(straight, straight, half_circles), lasting)
+lasers = st.lists(st.one_of(worded, worded, worded, lasting, modes), min_size=1, max_size=25).map(
+    lambda lines: "G1 F500\n" + "\n".join(lines) + "\n"
+)
+
+
+def recorded(channel: Channel) -> list[object]:
+    """Return what the records say of the blocks of the queue and of the marks, in their order."""
+    tail = int(channel.machine.state.paths.row[channel.path]["tail"])
+    tags = channel.machine.state.seg.row["tag"][:tail].tolist()
+    marks = channel.writer.marks or ()
+    records = [channel.records.block(tag) for tag in [*tags, *(tag for _, tag in marks)]]
+    return [[count for count, _ in marks], *((record.line, record.modal) for record in records if record)]
+
+
+@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@given(
+    st.sampled_from([FIVE, LASER, ROUNDED]),
+    st.sampled_from(["grbl", "din", "linuxcnc", "fanuc-lathe"]),
+    lasers,
+)
+@example(FIVE, "din", "G43 H1\nG1 X7 H1 F300\nX9 H2\nX3 H1 T2 D1\n")
+@example(ROUNDED, "grbl", "M4 S20\nG1 X1 F300 S30\nX2 S30\nX3 S40\nS50\nX4 M5\nX5 M3 T2 D2\n")
+def test_words_that_stop_nothing(config: MachineConfig, dialect: str, program: str) -> None:
+    fast, ordinary = (
+        prepare(
+            program, config=config, dialect=dialect, collect_errors=True, ordinary_blocks=blocks, marks=True
+        )
+        for blocks in (len(program) % 3, math.inf)
+    )
+    assert_same(fast, ordinary)
+    assert recorded(fast) == recorded(ordinary)
+
+
+def test_a_laser_word_in_each_block_stays_in_the_compiled_reader(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[int] = []
+    take = Reader.take
+
+    def noting(self: Reader, running: Running) -> Block | EndSource | None:
+        block = take(self, running)
+        taken.append(self.line)
+        return block
+
+    monkeypatch.setattr(Reader, "take", noting)
+    words = ("S{n}", "S3 M4", "M5", "M3 T{n}", "D{n} S2", "H1")
+    lines = "".join(f"G1 X{n % 50}.5 F{n + 100} {words[n % 6].format(n=n)}\n" for n in range(600))
+    channel = prepare("G21 G90 G43 H1\n" + lines, config=LASER)
+    assert channel.error is None
+    assert taken == [1]

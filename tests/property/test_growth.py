@@ -59,6 +59,23 @@ def test_the_time_of_a_program_grows_with_its_length(name: str) -> None:
     _assert_linear(seconds, 500)
 
 
+def test_the_power_of_a_laser_in_each_block_costs_little_and_grows_with_the_program() -> None:
+    text = preset_text("mill3").replace("[[axis]]", "[spindle]\nlaser = true\n[[axis]]", 1)
+    config = parse_machine(text, "m.toml")
+
+    def seconds(count: int, word: str = " S{}") -> float:
+        program = "M4 S1\nG1 F3000\n" + _lines(
+            lambda i: f"X{i * 0.01:.2f} Y{i % 2 * 0.003}{word.format(i % 900)}\n", count
+        )
+        before = time.process_time()
+        assert runner.run(program, config, "grbl", check=False).ok
+        return time.process_time() - before
+
+    _assert_linear(seconds, 5_000)
+    words, plain = (min(seconds(20_000, word) for _ in range(TRIES)) for word in (" S{}", ""))
+    assert words < 2.0 * plain
+
+
 @pytest.mark.parametrize("blocks", [1_000_000, 10_000_000])
 def test_a_window_wider_than_the_program_costs_nothing(blocks: int) -> None:
     """Braking takes longer than the queue is: each block would look through all that is known."""

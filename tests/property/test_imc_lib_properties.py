@@ -66,7 +66,7 @@ POINTERS: dict[str, st.SearchStrategy[Any]] = {
 
 
 def arguments(name: str) -> st.SearchStrategy[tuple[Any, ...]]:
-    """Return the arguments of a function behind its handle."""
+    """Return the arguments of a function after its handle."""
     made: list[st.SearchStrategy[Any]] = []
     for each in lib.FUNCTIONS[getattr(lib, name).__name__].passed[1:]:  # some have two names
         if isinstance(each.type, Pointer):

@@ -165,7 +165,7 @@ def test_rounded_and_exact_paths_keep_their_limits_whatever_changes(tolerance: f
 def found_at_random(
     seed: int, tolerance: float, depths: tuple[int, ...] = (0, 0, 2, 16)
 ) -> tuple[KernelState, float]:
-    """Return a machine that has gone along a path of the campaigns, and its jerk."""
+    """Return a machine that has traversed a path of the campaigns, and its jerk."""
     rng = np.random.default_rng(seed)
     jerk = 10.0 ** rng.uniform(3.5, 6.5)
     depth = int(rng.choice(depths))
@@ -177,7 +177,7 @@ def found_at_random(
 BRAKING_DONE_EARLY = [(100064, EXACT_PATH), (100204, 0.01)]
 """The ramp was done before its corner, and the path went on past it."""
 CARRIED_TOO_FAR = [(19, math.inf), (664, 0.1), (1386, 0.1)]
-"""What was left of an acceleration took the path past the speed of the segment behind a corner."""
+"""What was left of an acceleration took the path past the speed of the segment after a corner."""
 
 SEEN_TOO_LATE = [(461, 0.01), (1032, 0.0)]
 """A segment that came into view made a corner of the stop that the path was braking to."""

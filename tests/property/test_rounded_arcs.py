@@ -137,7 +137,7 @@ def test_the_arc_touches_both_and_passes_the_corner_at_the_tolerance(
         assert far <= 0.02 * (1.0 + 1e-9)
         if turn > 0.5:  # what is nearly straight is limited by half of the arcs
             assert far == pytest.approx(0.02, rel=1e-3)
-        # What was cut off on both sides is not gone along, the rest is.
+        # What was cut off on both sides is not traversed, the rest is.
         length = path.rows()["length"]
         kept = length[k - 1] + length[k + 1] + (0.0 if bend else length[0] - 10.0)
         assert kept < 20.0

@@ -31,7 +31,7 @@ CYCLE_S = 0.001
 SHARE = 0.07
 SPEED = np.array([137.0, 113.0, 41.0])
 ACCELERATION = np.array([1700.0, 1300.0, 430.0])
-RULES = {"corner_share": SHARE, "rounding_share": 0.6, "last_share": 0.7, "rounding_gap_s": 0.003}
+RULES = {"corner_share": SHARE, "rounding_share": 0.45, "last_share": 0.7, "rounding_gap_s": 0.003}
 
 
 class Track:
@@ -188,10 +188,10 @@ def test_arcs_and_what_is_left_of_a_line_beside_them_have_their_share() -> None:
     rows = track.rows()
     assert [int(row["kind"]) for row in rows] == [LINE, CIRCLE3D] * 3 + [LINE]
     for arc in rows[1::2]:
-        assert arc["accel"] == pytest.approx(0.6 * ACCELERATION[1], rel=1e-6)
+        assert arc["accel"] == pytest.approx(0.45 * ACCELERATION[1], rel=1e-6)
     assert rows[0]["accel"] == pytest.approx(ACCELERATION[0], rel=1e-9)
     assert rows[2]["length"] < 0.003 * rows[3]["cap"]  # next to nothing is left of it
-    assert rows[2]["accel"] == pytest.approx(0.6 * ACCELERATION[1], rel=1e-9)
+    assert rows[2]["accel"] == pytest.approx(0.45 * ACCELERATION[1], rel=1e-9)
 
 
 def test_positioning_is_rounded_as_well_but_not_into_feed() -> None:
@@ -278,6 +278,7 @@ def test_lines_of_one_length_keep_the_limits_of_the_axes(tolerance: float, lengt
     [
         ({"corner_share": 0.1, "square_corner_mm_s": 5.0}, "'square_corner_mm_s' and 'corner_share'"),
         ({"corner_share": 0.1, "jerk_mm_s3": 900.0}, "ramps of even acceleration"),
+        ({"corner_share": 0.1, "rounding_share": 0.51}, "rounding_share"),
         ({"last_share": 0.6}, "'last_share' needs 'corner_share'"),
         ({"rounding_gap_s": 0.003}, "'rounding_gap_s' needs 'corner_share'"),
     ],

@@ -60,7 +60,7 @@ class Rig:
         """Return run and machine as the contents of two files."""
         return self.run.snapshot().to_bytes(), self.run.machine.snapshot().to_bytes()
 
-    def put_back(self, kept: tuple[bytes, bytes]) -> None:
+    def restore_state(self, kept: tuple[bytes, bytes]) -> None:
         self.run.machine.restore(Snapshot.from_bytes(kept[1]))
         self.run.restore(RunSnapshot.from_bytes(kept[0]))
 
@@ -153,7 +153,7 @@ def test_a_macro_program_goes_on_from_any_cycle(tmp_path: Path, seeds: range) ->
         assert rig.run.state is RunState.COMPLETED, f"seed {seed}: {rig.run.error}"
         for kept, before in chance.sample(taken, min(5, len(taken))):
             other = Rig(main)
-            other.put_back(kept)
+            other.restore_state(kept)
             assert other.kept() == kept
             assert other.end() == wanted, f"seed {seed}"
             assert printed[:before] + bytes(other.printed) == printed
@@ -188,7 +188,7 @@ def test_a_cpl_program_goes_on_from_any_cycle(seeds: range) -> None:
         assert rig.run.state is RunState.COMPLETED, f"seed {seed}: {rig.run.error}"
         for kept, passed in chance.sample(taken, min(6, len(taken))):
             other = CplRig(programs)
-            other.put_back(kept)
+            other.restore_state(kept)
             assert other.kept() == kept
             for cycles in pieces[passed:]:  # how far is planned ahead depends on how often somebody looks
                 other.go(cycles)
@@ -239,7 +239,7 @@ from pathlib import Path
 sys.path[:0] = sys.argv[2:]
 from test_snapshots_of_programs import Rig
 rig = Rig(Path(sys.argv[1], "main.nc"))
-rig.put_back((Path(sys.argv[1], "run").read_bytes(), Path(sys.argv[1], "machine").read_bytes()))
+rig.restore_state((Path(sys.argv[1], "run").read_bytes(), Path(sys.argv[1], "machine").read_bytes()))
 end = rig.end()
 Path(sys.argv[1], "end").write_bytes(pickle.dumps((rig.kept(), [*end[:3], *end[5:]], bytes(rig.printed))))
 """
@@ -330,7 +330,7 @@ def test_data_that_is_no_snapshot_is_refused_whole(tmp_path: Path, count: int) -
             refused += 1
             assert other.kept() == before
         else:
-            other.put_back(before)
+            other.restore_state(before)
     assert refused > count / 2
 
 

@@ -152,7 +152,7 @@ def test_a_contour_without_pockets_takes_the_levels_of_the_plain_cycle() -> None
     assert along[0] == [(21.5, -19.9), (17.5, -19.9), (13.5, pytest.approx(-15.9))]
     assert set(along[0]) <= set(along[1])
     assert check_material(contour, numbers, plain, -1.0) == 5
-    assert check_material(contour, numbers, pockets, -1.0) == 6  # it follows the slope behind a cut
+    assert check_material(contour, numbers, pockets, -1.0) == 6  # it follows the slope after a cut
 
 
 @pytest.mark.parametrize(

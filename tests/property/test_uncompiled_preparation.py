@@ -38,7 +38,7 @@ def random_program(seed: int) -> str:
 
 
 def digest() -> str:
-    """Return a digest of what some programs put into the queue, and of the state behind them."""
+    """Return a digest of what some programs put into the queue, and of the state after them."""
     found = hashlib.sha256()
     for seed in range(4):
         channel = prepare(random_program(seed), config=FIVE, collect_errors=True)

@@ -59,7 +59,7 @@ def _words(chance: random.Random) -> str:
 
 
 def as_words(program: str) -> str:
-    """Return the program with bare variables behind the letters."""
+    """Return the program with bare variables after the letters."""
     return program.replace("~", "")
 
 

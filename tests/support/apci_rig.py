@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.controllers.apci.board._axis_commands import cl
-from polycnc.controllers.apci.board._board import LATENCY_SCANS, Board
+from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._commanded import LATENCY_SCANS
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.kernel import LEADING
 

@@ -59,7 +59,7 @@ def _from_nothing(
 
 
 def _forked(words: list[str], cwd: Path | None) -> subprocess.CompletedProcess[str]:
-    """Let a process that has its imports behind it become the command."""
+    """Let a process that has its imports after it become the command."""
     return _answered(words, cwd, {"arguments": words})
 
 

@@ -1,6 +1,6 @@
 """The fenced blocks of documentation pages: what they are, and running them as a reader would.
 
-A block with a title (``nc title="part.nc"``) is a file. ``console`` blocks hold commands behind ``$`` and
+A block with a title (``nc title="part.nc"``) is a file. ``console`` blocks hold commands after ``$`` and
 what they print, where ``...`` stands for anything. ``text title="output"`` is what the Python block before it
 prints. A page runs in one process of its own (`page_driver`), in a folder of its own.
 """

@@ -54,12 +54,13 @@ def prepare(
     segments: int = 4096,
     ordinary_blocks: float = 0,
     collect_errors: bool = False,
+    marks: bool = False,
     **arguments: Any,
 ) -> Channel:
     """Prepare a program completely, without running it; the compiled kernel takes what it can."""
     text = program if isinstance(program, ProgramText) else ProgramText.from_text(program, "test.nc")
     machine = Machine(config, segments=segments)
-    options = ChannelOptions(ordinary_blocks=ordinary_blocks, collect_errors=collect_errors)
+    options = ChannelOptions(ordinary_blocks=ordinary_blocks, collect_errors=collect_errors, marks=marks)
     channel = Channel(text, load_dialect(dialect), machine, options=options, **arguments)
     give_to_path(machine.state, channel.path)
     channel.fill()

@@ -164,7 +164,7 @@ def random_path(
 
 
 def is_done(state: KernelState) -> bool:
-    """Tell whether path 0 has been gone along to its end."""
+    """Tell whether path 0 has been traversed to its end."""
     return bool(state.paths.row[0]["head"] >= state.paths.row[0]["tail"])
 
 
@@ -183,7 +183,7 @@ def replan(state: KernelState) -> None:
 
 
 def run_with_changes(rng: np.random.Generator, settings: PathSettings, *, late: bool = True) -> KernelState:
-    """Return a machine that has gone along a random path with overrides and holds; its blocks came late, or at once."""
+    """Return a machine that has traversed a random path with overrides and holds; its blocks came late, or at once."""
     state = machine(rng, settings)
     maker = PathMaker(state, rng, None if rng.random() < 0.3 else 10.0 ** rng.uniform(-4.0, 1.0))
     left = int(rng.integers(2, blocks(200)))

@@ -27,12 +27,18 @@ def _name(page: Path) -> str:
 
 # Pages that need a server, or change polycnc itself, run by a test of their own.
 ELSEWHERE = {
+    "docs/tutorials/a-machine-for-your-collector.md",
     "docs/tutorials/a-machine-with-a-page.md",
     "docs/tutorials/test-your-collector.md",
+    "docs/tutorials/your-old-program.md",
     "docs/tutorials/your-sender.md",
+    "docs/how-to/read-a-machine-with-your-agent.md",
     "docs/how-to/add-a-g-code.md",
     "docs/how-to/add-a-cpl-function.md",
     "docs/how-to/add-a-library-function.md",
+    "docs/how-to/add-a-dialect.md",
+    "docs/how-to/add-a-planner-rule.md",
+    "docs/how-to/add-a-controller.md",
 }
 
 
@@ -48,6 +54,7 @@ def test_what_a_page_shows_runs(page: Path, tmp_path: Path) -> None:
 
 def test_readme_and_tutorial_have_something_to_run() -> None:
     running = {_name(page) for page in PAGES if _runs_something(page)}
+    assert {"docs/tutorials/a-bad-day-at-the-plant.md"} <= running
     assert {"README.md", "docs/tutorials/first-program.md", "docs/reference/command-line.md"} <= running
 
 

@@ -147,7 +147,7 @@ def client() -> Iterator[Client]:
 
 
 def test_move_and_wait_in_the_queue(client: Client) -> None:
-    """C4: WaitParam(moving, 0) straight after MoveAbsolute in QFIFO holds what comes behind it."""
+    """C4: WaitParam(moving, 0) straight after MoveAbsolute in QFIFO holds what comes after it."""
     client.set32(lib.mcsmaxvelLoc, 40 * ONE)
     client.send(lib.IMC_MoveAbsolute, 3000, 0, lib.SEL_QFIFO)
     client.send(lib.IMC_WaitParam, lib.movingLoc, 0, 0, 0, lib.SEL_QFIFO)
@@ -338,7 +338,7 @@ def test_arc_after_a_line_without_a_stop(client: Client) -> None:
 
 @pytest.mark.parametrize("by_feed", [True, False])
 def test_pause_of_a_path(client: Client, by_feed: bool) -> None:
-    """C3 pauses by the feed override; C1 by a wait behind every segment, on a cell that the program sets."""
+    """C3 pauses by the feed override; C1 by a wait after every segment, on a cell that the program sets."""
     client.map_axes(0, 1)
     for k in range(1, 5):
         client.line((1000 * k, 0), 20)
@@ -410,7 +410,7 @@ def test_events_of_the_vendors_example(client: Client) -> None:
 
 
 def test_widths_found_in_programs(client: Client) -> None:
-    client.set32(lib.hpauseLoc, 0x12340000)  # 32 bits at a flag: the word of ticks behind it as well
+    client.set32(lib.hpauseLoc, 0x12340000)  # 32 bits at a flag: the word of ticks after it as well
     assert client.get32(lib.ticksLoc) & 0xFFFF < 0x1234 + 100
     assert client.get32(lib.ticksLoc) & 0xFFFF >= 0x1234
     client.send(lib.IMC_MoveAbsolute, 300, 0, lib.SEL_IFIFO)

@@ -200,7 +200,7 @@ def _check_library(folder: Path, said: int) -> None:
             text = control.programs.read(number % 20 + 1)
             assert text.count(b"N10G1X%d.F100" % number) == 20
             assert b"M30" in text
-        if (said + 1) % 20 + 1 in there:  # before or behind, never in between
+        if (said + 1) % 20 + 1 in there:  # before or after, never in between
             text = control.programs.read((said + 1) % 20 + 1)
             assert {text.count(b"X%d.F" % (said + 1)), text.count(b"X%d.F" % (said - 19))} == {0, 20}
         for number in range(max(1, said - 31), said + 1):

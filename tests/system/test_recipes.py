@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import polycnc
-from support.pages import REPOSITORY, fences
+from support.pages import REPOSITORY, Fence, fences
 
 _PREPARES = """
 import json, sys
@@ -210,3 +210,103 @@ def test_a_g_code_is_one_row_and_one_function(tmp_path: Path) -> None:
     assert "G31.7 without a level" in refused
     assert "Add R." in refused
     assert "'Q' has no meaning in this block" in unused
+
+
+def _fences(page: str) -> list[Fence]:
+    """Return the blocks of a guide that go into files."""
+    return [each for each in fences(REPOSITORY / "docs" / "how-to" / page) if each.title]
+
+
+def _printed(source: Path, text: str, **variables: str) -> list[str]:
+    """Return the lines that a piece of Python prints with a copy of the package."""
+    run = subprocess.run(
+        [sys.executable, "-c", text],
+        env={**os.environ, "PYTHONPATH": str(source), **variables},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr
+    return run.stdout.splitlines()
+
+
+_ROUTES = """
+from polycnc import run
+from polycnc.nc import ProgramText, choose_dialect
+from polycnc.errors import ProgramError
+text = "%ROUTER\\nG91 G1 X125 Y-30 F600000\\nM30\\n"
+for name, content in (("a.nc", text), ("a.rtr", "M30\\n"), ("a.nc", "M30\\n")):
+    chosen = choose_dialect(ProgramText.from_text(content, name))
+    print(chosen.dialect.name, chosen.reason)
+result = run(ProgramText.from_text(text.partition("\\n")[2], "a.rtr"))
+print({name: round(value, 9) for name, value in result.end_position_mm.items()})
+try:
+    run(ProgramText.from_text("G43 H3\\n", "a.rtr"))
+except ProgramError as error:
+    print(str(error).splitlines()[0])
+"""
+
+
+def test_a_dialect_is_a_file_and_its_name(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    file, name, sign = _fences("add-a-dialect.md")
+    (package / file.title).write_text(file.text, encoding="utf-8")
+    _put(package / name.title, f"{name.text.strip()} ", '"bosch")')
+    _put(package / sign.title, sign.text, '    _sign("grbl", ')
+    assert _printed(tmp_path, _ROUTES, NUMBA_DISABLE_JIT="1") == [
+        "router %ROUTER in line 1",
+        "router ",
+        "din ",
+        "{'X': 1.25, 'Y': -0.3, 'Z': 0.0}",
+        "a.rtr:1:1: G43 is not supported yet (1 block has it)",
+    ]
+
+
+_CURVES = """
+import numpy as np
+from polycnc import run
+from polycnc.machine import parse_machine, preset_text
+from polycnc.nc import ProgramText
+text = ProgramText.from_text("G0 X0 Y0\\nG2 X0 Y0 I5 J0 F60000\\nM30\\n")
+for key in ("", "curve_acceleration_mm_s2 = 720.0"):
+    machine = parse_machine(preset_text("mill3") + "\\n[path]\\n" + key + "\\n", "mill.toml")
+    trace = run(text, machine, trace=True).trace
+    speed = np.hypot(*np.diff(trace.setpoint[:, :2], axis=0).T) / machine.cycle_s
+    print(round(float(speed.max()), 3))
+"""
+
+
+def test_a_planner_rule_is_a_few_lines(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    number, rule, key, given = _fences("add-a-planner-rule.md")
+    _put(package / number.title, number.text, '        ("corner_deviation_mm", np.float64)')
+    _put(package / rule.title, rule.text, '    cap = min(asked_mm_s, path["speed_limit_mm_s"], most)\n')
+    _put(package / key.title, key.text, "    junction_deviation_mm: ")
+    _put(package / given.title, given.text, '        rows["rounding_share"] = ')
+    without, limited = map(float, _printed(tmp_path, _CURVES, NUMBA_DISABLE_JIT="1"))
+    assert without > 100.0
+    assert limited == 60.0  # the root of 720 mm/s2 by 5 mm
+
+
+def test_a_controller_is_a_device_and_its_functions(tmp_path: Path) -> None:
+    package = _copy(tmp_path)
+    page = "add-a-controller.md"
+    for each in _fences(page):
+        file = package / each.title
+        file.parent.mkdir(exist_ok=True)
+        file.write_text(each.text, encoding="utf-8")
+    (program,) = (each for each in fences(REPOSITORY / "docs" / "how-to" / page) if not each.title)
+    shown = """
+print(*stagelib.stage_position(stage, 1))
+print(stagelib.stage_move(stage, 3, 2.5, 50.0).name, stagelib.stage_move(stage, 0, 2.5, -1.0).name)
+print(*stagelib.stage_position(stage + 4, 1), *stagelib.stage_open(1))
+print(stagelib.FUNCTIONS["stage_position"].prototype)
+print(round(stagelib.LIBRARY.default.stages[0].time_s, 3))
+"""
+    assert _printed(tmp_path, program.text + shown) == [
+        "0 12.5",
+        "NOT_THERE RANGE",
+        "1 0.0 2 0",
+        "int stage_position(int stage, int axis, double *position)",
+        "0.261",  # 12.5 mm with 50 mm/s, ramps of 5000 mm/s2, and a cycle for the last call
+    ]

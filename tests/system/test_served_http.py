@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import random
 import re
 import socket
 import subprocess
@@ -23,9 +22,6 @@ from support.focas_line import Line
 
 httpx = pytest.importorskip("httpx", reason="pip install httpx")
 pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
-
-PROGRAM = "O0012 (SQUARE)\nN10 G90 G1 F1200 X40 S800 M3\nN20 Y30\nM0\nN30 G2 X0 Y0 R30\nN40 X-20\nM30\n"
-AUT = {"mdi": 0, "auto": 1, "edit": 3, "handle": 4, "jog": 5, "inc": 8, "ref": 9}
 
 
 class Served:
@@ -73,52 +69,6 @@ def _at_rest(served: Served) -> Iterator[None]:
     served.http.post("/clock", json={"step": 500})
     yield
     served.http.post("/clock", json={"rate": 1})
-
-
-def focas_state(line: Line) -> tuple[int, ...]:
-    """Return aut, run, motion, mstb, emergency, alarm."""
-    payload = line.payload(0x19)
-    return tuple(int.from_bytes(payload[at : at + 2], "big") for at in range(0, 14, 2))
-
-
-def test_focas_rest_and_stream_agree_at_random_instants(served: Served) -> None:
-    ws = pytest.importorskip("websockets.sync.client", reason="pip install websockets")
-    chosen = random.Random(20261124)
-    served.command("select_mode", mode="auto")
-    assert served.http.put("/programs/O0012", content=PROGRAM).status_code in (201, 204)
-    first: list[tuple[str, dict[str, Any]]] = [
-        ("select_program", {"program": "O0012"}), ("cycle_start", {}), ("set_overrides", {"feed": 0.5}),
-        ("feed_hold", {}), ("cycle_start", {}), ("emergency_stop", {"on": True}), ("emergency_stop", {"on": False}),
-        ("reset", {}), ("select_mode", {"mode": "mdi"}), ("set_mdi", {"text": "G91 G1 X-5 F900\n"}),
-        ("cycle_start", {}),
-    ]  # fmt: skip
-    actions: list[tuple[str, dict[str, Any]]] = [
-        ("cycle_start", {}), ("cycle_start", {}), ("feed_hold", {}), ("reset", {}), ("emergency_stop", {"on": True}),
-        ("emergency_stop", {"on": False}), ("set_overrides", {"feed": 0.5}), ("set_overrides", {"feed": 1.2}),
-        ("select_mode", {"mode": "auto"}), ("select_mode", {"mode": "jog"}), ("select_mode", {"mode": "mdi"}),
-        ("set_mdi", {"text": "G91 G1 X-5 F900\n"}), ("select_program", {"program": "O0012"}),
-    ]  # fmt: skip
-    seen: set[str] = set()
-    for name, values in [*first, *chosen.choices(actions, k=29)]:
-        answer = served.command(name, **values)
-        assert answer.status_code in (200, 404, 409), answer.text
-        served.http.post("/clock", json={"step": chosen.randint(1, 900)})
-        status = served.status()
-        state = focas_state(served.line)
-        with ws.connect(f"{served.url.replace('http', 'ws')}/api/machines/machine/stream") as stream:
-            assert json.loads(stream.recv())["status"] == status
-        channel = status["channels"][0]
-        seen.add(channel["run_state"])
-        assert state[0] == AUT[status["mode"]]
-        assert (state[1] == 3) is (channel["run_state"] == "active" or channel["returning"])
-        assert (state[4] == 1) is (status["emergency"] == "on"), (state, status["emergency"])
-        positions = served.line.payload(0x26, 4, -1)
-        for at, axis in enumerate(status["axes"].values()):
-            value = int.from_bytes(positions[at * 8 : at * 8 + 4], "big", signed=True)
-            assert value / 1000 == pytest.approx(axis["machine"], abs=0.0011)
-        override = 255 - served.line.payload(0x8001, 12, 12, 0, 0, target=2)[0]
-        assert override == round(100 * status["overrides"]["feed"])
-    assert {"active", "hold"} <= seen, seen
 
 
 BAD_BODIES = [
@@ -261,20 +211,34 @@ def test_the_page_operates_the_machine(size: tuple[int, int], served: Served, tm
         page.close()
 
 
-def test_requests_from_the_description_are_never_an_internal_error(served: Served) -> None:
+def test_requests_from_the_description_are_answered_as_it_says(served: Served) -> None:
+    """Status, type and form of each answer are described; what is not of the form asked for is refused."""
     schemathesis = pytest.importorskip("schemathesis", reason="pip install schemathesis")
     schema = schemathesis.openapi.from_url(f"{served.url}/openapi.json")
     codes: set[int] = set()
     for operation in (found.ok() for found in schema.get_all_operations()):
 
-        @settings(max_examples=4, deadline=None, database=None, derandomize=True, phases=[Phase.generate])
+        @settings(max_examples=2, deadline=None, database=None, derandomize=True, phases=[Phase.generate])
         @given(case=operation.as_strategy())
         def ask(case: Any) -> None:
-            if "machine" in case.path_parameters:
-                case.path_parameters["machine"] = "machine"
             answer = case.call()
+            case.validate_response(answer)
             assert answer.status_code < 500, (case.method, case.path, answer.text)
             codes.add(answer.status_code)
 
         ask()
-    assert {200, 404, 422} <= codes
+    assert {200, 404} <= codes
+
+
+@pytest.mark.long
+def test_schemathesis_finds_nothing() -> None:
+    pytest.importorskip("schemathesis", reason="pip install schemathesis")
+    served = Served()
+    try:
+        done = subprocess.run(
+            [sys.executable, "-m", "schemathesis.cli", "run", f"{served.url}/openapi.json", "--max-examples", "50"],
+            capture_output=True, text=True, timeout=1800, check=False,
+        )  # fmt: skip
+    finally:
+        served.end()
+    assert done.returncode == 0, done.stdout[-5000:]

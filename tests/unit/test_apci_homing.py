@@ -39,7 +39,7 @@ def test_search_of_the_reference_switch(command, sign: float, edge: float) -> No
     assert not rig.bits() & Axst.pe
     rig.scans_until_end()
     beyond = (rig.board.axes[0].rp - edge) * sign
-    assert 2.0 <= beyond <= 2.0 + 2 * 20.0 * SCAN_S  # v^2 / 2 a behind the edge, seen a scan later
+    assert 2.0 <= beyond <= 2.0 + 2 * 20.0 * SCAN_S  # v^2 / 2 a after the edge, seen a scan later
     assert rig.bits() & (Axst.pe | Axst.refh) == Axst.pe | Axst.refh
 
 

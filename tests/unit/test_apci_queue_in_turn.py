@@ -1,4 +1,4 @@
-"""Spooled commands that come while axes still move, or right behind a command that moves them."""
+"""Spooled commands that come while axes still move, or right after a command that moves them."""
 
 from __future__ import annotations
 

@@ -72,7 +72,7 @@ def test_an_axis_is_known_by_its_name_and_by_its_number(names: str, third: str) 
 @pytest.mark.parametrize("who", ["program", "pc"])
 def test_moves_have_the_acceleration_velocity_and_units_that_program_or_pc_set(who: str) -> None:
     axis = Sap()
-    # In inches and minutes: 254 mm/s2 up to 50.8 mm/s, 101.6 mm, and 12.7 mm/s behind the end.
+    # In inches and minutes: 254 mm/s2 up to 50.8 mm/s, 101.6 mm, and 12.7 mm/s after the end.
     speeds = {"TRAC": 36000.0, "TRVL": 120.0, "TRTVL": 30.0}
     if who == "program":
         setting = "PU := 1; TU := 1; " + "".join(f"{name} := {value}; " for name, value in speeds.items())

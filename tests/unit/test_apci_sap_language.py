@@ -159,12 +159,12 @@ def test_routines_have_parameters_locals_and_recursion() -> None:
 
 def test_arrays_keep_their_elements_apart() -> None:
     text = """
-    VAR before : INTEGER; a : ARRAY [3..5] OF DOUBLE; flags : ARRAY [0..1] OF BOOLEAN; behind, i : INTEGER;
+    VAR before : INTEGER; a : ARRAY [3..5] OF DOUBLE; flags : ARRAY [0..1] OF BOOLEAN; after, i : INTEGER;
     BEGIN
-      before := 1; behind := 2;
+      before := 1; after := 2;
       FOR i := 3 TO 5 DO a[i] := i / 2;
       flags[1] := TRUE;
-      CI0 := TRUNC (a[3] * 10); CI1 := TRUNC (a[5] * 10); CI2 := before * 10 + behind;
+      CI0 := TRUNC (a[3] * 10); CI1 := TRUNC (a[5] * 10); CI2 := before * 10 + after;
       IF flags[1] AND NOT flags[0] THEN CI3 := 1;
     END.
     """
@@ -231,7 +231,7 @@ def test_an_error_about_axes_names_them() -> None:
         ("BEGIN x := 1 END.", (1, 7), "unknown name 'x'"),
         ("PROGRAM p; BEGIN CI0 := 1 END", (1, 30), "'.' expected, not end of file"),
         ("BEGIN CI0 := 1", (1, 15), "'END' expected, not end of file"),
-        ("BEGIN END. CI0 := 1;", (1, 12), "'CI0' behind the end of the program"),
+        ("BEGIN END. CI0 := 1;", (1, 12), "'CI0' after the end of the program"),
         ("CI0 := 1\nCI1 := 2;", (2, 1), "';' expected, not 'CI1'"),
         ("CI0 := (1;", (1, 10), "')' expected, not ';'"),
         ("CI0 = 1;", (1, 5), "';' expected, not '='"),

@@ -95,7 +95,7 @@ def test_shp_sets_the_home_position_and_arms_the_software_limits() -> None:
         f"cl (A1); shp (A1 := 2); CD0 := A1.rp; {JOG} jr (A1 := 50); wt (A1); CD1 := A1.dp; CI0 := A1.axst;"
     )
     assert armed.cd(0) == 2.0
-    assert 5.0 < armed.cd(1) < 7.0  # caught behind the limit at 5
+    assert 5.0 < armed.cd(1) < 7.0  # caught after the limit at 5
     assert armed.ci(0) & REFERENCED
     assert armed.ci(0) & RIGHT_SOFT_LIMIT
 

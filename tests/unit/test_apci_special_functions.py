@@ -214,7 +214,7 @@ def test_target_velocity_of_the_last_move_is_taken_away() -> None:
     ssf(rig.board, 0, 1003, 20 * 100)
     ssms(rig.board, (0, 1))
     rig.board.advance(1000)
-    assert rig.board.errorreg == 0  # the wait is one behind a rest
+    assert rig.board.errorreg == 0  # the wait is one after a rest
     rig.scans_until_end()
     assert rig.board.axes[0].dv == 0.0
 

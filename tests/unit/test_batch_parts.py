@@ -155,7 +155,7 @@ def test_a_lathe_is_drawn_in_profile_with_its_axis() -> None:
 
 
 def test_a_picture_of_very_much_is_small() -> None:
-    """A zigzag of 450 corners: one of a unit is thinned away, one of 20 units is cut off behind 400 points."""
+    """A zigzag of 450 corners: one of a unit is thinned away, one of 20 units is cut off after 400 points."""
     rows = 450
     for height, most in ((1.0, 1), (20.0, 399)):
         zigzag = np.column_stack((np.arange(rows) * 0.2, height * (np.arange(rows) % 2), np.zeros(rows)))

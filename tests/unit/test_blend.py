@@ -28,7 +28,7 @@ def kinds(state: KernelState) -> list[int]:
     return [int(kind) for kind in state.seg.row["kind"][: state.paths.row[0]["tail"]]]
 
 
-LEAD = (-10.0, 0.0, 0.0)  # something to run while the corner behind it is still open
+LEAD = (-10.0, 0.0, 0.0)  # something to run while the corner after it is still open
 
 
 def test_a_right_angle_gets_the_arc_that_passes_the_corner_at_the_tolerance() -> None:

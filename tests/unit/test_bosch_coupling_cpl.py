@@ -79,7 +79,6 @@ EXAMPLE_1 = """10 DIM BUF%(2)
 """
 
 
-@pytest.mark.covers("cpl.ex.3234", "cpl.MCODS", "cpl.ncs.return", "cpl.ncs.0")
 def test_states_of_another_channel_are_read_at_once() -> None:
     cell = Cell()
     cell.image.channels[2].sav = Sav.PREPARING
@@ -89,7 +88,6 @@ def test_states_of_another_channel_are_read_at_once() -> None:
     assert cell.pauses == 0
 
 
-@pytest.mark.covers("cpl.ex.3251", "cpl.MCODS")
 def test_a_loop_waits_until_a_channel_is_inactive() -> None:
     cell = Cell()
     channel = cell.image.channels[2]
@@ -112,7 +110,6 @@ def test_a_loop_waits_until_a_channel_is_inactive() -> None:
     assert cell.pauses == 9
 
 
-@pytest.mark.covers("cpl.ex.3257", "cpl.MCODS.33", "cpl.MCODS.45")
 def test_names_of_the_axes_are_listed_but_not_of_those_that_are_none() -> None:
     cell = Cell()
     cell.run(
@@ -162,7 +159,6 @@ REASONS = ["dwell", "auxiliary", "transfer", "zero", "M0", "hold", "inhibit", "c
            "WAITA", "WAIT", "MCODS"]  # fmt: skip
 
 
-@pytest.mark.covers("cpl.ex.3298", "cpl.MCODS.87")
 def test_waiting_states_are_told_apart_by_masks() -> None:
     cell = Cell(Image({}, {}, {1: Channel(1)}))
     cell.image.channels[1].other_waits = Wait.DWELL | Wait.FEED_HOLD | Wait.AXIS_EXCHANGE | Wait.DATA_SERVICE
@@ -187,7 +183,6 @@ M30
     assert cell.printed == ["dwell", "hold", "G511", "MCODS"]
 
 
-@pytest.mark.covers("cpl.ex.3340", "cpl.MCODS.43", "cpl.MCODS.constants", "cpl.MCODS.buffertype")
 def test_axes_of_the_own_channel_are_found_and_moved() -> None:
     ran = Cell().run(
         """50 CHAN=SD(8)
@@ -232,7 +227,6 @@ def channels(mode: Mode) -> Image:
 PROGRAMS = {"sect.cnc": "N10 F1\nN50 F2\nN100 F3\nM30", "/usr/user/p1.cnc": "F7\nM30"}
 
 
-@pytest.mark.covers("cpl.ex.3175", "cpl.ex.3200", "cpl.ex.3201", "cpl.MCOPS", "cpl.MCOPS.3", "cpl.MCOPS.4")
 def test_examples_select_and_search_programs() -> None:
     cell = Cell(channels(Mode.AUTOMATIC), PROGRAMS)
     ran = cell.run(
@@ -250,7 +244,6 @@ def test_examples_select_and_search_programs() -> None:
     assert cell.image.channels[1].program == "/usr/user/p1.cnc"
 
 
-@pytest.mark.covers("cpl.ex.3165", "cpl.ex.3202", "cpl.ex.3209", "cpl.ex.3228", "cpl.MCOPS")
 def test_examples_reset_leave_and_switch_channels() -> None:
     cell = Cell(channels(Mode.MDI), PROGRAMS)
     for channel in cell.image.channels.values():
@@ -274,7 +267,6 @@ def test_examples_reset_leave_and_switch_channels() -> None:
     assert (second.sav, second.program) == (Sav.INACTIVE, "")
 
 
-@pytest.mark.covers("cpl.MCODS")
 @pytest.mark.parametrize(
     ("line", "what"),
     [
@@ -305,14 +297,12 @@ MMC = """10 DIM PROGNAME$(50)
 """
 
 
-@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.1")
 def test_without_a_client_mmc_answers_1_at_once() -> None:
     cell = Cell()
     ran = cell.run(MMC)
     assert (ran["#I%"], ran["#INT%"], ran["#LEN%"], cell.pauses) == (1, 1, 7, 0)
 
 
-@pytest.mark.covers("cpl.MMC", "cpl.MMC.ret.0", "cpl.ex.5209")
 def test_a_client_gets_names_and_values_and_the_program_waits_for_its_answer() -> None:
     cell = Cell()
     seen: list[list[tuple[str, object]]] = []
@@ -333,7 +323,6 @@ def test_a_client_gets_names_and_values_and_the_program_waits_for_its_answer() -
     assert cell.pauses == 3
 
 
-@pytest.mark.covers("cpl.MMC.ret.2")
 @pytest.mark.parametrize("value", [None, "x", True, 2.5, 2**31])
 def test_an_error_in_the_client_changes_nothing(value: object) -> None:
     cell = Cell()
@@ -350,7 +339,6 @@ def test_an_error_in_the_client_changes_nothing(value: object) -> None:
     assert (ran["#I%"], ran["#INT%"], ran["#REAL"]) == (2, 1, 1.100000023841858)
 
 
-@pytest.mark.covers("cpl.MMC")
 def test_fields_truth_values_and_nul_can_be_sent_20_variables_at_most() -> None:
     cell = Cell()
     seen: list[object] = []

@@ -191,37 +191,10 @@ CASES = [
     Case(89, 1, "E", "R", (0.25, 0.75), coordinate("correction", 0.5)),
     Case(90, 1, "E", "I", (1, 0), coordinate("correction_active", True)),
 ]  # fmt: skip
-PARTS = {
-    3: ["3.elem.1", "3.elem.2", "3.elem.3"],
-    32: ["32.elem.1", "32.elem.2", "refresh.E"],
-    44: ["44.elem.1", "44.elem.2", "44.elem.3", "refresh.R"],
-    45: ["45.elem.1", "45.elem.2"],
-    46: ["46.elem.1", "46.elem.2", "46.elem.3"],
-    51: ["51.elem.1", "51.elem.2"],
-    54: [f"54.elem.{place}" for place in range(1, 7)],
-    68: ["68.elem.1", "68.elem.2"],
-    69: ["69.elem.1", "69.elem.2"],
-    70: ["refresh.I"],
-    82: ["82.elem.1", "82.elem.2", "82.elem.3"],
-    1: ["refresh.Z"],
-    9: ["refresh.S"],
-    43: [f"43.val.{value}" for value in ("n", -1, -2, -3)],
-    52: [f"52.elem.{axis}" for axis in (1, 2)],
-    53: [f"53.val.{unit}" for unit in range(5)],
-    58: [f"58.val.{value}" for value in ("n", -1, -2)],
-    61: [f"61.val.{unit}" for unit in range(5)],
-    62: ["62.val.-2147483648"],
-    90: ["90.val.0", "90.val.1"],
-}
 NARROWER = {"D": "R", "R": "I", "I": "S", "S": "I"}
 
 
-def marked(case: Case) -> Any:
-    rows = [f"cpl.MCODS.{part}" for part in (str(case.number), *PARTS.get(case.number, ()))]
-    return pytest.param(case, marks=pytest.mark.covers(*rows), id=f"{case.number} of {case.channel}")
-
-
-@pytest.mark.parametrize("case", [marked(case) for case in CASES])
+@pytest.mark.parametrize("case", CASES, ids=lambda case: f"{case.number} of {case.channel}")
 def test_a_data_service_supplies_its_data_when_the_manual_says(case: Case) -> None:
     asking = Asking()
     image = asking.image
@@ -260,7 +233,6 @@ def test_a_data_service_supplies_its_data_when_the_manual_says(case: Case) -> No
         assert asking.values(case.number, case.channel, case.kind, size, *case.extra) != values
 
 
-@pytest.mark.covers("cpl.MCODS.refresh", "cpl.MCODS")
 def test_a_change_between_two_calls_ends_the_wait_even_if_it_was_taken_back() -> None:
     asking = Asking()
     buffer = Field("I", (1,))
@@ -277,7 +249,6 @@ def test_a_change_between_two_calls_ends_the_wait_even_if_it_was_taken_back() ->
     assert asking.server.is_awake
 
 
-@pytest.mark.covers("cpl.MCODS", "cpl.ncs.return")
 def test_versions_of_other_data_do_not_make_a_call_wait() -> None:
     asking = Asking()
     buffer = Field("R", (8,))
@@ -287,7 +258,6 @@ def test_versions_of_other_data_do_not_make_a_call_wait() -> None:
         assert asking.version.value != before
 
 
-@pytest.mark.covers("cpl.MCODS.30")
 def test_the_version_is_ignored_for_the_main_program_and_31_bytes_hold_it() -> None:
     asking = Asking()
     asking.image.channels[1].program = "/usr/user/a_rather_long_one.cnc"
@@ -302,10 +272,10 @@ def test_the_version_is_ignored_for_the_main_program_and_31_bytes_hold_it() -> N
 @pytest.mark.parametrize(
     ("inch", "kinds", "value"),
     [
-        pytest.param(True, "linear", 0, marks=pytest.mark.covers("cpl.MCODS.18.val.0")),
-        pytest.param(False, "linear", 1, marks=pytest.mark.covers("cpl.MCODS.18.val.1")),
-        pytest.param(True, "rotary", 2, marks=pytest.mark.covers("cpl.MCODS.18.val.2")),
-        pytest.param(True, None, 3, marks=pytest.mark.covers("cpl.MCODS.18.val.3")),
+        (True, "linear", 0),
+        (False, "linear", 1),
+        (True, "rotary", 2),
+        (True, None, 3),
     ],
 )
 def test_the_type_of_programming_follows_the_axes_of_the_channel(inch: bool, kinds: Any, value: int) -> None:
@@ -325,7 +295,7 @@ MODES = [
 
 @pytest.mark.parametrize(
     ("name", "number"),
-    [pytest.param(*row, marks=pytest.mark.covers(f"cpl.MCODS.31.val.{row[1]}")) for row in MODES],
+    MODES,
 )
 def test_modes_have_the_numbers_of_the_manual(name: str, number: int) -> None:
     asking = Asking()
@@ -342,10 +312,6 @@ SAVS = {
 IPOS = {"RUNNING": 1, "RUNNING_DOWN": 2, "STOPPED": 3}
 
 
-@pytest.mark.covers(
-    *(f"cpl.MCODS.32.sav.{number}" for number in SAVS.values()),
-    *(f"cpl.MCODS.32.ipo.{number}" for number in IPOS.values()),
-)
 def test_states_have_the_numbers_of_the_manual() -> None:
     asking = Asking()
     for (sav, number), (ipo, other) in itertools.product(SAVS.items(), IPOS.items()):
@@ -353,7 +319,6 @@ def test_states_have_the_numbers_of_the_manual() -> None:
         assert asking.values(32, 1, "I", 2) == [number, other]
 
 
-@pytest.mark.covers("cpl.MCODS.6.val.0", "cpl.MCODS.6.val.1")
 def test_an_axis_is_in_position_in_its_window_without_a_travel_command() -> None:
     image = system()
     one, other = image.axes[1], image.axes[2]
@@ -385,7 +350,6 @@ FLAGS = [
     [
         pytest.param(
             *row,
-            marks=pytest.mark.covers(f"cpl.MCODS.{row[0]}.val.0", f"cpl.MCODS.{row[0]}.val.1"),
             id=str(row[0]),
         )
         for row in FLAGS
@@ -410,8 +374,6 @@ WAITS = [
     (9, "AXIS_EXCHANGE"), (10, "PERMANENT_VARIABLE"), (11, "SIGNAL_ACTIVE"), (12, "SIGNAL_OR_TIME"),
     (13, "DATA_SERVICE"),
 ]  # fmt: skip
-NOT_HERE = (2, 6, 7, 8, 9, 10, 11)
-"""What no control here waits for: conformance/not_applicable.toml says why."""
 DERIVED = {
     0: ("dwell", True), 1: ("auxiliary_waits", True), 2: ("transfer_inhibit", True), 3: ("potentiometer", 0.0),
     6: ("feed_inhibit", True),
@@ -420,12 +382,7 @@ DERIVED = {
 
 @pytest.mark.parametrize(
     ("bit", "name"),
-    [
-        pytest.param(
-            *row, marks=() if row[0] in NOT_HERE else pytest.mark.covers(f"cpl.MCODS.87.bit.{row[0]}")
-        )
-        for row in WAITS
-    ],
+    WAITS,
 )
 def test_a_waiting_channel_says_why(bit: int, name: str) -> None:
     asking = Asking()
@@ -446,7 +403,6 @@ def test_a_channel_waits_for_the_feed_inhibit_of_its_axes_only() -> None:
     assert asking.values(87, 1, "I", 1) == [0]
 
 
-@pytest.mark.covers("cpl.MCODS.87.bit.13")
 def test_a_channel_that_waits_in_mcods_shows_it() -> None:
     asking = Asking()
     mine = Coupling(asking.server, asking.image, 1)
@@ -477,10 +433,7 @@ MOTIONS = [
 
 @pytest.mark.parametrize(
     ("value", "name"),
-    [
-        pytest.param(*row, marks=pytest.mark.covers(f"cpl.MCODS.63.val.{row[0]}"))
-        for row in enumerate(MOTIONS)
-    ],
+    list(enumerate(MOTIONS)),
 )
 def test_movements_of_spindles_have_the_numbers_of_the_manual(value: int, name: str) -> None:
     asking = Asking()
@@ -490,10 +443,7 @@ def test_movements_of_spindles_have_the_numbers_of_the_manual(value: int, name: 
 
 @pytest.mark.parametrize(
     "value",
-    [
-        pytest.param(each, marks=pytest.mark.covers(f"cpl.MCODS.64.val.{each}"))
-        for each in (40, 41, 42, 43, 44, 48)
-    ],
+    [40, 41, 42, 43, 44, 48],
 )
 def test_gear_ranges_are_passed_on(value: int) -> None:
     asking = Asking()
@@ -501,18 +451,14 @@ def test_gear_ranges_are_passed_on(value: int) -> None:
     assert asking.values(64, -1, "I", 3) == [42, 0, value]
 
 
-@pytest.mark.parametrize(
-    "value", [pytest.param(each, marks=pytest.mark.covers(f"cpl.MCODS.65.val.{each}")) for each in range(5)]
-)
+@pytest.mark.parametrize("value", range(5))
 def test_groups_of_spindles_are_passed_on(value: int) -> None:
     asking = Asking()
     asking.image.spindles[1].group = value
     assert asking.values(65, -1, "I", 3) == [value, 0, 1]
 
 
-@pytest.mark.parametrize(
-    "value", [pytest.param(each, marks=pytest.mark.covers(f"cpl.MCODS.54.type.{each}")) for each in range(5)]
-)
+@pytest.mark.parametrize("value", range(5))
 def test_the_compensation_type_stands_sixth(value: int) -> None:
     asking = Asking()
     asking.image.channels[1].tool.kind = value
@@ -521,7 +467,6 @@ def test_the_compensation_type_stands_sixth(value: int) -> None:
     assert asking.values(54, 1, "R", 6) == [0.0] * 6
 
 
-@pytest.mark.covers(*(f"cpl.MCODS.52.elem.{axis}" for axis in range(1, 9)))
 def test_external_shifts_stand_in_the_order_of_the_logical_axes() -> None:
     image = system()
     for number in range(1, 12):
@@ -533,7 +478,6 @@ def test_external_shifts_stand_in_the_order_of_the_logical_axes() -> None:
     assert Asking(image).values(52, 1, "R", 9) == expected
 
 
-@pytest.mark.covers("cpl.MCODS.9.val.-1", "cpl.MCODS.11.val.-1", "cpl.MCODS.13", "cpl.MCODS.14")
 def test_without_compensation_numbers_are_minus_1_and_tables_three_blanks() -> None:
     asking = Asking()
     assert asking.values(9, 2, "I", 1) == [-1]
@@ -545,7 +489,6 @@ def test_without_compensation_numbers_are_minus_1_and_tables_three_blanks() -> N
     assert asking.values(51, 2, "R", 2) == [0.0, 0.0]
 
 
-@pytest.mark.covers(*(f"cpl.MCODS.81.val.{unit}" for unit in range(4)))
 def test_coordinates_have_units() -> None:
     asking = Asking()
     coordinate("unit", Unit.INCH)(asking.image)
@@ -553,7 +496,6 @@ def test_coordinates_have_units() -> None:
     assert asking.values(81, 2, "I", 2) == [1, 2]
 
 
-@pytest.mark.covers("cpl.MCODS.53", "cpl.MCODS.53.val.0", "cpl.MCODS.53.val.1")
 def test_the_unit_of_an_axis_depends_on_what_it_does() -> None:
     image = system()
     image.channels[1].inch = False
@@ -565,7 +507,6 @@ def test_the_unit_of_an_axis_depends_on_what_it_does() -> None:
     assert Asking(image).values(53, -1, "I", 8) == [0, 1, 1, 3, 2, 2, 4, 1]
 
 
-@pytest.mark.covers("cpl.MCODS.28")
 def test_a_message_has_80_characters_at_most() -> None:
     asking = Asking()
     asking.image.channels[1].message = "MEASURE " * 12
@@ -573,7 +514,6 @@ def test_a_message_has_80_characters_at_most() -> None:
     assert text == "MEASURE " * 10
 
 
-@pytest.mark.covers("cpl.MCODS.55", "cpl.MCODS.56", "cpl.MCODS.57", "cpl.ncs.24")
 def test_drives_are_asked_by_physical_axis() -> None:
     asking = Asking()
     asking.image.axes[5].drive.motor = "M" * 50
@@ -589,7 +529,6 @@ def test_drives_are_asked_by_physical_axis() -> None:
         assert asking(number, -1, CharacterField(60), 60) == 18
 
 
-@pytest.mark.covers("cpl.MCODS.62")
 def test_a_value_of_the_cyclic_telegram_is_asked_by_its_id() -> None:
     asking = Asking()
     assert asking.values(62, -1, "I", 1, 1, 40) == [4711]
@@ -598,7 +537,6 @@ def test_a_value_of_the_cyclic_telegram_is_asked_by_its_id() -> None:
     assert asking(62, -1, Field("I", (1,)), 1, 1) == 18
 
 
-@pytest.mark.covers("cpl.MCODS.42")
 def test_customers_data_are_selected_by_a_number_of_16_bits() -> None:
     asking = Asking()
     asking.image.customer[1, 0] = "SERIAL 0815"
@@ -613,9 +551,8 @@ def test_customers_data_are_selected_by_a_number_of_16_bits() -> None:
 
 @pytest.mark.parametrize(
     "number",
-    [-1, 0, 17, 21, 22, pytest.param(34, marks=pytest.mark.covers("cpl.MCODS.34")), 84, 85, 86, 88, 91],
+    [-1, 0, 17, 21, 22, 34, 84, 85, 86, 88, 91],
 )
-@pytest.mark.covers("cpl.ncs.102")
 def test_what_the_manual_does_not_describe_is_not_available(number: int) -> None:
     asking = Asking()
     buffer = Field("I", (3,))
@@ -624,7 +561,6 @@ def test_what_the_manual_does_not_describe_is_not_available(number: int) -> None
     assert asking.version.value == 0
 
 
-@pytest.mark.covers("cpl.ncs.1")
 @pytest.mark.parametrize(("number", "channel"), [(7, -1), (7, 0), (7, 3), (33, 0), (33, 3), (1, 3), (1, -2)])
 def test_a_channel_that_does_not_exist_is_refused(number: int, channel: int) -> None:
     asking = Asking()
@@ -633,7 +569,6 @@ def test_a_channel_that_does_not_exist_is_refused(number: int, channel: int) -> 
     assert asking.version.value == 0
 
 
-@pytest.mark.covers("cpl.ncs.100", "cpl.ncs.101")
 def test_a_broken_connection_and_a_strange_message_are_told() -> None:
     asking = Asking()
     stranger = Coupling(asking.server, magic=4711)
@@ -648,7 +583,6 @@ def test_a_broken_connection_and_a_strange_message_are_told() -> None:
     assert asking(7, 1, buffer, 1) == 0
 
 
-@pytest.mark.covers("cpl.MCODS.buffertype", "cpl.MCODS")
 @pytest.mark.parametrize(
     ("number", "buffer", "size", "what"),
     [
@@ -670,7 +604,6 @@ def test_the_buffer_has_to_fit_the_data(number: int, buffer: Variable, size: int
         asking(number, -1 if number == 1 else 1, buffer, size)
 
 
-@pytest.mark.covers("cpl.MCODS.buffertype")
 def test_whole_numbers_go_into_wider_variables_and_single_ones_into_simple_variables() -> None:
     asking = Asking()
     wide = Field("D", (2,))
@@ -682,7 +615,6 @@ def test_whole_numbers_go_into_wider_variables_and_single_ones_into_simple_varia
     assert simple.value == 6.0
 
 
-@pytest.mark.covers("cpl.MCODS")
 @pytest.mark.parametrize(
     "version", [Box("V", "R", None), Box("V!", "D", 0.0), Box("V", "R", 1.5), Box("V?", "B", True)]
 )
@@ -692,7 +624,6 @@ def test_the_version_has_to_be_an_initialised_integer_or_real(version: Box) -> N
         coupling.mcods(7, 1, version, Box("B", "R", None), 1)
 
 
-@pytest.mark.covers("cpl.MCODS")
 def test_versions_fit_into_a_real_variable() -> None:
     asking = Asking()
     asking.server.ledger.last = 2**24 - 2
@@ -721,10 +652,7 @@ CATEGORIES = {
 
 @pytest.mark.parametrize(
     ("category", "numbers"),
-    [
-        pytest.param(*row, marks=pytest.mark.covers(f"cpl.MCODS.cat.{row[0].replace(' ', '_')}"))
-        for row in CATEGORIES.items()
-    ],
+    list(CATEGORIES.items()),
 )
 def test_the_overview_lists_what_the_control_answers(category: str, numbers: str) -> None:
     listed = [int(number) for number in numbers.split()]

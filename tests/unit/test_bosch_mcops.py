@@ -71,19 +71,6 @@ class Rig:
         pytest.fail(f"state {sav} is not reached, it is {self.channel.sav!r}")
 
 
-def covers(*rows: str) -> pytest.MarkDecorator:
-    return pytest.mark.covers(*(f"cpl.{row}" for row in rows))
-
-
-@covers(
-    "MCOPS",
-    "MCOPS.4",
-    "MCOPS.6",
-    "ncs.0",
-    *(f"MCODS.32.sav.{n}" for n in (1, 3, 9, 11)),
-    "MCODS.32.ipo.1",
-    "MCODS.32.ipo.3",
-)
 def test_the_unit_is_that_of_the_block_that_runs() -> None:
     rig = Rig()
     rig.partner.programs["sect.cnc"] = "N10 G70 F800\nN20 G1 X4\nN30 G71 F70\nN40 X9\nM30"
@@ -127,7 +114,6 @@ def test_a_program_is_selected_started_and_executed() -> None:
     assert rig.channel.program == ""
 
 
-@covers("ncs.9", "ncs.10", "MCOPS.6")
 def test_only_what_is_selected_and_ready_starts() -> None:
     rig = Rig()
     assert rig(6, 2) == 10
@@ -137,7 +123,6 @@ def test_only_what_is_selected_and_ready_starts() -> None:
     assert rig(6, 2) == 9
 
 
-@covers("ncs.1")
 @pytest.mark.parametrize("call", [(1,), (2,), (3,), (4,), (5,), (6,), (7,), (8,), (9,)])
 @pytest.mark.parametrize("channel", [0, 3, -1, -2])
 def test_services_need_a_channel_that_exists(call: tuple[int], channel: int) -> None:
@@ -146,7 +131,6 @@ def test_services_need_a_channel_that_exists(call: tuple[int], channel: int) -> 
     assert Rig()(call[0], channel, *more) == expected
 
 
-@covers("ncs.3", "MCOPS.2", "MCODS.32.sav.8")
 def test_nothing_is_accepted_while_a_control_reset_is_under_way() -> None:
     rig = Rig()
     assert rig(2, 2) == 0
@@ -168,7 +152,6 @@ def test_nothing_is_accepted_while_a_control_reset_is_under_way() -> None:
     assert rig(7, 2, 4) == 0
 
 
-@covers("MCOPS.2", "MCOPS.2.type.2", "MCODS.32.sav.6")
 def test_a_control_reset_leaves_the_program_and_clears_errors() -> None:
     rig = Rig()
     rig.channel.reselection = True
@@ -191,7 +174,6 @@ def test_a_control_reset_leaves_the_program_and_clears_errors() -> None:
     assert rig(2, 2, 1) == 18
 
 
-@covers("MCOPS.2")
 def test_a_system_reset_is_one_of_all_channels() -> None:
     rig = Rig()
     assert rig(4, 1, "/usr/user/p1.cnc", cycles=1) == 0
@@ -202,7 +184,6 @@ def test_a_system_reset_is_one_of_all_channels() -> None:
     assert {channel.sav for channel in rig.image.channels.values()} == {Sav.INACTIVE}
 
 
-@covers("MCOPS.1", "MCODS.32.sav.10", "MCODS.32.sav.2", "ncs.2", "ncs.8")
 def test_cancelled_blocks_are_prepared_anew_but_their_values_are_not() -> None:
     rig = Rig(block_cycles=4)
     assert rig(1, 2) == 10
@@ -235,7 +216,6 @@ def test_cancelled_blocks_are_prepared_anew_but_their_values_are_not() -> None:
 SEARCH = ["  N5 G0", "\tN50X100", "G1X100", "G1X10 F5", "50A=1", "50A =1", "N100X3", "N10X1", "M30"]
 
 
-@covers("MCOPS.3", "ex.3175", "ncs.14")
 @pytest.mark.parametrize(
     ("wanted", "index", "code"),
     [
@@ -254,7 +234,6 @@ def test_a_block_is_found_by_its_beginning(wanted: str, index: int, code: int) -
     assert rig.state() == (2, 3)
 
 
-@covers("MCOPS.3", "ncs.14", "ncs.15", "ncs.10", "MCODS.87.bit.4")
 def test_the_search_is_refused_once_the_program_runs() -> None:
     rig = Rig()
     assert rig(3, 2, "N50") == 10
@@ -271,7 +250,6 @@ def test_the_search_is_refused_once_the_program_runs() -> None:
     assert not rig.channel.other_waits & Wait.PROGRAM_STOP
 
 
-@covers("MCOPS.3", "MCOPS.4", "ex.3200")
 def test_only_the_searched_part_is_machined_with_its_last_block() -> None:
     rig = Rig()
     rig.select("N60", "N100", 1)
@@ -283,7 +261,6 @@ def test_only_the_searched_part_is_machined_with_its_last_block() -> None:
     assert rig.station.errors == []
 
 
-@covers("MCOPS.4", "MCOPS.4.code.2", "ncs.6")
 def test_a_missing_program_is_told_at_once_only_with_code_2() -> None:
     rig = Rig()
     assert rig(4, 2, "nothing.cnc", cycles=1) == 0
@@ -296,7 +273,6 @@ def test_a_missing_program_is_told_at_once_only_with_code_2() -> None:
     assert rig.state() == (11, 3)  # answered when it was ready
 
 
-@covers("MCOPS.4.code.1", "ex.3201")
 def test_cpl_runs_only_from_a_link_table() -> None:
     rig = Rig()
     assert rig(4, 2, "loop.cnc", cycles=1) == 0
@@ -312,7 +288,6 @@ def test_cpl_runs_only_from_a_link_table() -> None:
     assert rig(6, 1) == 0
 
 
-@covers("MCOPS.4.code.64", "MCOPS.4.code.2048", "ncs.11")
 def test_another_program_waits_until_the_active_one_is_left_or_replaced() -> None:
     rig = Rig()
     rig.select()
@@ -327,7 +302,6 @@ def test_another_program_waits_until_the_active_one_is_left_or_replaced() -> Non
     assert (rig.channel.program, rig.channel.programmed_feed) == ("sect.cnc", 0.0)
 
 
-@covers("MCOPS.4", "MCOPS.4.code.32", "ncs.8", "ncs.2", "ex.3202")
 def test_a_manual_block_needs_its_mode_and_is_started_by_the_next_call() -> None:
     rig = Rig()
     assert rig(4, 2, "F1000G1X500", OMITTED, OMITTED, 32) == 8
@@ -343,7 +317,6 @@ def test_a_manual_block_needs_its_mode_and_is_started_by_the_next_call() -> None
     assert rig.channel.blocks == 1
 
 
-@covers("MCOPS.4.code.2048")
 def test_a_manual_block_is_replaced() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "X500", OMITTED, OMITTED, 32) == 0
@@ -353,7 +326,6 @@ def test_a_manual_block_is_replaced() -> None:
     assert rig.image.axes[1].setpoint == 23.5
 
 
-@covers("MCOPS.4.code.128", "ncs.25")
 def test_a_manual_block_that_starts_at_once_is_read_before() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "G1 X=", OMITTED, OMITTED, 32 + 128) == 25
@@ -364,7 +336,6 @@ def test_a_manual_block_that_starts_at_once_is_read_before() -> None:
     assert rig.image.axes[1].setpoint == 33.5
 
 
-@covers("MCOPS.4.code.1024", "MCOPS.4.code.128", "ncs.25")
 def test_a_machine_function_runs_beside_the_program() -> None:
     rig = Rig()
     rig.select()
@@ -380,7 +351,6 @@ def test_a_machine_function_runs_beside_the_program() -> None:
     assert rig.image.channels[1].sav == Sav.INACTIVE
 
 
-@covers("MCOPS.4.code.256", "MCOPS.4.code.512", "MCOPS.7.mode.1", "MCOPS.7.mode.2", "MCOPS.7.mode.14")
 @pytest.mark.parametrize(("mode", "code", "other"), [(1, 256, 512), (14, 256, 512), (2, 512, 256)])
 def test_axes_move_by_hand_only_after_the_selection_for_it(mode: int, code: int, other: int) -> None:
     rig = Rig()
@@ -396,7 +366,6 @@ def test_axes_move_by_hand_only_after_the_selection_for_it(mode: int, code: int,
     assert axis.referenced == (mode == 2)
 
 
-@covers("MCOPS.4", "MCOPS.4.code.4096", "MCODS.32.sav.12", "ncs.26")
 def test_blocks_are_entered_while_others_are_executed() -> None:
     rig = Rig(mode=Mode.MDI)
     assert rig(4, 2, "G1 X10\nX20", OMITTED, OMITTED, 32 + 4096) == 0
@@ -415,7 +384,6 @@ def test_blocks_are_entered_while_others_are_executed() -> None:
     assert rig.image.axes[1].setpoint == 11.5
 
 
-@covers("ncs.7")
 def test_two_clients_cannot_write_into_the_buffer_in_the_same_cycle() -> None:
     rig = Rig(mode=Mode.MDI)
     other = Coupling(rig.server, channel=2)
@@ -429,7 +397,6 @@ def test_two_clients_cannot_write_into_the_buffer_in_the_same_cycle() -> None:
     assert rig.station.job.blocks == ["X77"]  # type: ignore[union-attr]
 
 
-@covers("ncs.5")
 def test_axes_without_reference_points_keep_a_channel_from_starting() -> None:
     rig = Rig()
     rig.partner.references_needed.add(2)
@@ -439,7 +406,6 @@ def test_axes_without_reference_points_keep_a_channel_from_starting() -> None:
     assert rig(6, 2) == 0
 
 
-@covers("ncs.18", "MCOPS", "MCOPS.4")
 @pytest.mark.parametrize(
     "call",
     [(7, 2), (7, 2, 3), (7, 2, 0), (7, 2, 5, 1), (8, 2, 1), (8, 2, 4, 1), (8, 2, 1, 0), (6, 2, 1),
@@ -452,7 +418,6 @@ def test_parameters_that_a_service_does_not_know_are_refused(call: tuple[object,
     assert (rig.channel.mode, rig.channel.return_how, rig.channel.sav) == (5, 1, 1)
 
 
-@covers("MCOPS", "MCODS.constants")
 def test_parameters_have_their_types() -> None:
     rig = Rig()
     assert rig(7.0, 2.0, 4.0) == 0
@@ -471,7 +436,7 @@ MODES = [(1, "JOG"), (2, "REFERENCE"), (4, "MDI"), (5, "AUTOMATIC"), (6, "PROGRA
 
 @pytest.mark.parametrize(
     ("number", "name"),
-    [pytest.param(*row, marks=covers("MCOPS.7", f"MCOPS.7.mode.{row[0]}")) for row in MODES],
+    MODES,
 )
 def test_the_mode_is_switched_by_its_number(number: int, name: str) -> None:
     rig = Rig(mode=Mode.NONE)
@@ -482,7 +447,6 @@ def test_the_mode_is_switched_by_its_number(number: int, name: str) -> None:
     assert buffer[1] == number
 
 
-@covers("MCOPS.7", "ncs.13")
 def test_a_selected_program_or_the_plc_keeps_the_mode() -> None:
     rig = Rig()
     rig.select()
@@ -498,7 +462,6 @@ def test_a_selected_program_or_the_plc_keeps_the_mode() -> None:
     assert rig(7, 1, 6) == 0
 
 
-@covers("MCOPS.7.mode.6", "MCOPS.7.mode.7", "MCOPS.7.mode.10", "MCOPS.7.mode.12")
 @pytest.mark.parametrize("mode", [6, 7, 10, 12])
 def test_single_blocks_stop_one_after_the_other(mode: int) -> None:
     rig = Rig()
@@ -510,7 +473,6 @@ def test_single_blocks_stop_one_after_the_other(mode: int) -> None:
         assert rig.channel.blocks == number
 
 
-@covers("MCOPS.5", "MCOPS.5.type.2", "ex.3209", "ncs.10")
 def test_a_program_is_left_and_selected_again_if_the_channel_does_that() -> None:
     rig = Rig()
     assert rig(5, 2, 2) == 10
@@ -526,23 +488,9 @@ def test_a_program_is_left_and_selected_again_if_the_channel_does_that() -> None
 
 
 RETURNS = [(1, 1), (2, 2), (3, 3), (1, 3)]
-NAMES = {
-    (1, 1): ("auto", "start"),
-    (2, 2): ("single", None),
-    (3, 3): ("manual", "break"),
-    (1, 3): ("auto", "break"),
-}
 
 
-def return_rows(how: int, where: int) -> tuple[str, ...]:
-    mode, point = NAMES[how, where]
-    points = (f"MCODS.46.point.{point}",) if point else ()
-    return ("MCOPS.8", f"MCOPS.8.how.{how}", f"MCOPS.8.where.{where}", f"MCODS.46.mode.{mode}", *points)
-
-
-@pytest.mark.parametrize(
-    ("how", "where"), [pytest.param(*row, marks=covers(*return_rows(*row))) for row in RETURNS]
-)
+@pytest.mark.parametrize(("how", "where"), RETURNS)
 def test_the_return_strategy_is_shown(how: int, where: int) -> None:
     rig = Rig()
     assert rig(8, 2, how, where) == 0
@@ -551,7 +499,6 @@ def test_the_return_strategy_is_shown(how: int, where: int) -> None:
     assert [buffer[1], buffer[2], buffer[3]] == [how, where, 0]
 
 
-@covers("MCOPS.9", "MCODS.46.rec.off", "MCODS.46.rec.on", "MCOPS.7.mode.11")
 def test_jog_movements_are_recorded_for_the_return_until_that_is_stopped() -> None:
     rig = Rig()
     buffer, version = Field("I", (3,)), Box("V", "R", 0)
@@ -564,7 +511,6 @@ def test_jog_movements_are_recorded_for_the_return_until_that_is_stopped() -> No
     assert stopped[3] == 0
 
 
-@covers("MCODS.32.ipo.1", "MCODS.32.ipo.2", "MCODS.32.ipo.3", "MCODS.87.bit.5")
 def test_the_interpolator_runs_down_when_the_feed_is_held() -> None:
     rig = Rig(block_cycles=6)
     rig.select("N50", "N50")
@@ -584,7 +530,6 @@ def test_the_interpolator_runs_down_when_the_feed_is_held() -> None:
     assert rig.image.axes[1].setpoint == 103.5
 
 
-@covers("MCODS.39.val.1", "MCODS.87.bit.0")
 def test_a_dwell_is_shown_while_it_lasts() -> None:
     rig = Rig(mode=Mode.MDI, block_cycles=3)
     assert rig(4, 2, "G4 F2", OMITTED, OMITTED, 32 + 128, cycles=1) == 0

@@ -138,7 +138,7 @@ def test_override_0_in_single_block_neither_ends_nor_skips_a_block() -> None:
     made.select_program("PART")
     made.cycle_start()
     made.advance(10, until=ControlEvent.RUN_STATE)
-    assert made.status().channel.run_state == RunState.STOPPED_AT_BLOCK  # behind the line with the O number
+    assert made.status().channel.run_state == RunState.STOPPED_AT_BLOCK  # after the line with the O number
     made.advance(50)
     assert x_of(made) == 12.5
     made.cycle_start()

@@ -27,7 +27,7 @@ def test_it_ramps_with_the_acceleration_of_the_machine_file() -> None:
     assert state.actual_rpm == pytest.approx(1500.0)
     assert not state.reached
     assert state.commanded_rpm == 3000.0
-    # Half of 1500 rpm (9000 deg/s) for 0.75 s: 3375 degree, 135 behind nine turns.
+    # Half of 1500 rpm (9000 deg/s) for 0.75 s: 3375 degree, 135 after nine turns.
     assert state.angle_deg == pytest.approx(135.0)
     clock.tick(749)
     assert not spindle.state().reached

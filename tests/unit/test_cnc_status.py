@@ -233,7 +233,7 @@ def test_the_public_commands_are_all_tried() -> None:
         "inventory",
         "snapshot",
         "advance",
-        "be_watched",
+        "set_observer",
         "be_shared",
         "waiting_functions",
         "tool_in_use",
@@ -398,6 +398,7 @@ def test_what_an_axis_carries_and_how_fast_a_key_moves_it() -> None:
     axis = made.axes()["X"]
     most = made.machine.config.axes[0].vmax
     assert axis.velocity == pytest.approx(-axis.jog_speed)
+    assert made.channel_status().feed.actual == pytest.approx(60.0 * axis.jog_speed)
     assert axis.load_percent == pytest.approx(100.0 * axis.jog_speed / most)
     assert made.axes()["Y"].load_percent == 0.0
 

@@ -15,7 +15,7 @@ from support.cpl_runs import Root
 
 WORDS = re.compile(r"<[^>]*>|\"[^\"]*\"(?:\|\"[^\"]*\")*|\+<offset>|[\[\]{}()]|[A-Za-z0-9]+")
 
-# Where the signature does not tell, the text behind it does (Manual 003).
+# Where the signature does not tell, the text after it does (Manual 003).
 TOLD = {
     "CIR": (1, 6),  # 5032: three or six; other numbers are refused when it runs
     "COL": (1, 6),  # 4923: any of the six may be left out

@@ -1,4 +1,4 @@
-"""Sub-programs called by G, M and P words, and those that are called again behind every move."""
+"""Sub-programs called by G, M and P words, and those that are called again after every move."""
 
 from __future__ import annotations
 

@@ -391,7 +391,7 @@ def test_what_is_no_case_is_refused() -> None:
     assert errors("10 CASE 1 OF\n20 #A=1\n30 LABEL 1\n40 ENDCASE") == [
         "2:4 an instruction between CASE and its first LABEL"
     ]
-    assert errors("10 CASE 1 OF\n20 OTHERWISE\n30 LABEL 1\n40 ENDCASE") == ["3:4 LABEL behind OTHERWISE"]
+    assert errors("10 CASE 1 OF\n20 OTHERWISE\n30 LABEL 1\n40 ENDCASE") == ["3:4 LABEL after OTHERWISE"]
     assert errors("10 CASE 1 OF\n20 LABEL X%\n40 ENDCASE") == [
         "2:10 an INTEGER constant is missing before 'X%'"
     ]

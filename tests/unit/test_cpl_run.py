@@ -1,4 +1,4 @@
-"""CPL programs in a channel: what they reckon moves the machine, WAIT sees where it is."""
+"""CPL programs in a channel: what they compute moves the machine, WAIT sees where it is."""
 
 from __future__ import annotations
 

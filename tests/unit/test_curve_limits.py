@@ -25,7 +25,7 @@ BEND = ACROSS * ACROSS / RADIUS_MM  # of Z and X, where they have most of it
 
 
 def helix(speed: tuple[float, ...], acceleration: tuple[float, ...], **path: float) -> KernelState:
-    """Return a machine with a line and a helix about Y behind it, planned."""
+    """Return a machine with a line and a helix about Y after it, planned."""
     state = make_state(3, segments=16)
     state.limits.speed[:], state.limits.acceleration[:] = speed, acceleration
     for name, value in path.items():

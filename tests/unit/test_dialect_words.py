@@ -33,7 +33,7 @@ REFERENCES = machine_config(
 
 
 def in_cycle(program: str, dialect: str | Dialect = "fanuc", start: int = 2) -> list[str]:
-    """Return what happens from G0 X4 Y5 Z30 on, behind the first items."""
+    """Return what happens from G0 X4 Y5 Z30 on, after the first items."""
     return moves(f"G0 X4. Y5. Z30.\n{program}\n", dialect=dialect)[start:]
 
 

@@ -1,4 +1,4 @@
-"""The measuring example: its report, its motion and its cycle time against reckoned numbers."""
+"""The measuring example: its report, its motion and its cycle time against computed numbers."""
 
 from __future__ import annotations
 

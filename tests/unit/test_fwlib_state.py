@@ -299,7 +299,7 @@ def test_edit_state() -> None:
     assert control.transfer is not None
     control.transfer.take(b"%\nO0003\n")
     states.append(library.cnc_statinfo(handle)[1].edit)
-    control.transfer = type(control.transfer)(control)
+    control.begin_transfer()
     control.transfer.take(b"%\nO0005\n")
     states.append(library.cnc_statinfo(handle)[1].edit)
     assert states == [0, 1, 6, 5, 4]

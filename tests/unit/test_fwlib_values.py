@@ -120,7 +120,7 @@ PANEL: dict[str, tuple[int, int, Callable[[PowerMate], object], object]] = {
     "sngl_blck": (8, 1, lambda it: it.control.switches.single_block, True),
     "machn_lock": (9, 1, lambda it: it.control.switches.machine_lock, True),
     "dry_run": (10, 1, lambda it: it.control.switches.dry_run, True),
-    "feed_hold": (12, 1, lambda it: it.signals.hold_is_on, True),
+    "feed_hold": (12, 1, lambda it: it.signals.state.hold_is_on, True),
 }
 
 
@@ -382,6 +382,6 @@ def test_a_servo_is_off_by_the_bit_of_its_axis(axis: int) -> None:
     signal = fwlib.ODBOPDI()
     signal.u.cdata = 1 << axis - 1
     assert fwlib.cnc_opdi(handle, 4, signal) == OK
-    assert [control.signals.servo_is_off(each) for each in range(1, 7)] == [
+    assert [control.signals.state.servo_is_off(each) for each in range(1, 7)] == [
         each == axis for each in range(1, 7)
     ]

@@ -6,6 +6,7 @@ import json
 import os
 import sys
 import threading
+import time
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
@@ -21,6 +22,7 @@ from polycnc.controllers.imc import parse_card
 from polycnc.errors import ConfigurationError, PolycncError, ProgramError, UsageError
 from polycnc.jit._files import Files
 from polycnc.machine import load_machine, parse_toml
+from polycnc.nc import ProgramText
 from support.sap_board import FakeBoard
 
 DIGITS = "7" * 5000
@@ -349,3 +351,18 @@ def test_numbers_of_five_thousand_digits_are_numbers_or_errors(case: str, tmp_pa
     assert all(error.position is not None for error in errors)
     assert all(alarm.text for alarm in result.alarms)
     assert errors or case not in ("goto", "variable", "macro call")
+
+
+@pytest.mark.parametrize("dialect", ["din", "fanuc", "bosch", "linuxcnc"])
+@pytest.mark.parametrize("piece", ["Q", "E5 ", "X1=", "[#1", "(x"])
+def test_ten_million_characters_without_a_newline_are_refused_at_once(piece: str, dialect: str) -> None:
+    text = ProgramText.from_text(f"G1 X3 F100\nG1 X4 {piece * (10_000_000 // len(piece))}\nM30\n", "long.nc")
+    runner.check("G1 X3 F100\n", dialect=dialect)  # what is loaded once
+    before = time.process_time()
+    errors = runner.check(text, dialect=dialect)
+    seconds = time.process_time() - before
+    assert errors[0].what == "a line with more than 262144 characters"
+    assert errors[0].position is not None
+    assert (errors[0].position.line, errors[0].position.column) == (2, 1)
+    assert len(str(errors[0])) < 1000
+    assert seconds < 1.0

@@ -136,7 +136,7 @@ def test_clearing_ends_an_endless_wait(program: Program, endless: int) -> None:
     assert program.get("user16b0") == 0
     program.ok(lib.IMC_ClearFIFO, Q)
     program.run(5)
-    assert (program.get("user16b0"), program.get("qfifocnt")) == (0, 0)  # what was behind it is gone too
+    assert (program.get("user16b0"), program.get("qfifocnt")) == (0, 0)  # what was after it is gone too
     program.set("user16b0", 2, fifo=Q)
     program.run(2)
     assert program.get("user16b0") == 2

@@ -143,7 +143,7 @@ def homed(name: str, *arguments: int, start: int = 0) -> tuple[int, int]:
             "IMC_HomeSwitch3", (0, 1, 0), 0, 5000, 2, marks=pytest.mark.covers("imc.IMC_HomeSwitch3")
         ),
         ("IMC_HomeSwitch3", (1, 0, 0), 9000, 5000, -2),
-        # Pulses behind the edge at 5000 are at 5330 and 5730; in front of it at 4930 and 4530.
+        # Pulses after the edge at 5000 are at 5330 and 5730; in front of it at 4930 and 4530.
         pytest.param(
             "IMC_HomeSwitchIndex1",
             (0, 1, 0),

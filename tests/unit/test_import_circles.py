@@ -5,26 +5,6 @@ from __future__ import annotations
 import grimp
 import pytest
 
-# Circles that are left, by package and the modules in them; a module that leaves its circle leaves this table.
-KNOWN = {
-    "polycnc.controllers.apci.board": (
-        "_axis _axis_commands _beginnings _board _board_snapshot _interpolation _jog_commands _motor_command "
-        "_parameter _path_units _setup _shapes _spool_commands _status"
-    ),
-    "polycnc.controllers.fanuc": (
-        "data._bindings data._tool_offsets device._axis_motion device._device_state device._execution "
-        "device._history device._macros device._mdi device._modal_data device._panel device._pmc_memory "
-        "device._positions device._power_mate device._programs device._signals device._snapshot device._transfer"
-    ),
-    "polycnc.controllers.imc.card": "_card _status",
-    "polycnc.runner": (
-        "_check _result _run _trace batches batches._batch batches._child batches._job batches._on_worker "
-        "batches._report batches._store batches._sweep batches._thumbnail batches._workers batches._write "
-        "comparison._both comparison._compare plots plots._over_time plots._paths plots._plot plots._scene "
-        "view view._listing view._page view._part_frame view._picture view._track view._view"
-    ),
-}
-
 
 def in_circles(imports: dict[str, set[str]]) -> set[str]:
     """Return the modules that reach themselves; what imports nothing or is imported by nothing is peeled off."""
@@ -57,17 +37,8 @@ def found() -> set[str]:
     return in_circles({each: set(graph.find_modules_directly_imported_by(each)) for each in graph.modules})
 
 
-def known() -> set[str]:
-    """Return the modules that the table names."""
-    return {f"{package}.{name}" for package, names in KNOWN.items() for name in names.split()}
-
-
-def test_no_circle_beside_the_known_ones(found: set[str]) -> None:
-    assert found - known() == set(), "let what is below name what it needs as a Protocol"
-
-
-def test_the_table_of_known_circles_only_shrinks(found: set[str]) -> None:
-    assert known() - found == set(), "these are in no circle any more: take them out of the table"
+def test_there_is_no_circle(found: set[str]) -> None:
+    assert found == set(), "let what is below name what it needs as a Protocol"
 
 
 def test_circles_of_every_length_are_found() -> None:

@@ -12,7 +12,7 @@ START = "F100 G0 Z10\n"
 
 
 def drill(program: str, **options: object) -> list[str]:
-    """Return what a program does behind the way to Z 10."""
+    """Return what a program does after the way to Z 10."""
     return moves(START + program, **options)[1:]
 
 

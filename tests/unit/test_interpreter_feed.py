@@ -1,4 +1,4 @@
-"""Feed per minute, per revolution and by time; the spindle behind it; dwells."""
+"""Feed per minute, per revolution and by time; the spindle after it; dwells."""
 
 from __future__ import annotations
 

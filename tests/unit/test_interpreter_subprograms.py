@@ -73,7 +73,7 @@ def test_repetitions_and_program_in_one_number() -> None:
 
 
 def chain(depth: int) -> str:
-    """Return a program whose sub-programs call each other `depth` deep, each with a move before and behind."""
+    """Return a program whose sub-programs call each other `depth` deep, each with a move before and after."""
     program = "G0 X0.5\nM98 P1\nX100\nM30\n"
     for number in range(1, depth + 1):
         call = f"M98 P{number + 1}\n" if number < depth else ""
@@ -92,7 +92,7 @@ def test_calls_may_be_nested_so_deep(dialect: str, deepest: int) -> None:
 
 @pytest.mark.covers("cpl.structure.nesting")
 def test_bosch_nests_seven_deep_and_goes_on_behind_each_call() -> None:
-    """Manual 003, 2.1: sub-programs call sub-programs up to seven deep; the caller goes on behind the call."""
+    """Manual 003, 2.1: sub-programs call sub-programs up to seven deep; the caller continues after the call."""
     down = [f"X{number}" for number in range(1, 8)]
     up = [f"Y{number}" for number in range(7, 0, -1)]
     assert ends(chain(7), dialect="bosch") == ["X0.5", *down, *up, "X100"]
@@ -189,7 +189,7 @@ def test_a_refused_call_changes_nothing() -> None:
 
 
 def test_many_short_calls_in_a_long_file_are_fast_enough_to_be_tested() -> None:
-    """A call scans only a little of what lies behind the sub-program."""
+    """A call scans only a little of what lies after the sub-program."""
     calls = 2000
     filler = "(something long that nobody reads)\n" * 20_000
     program = f"G91 G0 X1\nM98 P5 L{calls}\nM30\nO5\nY.01\nM99\n{filler}"

@@ -41,7 +41,7 @@ LEXICON = Lexicon(
         ("mark", r"[-+*/()=~]"),
     ),
     folded=("name",),
-    unfinished={'"': ("the text has no end", 'write " behind it')},
+    unfinished={'"': ("the text has no end", 'write " after it')},
 )
 OPERATORS = Operators(
     infix={

@@ -251,6 +251,15 @@ def test_fluidnc_is_read_with_the_defaults_of_its_control(tmp_path: Path) -> Non
         "Z": (pytest.approx(1000.0 / 60.0), 83.0, (-58.0, 2.0), 2.0),
     }
     assert config.path.junction_deviation_mm == 0.017
+    assert not config.spindle.laser
+    assert made(tmp_path, FLUIDNC + "Laser:\n  pwm_hz: 5000\n")[0].spindle.laser
+
+
+@pytest.mark.parametrize(("line", "laser"), [("$32=1", True), ("$32=0 (laser mode)", False), ("", False)])
+def test_grbl_tells_a_laser(tmp_path: Path, line: str, laser: bool) -> None:
+    config, _ = made(tmp_path, GRBL.replace("ok\n", f"{line}\nok\n"))
+    assert config.spindle.laser is laser
+    assert config.spindle.max_rpm == 18000.0
 
 
 def test_linuxcnc_takes_the_lowest_of_axis_and_joints_in_millimetres(tmp_path: Path) -> None:

@@ -451,7 +451,7 @@ def test_a_statement_behind_much_plain_text_is_found() -> None:
     language = MacroLanguage()
     run("M30\n", language)
     filled = "(" + 61 * "A" + ")\n"
-    text = ProgramText.from_text(f"{filled * 16_385}GOTO7\nN7 M30\n")  # the first line behind a piece
+    text = ProgramText.from_text(f"{filled * 16_385}GOTO7\nN7 M30\n")  # the first line after a piece
     assert language.source(text, 0, 1, None) is not None
     text = ProgramText.from_text(f"{filled * 16_385}N7 M30\n")
     assert language.source(text, 0, 1, None) is None

@@ -131,7 +131,7 @@ def test_the_block_in_the_editor_is_read_and_overwritten(panel: Panel) -> None:
     panel.wait()
     found = panel.pnc.variables()
     assert (found["#A"], found["#B"]) == (None, 3)
-    panel.run('1 PRN#(0,"a message")')  # behind the dialog number 0 is the message window again
+    panel.run('1 PRN#(0,"a message")')  # after the dialog number 0 is the message window again
     run = panel.pnc.control.channels[0].run
     assert run is not None
     assert [message.text for message in run.channel.messages.all()] == ["MSG: a message"]

@@ -11,16 +11,10 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from polycnc.controllers.bosch import Pnc
-from polycnc.controllers.bosch.ncs import DATA_SERVICES, Coupling, Mode
-from polycnc.nc.cpl import BLOCKED, Box, CharacterField, Field
+from polycnc.controllers.bosch.ncs import DATA_SERVICES, Mode
+from polycnc.nc.cpl import BLOCKED
+from support.living_pnc import Living, padded, six
 
-AXIS = '[[axis]]\nname = "{}"\nvmax_mm_s = {}\namax_mm_s2 = 5000\n'
-ROTARY = '[[axis]]\nname = "C"\nkind = "rotary"\nvmax_deg_s = 90\namax_deg_s2 = 400\n'
-MACHINE = (
-    'name = "six"\n' + AXIS.format("X", 500) + AXIS.format("Z", 400) + ROTARY + AXIS.format("X2", 300)
-    + AXIS.format("U", 200) + "[spindle]\nmax_rpm = 4000\n[tools.3]\nlength_mm = 42.5\nradius_mm = 6.25\n"
-)  # fmt: skip
 PROGRAM = """1 FXC("X",55,1)=4 : FXC("X",154,1)=1.5 : FXC("Z",254,1)=-0.5
 N1 G55
 N2 G154
@@ -32,42 +26,6 @@ N7 G92 Z-2
 N8 G1 X100 Z50 C20 F6000
 N9 X0
 """
-ZERO = "\0"
-
-
-class Six:
-    """X, Z and C in channel 1, X2 in channel 2, U in none; numbers 3 and 6 are no axes."""
-
-    def __init__(self, folder: Path, *, servo: bool = False) -> None:
-        self.folder = folder
-        (folder / "six.toml").write_text(MACHINE)
-        shares = [("X", "Z", "C"), ("X2", "U")]
-        self.pnc = Pnc(folder, folder / "six.toml", channels=shares, numbers=(1, 2, 4, 5, 7), servo=servo)
-        self.pnc.transfer_axis("U", None)
-        self.coupling = Coupling(self.pnc.ncs, None, 1)
-        self.version = Box("V", "R", 0.0)
-
-    def start(self, program: str = PROGRAM, cycles: int = 700, channel: int = 1) -> None:
-        (self.folder / f"main{channel}").write_text(program)
-        self.pnc.select_program(f"main{channel}", channel=channel)
-        self.pnc.cycle_start(channel=channel)
-        self.pnc.advance(cycles)
-        assert not self.pnc.status().alarms
-
-    def ask(self, number: int, channel: int, size: int, *extra: int) -> Any:
-        """Return what a service writes: a text, a list of elements, or the code that it answers."""
-        kind = DATA_SERVICES[number].kind
-        buffer = CharacterField(size) if kind == "S" else Field("R" if kind == "X" else kind, (size,))
-        answer = self.coupling.mcods(number, channel, self.version, buffer, size, *extra)
-        if answer != 0:
-            return answer
-        if isinstance(buffer, CharacterField):
-            return buffer.text
-        return [buffer.get(index) for index in range(1, size + 1)]
-
-    def read(self, number: int, channel: int = 1, size: int = 1, *extra: int) -> Any:
-        self.version.value = 0.0
-        return self.ask(number, channel, size, *extra)
 
 
 class Case(NamedTuple):
@@ -79,13 +37,9 @@ class Case(NamedTuple):
     extra: tuple[int, ...] = ()
 
 
-def moving(*names: str, plus: dict[str, float] | None = None) -> Callable[[Six], list[float]]:
+def moving(*names: str, plus: dict[str, float] | None = None) -> Callable[[Living], list[float]]:
     """Return where axes are, with what is added to each."""
     return lambda six: [six.pnc.axes[name].setpoint + (plus or {}).get(name, 0.0) for name in names]
-
-
-def padded(*names: str) -> str:
-    return "".join(f"{name:<8}{ZERO}" if name else ZERO * 9 for name in names)
 
 
 ALL = ("X", "Z", "C", "X2", "U")
@@ -107,7 +61,7 @@ MOVING = [
     Case(19, -1, 2, [4000.0, 0.0]),
     Case(24, 1, 1, [6000.0]),
     Case(25, -1, 2, [1500.0, 0.0]),
-    Case(27, -1, 5, [30000.0, 24000.0, 15.0, 18000.0, 12000.0]),
+    Case(27, -1, 5, [6000.0, 4800.0, 3.0, 3600.0, 2400.0]),
     Case(28, 1, 90, "TOOL 7 IS WORN"),
     Case(30, 1, 90, "main1"),
     Case(31, 1, 1, [5], ("31.val.5", "refresh.E")),
@@ -148,55 +102,60 @@ def marked(case: Case) -> Any:
 
 
 @pytest.fixture(scope="module")
-def six(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Six]:
+def middle(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Living]:
     """Return a control in the middle of N8."""
-    made = Six(tmp_path_factory.mktemp("six"))
-    made.start()
+    made = six(tmp_path_factory.mktemp("six"))
+    made.start(PROGRAM)
     yield made
     made.pnc.close()
 
 
 @pytest.fixture
-def fresh(tmp_path: Path) -> Iterator[Six]:
-    made = Six(tmp_path)
+def fresh(tmp_path: Path) -> Iterator[Living]:
+    made = six(tmp_path)
     yield made
     made.pnc.close()
 
 
 @pytest.mark.parametrize("case", [marked(case) for case in MOVING])
-def test_data_of_a_control_in_motion(six: Six, case: Case) -> None:
-    expected = case.expected(six) if callable(case.expected) else case.expected
-    found = six.read(case.number, case.channel, case.size, *case.extra)
+def test_data_of_a_control_in_motion(middle: Living, case: Case) -> None:
+    expected = case.expected(middle) if callable(case.expected) else case.expected
+    found = middle.read(case.number, case.channel, case.size, *case.extra)
     assert found == (expected if isinstance(expected, str) else pytest.approx(expected, abs=1e-4))
 
 
 @pytest.mark.covers(
     "cpl.MCODS.2", "cpl.MCODS.62", "cpl.MCODS.62.val.-2147483648", "cpl.MCODS.83", "cpl.MCODS.76"
 )
-def test_whole_numbers_ends_and_what_is_left(six: Six) -> None:
-    x, c = six.pnc.axes["X"], six.pnc.axes["C"]
-    assert six.read(2, -1, 1) == [round(x.setpoint * 10_000)]
-    assert six.read(62, -1, 4, 1, 51) == [round(x.actual * 10_000), six.read(62, -1, 2, 1, 51)[1], NO,
+def test_whole_numbers_ends_and_what_is_left(middle: Living) -> None:
+    x, c = middle.pnc.axes["X"], middle.pnc.axes["C"]
+    assert middle.read(2, -1, 1) == [round(x.setpoint * 10_000)]
+    assert middle.read(62, -1, 4, 1, 51) == [round(x.actual * 10_000), middle.read(62, -1, 2, 1, 51)[1], NO,
                                           round(c.actual * 10_000)]  # fmt: skip
-    assert six.read(62, -1, 1, 1, 53) == [NO]
-    end = six.read(76, 1, 3)
+    assert middle.read(62, -1, 1, 1, 53) == [NO]
+    end = middle.read(76, 1, 3)
     assert (end[0], end[2]) == (pytest.approx(100), pytest.approx(20))
-    left = six.read(83, 1, 3)
+    left = middle.read(83, 1, 3)
     assert left[0] == pytest.approx(105.5 - x.setpoint, abs=1e-4)
     assert left[2] == pytest.approx(20 - c.setpoint, abs=1e-4)
-    ends = six.read(77, 1, 1), six.read(16, -1, 1), six.read(23, -1, 1)
+    ends = middle.read(77, 1, 1), middle.read(16, -1, 1), middle.read(23, -1, 1)
     assert ends == ([pytest.approx(105.5)], [pytest.approx(105.5)], [pytest.approx(100)])
 
 
 @pytest.mark.covers("cpl.MCODS.34", "cpl.MCODS.42", "cpl.ncs.102", "cpl.ncs.1", "cpl.ncs.24", "cpl.ncs.18")
-def test_what_the_control_does_not_have_is_refused(six: Six) -> None:
-    assert [six.read(34, -1), six.read(42, 1, 1, 7), six.read(31, 3), six.read(55, -1, 40, 3)] == [
+def test_what_the_control_does_not_have_is_refused(middle: Living) -> None:
+    assert [
+        middle.read(34, -1),
+        middle.read(42, 1, 1, 7),
+        middle.read(31, 3),
+        middle.read(55, -1, 40, 3),
+    ] == [
         102,
         102,
         1,
         24,
     ]
-    assert (six.read(42, 1, 1), six.read(55, -1, 40, 1), six.read(56, -1, 40, 0)) == (
+    assert (middle.read(42, 1, 1), middle.read(55, -1, 40, 1), middle.read(56, -1, 40, 0)) == (
         18,
         "polycnc",
         "simulated",
@@ -205,8 +164,8 @@ def test_what_the_control_does_not_have_is_refused(six: Six) -> None:
 
 @pytest.mark.parametrize(("number", "extra"), [(number, ()) for number in (1, 3, 35, 37, 47, 71, 74, 83)])
 @pytest.mark.covers("cpl.MCODS", "cpl.MCODS.refresh.Z")
-def test_cyclic_data_are_new_in_the_next_cycle(fresh: Six, number: int, extra: tuple[int, ...]) -> None:
-    fresh.start()
+def test_cyclic_data_are_new_in_the_next_cycle(fresh: Living, number: int, extra: tuple[int, ...]) -> None:
+    fresh.start(PROGRAM)
     channel = -1 if DATA_SERVICES[number].scope == "system" else 1
     first = fresh.read(number, channel, 2, *extra)
     assert fresh.ask(number, channel, 2, *extra) is BLOCKED
@@ -222,16 +181,16 @@ class Change(NamedTuple):
     channel: int
     size: int
     before: Any
-    change: Callable[[Six], object]
+    change: Callable[[Living], object]
     after: Any
     rows: tuple[str, ...] = ()
 
 
-def run(program: str, cycles: int = 5, channel: int = 1) -> Callable[[Six], object]:
+def run(program: str, cycles: int = 5, channel: int = 1) -> Callable[[Living], object]:
     return lambda six: six.start(program, cycles, channel)
 
 
-def mode(which: Mode) -> Callable[[Six], object]:
+def mode(which: Mode) -> Callable[[Living], object]:
     return lambda six: six.pnc.select_mode(which, channel=1)
 
 
@@ -274,7 +233,7 @@ CHANGES = [
         for case in CHANGES
     ],
 )
-def test_a_change_is_seen_by_who_asks_and_ends_the_wait_of_who_asked(fresh: Six, case: Change) -> None:
+def test_a_change_is_seen_by_who_asks_and_ends_the_wait_of_who_asked(fresh: Living, case: Change) -> None:
     fresh.start("N1 G71 G0 X0\n", 20)
     assert fresh.read(case.number, case.channel, case.size) == case.before
     case.change(fresh)

@@ -80,7 +80,7 @@ def again(tmp_path: Path) -> Iterator[Two]:
     ("name", "start", "end", "code", "x2", "seen"),
     [
         ("PART", "N20", "N30", 0, 30, None),
-        ("COUNTED", "N20", "N30", 0, 30, 3),  # no statement behind the end is executed
+        ("COUNTED", "N20", "N30", 0, 30, 3),  # no statement after the end is executed
         ("PART", "", "N20", 0, 20, None),
         ("COUNTED", "", "20", 0, 20, 2),
         ("PART", "N30", "", 0, 40, None),
@@ -293,7 +293,7 @@ def test_a_program_that_leaves_itself_hands_over_to_the_next(two: Two) -> None:
 def test_a_program_is_selected_again_unless_that_is_suppressed(again: Two, service: int) -> None:
     assert again.ask('MCOPS(4,2,"PART")', f"MCOPS({service},2)", "MCOPS(6,2)") == [0, 0, 0]
     again.after()
-    assert (again.x2(), again.sav()) == (40, Sav.AT_START)  # selected again behind its end, too
+    assert (again.x2(), again.sav()) == (40, Sav.AT_START)  # selected again after its end, too
     found = again.ask(f"MCOPS({service},2,2)", "MCOPS(6,2)", f"MCOPS({service},2,1)")
     assert found == [0, 10, 18]
     again.start("1 DIM B%(1) : V=0 : #E%=MCODS(70,2,V,B%,1) : #F%=MCODS(70,2,V,B%,1) : #B%=B%(1)")
@@ -389,7 +389,7 @@ def test_the_interpolator_runs_down_in_feed_hold(two: Two) -> None:
 
 
 def test_an_end_that_returns_stops_the_path(tmp_path: Path) -> None:
-    """M30 is carried out behind the motion of its block, as an end of the program is (ISO 6983-1)."""
+    """M30 is carried out after the motion of its block, as an end of the program is (ISO 6983-1)."""
     lowest = {}
     for end in ("M30", ""):
         folder = tmp_path / (end or "none")

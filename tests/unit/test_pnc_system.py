@@ -55,7 +55,7 @@ class Cell:
         return (self.folder / "R").read_text("latin-1").partition("\x03")[0].splitlines()
 
     def values(self, before: str, *expressions: str) -> list[float]:
-        """Return the values of expressions behind some blocks."""
+        """Return the values of expressions after some blocks."""
         printed = "\n".join(
             f'{900 + place} DUMMY{place}!={each} : PRN#(1,"######.######",DUMMY{place}!)'
             for place, each in enumerate(expressions)

@@ -435,7 +435,7 @@ SYSTEMS: dict[str, tuple[str, list[Record]]] = {
         "LOADTL/7\nTOOLNO/ADJUST,17\nRAPID\nGOTO/1,2,3",
         [Tool(1, 7, None, None, 17), Rapid(3), Goto(4, 1.0, 2.0, 3.0)],
     ),
-    "an offset behind the tool change": (
+    "an offset after the tool change": (
         "LOADTL/3\nSPINDL/RPM,500,CLW\nSET/OFSETL,13\nRAPID\nGOTO/1,2,3\nSET/OFSETL,13,ON\nLOADTL/3",
         [Tool(1, 3, None, None, 13), Spindle(2, "cw", 500.0), Rapid(4), Goto(5, 1.0, 2.0, 3.0)],
     ),
@@ -575,7 +575,7 @@ def test_another_coordinate_system_is_an_error_or_another_work_offset(system: st
         "G54",
     ]
     at = blocks.index("G55")
-    # Z goes home before, X and Y come first behind, then Z with the tool's length.
+    # Z goes home before, X and Y come first after, then Z with the tool's length.
     assert blocks[at - 2 : at + 4] == ["G91 G28 Z0.", "G90 G49", "G55", "G00 X4. Y5.", "G43 H03 Z30.", "Z2."]
     only_one = "LOADTL/3\n" + first + AWAY + first + AWAY
     assert "G55" not in (post_file(parse_tool_path(only_one), "fanuc-mill").text or "")

@@ -221,7 +221,7 @@ def test_all_errors_of_a_file_are_told_at_once() -> None:
         ('"!G7!"', 17, 10, 'RAPID = "!G7!"'),
         ('"""\n!G00!\n A!G7!"""', 19, 3, ' A!G7!"""'),
         ("''' !G7!\n'''", 17, 13, "RAPID = ''' !G7!"),
-        ('"\\u0041!G7!"', 17, 2, "A!G7!"),  # columns cannot be told behind a backslash
+        ('"\\u0041!G7!"', 17, 2, "A!G7!"),  # columns cannot be told after a backslash
     ],
 )
 def test_errors_have_their_place_in_every_kind_of_text(value: str, line: int, column: int, text: str) -> None:

@@ -142,7 +142,7 @@ def test_ifs_side_by_side_are_not_nested() -> None:
 @pytest.mark.parametrize(
     ("macro", "what"),
     [
-        ("ENDIF", "ENDIF stands behind no IF"),
+        ("ENDIF", "ENDIF stands after no IF"),
         ("IF(1==1)\nELSE\nELSE\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE\nELSE IF(1==1)\nENDIF", "an ELSE came before"),
         ("IF(1==1)\nELSE A\nENDIF", "ELSE stands alone in its line"),

@@ -1,4 +1,4 @@
-"""Many points behind each other are read and written together: what comes of it is what comes of each by itself."""
+"""Many points one after another are read and written together: what comes of it is what comes of each by itself."""
 
 from __future__ import annotations
 

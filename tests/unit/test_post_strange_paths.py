@@ -17,16 +17,16 @@ HEAD = "LOADTL/3\nSPINDL/RPM,900,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/11,12,30\n"
         ("FROM/5,57,-19\nGODLTA/-18,-39,-38\n", "a feed move from where FROM on line 6 says the tool is", 7),
         ("FROM/5,57,-19\nGOTO/-18,-39,-38\n", "a feed move from where FROM on line 6 says the tool is", 7),
         ("FROM/5,57,30\nCIRCLE/0,57,30,0,0,1,5\nGOTO/-5,57,30\n", "a feed move from where FROM on line 6", 7),
-        ("END\nPPRINT more\nGOTO/1,2,3\n", "a move behind END", 8),
-        ("END\nGOHOME/7,8,9\nFINI\n", "a move behind END", 7),
-        ("END\n" + "GOTO/1,2,3\n" * 20, "a move behind END", 7),
+        ("END\nPPRINT more\nGOTO/1,2,3\n", "a move after END", 8),
+        ("END\nGOHOME/7,8,9\nFINI\n", "a move after END", 7),
+        ("END\n" + "GOTO/1,2,3\n" * 20, "a move after END", 7),
         ("CUTCOM/LEFT,1e400\n", "the number 1E400 is beyond all others", 6),
         ("CUTCOM/LEFT,4.5\n", "the number of an offset must be a whole number, not 4.5", 6),
         ("LOADTL/4,ADJUST,2.5\n", "the number of an offset must be a whole number, not 2.5", 6),
         (f"GOTO/{'9' * 50_000}X,2,3\n", "GOTO", 6),  # looked at digit by digit, once
         ("SPINDL/-800,CLW\n", "a spindle speed of -800", 6),
         ("FEDRAT/1e400,MMPM\n", "the number 1E400 is beyond all others", 6),
-        ("UNITS/INCHES\nGOTO/1,2,3\n", "the unit changes behind the first move", 6),
+        ("UNITS/INCHES\nGOTO/1,2,3\n", "the unit changes after the first move", 6),
     ],
 )
 def test_what_would_be_another_part_is_refused_at_its_place(text: str, what: str, line: int) -> None:

@@ -1,4 +1,4 @@
-"""What the shipped control files write round a tool change: the way to it, the first move behind it, and the end."""
+"""What the shipped control files write round a tool change: the way to it, the first move after it, and the end."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def test_an_arc_right_behind_a_tool_change_is_refused(start: str) -> None:
     text = (
         f"LOADTL/1\nRAPID\nGOTO/0,0,0\nFEDRAT/300\nLOADTL/2\n{start}CIRCLE/5,0,0,0,0,1,5\nGOTO/10,0,0\nFINI\n"
     )
-    with pytest.raises(ProgramError, match="an arc right behind a tool change"):
+    with pytest.raises(ProgramError, match="an arc right after a tool change"):
         blocks_of(text, "fanuc-mill")
     blocks, proof = blocks_of(text.replace("CIRCLE", "RAPID\nGOTO/0,0,0\nCIRCLE"), "fanuc-mill")
     assert any(block.startswith(("G03", "G17 G03")) for block in blocks)
@@ -144,7 +144,7 @@ def test_the_table_turns_at_the_start_while_the_tool_is_home() -> None:
 
 @pytest.mark.parametrize("name", MILLS)
 def test_the_plane_is_xy_before_the_control_compensates_the_radius(name: str) -> None:
-    # Down along an upright arc, as many systems go in: G19 is still in force behind it.
+    # Down along an upright arc, as many systems go in: G19 is still in force after it.
     text = (
         TOOL
         + "RAPID\nGOTO/20,-30,9\nFEDRAT/300,MMPM\nGOTO/20,-30,1\nCIRCLE/20,-29,1,1,0,0,1\nGOTO/20,-29,0\n"

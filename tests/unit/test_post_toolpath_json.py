@@ -13,7 +13,7 @@ from polycnc.post.tool_path._json_path import DOINGS
 
 
 def read(*doings: object, **more: object) -> list[records.Record]:
-    """Return the records behind the name of the part."""
+    """Return the records after the name of the part."""
     text = json.dumps({**more, "path": doings})
     return list(parse_tool_path(text))[1:]
 

@@ -268,7 +268,7 @@ def test_tapping_and_boring_by_moves() -> None:
         ("LINEAR", -12.0),
         ("LINEAR", 5.0),
     ]
-    # The feed of the cycle is the cycle's own: the feed before is in force again behind it.
+    # The feed of the cycle is the cycle's own: the feed before is in force again after it.
     after = moves_of(bore + "GOTO/0,0,0\n", cycles="moves")[-1]
     assert after[1]["F"] == 100.0
 

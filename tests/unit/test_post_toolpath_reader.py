@@ -119,7 +119,7 @@ CYCLES: dict[str, Cycle] = {
     "DRILL,DEPTH,10,CLEAR,5,RETURN,0": Cycle(1, "drill", 10.0, 5.0, None),
     # Without CLEAR, RAPTO is the level; depths may be written downwards.
     "DRILL,RAPTO,3.0,FEDTO,-20.0,RTRCTO,10,MMPM,250": Cycle(1, "drill", 20.0, 3.0, 10.0, 250.0),
-    # By place: depth, feed and its unit, clearance; the feed may stand before its unit or behind.
+    # By place: depth, feed and its unit, clearance; the feed may stand before its unit or after.
     "DRILL,12,180,MMPM,3": Cycle(1, "drill", 12.0, 3.0, 3.0, 180.0),
     "DRILL, 12, MMPM, 180, 3, RAPTO, 1, DWELL, 0.5": Cycle(1, "dwell", 12.0, 2.0, 3.0, 180.0, dwell_s=0.5),
     "TAP,10,400,MMPM,20,3": Cycle(1, "tap", 10.0, 3.0, 3.0, 400.0),

@@ -146,7 +146,7 @@ def test_the_place_of_a_deviation_is_named() -> None:
     assert proof.off_path.mm == pytest.approx(0.5, rel=1e-3)
     assert proof.missed.mm == pytest.approx(0.5, abs=0.01)
     assert (proof.missed.line, proof.missed.point) == (6, (10.0, 10.0, 0.0))
-    # In the program: the block behind %, G90..., G21, G00 and G01, and the one behind it, which leaves from there.
+    # In the program: the block after %, G90..., G21, G00 and G01, and the one after it, which leaves from there.
     assert proof.missed.block in (6, 7, 8)
     assert proof.off_path.line in (6, 8)
 

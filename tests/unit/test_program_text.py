@@ -76,3 +76,15 @@ def test_what_cannot_be_read_is_a_usage_error(tmp_path: Path) -> None:
         ProgramText.from_path(tmp_path)
     with pytest.raises(UsageError, match="UTF-16"):
         ProgramText.from_text("G1".encode("utf-16"))
+
+
+@pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
+@pytest.mark.parametrize("before", [0, 1, 7, 23])
+def test_the_first_line_that_is_too_long_is_found(newline: str, before: int) -> None:
+    lines = [("x" * (n % 11)) for n in range(before)]
+    short = ProgramText.from_text(newline.join([*lines, "y" * 11, *lines]))
+    assert short.line_longer_than(11) is None
+    text = ProgramText.from_text(newline.join([*lines, "y" * 12, *lines, "z" * 40]))
+    offset = text.line_longer_than(11)
+    assert offset is not None
+    assert text.content[offset : offset + 12] == b"y" * 12

@@ -143,7 +143,7 @@ def test_machine_alarm() -> None:
 def test_result_is_json() -> None:
     result = polycnc.run("G1 X10 F600\nG1 X20 Q\n", check=False)
     back = json.loads(json.dumps(result.as_dict()))
-    assert back["alarms"][0]["hint"] == "Write the number right behind the letter, like Q10."
+    assert back["alarms"][0]["hint"] == "Write the number right after the letter, like Q10."
     assert "trace" not in back
 
 

@@ -16,7 +16,7 @@ WITHOUT = (None,)
 
 
 def program(dialect: str, statement: bool) -> list[str]:
-    """Return moves with sequence numbers, behind a statement of the dialect's language."""
+    """Return moves with sequence numbers, after a statement of the dialect's language."""
     first = [STATEMENTS[dialect] if statement else "N1"]
     return [*first, *(f"N{10 * number} {move}" for number, move in enumerate(MOVES, 1)), "M30"]
 
@@ -139,7 +139,7 @@ M30
 @pytest.mark.parametrize(
     ("start", "end", "x", "seen"),
     [
-        ("N20", "N30", 30, 3),  # nothing behind the last block is executed, statements neither
+        ("N20", "N30", 30, 3),  # nothing after the last block is executed, statements neither
         ("", "N10", 10, 1),
         ("N20", "", 45, 5),
         ("N30", "N30", 30, 3),

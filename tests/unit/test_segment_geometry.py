@@ -113,7 +113,7 @@ def test_points_of_an_arc_lie_on_it(arc: Arc) -> None:
         assert point(state, s) == pytest.approx(arc.at(part), abs=1e-12)
         found = [segment_coordinate(state.seg, 1, i, s) for i in range(AXES)]
         assert found == pytest.approx(list(arc.at(part)), abs=1e-12)
-    for part in (-0.21, 1.17):  # what comes before and behind goes on in the same way
+    for part in (-0.21, 1.17):  # what comes before and after goes on in the same way
         found = [segment_coordinate(state.seg, 1, i, part * length(state)) for i in range(AXES)]
         assert found == pytest.approx(list(arc.at(part)), abs=1e-12)
 

@@ -49,8 +49,7 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_path_feed.py PathFeed",
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
-        "cnc/_run_conduct.py Conduct",
-        "controllers/fanuc/device/_power_mate.py",
+        "cnc/_path_runner.py PathRunner",
         "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (
@@ -208,7 +207,7 @@ def way(call: Callable[[], object]) -> tuple[int, int, int]:
 
 
 def of_a_block(text: str) -> Callable[[], object]:
-    """Return what prepares one block behind a short program."""
+    """Return what prepares one block after a short program."""
     lines = ("G21 G90 G94 G54", "G1 X10 F600", text, "M30")
     program = ProgramText.from_text("\n".join(lines) + "\n")
     channel = Channel(program, load_dialect("fanuc"), Machine(load_machine("mill3")))

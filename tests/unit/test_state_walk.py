@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from polycnc.machine import copied, described, is_same, load_machine, put_back
+from polycnc.machine import copied, described, is_same, load_machine, restore_state
 
 
 class Colour(StrEnum):
@@ -80,7 +80,7 @@ def test_a_copy_is_the_same_and_shares_nothing(state: Whole) -> None:
 def test_any_state_is_brought_back_to_any_copy_in_place(state: Whole, other: Whole) -> None:
     held = (state.part, state.part.place, state.part.waiting, state.part.buffer, state.given, state.rows)
     saved = copied(other)
-    assert put_back(state, saved) is state
+    assert restore_state(state, saved) is state
     assert is_same(state, other)
     now = (state.part, state.part.place, state.part.waiting, state.part.buffer, state.given, state.rows)
     assert all(one is another for one, another in zip(held, now, strict=True))

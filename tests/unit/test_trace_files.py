@@ -179,7 +179,7 @@ def test_rows_of_sub_programs_in_files_of_their_own_name_them(tmp_path: Path, en
     assert trace.program.tolist() == given.program.tolist()
     assert np.array_equal(trace.setpoint, given.setpoint)
     assert np.array_equal(trace.block, given.block)
-    # The axis that moves says which program a row belongs to; a cycle with a corner in it belongs to the block behind.
+    # The axis that moves says which program a row belongs to; a cycle with a corner in it belongs to the block after.
     moves = np.diff(trace.setpoint, axis=0, prepend=np.zeros((1, 3)))
     wanted = {0: str(program), 1: str(tmp_path / "O0031.nc"), 2: str(tmp_path / "O0032.nc")}
     for axis, owner in wanted.items():

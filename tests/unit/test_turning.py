@@ -26,7 +26,7 @@ TURN = "G97 S1000 M3\n"
 
 
 def turned(program: str, start: str = "G0 X50. Z2.\n") -> list[str]:
-    """Return what a program does behind its start at 1000 rpm."""
+    """Return what a program does after its start at 1000 rpm."""
     return moves(f"{TURN}{start}{program}\n", config=LATHE, dialect="fanuc-lathe")[2:]
 
 
@@ -480,7 +480,7 @@ def test_roughing_along_z_pass_by_pass() -> None:
         *("rapid X13.5 stop", "line Z-15.9 F300 stop", "rapid X14.5 Z-14.9 stop", "rapid Z2.1 stop"),
         *("rapid X10.5 stop", "line Z-9.9 F300", "line X15.5 Z-19.9 F300", "line X25.5 F300 stop"),
         *("rapid X25 stop", "rapid Z2 stop"),
-        "rapid X30 stop",  # behind the contour, which is not executed again
+        "rapid X30 stop",  # after the contour, which is not executed again
     ]
 
 
@@ -578,7 +578,7 @@ def test_a_pattern_is_repeated_nearer_and_nearer() -> None:
 @pytest.mark.parametrize(
     ("program", "text"),
     [
-        (f"G71 U4. R1.\nG71 P10 Q21 U1. F0.3\n{CONTOUR}", "there is no block N21 behind N10"),
+        (f"G71 U4. R1.\nG71 P10 Q21 U1. F0.3\n{CONTOUR}", "there is no block N21 after N10"),
         (f"G71 U4. R1.\nG71 P9 Q20 U1. F0.3\n{CONTOUR}", "there is no block N9"),
         (f"G71 P10 Q20 U1. F0.3\n{CONTOUR}", "G71: the depth of a cut is not above zero"),
         (
@@ -615,7 +615,7 @@ def test_contours_that_cannot_be_cut(program: str, text: str) -> None:
 
 
 def test_a_contour_far_from_its_cycle_stays_a_part_of_the_program() -> None:
-    """G70 cuts a contour that stands before it, and goes on behind itself."""
+    """G70 cuts a contour that stands before it, and continues after itself."""
     program = f"{CONTOUR}G0 X50. Z2.\nG70 P10 Q20\nG0 X60.\n"
     found = turned(program)
     assert found.count("line Z-10 F100") == 2
@@ -693,14 +693,14 @@ def test_a_rounding_of_a_slope_touches_both_moves() -> None:
 @pytest.mark.parametrize(
     ("program", "text"),
     [
-        ("G1 Z-10. R3. F0.2\nG0 X60.", "R3 of the block before needs a straight move at feed behind it"),
-        ("G1 Z-10. C3. F0.2\nM8\nX60.", "C3 of the block before needs a straight move at feed behind it"),
-        ("G1 Z-10. C3. F0.2\nX60. M8", "C3 of the block before needs a straight move at feed behind it"),
+        ("G1 Z-10. R3. F0.2\nG0 X60.", "R3 of the block before needs a straight move at feed after it"),
+        ("G1 Z-10. C3. F0.2\nM8\nX60.", "C3 of the block before needs a straight move at feed after it"),
+        ("G1 Z-10. C3. F0.2\nX60. M8", "C3 of the block before needs a straight move at feed after it"),
         (
             "G1 Z-10. R3. F0.2\nG2 X60. Z-15. R5.",
-            "R3 of the block before needs a straight move at feed behind it",
+            "R3 of the block before needs a straight move at feed after it",
         ),
-        ("G1 Z-10. R3. F0.2\nM30", "R3 of the block before needs a straight move at feed behind it"),
+        ("G1 Z-10. R3. F0.2\nM30", "R3 of the block before needs a straight move at feed after it"),
         ("G1 Z-10. R3. F0.2", "R3 at the end of the program"),
         ("G1 Z-10. R3. C2. F0.2\nX60.", "R and C in one block"),
         ("G1 Z-10. R6. F0.2\nX60.", "R6 needs 6 mm of both moves, and one has 5 mm"),

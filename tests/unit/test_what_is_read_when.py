@@ -73,7 +73,7 @@ def test_single_block_switched_on_prepares_no_more_blocks(kind: str) -> None:
         shift(made, 10.0)
         made.cycle_start()
     assert stops[-1] == 15.0
-    assert 13.0 in stops  # behind M8 nothing was prepared
+    assert 13.0 in stops  # after M8 nothing was prepared
 
 
 CALLS: dict[str, tuple[dict[tuple[Function, int | None], Answer], str]] = {

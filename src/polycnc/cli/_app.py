@@ -9,13 +9,17 @@ import typer
 from polycnc import __version__
 from polycnc.cli import (
     _batch,
+    _calls,
     _check,
+    _clib,
     _compare,
     _conformance,
     _debug,
     _focas,
     _machine,
+    _mtconnect,
     _post,
+    _rehearse,
     _run,
     _sap,
     _schema,
@@ -70,6 +74,15 @@ app.command("machine", short_help="Show a machine's axes and limits.")(guarded(_
 app.command("serve", short_help="Serve a simulated control to clients on the network.")(
     guarded(_serve.serve_command)
 )
+app.command("rehearse", short_help="Say what happens in a scenario, without waiting for it.")(
+    guarded(_rehearse.rehearse_command)
+)
+app.command("clib", short_help="Write and build a C library that old programs link against.")(
+    guarded(_clib.clib_command)
+)
+app.command("calls", short_help="Serve a machine to C programs, and trace what they call.")(
+    guarded(_calls.calls_command)
+)
 app.command("conformance", short_help="Show which parts of the manuals are tested.")(
     guarded(_conformance.conformance_command)
 )
@@ -83,6 +96,10 @@ _focas.focas_app.command("dissect", short_help="Explain captured bytes of the pr
     guarded(_focas.dissect_command)
 )
 app.add_typer(_focas.focas_app, name="focas", short_help="Tools around the protocol of FANUC controls.")
+_mtconnect.mtconnect_app.command("devices", short_help="Write the Devices.xml of a machine for an agent.")(
+    guarded(_mtconnect.devices_command)
+)
+app.add_typer(_mtconnect.mtconnect_app, name="mtconnect", short_help="Tools around MTConnect.")
 app.add_typer(_sap.sap_app, name="sap", short_help="Compile stand-alone programs of the APCI board.")
 
 

@@ -65,7 +65,22 @@ Memory: TypeAlias = Annotated[
     typer.Option(help="Keep programs, parameters, macros and offsets in this file.", metavar="FILE"),
 ]
 Characters: TypeAlias = Annotated[int | None, typer.Option(help=_CHARACTERS, min=1, max=10**9, metavar="N")]
+Scenario: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(help="What happens to the machine and its doors, and when.", metavar="FILE"),
+]
+NodeSets: TypeAlias = Annotated[
+    Path | None,
+    typer.Option(
+        "--opcua-nodesets",
+        help="A folder of official node sets for the door opcua; without it, it brings the types it needs.",
+        metavar="DIR",
+    ),
+]
 Faults: TypeAlias = Annotated[
     Path | None,
     typer.Option(help="A script of what goes wrong, and when: connections, alarms, ...", metavar="FILE"),
+]
+MTConnectVersion: TypeAlias = Annotated[
+    str, typer.Option(help="What clients of mtconnect and shdr see: 2.7, 2.2, 1.8 or 1.3.", metavar="VERSION")
 ]

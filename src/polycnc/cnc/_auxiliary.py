@@ -7,9 +7,12 @@ from collections.abc import Iterable
 from polycnc.cnc._alarms import AlarmList
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._plc import Function, PlcModel, functions_of
+from polycnc.cnc._run_state import RunState
 from polycnc.cnc._spindle import Spindle
+from polycnc.kernel import RAPID
 from polycnc.machine import Clock, TimesConfig
 from polycnc.nc import BlockRecord, Dialect, Event, Group, MAction
+from polycnc.units import MM_PER_INCH
 
 _ACTIONS = {action.title: action for action in MAction}
 _SENSES: dict[MAction | None, int | None] = {
@@ -57,6 +60,23 @@ class AuxiliaryFunctions:
             self.requests.setdefault(channel.path, []).extend(waiting)
             self._clock.changes += 1
         return bool(waiting)
+
+    def follow(self, channel: ControlChannel) -> None:
+        """Let a laser have the power of the block that is executed, at the speed that there is now.
+
+        It is off at rapid; with M4 its power is to S as the speed to the programmed feed. A program that is over leaves
+        it off where it was switched off.
+        """
+        run, block = channel.run, channel.executed
+        if run is None or block is None:
+            return
+        row, modal = run.feed.row, block.modal
+        power = 0.0 if row["flags"] & RAPID else modal.speed
+        if modal.spindle_direction < 0:
+            feed_mm_s = modal.feed * (MM_PER_INCH if modal.inch else 1.0) / 60.0
+            power *= float(row["speed"]) / feed_mm_s if feed_mm_s > 0.0 else 0.0
+        going = run.state in (RunState.ACTIVE, RunState.HOLD)
+        self._spindle.turn(rpm=power, direction=modal.spindle_direction if going else None)
 
     def _default_s(self, channel: ControlChannel, letter: str, number: int, dialect: Dialect) -> float:
         """Return how long a function takes that the PLC has no word about; a spindle its ramp, a mere S nothing."""

@@ -31,7 +31,7 @@ class ChannelAxes:
         state.paths.position[self._path] = state.base
         state.paths.queued[self._path] = state.base
 
-    def lend(self, *, come_back: bool) -> None:
+    def release(self, *, come_back: bool) -> None:
         """Give the axes to manual motion; with `come_back` they must be where they were before the program goes on."""
         state = self._machine.state
         taken = []

@@ -277,7 +277,7 @@ class Control:
         """Whether its thread has more to do now than to let the time of this pass."""
         return self._time.has_enough
 
-    def be_watched(self, watch: CycleWatch | None) -> None:
+    def set_observer(self, watch: CycleWatch | None) -> None:
         """Let somebody look at every cycle for as long as it is awake; time passes slower then."""
         self._time.watch = watch
 

@@ -238,7 +238,7 @@ class ControlChannel:
             self.hold(at_once=True)
             self.broken = True
 
-    def lend(self) -> None:
+    def release(self) -> None:
         """Give the axes to manual motion.
 
         Raises:
@@ -251,7 +251,7 @@ class ControlChannel:
                 Refusal.RUNNING, "a program is being executed", hint="Hold it, or wait for its end."
             )
         self.check_rest()
-        self.own_axes.lend(come_back=self.interrupted or self.broken)
+        self.own_axes.release(come_back=self.interrupted or self.broken)
 
     # ------------------------------------------------------------------ settings
 

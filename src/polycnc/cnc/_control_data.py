@@ -109,7 +109,7 @@ def check_channels(channels: tuple[ChannelData, ...], axes: tuple[str, ...]) -> 
 class Search:
     """Where a program begins with its next start: the block on `line`, or with sequence number `sequence`.
 
-    With `calculate` what stands before is carried out without moving. It ends behind the block on line `last`, if
+    With `calculate` what stands before is carried out without moving. It ends after the block on line `last`, if
     that is given.
     """
 

@@ -28,13 +28,13 @@ def moment_of(of: ControlParts, raised: int) -> ControlMoment:
     )
 
 
-def put_back(of: ControlParts, moment: ControlMoment, runs: tuple[ProgramRun | None, ...]) -> None:
+def restore_state(of: ControlParts, moment: ControlMoment, runs: tuple[ProgramRun | None, ...]) -> None:
     """Let the parts hold a moment again, with runs that nobody else has."""
     of.clock.changes += 1
     of.emergency = moment.emergency
     of.relative_zero = list(moment.relative_zero)
     for channel, kept, run in zip(of.channels, moment.channels, runs, strict=True):
-        _put_back_channel(channel, kept, run)
+        _restore_channel(channel, kept, run)
     of.functions.restore((n, kept.waiting) for n, kept in enumerate(moment.channels))
     of.manual.restore(moment.manual)
     of.spindle.restore(moment.spindle)
@@ -61,7 +61,7 @@ def _of_channel(channel: ControlChannel, waiting: tuple[int, ...]) -> ChannelMom
     )
 
 
-def _put_back_channel(channel: ControlChannel, moment: ChannelMoment, run: ProgramRun | None) -> None:
+def _restore_channel(channel: ControlChannel, moment: ChannelMoment, run: ProgramRun | None) -> None:
     """Let a channel hold a moment again, with a run that nobody else has."""
     channel.mode = moment.mode
     channel.overrides = moment.overrides
@@ -129,13 +129,13 @@ class Keeping:
         if len(runs) != len(self._of.channels) or len(moment.channels) != len(self._of.channels):
             raise SnapshotError("the snapshot of a control is damaged", hint="use another one")
         back = [
-            channel.runs.way_back(run, self._text)
+            channel.runs.restore_point(run, self._text)
             for channel, run in zip(self._of.channels, runs, strict=True)
         ]
         self._of.machine.restore(snapshot.machine)
         self._of.edits.close_all()
         self._time.raised = ControlEvent(moment.raised)
-        put_back(self._of, moment, tuple(each() for each in back))
+        restore_state(self._of, moment, tuple(each() for each in back))
         self._time.forget()
 
     @property

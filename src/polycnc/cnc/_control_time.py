@@ -119,6 +119,8 @@ class ControlTime:
             channel.look()
             self._note_state(channel)
             self._take_answers(channel)
+            if channel.data.spindle and self._of.machine.config.spindle.laser:
+                self._of.functions.follow(channel)
         self._of.functions.note_failures(self._of.alarms)
         for index, axis in enumerate(self._of.machine.config.axes):
             if self._of.machine.state.servo.error_tripped[index]:

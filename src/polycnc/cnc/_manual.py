@@ -30,7 +30,7 @@ _SIDE = {DOWN: "low", UP: "high"}
 class ManualMotion:
     """Move the axes of a machine by hand; the machine's time passes elsewhere, in stretches that this limits.
 
-    Before time passes ask `horizon` for the most cycles, let it stop for `REASONS`, and call `after` behind it.
+    Before time passes ask `horizon` for the most cycles, let it stop for `REASONS`, and call `after` after it.
     """
 
     REASONS = Reason.PROFILE_ENDED | Reason.SWITCH_EDGE
@@ -52,6 +52,8 @@ class ManualMotion:
         """Whether each axis is referenced, by its place."""
         self.jog_speeds = self._profiles.jog_speeds
         """How fast a jog key moves each axis with its override (mm/s or deg/s), by its place."""
+        self.feed_overrides = self._profiles.feed_overrides
+        """The feed override that acts on each axis moved by hand (1 is 100 %), by its place."""
 
     @property
     def data(self) -> ManualData:

@@ -82,4 +82,4 @@ class ManualCommands:
         serious = [alarm for alarm in alarms if alarm.kind is not AlarmKind.TRAVEL]
         if self._of.emergency is not Emergency.OFF or serious:
             check_ready(self._of.emergency, alarms)
-        owner.lend()
+        owner.release()

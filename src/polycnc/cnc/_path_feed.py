@@ -145,7 +145,7 @@ class PathFeed:
         prepare_path(state.seg, state.paths, path, state.limits, self.machine.config.cycle_s, state.work)
         probing = list(self.channel.writer.probes.values())
         prepared = int(row["prepared"])
-        if probing and first < prepared:  # what lies behind may not be gone along
+        if probing and first < prepared:  # what lies after may not be traversed
             tags = self.tags(first, prepared)
             row["prepared"] = first + tags.index(probing[-1]) if probing[-1] in tags else first
             measure_queue(state.seg, state.paths, path, first, self.low, self.high)
@@ -154,11 +154,11 @@ class PathFeed:
         measure_queue(state.seg, state.paths, path, first, self.low, self.high)
 
     def keep_box(self) -> None:
-        """Take note that a probing move has been gone along to its end."""
+        """Take note that a probing move has been traversed to its end."""
         self._box = None
 
     def drop_probing(self) -> None:
-        """Take back from the box of positions what a probing move has not gone along; the path stands where it ends."""
+        """Take back from the box of positions what a probing move has not traversed; the path stands where it ends."""
         if self._box is not None:
             here = self.machine.state.paths.position[self.channel.path]
             self.low[:], self.high[:] = np.minimum(self._box[0], here), np.maximum(self._box[1], here)
@@ -195,7 +195,7 @@ class PathFeed:
         return tags
 
     def block_end(self, count: int) -> int:
-        """Return the count behind the last segment of the block that segment `count` belongs to, as far as known."""
+        """Return the count after the last segment of the block that segment `count` belongs to, as far as known."""
         tail = int(self.row["tail"])
         if count >= tail:
             return tail
@@ -232,7 +232,7 @@ class PathFeed:
         return self.tags(head, head + 1)[0] if head < self.row["tail"] else None
 
     def pass_marks(self) -> None:
-        """Forget the blocks without segments that lie before segments that have been gone along."""
+        """Forget the blocks without segments that lie before segments that have been traversed."""
         marks, head = self.channel.writer.marks, int(self.row["head"])
         while marks and marks[0][0] < head:
             marks.popleft()

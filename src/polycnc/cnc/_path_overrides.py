@@ -16,7 +16,7 @@ class PathOverrides:
 
     `dry_run_mm_s` is the feed of a dry run, 0 without one, `rapid_f0_mm_s` the lowest speed of rapids, 0 to stand,
     `most_feed` the largest factor of the feeds.
-    While a program suppresses the feed override, `kept` is what acts again behind it.
+    While a program suppresses the feed override, `kept` is what acts again after it.
     """
 
     def __init__(

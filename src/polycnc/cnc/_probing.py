@@ -65,7 +65,7 @@ def cannot_begin(machine: Machine, channel: Channel) -> bool:
 
 
 def delete_rest(machine: Machine, channel: Channel, feed: PathFeed) -> None:
-    """Drop the move along which a path stands; functions, stops and the program behind it go on from there."""
+    """Drop the move along which a path stands; functions, stops and the program after it go on from there."""
     drop_queue(machine.state.seg, machine.state.paths, channel.path)
     channel.writer.put_again()
     feed.drop_probing()

@@ -104,7 +104,7 @@ class ProgramCommands:
 
         It is the block on `line`, or the first one with a sequence number. With `calculate` everything before is
         carried out without moving, and with the start the axes go straight at rapid to where that block begins; else
-        modal state and position are what they are. With `last` the program ends behind the block on
+        modal state and position are what they are. With `last` the program ends after the block on
         that line. A reset, another selection and the start itself end the search.
 
         Raises:

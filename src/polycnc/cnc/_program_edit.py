@@ -45,7 +45,7 @@ class ProgramEdit:
         return self._lines[number - 1].rstrip(b"\r\n").decode("utf-8", "replace")
 
     def find(self, text: str, *, after: int = 0) -> int | None:
-        """Return the number of the first line behind line `after` that holds a text, or None.
+        """Return the number of the first line after line `after` that holds a text, or None.
 
         Raises:
             ControlError: The text is empty.

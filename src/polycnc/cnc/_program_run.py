@@ -12,8 +12,8 @@ from polycnc import kernel
 from polycnc.cnc._block_search import block_line, calculate_to
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
-from polycnc.cnc._run_conduct import Conduct, Floats, OnEvent, Rows, Until
-from polycnc.cnc._run_moment import RunMoment
+from polycnc.cnc._path_runner import Floats, OnEvent, PathRunner, Rows, Until
+from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_snapshot import DEVICE, FindText, RunSnapshot, SavedRun, file_text
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Breakpoint, Step, Stopper
@@ -90,14 +90,14 @@ class ProgramRun:
         self._axes = axes
         self._config = config
         self._library = library
-        moment = RunMoment(options.block_delete, options.single_block, options.optional_stop)
+        moment = RunProgress(options.block_delete, options.single_block, options.optional_stop)
         channel = self._new_channel(
             program, None if before is None else before.channel, options.block_delete, attaches=attaches
         )
         ahead = self.dialect.blocks_ahead if options.blocks_ahead is None else options.blocks_ahead
-        self._conduct = Conduct(machine, channel, options, moment, ahead=ahead)
-        self._conduct.rows = rows
-        self._conduct.on_event = on_event
+        self._path_runner = PathRunner(machine, channel, options, moment, ahead=ahead)
+        self._path_runner.rows = rows
+        self._path_runner.on_event = on_event
 
     def _new_channel(
         self,
@@ -135,40 +135,40 @@ class ProgramRun:
     @property
     def channel(self) -> Channel:
         """The channel that prepares the program."""
-        return self._conduct.channel
+        return self._path_runner.channel
 
     @property
     def feed(self) -> PathFeed:
         """What keeps the path supplied."""
-        return self._conduct.feed
+        return self._path_runner.feed
 
     @property
     def stopper(self) -> Stopper:
         """What decides where the path rests between blocks."""
-        return self._conduct.stopper
+        return self._path_runner.stopper
 
     @property
     def overrides(self) -> PathOverrides:
         """How fast the path goes, against what is programmed."""
-        return self._conduct.overrides
+        return self._path_runner.overrides
 
     @property
     def on_event(self) -> OnEvent | None:
         """What is told each auxiliary function."""
-        return self._conduct.on_event
+        return self._path_runner.on_event
 
     @on_event.setter
     def on_event(self, on_event: OnEvent | None) -> None:
-        self._conduct.on_event = on_event
+        self._path_runner.on_event = on_event
 
     @property
     def on_skip(self) -> Callable[[], None] | None:
         """What is told the end of a skip move."""
-        return self._conduct.on_skip
+        return self._path_runner.on_skip
 
     @on_skip.setter
     def on_skip(self, on_skip: Callable[[], None] | None) -> None:
-        self._conduct.on_skip = on_skip
+        self._path_runner.on_skip = on_skip
 
     # ------------------------------------------------------------------ commands
 
@@ -180,7 +180,7 @@ class ProgramRun:
         """
         self._check_start()
         if self._moment.state in _OVER:
-            self._begin(self._conduct.step_of_switch)
+            self._begin(self._path_runner.step_of_switch)
         elif self._moment.state is not RunState.ACTIVE:
             self.resume()
 
@@ -189,7 +189,7 @@ class ProgramRun:
 
         While the program suppresses feed holds it comes as soon as it does no more, or `at_once`.
         """
-        self._conduct.hold(at_once=at_once)
+        self._path_runner.hold(at_once=at_once)
 
     def resume(self) -> None:
         """Go on from a feed hold, a block's end, or a program stop.
@@ -201,7 +201,7 @@ class ProgramRun:
             raise UsageError(
                 f"there is nothing to resume: the program is {self._moment.state.value}", hint="Start it."
             )
-        self._conduct.go(self._conduct.step_of_switch)
+        self._path_runner.go(self._path_runner.step_of_switch)
 
     def load(self, program: ProgramText, *, keeps_modal: bool = False) -> None:
         """Select another program; with `keeps_modal` it begins with the modal state that is in force.
@@ -230,7 +230,7 @@ class ProgramRun:
         """Let the program begin at a block: the one on `line`, or the first with sequence number `sequence`.
 
         With `calculate` everything before is carried out without moving, and with the start the axes go straight at
-        rapid to where that block begins; else modal state and position are what they are. The program ends behind the
+        rapid to where that block begins; else modal state and position are what they are. The program ends after the
         block on line `last`, if one is given. Return the line.
 
         Raises:
@@ -286,7 +286,7 @@ class ProgramRun:
 
     def answered(self) -> None:
         """Let the path go on from the auxiliary function at which it stands."""
-        self._conduct.answered()
+        self._path_runner.answered()
 
     def reset(self) -> None:
         """Break the program off: the axes brake on the path, then the rest of it is dropped.
@@ -297,15 +297,15 @@ class ProgramRun:
         self.channel.close()
         self.channel.suppressed = Suppressed()
         self._moment.held_back = False
-        self._conduct.take_suppressed()
-        if self._conduct.row["state"] == kernel.IDLE:
+        self._path_runner.take_suppressed()
+        if self._path_runner.row["state"] == kernel.IDLE:
             self._moment.state = RunState.RESET
             return
         self._moment.dropping = True
         self._moment.hold = True
         self._moment.state = RunState.RESET
-        self._conduct.set_hold()
-        self._conduct.look()
+        self._path_runner.set_hold()
+        self._path_runner.look()
 
     @property
     def single_block(self) -> bool:
@@ -317,8 +317,8 @@ class ProgramRun:
         if on == self._moment.single_block:
             return
         self._moment.single_block = on
-        self.stopper.step = self._conduct.step_of_switch
-        self._conduct.take_switch()
+        self.stopper.step = self._path_runner.step_of_switch
+        self._path_runner.take_switch()
         if self._moment.state in _GOING:
             self.feed.look_again()
 
@@ -412,7 +412,7 @@ class ProgramRun:
 
     def stands_at(self, stop: Stop) -> bool:
         """Tell whether the program would stand at such a stop now."""
-        return self._conduct.stands_at(stop)
+        return self._path_runner.stands_at(stop)
 
     # ------------------------------------------------------------------ what it is doing
 
@@ -429,7 +429,7 @@ class ProgramRun:
     @property
     def at_rest(self) -> bool:
         """Whether the path stands."""
-        return self._conduct.at_rest
+        return self._path_runner.at_rest
 
     @property
     def alarm(self) -> RunAlarm | None:
@@ -444,14 +444,14 @@ class ProgramRun:
     @property
     def starved(self) -> bool:
         """Whether the path rests because nothing more of a program that is still coming has come."""
-        row = self._conduct.row
+        row = self._path_runner.row
         rests = self.at_rest and not self._moment.unanswered and bool(row["head"] >= row["tail"])
         return self.active and rests and self.channel.starved
 
     @property
     def queued(self) -> int:
         """How many moves and waits are queued that have not been executed."""
-        return int(self._conduct.row["tail"] - self._conduct.row["head"])
+        return int(self._path_runner.row["tail"] - self._path_runner.row["head"])
 
     def line_check(self) -> LineCheck:
         """Return a check of blocks that would come after what has been prepared."""
@@ -467,12 +467,12 @@ class ProgramRun:
     @property
     def executed_tag(self) -> int:
         """The tag of the block that is executed, or was last."""
-        return self._conduct.executed_tag
+        return self._path_runner.executed_tag
 
     @property
     def blocks_done(self) -> int:
         """How many blocks have been executed since the start, of those that move, dwell or hand out functions."""
-        return int(self._conduct.row["blocks"])
+        return int(self._path_runner.row["blocks"])
 
     @property
     def executed(self) -> BlockRecord | None:
@@ -499,12 +499,12 @@ class ProgramRun:
     @property
     def tool_times(self) -> dict[int, ToolTime]:
         """How long each tool has cut and positioned so far; tool 0 is an empty spindle."""
-        return self._moment.tool_times.until(self._conduct.path_times)
+        return self._moment.tool_times.until(self._path_runner.path_times)
 
     @property
     def path_times(self) -> ToolTime:
         """How long the path has cut and positioned so far, with whatever tool."""
-        return self._conduct.path_times
+        return self._path_runner.path_times
 
     @property
     def distance_to_go(self) -> dict[str, float]:
@@ -514,40 +514,40 @@ class ProgramRun:
     @property
     def to_go(self) -> Floats:
         """What `distance_to_go` tells, by the place of the axis."""
-        return self._conduct.to_go
+        return self._path_runner.to_go
 
     # ------------------------------------------------------------------ time
 
     def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
-        It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
+        It returns early when the run stops (a block's end, a program stop, its end, an alarm), and with
         `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
         is not asked meanwhile, since nothing can have come.
         """
-        return self._conduct.advance(cycles, until=until, asleep=asleep)
+        return self._path_runner.advance(cycles, until=until, asleep=asleep)
 
     def skip(self) -> int:
         """Go along what is planned in closed form, to the next thing to be done; return the cycles.
 
         For runs that nobody looks at: servos are ideal, limit switches and the recorder see nothing.
         """
-        return self._conduct.skip()
+        return self._path_runner.skip()
 
     def before_cycles(self, cycles: int) -> int:
         """Make ready for up to `cycles` cycles; return how many may pass before `after_cycles`, 0 for any number.
 
         What must end `machine.advance` early is put into the clock's mask, beside what is there.
         """
-        return self._conduct.before_cycles(cycles)
+        return self._path_runner.before_cycles(cycles)
 
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
-        self._conduct.after_cycles(cycles)
+        self._path_runner.after_cycles(cycles)
 
     def drain(self) -> None:
         """Hand the recorded rows on and empty the recorder."""
-        self._conduct.drain()
+        self._path_runner.drain()
 
     def snapshot(self, *, find: FindText = file_text) -> RunSnapshot:
         """Return everything that this run holds, to go back to with `restore`, in a process of any time.
@@ -584,9 +584,9 @@ class ProgramRun:
             SnapshotError: It is of something else, of a program that has been changed since, or damaged; nothing has
                 changed.
         """
-        self.way_back(snapshot)()
+        self.restore_point(snapshot)()
 
-    def way_back(self, snapshot: Snapshot, *, find: FindText = file_text) -> Callable[[], None]:
+    def restore_point(self, snapshot: Snapshot, *, find: FindText = file_text) -> Callable[[], None]:
         """Return what `restore` does, when it is certain that it can be done.
 
         Raises:
@@ -601,11 +601,11 @@ class ProgramRun:
                 hint="give the same one, or use another snapshot",
             )
         channel = self._new_channel(kept, None, saved.moment.block_delete, attaches=False)
-        back = channel.way_back(saved.channel)
+        back = channel.restore_point(saved.channel)
         return lambda: self._go_back(saved, channel, back)
 
     def _go_back(self, saved: SavedRun, channel: Channel, back: Callable[[], None]) -> None:
-        conduct = self._conduct
+        conduct = self._path_runner
         back()
         self.program = saved.program
         conduct.channel = channel
@@ -622,8 +622,8 @@ class ProgramRun:
     # ------------------------------------------------------------------ within
 
     @property
-    def _moment(self) -> RunMoment:
-        return self._conduct.moment
+    def _moment(self) -> RunProgress:
+        return self._path_runner.moment
 
     def _check_over(self) -> None:
         """Refuse what would change the program while it is executed."""
@@ -647,18 +647,18 @@ class ProgramRun:
         self.channel.state.modal.position[:] = state.paths.position[path]
         kernel.start_path(state.paths, path)
         self._moment.hold = self._moment.held_back = False
-        self._conduct.row["limit"] = kernel.NO_LIMIT
-        self._conduct.row["tag"] = self._conduct.row["blocks"] = 0
+        self._path_runner.row["limit"] = kernel.NO_LIMIT
+        self._path_runner.row["tag"] = self._path_runner.row["blocks"] = 0
         if self._moment.approach is not None:
             self.channel.begin_at(*self._moment.approach)
             self._moment.approach = None
-        self._conduct.go(step)
+        self._path_runner.go(step)
 
     def _replace_channel(self, program: ProgramText, *, keeps_modal: bool) -> None:
         tool = self.channel.state.tool if self.modal is None else self.modal.tool  # prepared is not changed
         channel = self._new_channel(program, self.channel, self.block_delete, keeps_modal=keeps_modal)
         channel.state.tool = tool
-        self._conduct.channel = channel
+        self._path_runner.channel = channel
         self._moment.met = self._moment.approach = self._moment.searched = None  # of the program before
         self.feed.clear()
 
@@ -677,7 +677,7 @@ class ProgramRun:
             self._check_start()
             self._begin(step)
         elif self._moment.state in _STANDING or self._moment.state is RunState.HOLD:
-            self._conduct.go(step)
+            self._path_runner.go(step)
         else:
             raise UsageError("the program is running", hint="Hold it, or let it stop at a breakpoint.")
 

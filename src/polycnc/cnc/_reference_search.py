@@ -42,7 +42,7 @@ class ReferenceSearch:
         )
 
     def _search_end(self, i: int, direction: int) -> float:
-        """Return where a search gives up: at the limit switch, or well behind everything there is to find."""
+        """Return where a search gives up: at the limit switch, or well after everything there is to find."""
         axis = self._profiles.axes[i]
         switch = axis.limit_switches[0 if direction == DOWN else 1]
         if math.isfinite(switch):

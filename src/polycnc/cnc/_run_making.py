@@ -73,7 +73,7 @@ class RunMaker:
             attaches=attaches,
         )
 
-    def way_back(self, run: Snapshot | None, find: FindText) -> Callable[[], ProgramRun | None]:
+    def restore_point(self, run: Snapshot | None, find: FindText) -> Callable[[], ProgramRun | None]:
         """Return what makes a run that goes back to a snapshot, when it is certain that it can be done.
 
         Raises:
@@ -82,7 +82,7 @@ class RunMaker:
         if run is None:
             return lambda: None
         made = self.make(ProgramText("", b""), attaches=False)
-        back = made.way_back(run, find=find)
+        back = made.restore_point(run, find=find)
 
         def go_back() -> ProgramRun:
             back()

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple, Self, TypeAlias
 
 from polycnc.cnc._path_feed import FeedSnapshot
 from polycnc.cnc._probing import Probing
-from polycnc.cnc._run_moment import RunMoment
+from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_state import RunAlarm, RunState
 from polycnc.cnc._stops import Step
 from polycnc.cnc._tool_times import ToolTime, ToolTimes
@@ -38,7 +38,7 @@ class SavedRun(NamedTuple):
     step: Step
     depth: int
     override_kept: float | None
-    moment: RunMoment
+    moment: RunProgress
 
 
 _CLASSES = (
@@ -46,7 +46,7 @@ _CLASSES = (
     FeedSnapshot,
     Probing,
     RunAlarm,
-    RunMoment,
+    RunProgress,
     RunState,
     SavedRun,
     Step,

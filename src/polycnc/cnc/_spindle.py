@@ -1,7 +1,7 @@
 """A spindle that ramps, turns and is brought to an angle: what it does at any cycle, in closed form.
 
 Speeds are signed, positive clockwise (M3), in revolutions per minute; a minute's turn of 1 rpm is 360 degree. The
-motion is a list of ramps, each from one speed to another; behind the last one the speed stays.
+motion is a list of ramps, each from one speed to another; after the last one the speed stays.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Spindle:
     def __init__(self, clock: Clock, config: MachineConfig) -> None:
         self._clock = clock
         self._config = config.spindle
-        self._start_s = config.times.spindle_start_s
+        self._start_s = 0.0 if config.spindle.laser else config.times.spindle_start_s
         self._motion = SpindleMotion()
         self._rest: tuple[SpindleMotion, SpindleState] | None = None  # what a motion has come to rest at
 

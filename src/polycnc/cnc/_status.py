@@ -39,7 +39,8 @@ class AxisStatus(NamedTuple):
 
     `machine` is the actual position in machine coordinates, `work` from the program zero of the executed block,
     `relative` from where it was last set, `to_go` what is left of the executed block or of the manual motion.
-    `load_percent` follows the speed, 100 at the axis' highest. `jog_speed` is that of a jog key, with the override.
+    `load_percent` follows the speed, 100 at the axis' highest. `jog_speed` is that of a jog key, with `feed_override`,
+    the one that acts on the axis when it is moved by hand.
     """
 
     name: str
@@ -57,6 +58,7 @@ class AxisStatus(NamedTuple):
     manual: str
     load_percent: float
     jog_speed: float
+    feed_override: float = 1.0
 
 
 @row

@@ -6,6 +6,7 @@ who ask between two changes get the same objects.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
@@ -145,6 +146,7 @@ class StatusReader:
                     kinds[index],
                     min(100.0, 100.0 * abs(speed) / self._most[index]) if speed else 0.0,
                     manual.jog_speeds[index],
+                    manual.feed_overrides[index],
                 )
             )
         self._axes = FrozenDict(zip(self._names, rows, strict=True))
@@ -189,6 +191,14 @@ class StatusReader:
             return 0.0
         return planned_s(state.seg, state.paths, path, self._of.clock.cycle_s)
 
+    def _speed(self, channel: ControlChannel) -> float:
+        """Return how fast the axes of a channel move together: mm/min, deg/min where only rotary ones do."""
+        squares = {"mm": 0.0, "deg": 0.0}
+        for name, unit, velocity in zip(self._names, self._units, self._arrays[1].tolist(), strict=True):
+            if velocity != 0.0 and name in channel.axes:
+                squares[unit] += velocity * velocity
+        return math.sqrt(squares["mm"] or squares["deg"]) * _MM_MIN
+
     def _channel(self, number: int) -> ChannelStatus:
         if (known := self._channels[number]) is not None:
             return known
@@ -205,6 +215,10 @@ class StatusReader:
             if moves:
                 cap, speed = float(segment["cap"]) * _MM_MIN, float(row["speed"]) * _MM_MIN
                 feed = Feed(feed.programmed, cap, speed, bool(segment["flags"] & RAPID))
+        if (
+            not moves and (speed := self._speed(channel)) != 0.0
+        ):  # by hand, or braking for an alarm or a reset
+            feed = Feed(feed.programmed, feed.commanded, speed, feed.rapid)
         by_hand = any(
             motion.kind is not ManualKind.NONE and name in channel.axes
             for motion, name in zip(of.manual.motions, self._names, strict=True)

@@ -22,7 +22,7 @@ class Step(Enum):
     RUN = "run"  # to the next breakpoint
     INTO = "into"  # one block, into a sub-program
     OVER = "over"  # one block, a sub-program that it calls as a whole
-    OUT = "out"  # behind the sub-program
+    OUT = "out"  # after the sub-program
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +41,7 @@ class Breakpoint:
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """A point between two blocks: the count of the segment behind it, and the tag of the block that comes there."""
+    """A point between two blocks: the count of the segment after it, and the tag of the block that comes there."""
 
     count: int
     tag: int

@@ -55,7 +55,7 @@ class Ready:
 
 
 class Detached:
-    """A function of named tuples of arrays, and integers behind them, that returns an integer."""
+    """A function of named tuples of arrays, and integers after them, that returns an integer."""
 
     def __init__(self, function: Any) -> None:
         self._function = function
@@ -93,7 +93,7 @@ def _number(each: object) -> int:
 
 
 def _words(state: Any) -> Iterator[int]:
-    """Return what numba has a named tuple of arrays as: the words of each array, one behind the other."""
+    """Return what numba has a named tuple of arrays as: the words of each array, one after the other."""
     if isinstance(state, tuple):
         for member in state:
             yield from _words(member)

@@ -28,7 +28,7 @@ Pair: TypeAlias = tuple[float, float]
 BEZIER_SIZE = 16
 TANGENT_BOUND, BEND_BOUND = 12, 14
 
-# Columns of a span as `cut_bezier` writes it, behind the row of a segment.
+# Columns of a span as `cut_bezier` writes it, after the row of a segment.
 SPAN_END, SPAN_LENGTH, SPAN_CURVED = 16, 18, 19
 SPAN_SIZE = 20
 MOST_SPANS = 256

@@ -69,7 +69,7 @@ FIRST_SHARE, LAST_SHARE = 1.0 / 3.0, 2.0 / 3.0  # of an arc's angle, with BY_SHA
 
 @compiled
 def may_be_rounded(path: np.void, row: np.void) -> bool:
-    """Tell whether a corner behind a segment may be rounded: it is a line or arc at feed; positioning with BY_SHARE."""
+    """Tell whether a corner after a segment may be rounded: it is a line or arc at feed; positioning with BY_SHARE."""
     stops = STOP | CORNER_STOP | (0 if path["corner_rule"] == BY_SHARE else RAPID)
     if row["kind"] == ARC:
         stops |= ROUNDING

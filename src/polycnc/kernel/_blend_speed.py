@@ -15,7 +15,7 @@ from polycnc.kernel._touching import Element
 
 # Columns of the scratch `paths.blend`: directions before and after the corner, start and centre of the arc, normal.
 BEFORE, AFTER, START, CENTER, NORMAL = 0, 3, 6, 9, 12
-CUT, CUT_LINE = 15, 16  # what the last arc took of the line or arc behind it, mm, and which segment that is
+CUT, CUT_LINE = 15, 16  # what the last arc took of the line or arc after it, mm, and which segment that is
 
 
 @compiled
@@ -110,7 +110,7 @@ def saves_time(
     turn_rad: float,
     speed_mm_s: float,
 ) -> bool:
-    """Tell whether the arc, gone along with the lower feed, is quicker than both lines with a rest between them."""
+    """Tell whether the arc, traversed with the lower feed, is quicker than both lines with a rest between them."""
     before_mm_s, after_mm_s = line["feed_mm_s"], speed_mm_s
     accel_before, accel_after, accel = math.inf, math.inf, math.inf
     turning = math.inf  # every axis that moves is held to its limit all along the arc
@@ -151,7 +151,7 @@ def saves_time_in_plane(
 
 @compiled
 def _going(limits: AxisLimits, p: int, q: int, element: Element, feed_mm_s: float) -> tuple[float, float]:
-    """Return with which speed a line or an arc is gone along, and what acceleration is left there."""
+    """Return with which speed a line or an arc is traversed, and what acceleration is left there."""
     if element[2] <= 0.0:
         part_p, part_q = max(abs(element[0]), 1e-300), max(abs(element[1]), 1e-300)
         speed = min(feed_mm_s, limits.speed[p] / part_p, limits.speed[q] / part_q)

@@ -112,7 +112,7 @@ def plan_rest(
     """Plan to come to rest, if possible at the end of a segment, from `s` on, which was passed `since_s` ago.
 
     What is ahead may change so that a speed that was planned is too high, though rest is as possible as it was: to
-    brake to a low speed takes a longer way than to rest, and another override lowers what lies behind that rest.
+    brake to a low speed takes a longer way than to rest, and another override lowers what lies after that rest.
     """
     path, ramps = paths.row[g], paths.ramps[g]
     jerk = path["jerk_mm_s3"]

@@ -2,7 +2,7 @@
 
 With AS_AXES_ALLOW (see `_limits`) the axes keep their acceleration in every cycle. The rules here allow the step in
 velocity that an arc near the corner would spread: the arc that touches both sides and passes the corner at a
-deviation has the radius deviation s / (1 - s), s the cosine of half the turn, and is gone along with the full
+deviation has the radius deviation s / (1 - s), s the cosine of half the turn, and is traversed with the full
 acceleration. Units: those of `_segments`.
 """
 

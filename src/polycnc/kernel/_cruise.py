@@ -2,7 +2,7 @@
 
 As a control with a minimum cruise ratio does it, the path is planned a second time with a lower acceleration. Where
 that plan goes up and down again without reaching its speed, its peak bounds the speed of the whole rise and fall; the
-ramps themselves keep the full acceleration. In the fall a segment is not gone along faster than it is entered.
+ramps themselves keep the full acceleration. In the fall a segment is not traversed faster than it is entered.
 
 A bound may rise as long as segments are appended behind: it is final before the last rise but one that is known. All
 passes work on squared speeds. Units: those of `_segments`.

@@ -2,7 +2,7 @@
 
 In every cycle the path takes the acceleration it would like best, if from there it can still keep everything ahead
 (`_is_safe`): by easing off to a speed that is planned, or by braking to a node (see `_jerk_plan`). If not, it takes the
-greatest that is safe. From there braking just reaches its node, so it is gone along as it was found (the plan), until
+greatest that is safe. From there braking just reaches its node, so it is traversed as it was found (the plan), until
 something better is safe. What is planned may change in any cycle; the path never does what is not safe by the plan.
 
 Units: those of `_segments`; jerk per s3; `dt`, the cycle, in s.
@@ -74,7 +74,7 @@ AT_REST = 1e-9  # mm/s
 
 @compiled
 def follows(seg: Segments, paths: Paths, g: int) -> bool:
-    """Tell whether the segment at `head` is gone along with limited jerk."""
+    """Tell whether the segment at `head` is traversed with limited jerk."""
     path = paths.row[g]
     if not has_limited_jerk(path) or path["head"] >= path["prepared"]:
         return False

@@ -56,7 +56,7 @@ def has_limited_jerk(path: np.void) -> bool:
 
 @compiled
 def last_known(path: np.void) -> int:
-    """Return the count behind the last segment that the look-ahead sees; the path could rest there."""
+    """Return the count after the last segment that the look-ahead sees; the path could rest there."""
     last = int(path["prepared"])
     if path["depth"] > 0:
         last = min(last, int(path["head"]) + int(path["depth"]) + 1)
@@ -102,7 +102,7 @@ def _step_back(
     """Return what holds for the end before segment `k`, number `count`, from what holds for its own.
 
     What it gives to corners is set as well. `limit` is of the corner before, which takes `corner` per speed, at most
-    `reached`; `unknown`: the segment may give MOST_SHARE to the corner behind it.
+    `reached`; `unknown`: the segment may give MOST_SHARE to the corner after it.
     """
     row, geo = seg.row[k], seg.geo[k]
     speed, way, node_speed, node_accel, floor, ease, node, bound = end
@@ -178,7 +178,7 @@ def plan_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> None:
     more = (row["cap"], 0.0, row["cap"], math.inf, row["cap"], math.inf, tail - 1, row["cap"])
     final = tail if met else -1
     _put(seg, k, rest)
-    rests = path["limit"] <= tail  # behind the last segment, which owes nothing to what comes into view later
+    rests = path["limit"] <= tail  # after the last segment, which owes nothing to what comes into view later
     if rests:
         seg.geo[k, EASE] = math.inf
     stop = (0.0, 0.0, 0.0, math.inf, 0.0, math.inf, tail - 1, 0.0)
@@ -210,7 +210,7 @@ def plan_with_jerk(seg: Segments, paths: Paths, g: int, dt: float) -> None:
         if not met:
             met = rest == more
             to_go = row["cap"] * row["accel"] / jerk
-        else:  # what is gone along while an acceleration is taken back is looked at beforehand
+        else:  # what is traversed while an acceleration is taken back is looked at beforehand
             to_go -= row["length"]
             if to_go <= 0.0:
                 final = count

@@ -142,7 +142,7 @@ def _limit_curve(
             most = min(most, math.sqrt(bend_share * min(limits.acceleration[i], whole) / bend[i]))
     cap = min(asked_mm_s, path["speed_limit_mm_s"], most)
     # With BY_SHARE the lines beside a corner do without what it takes, and an arc has nothing put aside for it.
-    # What an arc needs to turn counts as if it were gone along with all that its axes allow, whatever the feed.
+    # What an arc needs to turn counts as if it were traversed with all that its axes allow, whatever the feed.
     by_share = path["corner_rule"] == BY_SHARE and not is_spline
     share = 1.0 if by_share else CURVE_SHARE
     turning = most if by_share else cap
@@ -613,5 +613,5 @@ def share_acceleration(
 
 @compiled
 def least_accel(row: np.void, jerkrel: float) -> float:
-    """Return an acceleration that the segment will allow whatever comes behind it."""
+    """Return an acceleration that the segment will allow whatever comes after it."""
     return float(row["full_accel"] * LEAST_PART / (1.0 + jerkrel))

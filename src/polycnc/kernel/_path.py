@@ -18,7 +18,7 @@ Ints = npt.NDArray[np.int64]
 
 IDLE = 0  # not started
 READY = 1  # started and at rest: the next segment begins with the next cycle
-RUNNING = 2  # the segment at `head` is being gone along
+RUNNING = 2  # the segment at `head` is being traversed
 HELD = 3  # at rest within a segment, until released
 
 # What a sample brought.
@@ -107,7 +107,7 @@ class Paths(NamedTuple):
 
     row: npt.NDArray[np.void]  # [G] of PATH_ROW
     ramps: Floats  # [G, ALL_REGISTERS]
-    totals: Floats  # [G, TOTALS] of the segments gone along so far
+    totals: Floats  # [G, TOTALS] of the segments traversed so far
     position: Floats  # [G, m] now
     queued: Floats  # [G, m] end of the last segment appended
     blend: Floats  # [G, BLEND_COLUMNS + 3 MOST_MERGED + m] scratch of `_blend`, points merged, a point of scratch

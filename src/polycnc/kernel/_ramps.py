@@ -84,7 +84,7 @@ def set_one_piece(ramps: Floats, length: float, accel: float) -> None:
 def plan_ramps(
     ramps: Floats, speed_in: float, length: float, cap: float, accel: float, speed_out: float, s: float
 ) -> None:
-    """Fill `ramps[REGISTERS]` for `length` more of a segment that has been gone along up to `s`.
+    """Fill `ramps[REGISTERS]` for `length` more of a segment that has been traversed up to `s`.
 
     Its pieces are set (`set_pieces`), `accel` is the greatest of theirs. The end speed is lowered to what can be
     reached, or raised to what cannot be braked away.

@@ -1,7 +1,7 @@
 """Take over what is new while a path runs: segments appended, another override, feed hold and its release.
 
 Speeds may fall at once, but what they were planned with (corners and their shares, accelerations) stays as it is
-within the distance that braking takes, because the motion has already been planned and partly gone along with it.
+within the distance that braking takes, because the motion has already been planned and partly traversed with it.
 """
 
 from __future__ import annotations
@@ -239,9 +239,9 @@ def replan_path(seg: Segments, paths: Paths, g: int, limits: AxisLimits, dt: flo
         _lower_cap(seg, passed, limits, path)
     limit_queue(seg, paths, g, limits, dt, first, first, work)
     limit_cruise(seg, paths, g, first, last)
-    if with_jerk and first < last:  # it may be entered faster than it will be gone along
+    if with_jerk and first < last:  # it may be entered faster than it will be traversed
         seg.row[k]["cap"] = max(cap, seg.row[k]["cap"])
-    if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or gone along now, above its new cap
+    if keeps and accel < seg.row[k]["full_accel"]:  # it may be entered, or traversed now, above its new cap
         seg.row[k]["accel"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["gain"] *= accel / seg.row[k]["full_accel"]
         seg.row[k]["full_accel"] = accel

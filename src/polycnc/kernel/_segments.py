@@ -28,7 +28,7 @@ WAIT = 4  # no motion: a dwell, or an event at a point of the path
 RAPID = 1  # flag: positioning at the axes' speed
 STOP = 2  # flag: come to rest at the end (exact stop)
 CORNER_STOP = 8  # flag: come to rest at the end unless the next segment goes on in the same direction
-LAST = 16  # flag: rounded corners lie before it and the path rests at its end, with nothing behind
+LAST = 16  # flag: rounded corners lie before it and the path rests at its end, with nothing after
 ROUNDING = 32  # flag: an arc that rounds a corner
 TURN = 4  # flag, set here: no feed axis moves, so length and speed are those of the axes that ride along
 
@@ -36,10 +36,10 @@ GEO = BEZIER_SIZE
 GEO_WITH_JERK = GEO + 13
 # Geometry of an ARC.
 CENTER_P, CENTER_Q, RADIUS_START, RADIUS_END, SWEEP_RAD = 0, 1, 2, 3, 4
-# Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point behind it.
+# Geometry of a CIRCLE3D is laid out in `_circle3d`; the row has room for one more point after it.
 CIRCLE3D_RADIUS, CIRCLE3D_LENGTH = 10, 11
 WORK_POINT = 13
-# How a segment and its end are gone along with limited jerk, see `_jerk_plan`.
+# How a segment and its end are traversed with limited jerk, see `_jerk_plan`.
 LIMIT, ASKED, REDUCED, ZONE_IN, ZONE_OUT, EASE = 16, 17, 18, 19, 20, 21
 NODE_WAY, NODE_SPEED, NODE_ACCEL, NODE_FLOOR, NODE_COUNT, SHARE_IN, REACHED = 22, 23, 24, 25, 26, 27, 28
 # Geometry of a SPLINE is laid out in `_bezier`. Geometry of a WAIT.

@@ -1,4 +1,4 @@
-"""What a path has gone along so far: its times, lengths and highest speed, segment by segment."""
+"""What a path has traversed so far: its times, lengths and highest speed, segment by segment."""
 
 from __future__ import annotations
 

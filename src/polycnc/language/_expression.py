@@ -1,7 +1,7 @@
 """Read expressions by a table of operators and their powers.
 
 A language reads its own operands (numbers, names, calls, brackets); what comes back is a tree of these, of signs and
-of chains. A chain is a row of operators of one power, so a sum of a thousand terms is one node and not a thousand.
+of chains. A chain is a row of operators of the same precedence: a sum of a thousand terms is one node.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ class Unary(Generic[Leaf]):
 
 @dataclass(slots=True)
 class Link(Generic[Leaf]):
-    """An operator of a chain, with what stands behind it."""
+    """An operator of a chain, with what stands after it."""
 
     at: int
     operator: str
@@ -36,7 +36,7 @@ class Link(Generic[Leaf]):
 
 @dataclass(slots=True)
 class Chain(Generic[Leaf]):
-    """Operators of one power between operands, reckoned from left to right."""
+    """Operators of the same precedence between operands, computed from left to right."""
 
     at: int
     first: Tree[Leaf]
@@ -64,7 +64,7 @@ class Prefix:
 
 @dataclass(frozen=True, slots=True)
 class Operators:
-    """The operators of a language by their words. Powers are above 0; equal powers are reckoned from the left."""
+    """The operators of a language by their words. Powers are above 0; equal powers are computed from the left."""
 
     infix: Mapping[str, Infix]
     prefix: Mapping[str, Prefix] = field(default_factory=dict)

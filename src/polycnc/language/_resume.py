@@ -1,6 +1,6 @@
 """Programs that go on where they stood: a generator's place and names as plain values, and one made anew from them.
 
-Python cannot put a generator to a place. But a program's Python is known, and it stands behind one of its `yield`s,
+Python cannot put a generator to a place. But a program's Python is known, and it stands after one of its `yield`s,
 each on a line of its own; so the way from its head to that line is cut out of its syntax tree, the loops around it go
 on with their rest, and the code that comes of it stands at the same place as soon as it has begun.
 """
@@ -46,7 +46,7 @@ def inner_of(generator: Suspended) -> object:
 def resumed(
     traced: Traced[Place], line: int, names: Collection[str], *, again: bool = False
 ) -> Traced[Place]:
-    """Return code whose function stands behind the `yield` of a line once it has given its first item, a None.
+    """Return code whose function stands after the `yield` of a line once it has given its first item, a None.
 
     The function takes one argument more: the values of `names`, by name, and the iterator of a `yield from` as `INNER`.
     What the function sets before that line and is not among `names` it sets again. With `again` the `yield` itself is

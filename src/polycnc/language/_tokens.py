@@ -11,7 +11,7 @@ from typing import NamedTuple
 from polycnc.language._source import Flaw
 
 END = "end"
-"""The kind of the token behind the last one."""
+"""The kind of the token after the last one."""
 _SHOWN = 30
 
 
@@ -75,7 +75,7 @@ class Lexicon:
         return tokens
 
     def read(self, text: str, at: int, end: int) -> tuple[Token, int]:
-        """Return the token at or behind `at`, and the offset behind it.
+        """Return the token at or after `at`, and the offset after it.
 
         Raises:
             Flaw: No token begins there.
@@ -118,7 +118,7 @@ class Tokens:
 
     @property
     def next_at(self) -> int:
-        """Return the offset behind the present token."""
+        """Return the offset after the present token."""
         return self.token.at + len(self.token.text)
 
     def step(self) -> Token:

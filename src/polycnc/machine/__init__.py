@@ -26,7 +26,7 @@ from polycnc.machine._io import IoBits, IoImage, scan_edges
 from polycnc.machine._machine import AxisState, Machine, MachineStatus, Reason
 from polycnc.machine._presets import DEFAULT_MACHINE, PRESETS, load_machine, parse_machine, preset_text
 from polycnc.machine._snapshot import Array, Plain, Snapshot, SnapshotError, arrays_of
-from polycnc.machine._state_walk import copied, described, is_same, put_back
+from polycnc.machine._state_walk import copied, described, is_same, restore_state
 from polycnc.machine._toml import (
     MOST_NESTING,
     StrictModel,
@@ -141,7 +141,7 @@ __all__ = [
     "parse_toml",
     "preset_text",
     "problem",
-    "put_back",
+    "restore_state",
     "scan_edges",
     "validate",
     "wait",

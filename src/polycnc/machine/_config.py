@@ -26,6 +26,7 @@ WORK_OFFSET = re.compile(r"G[12]?5[4-9]|G59\.[1-3]")
 IO_ADDRESS = re.compile(r"(IW|OW|I|O)(0|[1-9][0-9]*)")
 Deviation: TypeAlias = Annotated[float, Field(ge=1e-9, le=LARGEST_POSITION)]
 CornerShare: TypeAlias = Annotated[float, Field(gt=0, le=0.5)]
+RoundingShare: TypeAlias = Annotated[float, Field(ge=0.1, le=0.5)]
 RampShare: TypeAlias = Annotated[float, Field(ge=0.5, le=0.9)]
 CORNER_RULES = ("junction_deviation_mm", "square_corner_mm_s", "corner_share")
 Duration: TypeAlias = Annotated[float, Field(ge=0, le=LONGEST_BLOCK_S)]
@@ -116,9 +117,9 @@ class PathConfig(StrictModel):
         description="Corners that are not rounded take this part of what the axes' acceleration gives in a cycle, "
         "all along the lines beside them; those that an exact path rests in take it too.",
     )
-    rounding_share: RampShare | None = Field(
+    rounding_share: RoundingShare | None = Field(
         default=None,
-        description="Part of the acceleration that ramps have on arcs that round corners; "
+        description="Part of the acceleration that ramps have on arcs that round corners, which need the rest to turn; "
         "absent: what the arc leaves them.",
     )
     last_share: RampShare | None = Field(
@@ -208,6 +209,20 @@ class SpindleConfig(StrictModel):
         default=60.0, description="Speed at which the spindle is brought to an angle."
     )
     orientation_deg: float = Field(default=0.0, description="Angle at which an oriented spindle stands.")
+    laser: bool = Field(
+        default=False,
+        description="S is the power of a laser: S, M3, M4 and M5 act without a stop, where the next move begins.",
+    )
+
+    @model_validator(mode="after")
+    def _lasers_do_not_turn(self) -> SpindleConfig:
+        if self.laser and self.acceleration_rpm_s is not None:
+            raise problem(
+                "'acceleration_rpm_s' has no meaning for a laser",
+                hint="leave it out, or take 'laser' out",
+                at=("acceleration_rpm_s",),
+            )
+        return self
 
 
 class ToolConfig(StrictModel):

@@ -87,7 +87,7 @@ class Host(Generic[D]):
     def post(self, command: Callable[[D], R]) -> Future[R]:
         """Have `command` called with the device between two cycles; return its result, when there is one.
 
-        Commands are carried out in the order in which they were posted. When the result is there, a status behind the
+        Commands are carried out in the order in which they were posted. When the result is there, a status after the
         command has been published. A command that raises an error does so to whoever asks for its result.
 
         Raises:

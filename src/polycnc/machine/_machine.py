@@ -255,7 +255,7 @@ class Machine:
         """
         snapshot.check("machine", self._made_from, self._arrays())
         epoch = snapshot.moment("epoch")
-        snapshot.put_back(self._arrays())
+        snapshot.restore_state(self._arrays())
         self.clock.go_back(snapshot.cycle, epoch)
 
     @property

@@ -109,7 +109,7 @@ class Snapshot:
                 f"this is a snapshot of another {device}", hint="make one of the same configuration and size"
             )
 
-    def put_back(self, arrays: Iterable[Array]) -> None:
+    def restore_state(self, arrays: Iterable[Array]) -> None:
         """Fill the arrays of a device that has been checked."""
         for array, block in zip(arrays, self.blocks, strict=True):
             array[...] = np.frombuffer(block.content, array.dtype).reshape(array.shape)

@@ -1,7 +1,7 @@
 """State as trees of dataclasses, arrays, collections: one walk that copies, compares, writes back, and describes it.
 
-A device keeps its state in dataclasses. `copied` takes them for a snapshot, `put_back` brings a copy into the living
-ones in place, so that whoever holds an array or a list of them goes on holding it.
+A device keeps its state in dataclasses. `copied` takes them for a snapshot, `restore_state` writes a copy back into the
+living ones, so that references to their arrays and lists remain valid.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _copied(value: Any) -> Any:
     return value
 
 
-def put_back(state: T, saved: T) -> T:
+def restore_state(state: T, saved: T) -> T:
     """Bring a state back to a copy of it, in place where it can change; return it, or the copy where it cannot.
 
     Arrays have to have the shapes of the copy: what a device is made from says so.

@@ -101,6 +101,8 @@ def _inspected(
     *,
     rehearse: bool,
 ) -> CheckReport:
+    if (endless := text.endless_line()) is not None:
+        return CheckReport([endless], [])
     stock = settings.stock
     simulated = Machine(load_machine(settings.machine))
     control = control_for(chosen, text, simulated, settings.surroundings_of(program))

@@ -174,7 +174,7 @@ class Debugger:
         return override
 
     def pass_time(self, cycles: int) -> int:
-        """Let control cycles pass; return how many did, fewer where the program has come to a stand."""
+        """Let control cycles pass; return how many did, fewer where the program has stop."""
         done = 0
         while done < cycles and self.running:
             moved = self.control.advance(cycles - done, until=ControlEvent.RUN_STATE)

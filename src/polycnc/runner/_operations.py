@@ -42,16 +42,16 @@ class _Mark:
 
 @dataclass(slots=True)
 class OperationCollector:
-    """Collect the operations of the main program: one begins at a tool change, or at a function behind a remark."""
+    """Collect the operations of the main program: one begins at a tool change, or at a function after a remark."""
 
     text: ProgramText
     _marks: list[_Mark] = field(default_factory=list)
-    _behind: int = 0  # offset behind the last function seen
+    _behind: int = 0  # offset after the last function seen
 
     def function(self, line: int, tool: int, changes_tool: bool, time_s: float, moved: ToolTime) -> None:
         """Take an auxiliary function on a line of the main program, before it has taken any time.
 
-        `tool` is in the spindle behind it, `moved` are the times of the path so far.
+        `tool` is in the spindle after it, `moved` are the times of the path so far.
         """
         offset = self.text.line_start(line)
         name = self._remark(self._behind, offset) if offset > self._behind else ""

@@ -25,7 +25,7 @@ _WITNESSES = 8  # points of an arc that a program must pass
 class Moves:
     """The moves of a tool path in arrays, in the order of its records.
 
-    `first[r]` is the first move of record r, `first[r + 1]` the one behind its last; `only_rapid` and `only_feed`
+    `first[r]` is the first move of record r, `first[r + 1]` the one after its last; `only_rapid` and `only_feed`
     tell of each record whether all its moves are, from points that are known. `axis` is the tool axis of each move,
     empty without `with_axes`; `lines` has the line of each record, if no move has another one.
     Most moves start where the one before ends, so starts are kept for the others alone.

@@ -111,7 +111,7 @@ class ToolAxisCheck:
         off = to_segments(wanted[records], first, axes)
         last = np.append(records[1:] != records[:-1], True)
         self._best[records[last]] = off[last]
-        # A record ends between its last row and the first one behind it.
+        # A record ends between its last row and the first one after it.
         crossing = records != before
         behind = to_segments(wanted[before[crossing]], first[crossing], axes[crossing])
         ended = before[crossing]

@@ -85,7 +85,7 @@ def _as_far_as(error: PolycncError, program: ProgramText) -> str:
 
 @contextmanager
 def _copy(root: Path) -> Iterator[Path | None]:
-    """Yield a copy of a folder that is removed behind, None if it is too large or cannot be read."""
+    """Yield a copy of a folder that is removed after, None if it is too large or cannot be read."""
     files: list[Path] = []
     size = 0
     for folder, _, names in os.walk(root):

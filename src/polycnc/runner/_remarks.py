@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from dataclasses import dataclass, field
 
@@ -18,6 +19,7 @@ _TURNS = {
     MAction.SPINDLE_CW: True, MAction.SPINDLE_CCW: True, MAction.SPINDLE_STOP: False, MAction.SPINDLE_ORIENT: False,
 }  # fmt: skip
 _ACROSS = "XY"
+_SOMETHING = re.compile(rb"[^% \t\r\n\0]")
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +50,7 @@ class MachiningWatch:
     _tool: int = 0
     _clear: float = np.inf  # Z from which the tool was fed in last
     _top: float = -np.inf  # highest Z at which it has cut across
-    _rapid_end: float = np.nan  # Z behind the last segment, if that was a rapid
+    _rapid_end: float = np.nan  # Z after the last segment, if that was a rapid
     _first: dict[str, tuple[str, SourcePosition]] = field(default_factory=dict)
     _counts: Counter[str] = field(default_factory=Counter)
 
@@ -56,6 +58,7 @@ class MachiningWatch:
         self._state = self.channel.machine.state
         self._row = self._state.paths.row[self.channel.path]
         self._seen = int(self._row["tail"])
+        self._turning = self.channel.machine.config.spindle.laser  # a laser that is off cuts nothing
         dialect: Dialect = self.channel.dialect
         self._changes_tools = dialect.has_tool_change
         names = self.channel.machine.config.axis_names
@@ -166,7 +169,7 @@ def _number(value: float) -> str:
 
 def empty_remark(program: ProgramText) -> Remark | None:
     """Return what to say of a program in which nothing stands but blanks and the signs of a tape's ends."""
-    if program.content.strip(b"% \t\r\n\0"):
+    if _SOMETHING.search(program.content):  # which copies nothing: programs are long
         return None
     return Remark("empty", "the program is empty", SourcePosition(program.name, 1, 1, ""))
 

@@ -13,10 +13,11 @@ from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText, line_of
 from polycnc.runner._event_log import EventLog
 from polycnc.runner._execution import LOOP_LIMIT_S, Progress, Rows, TaggedRows, run_to_end, totals
+from polycnc.runner._outcome import Alarm, RunEvent, RunMessage
 from polycnc.runner._program_control import ProgramControl, control_for, run_under
 from polycnc.runner._record import Record
 from polycnc.runner._remarks import empty_remark, times_remark
-from polycnc.runner._result import Alarm, RunEvent, RunMessage, RunResult, TracedResult
+from polycnc.runner._result import RunResult, TracedResult
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceCollector
 

@@ -18,7 +18,8 @@ from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
 from polycnc.outputs import check_output, complete_or_absent, format_of
 from polycnc.runner._blocks import Execution, ExecutionCollector
-from polycnc.runner._result import Trace
+from polycnc.runner._outcome import Trace
+from polycnc.runner._power import POWER, powers
 from polycnc.runner._trace_formats import (
     COLUMN_NAMES,
     PROGRAM,
@@ -39,6 +40,8 @@ def trace_columns(config: MachineConfig, actual: bool) -> list[str]:
     names = [*COLUMN_NAMES, *(f"{axis.name}_{axis.unit}" for axis in config.axes)]
     if actual:
         names += [f"{axis.name}_actual_{axis.unit}" for axis in config.axes]
+    if config.spindle.laser:
+        names.append(POWER)
     return names
 
 
@@ -49,6 +52,7 @@ class TraceCollector:
         self._config = config
         self._actual = actual
         self._pieces: list[Floats] = []
+        self._powers: list[Floats] = []
         self._executions = ExecutionCollector()
         self._tagged = False
 
@@ -61,6 +65,8 @@ class TraceCollector:
         self.add(rows)
         self._tagged = True
         self._executions.add(tags, records)
+        if self._config.spindle.laser:
+            self._powers.append(powers(rows, tags, records, self._config))
 
     def trace(self) -> Trace:
         """Return everything collected."""
@@ -79,6 +85,7 @@ class TraceCollector:
             actual=rows[:, LEADING + axes :] if self._actual else None,
             execution=execution,
             program=None if execution is None else _programs(execution, len(rows)),
+            power=np.concatenate(self._powers) if self._powers else None,
         )
 
 
@@ -118,6 +125,7 @@ class TraceWriter:
             self._file: TraceFile = WRITERS[format_of(checked, TRACE_FORMATS)](partial, columns)
             stack.push(self._close)
             self._stack = stack.pop_all()
+        self._config = config
         self._first = ""  # the program of all rows so far, if it is known
         self._last = ""
         self._several = False
@@ -134,7 +142,15 @@ class TraceWriter:
         self._file.close(complete=kind is None)
 
     def add(self, rows: Floats) -> None:
-        """Write a piece of the record, which belongs to the same program as what came before."""
+        """Write a piece of the record, which belongs to the same program as what came before.
+
+        Raises:
+            UsageError: the machine has a laser, whose power stands with the blocks.
+        """
+        if self._config.spindle.laser:
+            raise UsageError(
+                "rows alone do not tell the power of the laser", hint="Give `add_tagged` as `tagged_rows`."
+            )
         self._file.add(rows, np.full(len(rows), self._last, object) if self._several else None)
 
     def add_tagged(self, rows: Floats, tags: npt.NDArray[np.int64], records: BlockRecords) -> None:
@@ -150,6 +166,8 @@ class TraceWriter:
         names[names == ""] = self._first
         if len(names):
             self._last = names[-1]
+        if self._config.spindle.laser:
+            rows = np.column_stack((rows, powers(rows, tags, records, self._config)))
         self._file.add(rows, np.repeat(names, np.diff(starts, append=len(tags))) if self._several else None)
 
 
@@ -197,6 +215,7 @@ def read_trace(path: str | Path) -> Trace:
         setpoint=np.column_stack([columns[match[0]] for match in setpoints]),
         actual=np.column_stack(actual) if actual else None,
         program=columns.get(PROGRAM),
+        power=columns.get(POWER),
     )
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from polycnc.machine import MachineConfig
-from polycnc.runner._result import Trace
+from polycnc.runner._outcome import Trace
 
 ROUNDING = 1e-6
 """Part of a limit by which rounding may exceed it; positions are doubles, and differences of them are divided twice."""

@@ -209,7 +209,7 @@ def last_decimal_mm(parameters: Parameters) -> float:
 def _carried(program: ProgramText, block_map: BlockMap, dialect: Dialect) -> Indices | None:
     """Return the record whose blocks do what each record asks for, None if it is always the record itself.
 
-    It is the record itself, unless its last block only computes: then its moves come from a block behind, maybe one
+    It is the record itself, unless its last block only computes: then its moves come from a block after, maybe one
     in a loop that moves for many records. They and all that lie between are compared as one.
     """
     if dialect.language != "cpl":

@@ -1,6 +1,6 @@
 """Runs tests in forked children; one request a line and one answer, as JSON: `python -m mutation.worker (fresh|ready)`.
 
-`fresh` has the heavy imports behind it and imports polycnc anew for each request: `arguments` for pytest, `only` (the
+`fresh` has the heavy imports after it and imports polycnc anew for each request: `arguments` for pytest, `only` (the
 tests to run, in that order, or null), `watch` (the files whose lines are asked for), `slowest_s` (of processor time,
 after which a test fails) and `limit_s`. The answer has `status`, the tests' `times_s`, those that `failed` and, for
 each watched file, its `lines` with the numbers of the `tests` that ran them; -1 is an import.

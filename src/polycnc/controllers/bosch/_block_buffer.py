@@ -9,7 +9,7 @@ from polycnc.cnc import ControlError, Refusal
 from polycnc.nc import Pause, ProgramText, SourceItem, TextSpan
 
 SIZE_BYTES = 4095
-"""What the buffer holds of blocks with their line feeds, without the zero byte behind them."""
+"""What the buffer holds of blocks with their line feeds, without the zero byte after them."""
 
 
 class BlockBuffer:

@@ -203,7 +203,7 @@ class ChannelData:
                 last.program(f"G{code}")
         for name in (
             "M19" if words.spindle_oriented else {1: "M3", -1: "M4", 0: "M5"}[words.spindle_direction],
-            *(f"M{code}" for code in words.m),
+            *(f"M{code}" for code in (*words.coolant, *words.m)),
         ):
             if any(name in group for group in _M_GROUPS):
                 last.program(name)

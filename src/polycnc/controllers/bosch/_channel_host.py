@@ -189,7 +189,7 @@ class ChannelHost:
 
     @property
     def is_buffered(self) -> bool:
-        """Whether blocks can be put behind those under way."""
+        """Whether blocks can be put after those under way."""
         return self.buffer is not None
 
     @property
@@ -362,9 +362,9 @@ class _Language(CplLanguage):
             self.used = True
         return source
 
-    def way_back(self, channel: object, saved: object) -> Returning:
+    def restore_point(self, channel: object, saved: object) -> Returning:
         """Return what goes back to a state, with the variables of its programs."""
-        back = super().way_back(channel, saved)
+        back = super().restore_point(channel, saved)
 
         def go_back() -> Sequence[tuple[object, BlockSource | None]]:
             found = back()

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from polycnc.cnc import Control, Mode, ProgramRun, RunState
+from polycnc.cnc import AxisStatus, Control, Mode, ProgramRun, RunState
 from polycnc.controllers.bosch.ncs import Mode as BoschMode
+from polycnc.kernel import PIDF
 from polycnc.machine import Machine
 
 MODES = {
@@ -65,8 +66,8 @@ class ChannelPorts(Protocol):
     def is_by_hand(self, number: int) -> bool:
         """Tell whether what is executed are blocks put in by hand."""
 
-    def referenced(self) -> frozenset[str]:
-        """Return the axes that have been referenced."""
+    def axes(self) -> Mapping[str, AxisStatus]:
+        """Return the axes of the machine in the present cycle."""
 
     def spindle(self) -> tuple[float, float | None]:
         """Return the override of the spindle and its actual speed (rpm), None where it is the programmed one."""
@@ -75,8 +76,7 @@ class ChannelPorts(Protocol):
 class AttachedRuns:
     """Runs that somebody else advances, each in automatic on a machine whose axes are all referenced."""
 
-    def __init__(self, axis_names: Sequence[str]) -> None:
-        self._axis_names = frozenset(axis_names)
+    def __init__(self) -> None:
         self._runs: dict[int, ProgramRun] = {}
 
     @property
@@ -118,13 +118,24 @@ class AttachedRuns:
         """Return False: it is a program."""
         return False
 
-    def referenced(self) -> frozenset[str]:
-        """Return all axes."""
-        return self._axis_names
+    def axes(self) -> Mapping[str, AxisStatus]:
+        """Return the axes; all are referenced, and nobody moves them by hand."""
+        return {axis.name: _axis(self.machine, place) for place, axis in enumerate(self.machine.config.axes)}
 
     def spindle(self) -> tuple[float, float | None]:
         """Return 100 %, and no speed of its own."""
         return 1.0, None
+
+
+def _axis(machine: Machine, place: int) -> AxisStatus:
+    """Return an axis that a program moves; without a servo it is where it should be."""
+    axis, state = machine.config.axes[place], machine.state
+    setpoint, velocity = float(state.setpoint[place]), float(state.velocity[place])
+    at = float(state.servo.actual[place]) if state.servo.row[place]["mode"] == PIDF else setpoint
+    return AxisStatus(
+        axis.name, axis.unit, at, at, at, 0.0, setpoint, at, setpoint - at, velocity, True, velocity != 0.0, "none",
+        0.0, axis.vmax,
+    )  # fmt: skip
 
 
 class DeviceChannels:
@@ -200,9 +211,9 @@ class DeviceChannels:
         """Tell whether what is executed are blocks put in by hand."""
         return self._control.channels[number - 1].is_mdi
 
-    def referenced(self) -> frozenset[str]:
-        """Return the axes that have been referenced."""
-        return frozenset(name for name, done in self._control.manual.referenced.items() if done)
+    def axes(self) -> Mapping[str, AxisStatus]:
+        """Return the axes of the control's status."""
+        return self._control.axes()
 
     def spindle(self) -> tuple[float, float | None]:
         """Return the override of the spindle and its actual speed (rpm)."""

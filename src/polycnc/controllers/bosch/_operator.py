@@ -75,7 +75,7 @@ class DeviceOperator:
         return text is not None and not self._hosts[channel - 1].check(ProgramText.from_text(text, name))
 
     def buffer(self, channel: int, text: str) -> None:
-        """Put blocks behind those put in by hand, also while these are executed; they begin if there are none.
+        """Put blocks after those put in by hand, also while these are executed; they begin if there are none.
 
         Raises:
             ControlError: See `Control.set_mdi`; the buffer has no room.

@@ -44,11 +44,12 @@ class Pnc:
     """A control on a machine of its own; channels count from 1, as its programs count them.
 
     `root` is the control's directory: part programs, files, tables and everything permanent lie in it. `channels` are
-    the names of each channel's axes, one channel with all of them if there are none; `numbers` are the physical indices
-    of the machine's axes, 1 and up if absent. `keys` are pressed when a program of channel 1 asks for one. `server` is
-    the control that programs ask by MCODS and MCOPS, like the `ncs` of another one; this one if None. `script` says how
-    the PLC answers functions. With `stepping` programs are linked so that a debugger can stop at each of their lines.
-    With `reselects` a program that has ended, or that MCOPS has left, is selected again (MCODS(70)).
+    the names of each channel's axes, one channel with all of them if there are none; an axis in none is asynchronous.
+    `numbers` are the physical indices of the machine's axes, 1 and up if absent. `keys` are pressed when a program of
+    channel 1 asks for one. `server` is the control that programs ask by MCODS and MCOPS, as the `ncs` of another; None:
+    this one. `script` says how the PLC answers functions. With `stepping` a debugger can stop at each line. With
+    `reselects` a program that has ended, or that MCOPS has left, is selected again (MCODS(70)). With `references` axes
+    have to be referenced after power-up before a program starts.
 
     Raises:
         UsageError: Another control runs in the root.
@@ -67,6 +68,7 @@ class Pnc:
         servo: bool = False,
         stepping: bool = False,
         reselects: bool = False,
+        references: bool = False,
     ) -> None:
         machine = load_machine(config)
         self._owner = RootOwner(Path(root).resolve())
@@ -74,13 +76,12 @@ class Pnc:
         shares = [tuple(each) for each in channels] or [machine.axis_names]
         axes = SystemAxes(machine.axis_names, numbers)
         axes.set_channels(shares)
-        data = ControlData(reference_required=False, reset_stops_spindle=False, end_stops_spindle=False)
-        dialect = load_dialect("bosch")
-        hosts: list[ChannelHost] = []
-        owners = [ChannelData(each, spindle=place == 0) for place, each in enumerate(shares)]
+        dialect, hosts = load_dialect("bosch"), list[ChannelHost]()
         self._control = Control(
-            machine, channels=owners, memory=Path(root) / STORE, dialect=dialect, data=data, script=script, servo=servo,
+            machine, channels=_owners(shares, machine.axis_names), memory=Path(root) / STORE, dialect=dialect,
+            data=_data(references), script=script, servo=servo,
         )  # fmt: skip
+        self._control.share_axes(shares)
         self._channels = DeviceChannels(self._control, reselects=reselects)
         store = self._control.machine.memory
         self.system = BoschSystem(root, self._control.clock, machine, self._channels, axes=axes, store=store)
@@ -88,16 +89,12 @@ class Pnc:
         self.ncs = NcsServer(self.services)
         """Where programs of other controls ask this one; changes of what they asked for are noted in every cycle."""
         self.server = server or self.ncs
-        self._control.be_watched(self.ncs)
+        self._control.set_observer(self.ncs)
         for number, channel in enumerate(self._control.channels, 1):
             host = ChannelHost(
-                self.system,
-                number,
-                keys=keys if number == 1 else (),
-                server=self.server,
-                in_device=True,
+                self.system, number, keys=keys if number == 1 else (), server=self.server, in_device=True,
                 stepping=stepping,
-            )
+            )  # fmt: skip
             hosts.append(host)
             channel.runs.language = host.language
             channel.change_config(self.system.live_config(), dialect)
@@ -340,3 +337,18 @@ class Pnc:
             return self.system.directory.text(name)
         except Fault:
             return None
+
+
+def _data(references: bool) -> ControlData:
+    return ControlData(
+        referenced_at_start=not references, reference_required=references, reset_stops_spindle=False,
+        end_stops_spindle=False,
+    )  # fmt: skip
+
+
+def _owners(shares: Sequence[tuple[str, ...]], names: Sequence[str]) -> list[ChannelData]:
+    """Return who has the axes while the control is made: those that no channel has lie in the first one."""
+    left = tuple(name for name in names if all(name not in share for share in shares))
+    return [
+        ChannelData((*share, *left) if n == 0 else share, spindle=n == 0) for n, share in enumerate(shares)
+    ]

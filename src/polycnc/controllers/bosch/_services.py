@@ -68,7 +68,7 @@ class Operator(Protocol):
         """Link a program; tell whether nothing is wrong with it."""
 
     def buffer(self, channel: int, text: str) -> None:
-        """Put blocks behind those put in by hand."""
+        """Put blocks after those put in by hand."""
 
     def leave(self, channel: int, *, again: bool) -> None:
         """Leave what is selected; with `again` the program is selected from its beginning."""

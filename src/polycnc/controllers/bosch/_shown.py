@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from polycnc.cnc import ProgramRun, RunState
+from polycnc.cnc import AxisStatus, ProgramRun, RunState
 from polycnc.controllers.bosch._axes import SystemAxes
 from polycnc.controllers.bosch._channel_data import ChannelData
 from polycnc.controllers.bosch._channel_ports import ChannelPorts
@@ -25,15 +25,23 @@ from polycnc.controllers.bosch.ncs import (
     Unit,
     Wait,
 )
-from polycnc.controllers.bosch.system import ToolCompensations, ZeroShifts
-from polycnc.kernel import PIDF, RUNNING, WAIT
+from polycnc.controllers.bosch.system import (
+    TOOL_KIND,
+    TOOL_LENGTH,
+    TOOL_RADIUS,
+    ToolCompensations,
+    ZeroShifts,
+)
+from polycnc.kernel import RAPID, RUNNING, WAIT
 from polycnc.machine import Machine
-from polycnc.nc import Group
+from polycnc.nc import Group, ModalWords
 
 _INTERFACE_CHANNELS = 5
 _GROUPS = (range(54, 60), range(154, 160), range(254, 260))
 _FULL = 10000.0
 _CUTTING = ("G96", "G196")
+_NO_RADIUS = "G40"
+_GENERAL_TOOL = {"length_3": 1, "radius": 2, "length_1": 3, "length_2": 4, "orientation": 5}
 _SAV = {
     RunState.ACTIVE: Sav.ACTIVE, RunState.HOLD: Sav.ACTIVE, RunState.STOPPED_AT_BLOCK: Sav.READY,
     RunState.PROGRAM_STOP: Sav.READY, RunState.OPTIONAL_STOP: Sav.READY, RunState.ALARM: Sav.ERROR,
@@ -42,6 +50,7 @@ _WAITS = {
     RunState.PROGRAM_STOP: Wait.PROGRAM_STOP, RunState.OPTIONAL_STOP: Wait.PROGRAM_STOP, RunState.HOLD: Wait.FEED_HOLD,
 }  # fmt: skip
 _MOTIONS = {1: SpindleMotion.CLOCKWISE, -1: SpindleMotion.COUNTER_CLOCKWISE, 0: SpindleMotion.STOP}
+_WET = {**_MOTIONS, 1: SpindleMotion.CLOCKWISE_COOLANT, -1: SpindleMotion.COUNTER_CLOCKWISE_COOLANT}
 
 
 class Programs(Protocol):
@@ -53,7 +62,7 @@ class Programs(Protocol):
 
     @property
     def is_buffered(self) -> bool:
-        """Whether blocks can be put behind those under way."""
+        """Whether blocks can be put after those under way."""
 
     @property
     def buffer_is_empty(self) -> bool:
@@ -85,9 +94,9 @@ class Shown:
         image.cycle = machine.clock.cycles
         image.drives, image.all_channels = len(self._axes.numbers), len(image.channels)
         image.interface_channels = _INTERFACE_CHANNELS
-        referenced = self._channels.referenced()
+        axes = self._channels.axes()
         for index, number in enumerate(self._axes.numbers):
-            image.axes[number] = self._axis(machine, index, number, referenced)
+            image.axes[number] = self._axis(machine, index, number, axes[self._axes.names[index]])
         for number, shown in image.channels.items():
             self._channel(shown, number)
         image.spindles[1] = self._spindle(machine)
@@ -96,21 +105,19 @@ class Shown:
         )
         return image
 
-    def _axis(self, machine: Machine, index: int, number: int, referenced: frozenset[str]) -> Axis:
-        axes, state, config = self._axes, machine.state, machine.config.axes[index]
+    def _axis(self, machine: Machine, index: int, number: int, now: AxisStatus) -> Axis:
+        axes, config = self._axes, machine.config.axes[index]
         channel = axes.channel_of(number)
         default = next((each for each, own in axes.defaults.items() if number in own), None)
-        name = axes.names[index]
-        setpoint = float(state.setpoint[index])
-        simulated = bool(state.servo.row[index]["mode"] == PIDF)
-        actual = float(state.servo.actual[index]) if simulated else setpoint
+        name, setpoint, actual = now.name, now.setpoint, now.actual
         shown = Axis(
             number, name, "linear" if config.unit == "mm" else "rotary", channel, default,
             setpoint=setpoint, actual=actual, machine_coordinate=setpoint,
-            lag=setpoint - actual, travel=bool(state.velocity[index]), referenced=name in referenced,
-            drive=Drive("polycnc", "simulated", "", _telegram(actual, float(state.velocity[index]))),
+            lag=now.following_error, travel=now.velocity != 0.0, referenced=now.referenced,
+            jog_speed=now.jog_speed * 60.0 if now.unit == "mm" else now.jog_speed / 6.0,
+            potentiometer=now.feed_override * _FULL,
+            drive=Drive("polycnc", "simulated", f"simulated {config.kind}", _telegram(actual, now.velocity)),
         )  # fmt: skip
-        shown.jog_speed = config.vmax * 60.0 if config.unit == "mm" else config.vmax / 6.0
         window = config.servo.in_position
         shown.in_window = abs(setpoint - actual) <= window
         run = None if channel is None else self._channels.run(channel)
@@ -120,17 +127,18 @@ class Shown:
         if run is None:
             shown.axis_coordinate = setpoint
             return shown
-        coordinates = run.channel.state.coordinates
+        assert channel is not None
+        words = self._words(run, channel)
         shifts, _ = self._tables()
         works = [
-            sum(shifts.shift_mm(code).get(name, 0.0) for code in group if f"G{code}" in coordinates.work)
+            sum(shifts.shift_mm(code).get(name, 0.0) for code in group if f"G{code}" in words.work)
             for group in _GROUPS
         ]
         shown.shifts = (works[0], works[1], works[2])
         shown.external_shift = sum(
-            shifts.shift_mm(int(code[1:])).get(name, 0.0) for code in coordinates.external
+            shifts.shift_mm(int(code[1:])).get(name, 0.0) for code in words.placement.offsets
         )
-        shown.preset = -float(coordinates.shift[index])
+        shown.preset = -float(run.channel.state.coordinates.shift[index])
         shown.axis_coordinate = setpoint - shown.shift
         shown.end = self._ends(run)[index] - shown.shift
         return shown
@@ -139,6 +147,10 @@ class Shown:
         """Return where the executed block ends (machine coordinates)."""
         to_go = list(run.distance_to_go.values())
         return [each + left for each, left in zip(run.position.values(), to_go, strict=True)]
+
+    def _words(self, run: ProgramRun, number: int) -> ModalWords:
+        """Return the words of the executed block; before the first one what the program begins with."""
+        return self._data(number).programmed() if run.modal is None else run.modal
 
     def _channel(self, shown: Channel, number: int) -> None:
         run = self._channels.run(number)
@@ -152,8 +164,8 @@ class Shown:
                 for each in self._axes.channels[number]
             ]
             return
-        data, row = self._data(number), run.machine.state.paths.row[run.path]
-        words = data.programmed() if run.modal is None else run.modal
+        row = run.machine.state.paths.row[run.path]
+        words = self._words(run, number)
         if self._tags.get(number) != run.executed_tag:
             self._tags[number] = run.executed_tag
             shown.blocks += 1
@@ -167,12 +179,10 @@ class Shown:
         segment = run.machine.state.seg.row[int(row["base"]) + int(row["head"]) % int(row["capacity"])]
         shown.dwell = bool(running and segment["kind"] == WAIT)
         moving = bool(running and not shown.dwell)
-        commanded = min(float(segment["feed_mm_s"]), float(segment["cap"])) * 60.0 if moving else 0.0
-        actual = float(row["speed"]) * 60.0 if moving else 0.0
-        shown.feeds = (commanded, commanded * run.feed_override, actual)
+        shown.feeds = _feeds(segment, row, run.feed_override) if moving else (0.0, 0.0, 0.0)
         shown.programmed_feed = words.feed * (25.4 if words.inch else 1.0)
         shown.potentiometer = run.feed_override * _FULL
-        self._tool(shown, run)
+        self._tool(shown, words)
         shown.other_waits = (shown.other_waits & Wait.DATA_SERVICE) | _WAITS.get(run.state, Wait(0))
         if self._waits(number):
             shown.other_waits |= Wait.SIGNAL_OR_TIME
@@ -207,31 +217,28 @@ class Shown:
         programs = self._programs.get(number)
         return programs is not None and programs.buffer_is_empty
 
-    def _tool(self, shown: Channel, run: ProgramRun) -> None:
-        state = run.channel.state
+    def _tool(self, shown: Channel, words: ModalWords) -> None:
+        """Show the compensations of the executed block."""
         shifts, tools = self._tables()
         shown.tool_table, shown.shift_table = tools.selected, shifts.active
-        sign = state.coordinates.length_sign
-        shown.length_number = state.length_tool if sign else -1
-        shown.length = float(state.coordinates.length.sum())
-        shown.radius_number = -1 if state.compensation_tool is None else state.compensation_tool
-        shown.radius = _radius(tools, shown.radius_number)
-        codes = state.placement.compensations
+        values, codes = tools.values, words.placement.compensations
+        cutting = words.g.get(Group.RADIUS_COMPENSATION, _NO_RADIUS) != _NO_RADIUS
+        shown.length_number = words.h or -1
+        shown.radius_number = words.d or 0 if cutting else -1
+        added = [
+            sum(values.get((code, place), 0.0) for code in codes) for place in (TOOL_LENGTH, TOOL_RADIUS)
+        ]
+        shown.length = (_group(tools, words.h)[0] + added[0]) if words.h else 0.0
+        shown.radius = (_group(tools, shown.radius_number)[1] + added[1]) if cutting else 0.0
         external = [code for code in codes if code % 100 == 45]
-        values = tools.values
         shown.external_tool = (
-            sum(values.get((code, 2), 0.0) for code in external),
-            sum(values.get((code, 1), 0.0) for code in external),
+            sum(values.get((code, TOOL_RADIUS), 0.0) for code in external),
+            sum(values.get((code, TOOL_LENGTH), 0.0) for code in external),
         )
         general = next((code for code in codes if code % 100 != 45), 0)
-        for name, place in (
-            ("length_3", 1),
-            ("radius", 2),
-            ("length_1", 3),
-            ("length_2", 4),
-            ("orientation", 5),
-        ):
+        for name, place in _GENERAL_TOOL.items():
             setattr(shown.tool, name, values.get((general, place), 0.0))
+        shown.tool.kind = int(values.get((general, TOOL_KIND), 0.0))
 
     def _coordinates(self, run: ProgramRun, number: int) -> list[Coordinate]:
         axes, state = self._axes, run.machine.state
@@ -270,9 +277,24 @@ class Shown:
         return Spindle(
             programmed=speed, actual=turning if rpm is None else rpm, potentiometer=override * _FULL,
             limits=(0.0, top), gear_limits=(0.0, top),
-            motion=SpindleMotion.ORIENTATION if words is not None and words.spindle_oriented else _MOTIONS[direction],
+            motion=_motion(words),
             cutting_m_min=turning if cutting else None,
         )  # fmt: skip
+
+
+def _motion(words: ModalWords | None) -> SpindleMotion:
+    if words is None:
+        return SpindleMotion.STOP
+    if words.spindle_oriented:
+        return SpindleMotion.ORIENTATION
+    return (_WET if words.coolant else _MOTIONS)[words.spindle_direction]
+
+
+def _feeds(segment: np.void, path: np.void, override: float) -> tuple[float, float, float]:
+    """Return the feed that is asked for with the override, the present one, and what the axes allow of the first."""
+    allowed = float(segment["cap"])
+    asked = allowed if segment["flags"] & RAPID else float(segment["feed_mm_s"]) * override
+    return asked * 60.0, float(path["speed"]) * 60.0, allowed * 60.0
 
 
 def _telegram(actual: float, velocity: float) -> dict[int, int]:
@@ -280,8 +302,9 @@ def _telegram(actual: float, velocity: float) -> dict[int, int]:
     return {51: round(actual * 10_000), 40: round(velocity * 60)}
 
 
-def _radius(tools: ToolCompensations, group: int) -> float:
+def _group(tools: ToolCompensations, group: int) -> tuple[float, float]:
+    """Return length and radius of a group, 0 if nothing is in it."""
     try:
-        return tools.group_mm(group)[1]
+        return tools.group_mm(group)
     except KeyError:
-        return 0.0
+        return 0.0, 0.0

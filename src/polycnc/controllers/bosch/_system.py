@@ -87,7 +87,7 @@ class BoschSystem:
         self.clock = clock
         self.axes = axes or SystemAxes(config.axis_names)
         self.directory = Directory(root)
-        self.channels: ChannelPorts = channels or AttachedRuns(config.axis_names)
+        self.channels: ChannelPorts = channels or AttachedRuns()
         self.clients = Clients()
         self.open_files: dict[Path, StoredFile] = {}
         self.programs: dict[int, Programs] = {}
@@ -178,6 +178,14 @@ class BoschSystem:
         """Return all values of a MACODA parameter."""
         channel, (found, _) = next(iter(self._macoda.items()))
         return found.parameters.get((number, channel)) or found.parameters[number, BASIC_SETTING]
+
+    def all_parameters(self) -> dict[str, object]:
+        """Return the values of all MACODA parameters by number; those of a channel are named like `701000010.2`."""
+        _, (found, _) = next(iter(self._macoda.items()))
+        return {
+            str(number) if channel == BASIC_SETTING else f"{number}.{channel}": values
+            for (number, channel), values in sorted(found.parameters.items())
+        }
 
     @property
     def search_path(self) -> tuple[str, ...]:

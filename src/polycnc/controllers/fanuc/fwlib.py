@@ -11,7 +11,7 @@
     print(position.data[:3])
 
 Arguments are the manual's, in its order. Pointers to what a function reads are no arguments: a function returns its
-code, and behind it what it reads. A call that is refused changes nothing. `STRUCTURES` says what lies where in memory.
+code, and after it what it reads. A call that is refused changes nothing. `STRUCTURES` says what lies where in memory.
 `Session()` is another program with a library of its own. Calls may come from several threads; one at a time is
 carried out.
 """

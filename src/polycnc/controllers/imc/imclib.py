@@ -14,7 +14,7 @@
         pass
 
 Arguments are the manual's, in its order. Structures are passed and filled in place, as in C. Pointers to single numbers
-are no arguments: a function returns its status, and behind it what it reads (`status, value = IMC_GetParam16(...)`).
+are no arguments: a function returns its status, and after it what it reads (`status, value = IMC_GetParam16(...)`).
 A call that is refused changes nothing. Addresses are the macros of the parameter header: the parameter's name and
 `Loc`. Calls may come from several threads; one at a time is carried out. A program of its own, with its own network,
 handles and time, is a `Session()`, which has all functions as attributes. `FUNCTIONS` is the table of all calls,

@@ -124,7 +124,7 @@ class Opaque:
 
 @dataclass(frozen=True, slots=True)
 class Bytes:
-    """Memory of any content: bytes, a text, a structure, or a list of structures that lie behind each other."""
+    """Memory of any content: bytes, a text, a structure, or a list of structures that lie one after another."""
 
     c: str = "void *"
     ctype: Any = ctypes.c_char

@@ -39,6 +39,7 @@ class Session:
         self.asked: Hashable = (
             ""  # the call that is being carried out, with its plain arguments: see `Polling`
         )
+        self.refused = False  # whether the last call was answered with a code and changed nothing
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
         """Return a function of the library for this session."""
@@ -186,6 +187,7 @@ class Facade(Generic[S]):
                 given = bound.args
             values = list(given)
             with session.lock:
+                session.refused = False
                 session.asked = (name, *[each for each in given if isinstance(each, _PLAIN)])
                 try:
                     for place, take in before:
@@ -195,6 +197,7 @@ class Facade(Generic[S]):
                         values[place] = take(values[place], to)
                     return body(to, *values[skipped:])
                 except Refused as refusal:
+                    session.refused = True
                     return function.answer(refusal.code if refused is None else refused, values)
                 except BadArgument as error:
                     raise UsageError(f"{name}: {error}", hint=function.prototype) from None

@@ -1,7 +1,7 @@
 """A call as data: its name, its arguments with C type and direction, and what it returns, read from annotations.
 
 The Python function takes the arguments that go in, in the manual's order. What C code passes a pointer for to get a
-number or a structure is returned behind the code, in the manual's order; `Out` says which argument that is::
+number or a structure is returned after the code, in the manual's order; `Out` says which argument that is::
 
     def cnc_getfigure(
         FlibHndl: Node, data_type: SHORT, size: Annotated[SHORT, INOUT]

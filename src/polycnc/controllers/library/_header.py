@@ -79,6 +79,7 @@ class Header:
     checked: bool = False
     constants: dict[str, int] = field(default_factory=dict)
     classes: dict[str, Any] = field(default_factory=dict)
+    typedefs: dict[str, str] = field(default_factory=dict)
     _declared: dict[str, _Declaration] = field(default_factory=dict)
     _numbers: dict[str, tuple[str, Any]] = field(default_factory=lambda: dict(_NUMBERS))
     _varied: dict[tuple[Any, ...], Any] = field(default_factory=dict)
@@ -98,6 +99,8 @@ class Header:
             elif each["pack"] is not None:
                 pack = int(each["pack"] or 0)
             elif each["new"]:
+                if each["new"] not in _NUMBERS:
+                    self.typedefs[each["new"]] = each["old"]
                 self._numbers.setdefault(each["new"], (each["new"], self._numbers[each["old"]][1]))
             elif each["name"]:
                 items = tuple(_items(each["body"]))

@@ -1,7 +1,7 @@
 """Spindle, tool, coolant and other auxiliary functions: what they change, and the waits they queue.
 
 They take effect at rest, in the order: spindle speed, tool, tool change, spindle, coolant, others; then the
-motion of the block; then program stops and the program end.
+motion of the block; then program stops and the program end. The power of a laser changes without a stop.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from polycnc.nc.blocks._channel_state import of_another_channel
 from polycnc.nc.blocks._moves import Stop, Wait
 from polycnc.nc.blocks._tool_offsets import tool_data
 from polycnc.nc.blocks._words import GWord, MWord, code_text, whole_number
-from polycnc.nc.modal._actions import Action, Group, MAction
-from polycnc.nc.modal._modal import INCH
+from polycnc.nc.modal._actions import SPINDLE_SENSES, Action, Group, MAction
+from polycnc.nc.modal._modal import FEED_MODE, FEED_PER_MINUTE, INCH
 from polycnc.nc.text._scan_plain import Word
 from polycnc.units import MM_PER_INCH
 
@@ -36,15 +36,11 @@ _BEFORE_MOTION = (
 )
 _AFTER_MOTION = (MAction.PROGRAM_STOP, MAction.OPTIONAL_STOP, MAction.PROGRAM_END)
 _STOPS = {MAction.PROGRAM_STOP: Stop.PROGRAM, MAction.OPTIONAL_STOP: Stop.OPTIONAL}
-_DIRECTION = {
-    MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0, MAction.SPINDLE_ORIENT: 0,
-}  # fmt: skip
+_DIRECTION = {**SPINDLE_SENSES, MAction.SPINDLE_ORIENT: 0}
 _PARAMETERS = "PQREL"
 """What a function with words takes, in the order in which its event names them."""
 _WITH_SPEED = (*_DIRECTION, MAction.RIGID_TAP)
-_COOLANT = {
-    MAction.COOLANT_MIST: (True, None), MAction.COOLANT_FLOOD: (None, True), MAction.COOLANT_OFF: (False, False),
-}  # fmt: skip
+_COOLANT = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD, MAction.COOLANT_OFF)
 _M_PER_FOOT = 12.0 * MM_PER_INCH / 1000.0
 
 
@@ -58,7 +54,7 @@ def spindle_speed(block: BlockContext) -> None:
     if speed is not None:
         _set_speed(block, speed)
         block.speed = speed
-        if not any(m.action in _WITH_SPEED for m in block.words.m):
+        if not _has_laser(block) and not any(m.action in _WITH_SPEED for m in block.words.m):
             block.items.append(Wait(0.0, block.line, (f"S{code_text(speed.value)}",)))
 
 
@@ -76,7 +72,33 @@ def select_tool(block: BlockContext) -> None:
 def functions(block: BlockContext) -> None:
     """Carry out the M codes that come before the block's motion, in their order."""
     for action in _BEFORE_MOTION:
-        block.items += [_function(block, m) for m in block.words.m if m.action is action]
+        for m in block.words.m:
+            if m.action is action:
+                block.items += _function(block, m)
+
+
+def laser_power(block: BlockContext) -> None:
+    """Let no line before a change of a laser's power be one with lines behind it.
+
+    Raises:
+        ProgramError: the power follows the speed of moves that are given a time.
+    """
+    if not _has_laser(block):
+        return
+    before, spindle = block.before.spindle, block.after.spindle
+    follows = spindle.direction < 0 and spindle.speed > 0.0
+    if follows and block.after.modal.whole[FEED_MODE] != FEED_PER_MINUTE and block.move_word is not None:
+        raise block.problem(
+            "the power of the laser follows the feed (M4), and this feed is no speed",
+            "Take a feed per minute (G94), or M3 for a power that stays.",
+            block.move_word,
+        )
+    if (before.speed, before.direction) != (spindle.speed, spindle.direction):
+        block.items.append(Wait(0.0, block.line, passes=True))
+
+
+def _has_laser(block: BlockContext) -> bool:
+    return block.after.machine.spindle.laser
 
 
 def stops(block: BlockContext) -> list[Wait]:
@@ -134,6 +156,10 @@ def _set_mode(block: BlockContext, g: GWord, speed: Word | None) -> None:
     surface_speed = bool(g.value)
     if surface_speed == spindle.surface_speed:
         return
+    if surface_speed and _has_laser(block):
+        raise block.problem(
+            f"G{g.code} on a machine with a laser", "Write the power as S, without G96.", g.word
+        )
     if surface_speed and speed is None:
         raise block.problem(
             f"G{g.code} without a cutting speed", "Add S, in m/min (feet/min with inch words).", g.word
@@ -162,7 +188,15 @@ def _with_words(name: str, words: Sequence[Word]) -> str:
     return " ".join((name, *(f"{word.letter}{code_text(word.value)}" for word in words)))
 
 
-def _function(block: BlockContext, m: MWord) -> Wait:
+def _function(block: BlockContext, m: MWord) -> tuple[Wait, ...]:
+    """Carry out an M code; return the wait for it, none for what passes at speed."""
+    if m.action in SPINDLE_SENSES and _has_laser(block):
+        block.after.spindle = replace(block.after.spindle, direction=SPINDLE_SENSES[m.action], oriented=False)
+        return ()
+    return (_wait(block, m),)
+
+
+def _wait(block: BlockContext, m: MWord) -> Wait:
     speed = block.speed
     times = block.after.machine.times
     name = f"M{m.code}"
@@ -193,7 +227,14 @@ def _function(block: BlockContext, m: MWord) -> Wait:
         block.after.spindle = now
         word = name if speed is None else f"{name} S{code_text(speed.value)}"
         return Wait(times.spindle_start_s if changed else 0.0, block.line, (word,))
-    if (coolant := _COOLANT.get(m.action)) is not None:
-        (mist, flood), (old_mist, old_flood) = coolant, block.after.coolant
-        block.after.coolant = old_mist if mist is None else mist, old_flood if flood is None else flood
+    if m.action in _COOLANT:
+        _switch_coolant(block, m)
     return Wait(times.auxiliary_s, block.line, (name,))
+
+
+def _switch_coolant(block: BlockContext, m: MWord) -> None:
+    spindle = block.after.spindle
+    others = tuple(code for code in spindle.coolant if code != m.code)
+    block.after.spindle = replace(
+        spindle, coolant=() if m.action is MAction.COOLANT_OFF else (*others, m.code)
+    )

@@ -13,7 +13,7 @@ from polycnc.errors import ProgramError
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._moves import Point, QueueItem
-from polycnc.nc.blocks._outcomes import NEXT, Outcome, Trouble
+from polycnc.nc.blocks._outcomes import NEXT, Outcome, Problem
 from polycnc.nc.blocks._words import NUMBERS, BlockWords, WordSorter
 from polycnc.nc.dialect._dialect import Dialect
 from polycnc.nc.modal._actions import Group
@@ -38,12 +38,12 @@ class ChannelRules:
     Args:
         dialect: what codes mean.
         state: a state of the channel, for what no block changes.
-        call_trouble: says what is against calling a sub-program from an offset of a text; None if nothing is.
+        call_problem: says what is against calling a sub-program from an offset of a text; None if nothing is.
         execute: sends a block through the steps, for a cycle that executes the blocks of its contour.
     """
 
     __slots__ = (
-        "call_trouble", "dialect", "execute", "high", "increment", "low", "modulo", "sorter", "stops_at_limits",
+        "call_problem", "dialect", "execute", "high", "increment", "low", "modulo", "sorter", "stops_at_limits",
         "text_rules", "ways",
     )  # fmt: skip
 
@@ -51,7 +51,7 @@ class ChannelRules:
         self,
         dialect: Dialect,
         state: ChannelState,
-        call_trouble: Callable[[int, ProgramText, int], Trouble | None],
+        call_problem: Callable[[int, ProgramText, int], Problem | None],
         execute: Callable[[BlockContext], None],
     ) -> None:
         self.dialect = dialect
@@ -69,7 +69,7 @@ class ChannelRules:
             for letter, name in dialect.incremental.items()
             if letter not in names and name in names
         }
-        self.call_trouble = call_trouble
+        self.call_problem = call_problem
         self.execute = execute
 
 

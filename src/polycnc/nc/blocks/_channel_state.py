@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, NamedTuple
 
+import numpy as np
 import numpy.typing as npt
 
 from polycnc.machine import MachineConfig
@@ -21,7 +22,7 @@ from polycnc.nc.blocks._tip import TipShift
 from polycnc.nc.blocks._turning import Turning
 from polycnc.nc.modal._actions import Family
 from polycnc.nc.modal._frame import UNTURNED, Frame, Rotation
-from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, Modal, changing, copy_modal
+from polycnc.nc.modal._modal import CHANGING, FEED_NUMBER, NO_AXIS, Modal, changing, copy_modal
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
 
@@ -51,7 +52,7 @@ class Plain:
     compensated. `path_tolerance_mm` is how far corners may be rounded, or that they are stops, `merge_mm` how
     far points may lie off the line that several are merged into. `m_codes` are those of the last block that had
     any. `frame` is how programmed positions are turned, scaled and mirrored, `placement` where they lie besides,
-    `coolant` is mist and flood, `references` are the reference positions that the program has set,
+    `references` are the reference positions that the program has set,
     `skip_position` where the last skip move ended (machine coordinates), `probe` the last probing.
     `corner` is a straight move that waits for the next one, `nurbs` a curve that is being written, `spline_way` leads
     from the end of a cubic spline to its last control point turned about, until anything else moves.
@@ -81,7 +82,6 @@ class Plain:
     spline_way: tuple[float, float] | None = None
     nurbs: Nurbs | None = None
     mode: Family = Family.MOVE
-    coolant: tuple[bool, bool] = (False, False)
     references: tuple[tuple[float, ...] | None, tuple[float, ...] | None] = (None, None)
 
 
@@ -179,6 +179,17 @@ class ChannelState(Plain):
     def zero_offset(self) -> Floats:
         """What zero offsets, without those of the program, shift every axis by (mm or degree)."""
         return self.coordinates.zero_offset(self.tables)
+
+    def length_said_again(self) -> int | None:
+        """Return the H word that would change nothing, None where there is none."""
+        coordinates, tool = self.coordinates, self.length_tool
+        axis = int(self.modal.letter_axis[ord("Z") - ord("A")])
+        if coordinates.length_sign == 0 or tool == 0 or axis == NO_AXIS or not self.tables.has_tool(tool):
+            return None
+        data = self.tables.tool(tool)
+        shift = coordinates.length_sign * (data.length_mm + data.wear_length_mm)
+        same = coordinates.with_length({axis: shift}, coordinates.length_sign)
+        return tool if np.array_equal(same.length, coordinates.length) else None
 
     def leave_drilling(self) -> None:
         """Leave a drilling cycle, and forget its words."""

@@ -2,7 +2,7 @@
 
 The interpreter stays with programmed positions. A plane move can only be given out when the next one is
 known, since the corner between them decides where it ends; so the stage holds back one plane move, and in
-order behind it whatever does not move in the plane.
+order after it whatever does not move in the plane.
 """
 
 from __future__ import annotations
@@ -374,7 +374,7 @@ class RadiusCompensation:
             self._round(before, leg, after, next_leg, joint, out)
 
     def _give_out(self, end: XY, out: list[QueueItem]) -> None:
-        """Give out the pending move, ending at `end`, and what is held behind it."""
+        """Give out the pending move, ending at `end`, and what is held after it."""
         item, leg, start = self._move, self._leg, self._at
         assert item is not None
         assert leg is not None

@@ -46,7 +46,7 @@ def contour_blocks(
         block = blocks[-1]
         if block.end >= len(text) or len(blocks) > MOST_CONTOUR_BLOCKS:
             return ContourTrouble(
-                f"there is no block N{last} behind N{first}", "Q names the last block of the contour."
+                f"there is no block N{last} after N{first}", "Q names the last block of the contour."
             )
         blocks.append(scan_block(text, block.end, block.line + 1, rules))
     if blocks[-1].flags & STATEMENT:

@@ -16,16 +16,16 @@ from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, AXIS_R, NO_AXIS, length_scal
 
 
 def no_straight_move(block: BlockContext, corner: Corner) -> ProgramError:
-    """Return the error of a block that is no straight move behind a move that waits for its corner."""
+    """Return the error of a block that is no straight move after a move that waits for its corner."""
     return block.problem(
-        f"{corner.word} of the block before needs a straight move at feed behind it",
+        f"{corner.word} of the block before needs a straight move at feed after it",
         "Write G1 and nothing else in this block, or take the corner out.",
         None,
     )
 
 
 def held(block: BlockContext, moves: list[Line]) -> list[QueueItem]:
-    """Hold the last of a block's moves if R or C asks for a corner behind it; return the others."""
+    """Hold the last of a block's moves if R or C asks for a corner after it; return the others."""
     letters = [each for each in "RC" if each in block.words.by_letter and each not in block.after.axis_names]
     if not letters:
         return [*moves]
@@ -42,7 +42,7 @@ def held(block: BlockContext, moves: list[Line]) -> list[QueueItem]:
 
 
 def joined(block: BlockContext, items: list[QueueItem]) -> list[QueueItem]:
-    """Return the items behind a move that waits for its corner, with that move and the corner.
+    """Return the items after a move that waits for its corner, with that move and the corner.
 
     Raises:
         ProgramError: the block is no straight move at feed, or the corner does not fit.
@@ -79,10 +79,10 @@ def joined(block: BlockContext, items: list[QueueItem]) -> list[QueueItem]:
 
 
 def refuse_open(block: BlockContext, state: ChannelState, g: GWord) -> None:
-    """Refuse the end of a contour behind a move that waits for its corner."""
+    """Refuse the end of a contour after a move that waits for its corner."""
     if (corner := state.corner) is not None:
         raise block.problem(
             f"{corner.word} at the end of the contour of G{g.code}",
-            "A corner needs a straight move behind it.",
+            "A corner needs a straight move after it.",
             g.word,
         )

@@ -48,7 +48,7 @@ def joined(corner: Corner, after: Line, plane: tuple[int, int, int]) -> list[Mov
         )
     angle = math.acos(max(-1.0, min(1.0, back[0] * ahead[0] + back[1] * ahead[1])))
     if angle < _STRAIGHT_RAD:
-        raise CornerError(f"{corner.word} where the path turns back", "Take it out.")
+        raise CornerError(f"{corner.word} where the path turns back", "Remove it.")
     if angle > math.pi - _STRAIGHT_RAD:
         return [corner.move, after]
     reach = corner.size_mm / math.tan(0.5 * angle) if corner.rounds else corner.size_mm

@@ -18,7 +18,7 @@ from polycnc.nc.blocks._limits import check_path
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait
 from polycnc.nc.blocks._not_blocks import NotBlocks
-from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Trouble
+from polycnc.nc.blocks._outcomes import NEXT, Control, Outcome, Problem
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._steps import take_steps
 from polycnc.nc.blocks._travel import up_to_limits
@@ -36,7 +36,7 @@ from polycnc.nc.text._scan_plain import Block
 class Interpreter:
     """Execute blocks of one channel: change the state and give items to the queue.
 
-    `call_trouble` says what is against calling a sub-program from an offset of a text, None if nothing is. `reference`
+    `call_problem` says what is against calling a sub-program from an offset of a text, None if nothing is. `reference`
     gives the reference of the record of the block on a line, with what it leaves in force.
     """
 
@@ -46,7 +46,7 @@ class Interpreter:
         state: ChannelState,
         messages: Messages,
         queue: QueueWriter,
-        call_trouble: Callable[[int, ProgramText, int], Trouble | None],
+        call_problem: Callable[[int, ProgramText, int], Problem | None],
         reference: Callable[[int, ModalSnapshot], int],
     ) -> None:
         self.dialect = dialect
@@ -54,7 +54,7 @@ class Interpreter:
         self.messages = messages
         self._queue = queue
         self._reference = reference
-        self._rules = ChannelRules(dialect, state, call_trouble, self._run)
+        self._rules = ChannelRules(dialect, state, call_problem, self._run)
         self._not_blocks = NotBlocks(dialect)
         self._after = state.copy()  # what the present block changes
         self._last_tag = 0
@@ -154,7 +154,7 @@ class Interpreter:
                 raise ProgramError(
                     f"{corner.word} at the end of the program",
                     position=self._text.line_position(corner.move.line),
-                    hint="A corner needs a straight move behind it.",
+                    hint="A corner needs a straight move after it.",
                 )
             if (curve := state.nurbs) is not None:
                 state.nurbs = None
@@ -170,7 +170,7 @@ class Interpreter:
             self._queue.put(item)
 
     def drain(self, text: ProgramText, line: int) -> None:
-        """Let preparation stop behind everything that has been given out; radius compensation holds nothing back.
+        """Let preparation stop after everything that has been given out; radius compensation holds nothing back.
 
         Raises:
             ProgramError: the last move cannot be compensated.
@@ -288,7 +288,7 @@ class Interpreter:
             self._queue.mark(self._next_tag(line, self.state.snapshot()))
 
     def leave_compensation(self) -> None:
-        """Go on without radius compensation, to look for errors behind a path that cannot be followed."""
+        """Go on without radius compensation, to look for errors after a path that cannot be followed."""
         self.state.compensation.reset()
         self.state.side = 0
 

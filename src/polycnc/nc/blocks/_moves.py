@@ -105,6 +105,8 @@ class Spline:
 class Wait:
     """Let time pass with all axes at rest, then raise the events (auxiliary functions) in order.
 
+    One that `passes` stops nothing: moves before and behind it differ in the power of a laser.
+
     A `stop` is a point where the program may stand: then preparation goes on when whoever runs the path says so.
     `message` is what the operator is told there.
     """
@@ -115,10 +117,11 @@ class Wait:
     stop: Stop | None = None
     tag: int = 0
     message: str = ""
+    passes: bool = False
 
     def tagged(self, tag: int) -> Wait:
         """Return the same wait as part of another block."""
-        return Wait(self.duration_s, self.line, self.events, self.stop, tag, self.message)
+        return Wait(self.duration_s, self.line, self.events, self.stop, tag, self.message, self.passes)
 
 
 Move: TypeAlias = Line | Arc

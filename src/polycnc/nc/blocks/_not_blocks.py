@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from polycnc.errors import ProgramError
 from polycnc.nc.dialect._dialect import Dialect
-from polycnc.nc.text._not_words import slip, statements
+from polycnc.nc.text._not_words import statements, syntax_hint
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan_plain import Block
 
@@ -24,7 +24,9 @@ class NotBlocks:
 
     def problem(self, text: ProgramText, block: Block) -> ProgramError:
         """Return what is wrong with a line."""
-        wrong = slip(text.content[block.offset : text.line_end(block.offset)].decode("latin-1"), self._rules)
+        wrong = syntax_hint(
+            text.content[block.offset : text.line_end(block.offset)].decode("latin-1"), self._rules
+        )
         if wrong is not None:
             position = text.position(block.offset + wrong.place)
             return ProgramError(wrong.what, position=position, hint=wrong.hint)

@@ -1,4 +1,4 @@
-"""How a program goes on behind a block: calls of sub-programs, returns, stops and ends."""
+"""How a program continues after a block: calls of sub-programs, returns, stops and ends."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import Enum
 from polycnc.nc.modal._actions import MAction
 from polycnc.nc.text._place import Place
 
-Trouble = tuple[str, str, str]
+Problem = tuple[str, str, str]
 """What is wrong, what to do and its code, of something that is not a matter of the block's words alone."""
 
 

@@ -40,7 +40,7 @@ def _call(block: BlockContext, code: str, at: Word) -> Outcome:
     repeats = 1 if l_word is None else whole_number(l_word, "a number of repetitions", block.problem)
     if l_word is None and program > 9999 and block.dialect.sub_program.repeats_in_p:
         repeats, program = divmod(program, 10_000)
-    if trouble := block.rules.call_trouble(program, block.text, p_word.place):
+    if trouble := block.rules.call_problem(program, block.text, p_word.place):
         what, hint, number = trouble
         error = block.problem(what, hint, p_word)
         error.code = number

@@ -35,7 +35,7 @@ class Event:
 
     `line` and `tag` are the block's line and the reference of its record. `default_s` is what the machine file says
     that the function takes, where the queue does not wait for it (`QueueWriter.answers`). `message` is what the
-    operator is told there. Preparation goes on behind a `barrier` when it has been answered.
+    operator is told there. Preparation continues after a `barrier` when it has been answered.
     """
 
     word: str
@@ -62,7 +62,7 @@ class QueueWriter:
     """Append items to path `path` of the kernel; what finds no room waits in `backlog`.
 
     `events` holds what the path has yet to come to, by number, `probes` the tags of probing among it. `stops` counts
-    those among them behind which preparation waits: drains, with `stands_at_stops` program stops, and with `answers`
+    those among them after which preparation waits: drains, with `stands_at_stops` program stops, and with `answers`
     auxiliary functions, at which the path does not wait by itself: whoever runs it holds it until they are answered.
     `marks` takes the blocks that leave nothing in the queue: the segment count that they stand before, and their tag.
     """
@@ -93,6 +93,8 @@ class QueueWriter:
                 self.put(item)
             return
         row = self.paths.row[self.path]
+        if items and isinstance(items[0], Wait) and items[0].passes and not self.backlog:
+            self._close_line()
         before = int(row["tail"])
         marked = len(self.marks)
         for item in items:
@@ -101,7 +103,7 @@ class QueueWriter:
             self.mark(items[0].tag)
 
     def put(self, item: QueueItem) -> None:
-        """Append one move or wait, behind what waits for room."""
+        """Append one move or wait, after what waits for room."""
         if self.backlog or not self._has_room(item):
             self.backlog.append(item)
         else:
@@ -221,6 +223,8 @@ class QueueWriter:
         )
 
     def _put_wait(self, item: Wait) -> None:
+        if item.passes:
+            return
         words = item.events or (("",) if item.stop is not None else ())
         answered = self.answers and bool(item.events)
         stands = self.stands_at_stops and item.stop in (Stop.PROGRAM, Stop.OPTIONAL)

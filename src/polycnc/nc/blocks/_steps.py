@@ -130,9 +130,10 @@ def tool(block: BlockContext) -> None:
 
 
 def functions(block: BlockContext) -> None:
-    """Carry out M codes that come before the motion."""
+    """Carry out M codes that come before the motion, and let a laser's power change."""
     if block.words.m:
         auxiliary.functions(block)
+    auxiliary.laser_power(block)
 
 
 def length(block: BlockContext) -> None:

@@ -45,12 +45,12 @@ def _compensate_along_z(block: BlockContext, g: GWord | None) -> None:
         if sign and of_another_channel("Z") in block.after.axis_names:
             raise block.problem(
                 "tool length compensation along axis Z, which belongs to another channel",
-                "Take it out, or execute the program in that channel.",
+                "Remove it, or execute the program in that channel.",
                 h_word if g is None else g.word,
             )
         if sign and g is not None:
             raise block.problem(
-                "tool length compensation on a machine without a Z axis", "Take it out.", g.word
+                "tool length compensation on a machine without a Z axis", "Remove it.", g.word
             )
         return
     if sign == 0:

@@ -112,4 +112,4 @@ def refuse_rest(block: BlockContext, g: GWord) -> None:
     """Refuse what is left in the block before anything is written that cannot be taken back."""
     for name, word in block.words.unused():
         if name not in block.dialect.ignored_addresses:
-            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Take it out.", word)
+            raise block.problem(f"'{name}' cannot stand beside G{g.code}", "Remove it.", word)

@@ -21,9 +21,9 @@ NUMBERS = "NO:"
 """The letters of block and program numbers."""
 MOST_WORDS = 1000
 """Words of a block: far more than any control reads. A file of one line would take hours otherwise."""
-_OF_MOVES = range(40, 50)  # offsets, behind which axis words are still a move
+_OF_MOVES = range(40, 50)  # offsets, after which axis words are still a move
 _NOT_YET = "What it does would be left out: take it out, or post the program without it."
-_OTHER_DIALECT = "Take it out, or name the dialect of the control that the program is for."
+_OTHER_DIALECT = "Remove it, or name the dialect of the control that the program is for."
 _REMARKS = re.compile(rb"\([^)\r\n]*\)")
 _COOLANT_ON = (MAction.COOLANT_MIST, MAction.COOLANT_FLOOD)
 

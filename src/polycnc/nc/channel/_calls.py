@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable
 
 from polycnc.errors import ProgramError, UsageError
 from polycnc.machine import SnapshotError
-from polycnc.nc.blocks._outcomes import Trouble
+from polycnc.nc.blocks._outcomes import Problem
 from polycnc.nc.channel._errors import Errors
 from polycnc.nc.channel._main_bounds import MainBounds
 from polycnc.nc.channel._reader import Reader
@@ -50,7 +50,7 @@ class Calls:
         self._language = language
         self._reader = reader
         self._errors = errors
-        self._refused: dict[tuple[str, int], Trouble] = {}
+        self._refused: dict[tuple[str, int], Problem] = {}
         self._all = [Running(Place(main.opening))]
         self._entered: tuple[Call, ...] = ()
         self.running = self._all[0]
@@ -230,7 +230,7 @@ class Calls:
         self._entered = tuple(calls)
         self.stack = self._entered + self.within
 
-    def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Trouble | None:
+    def trouble(self, program: int | ProgramText, text: ProgramText, offset: int) -> Problem | None:
         """Return what is against a call that stands at byte `offset` of `text`, None if nothing is.
 
         Where errors are collected, a call that has been refused once is so ever after: a program that calls itself k
@@ -242,7 +242,7 @@ class Calls:
             self._refused[site] = trouble
         return trouble
 
-    def _trouble(self, program: int | ProgramText) -> Trouble | None:
+    def _trouble(self, program: int | ProgramText) -> Problem | None:
         deepest = self._dialect.sub_program.depth
         # Calls with arguments have their own limit, which the language watches.
         if sum(running.arguments is None for running in self._all) > deepest:
@@ -258,7 +258,7 @@ class Calls:
         if found is None:
             return (
                 f"there is no sub-program {program}",
-                f"Write it behind the program, beginning with O{program}, or in a file O{program} beside it.",
+                f"Write it after the program, beginning with O{program}, or in a file O{program} beside it.",
                 self._code("PS0078"),
             )
         return None
@@ -299,7 +299,7 @@ class Calls:
         if isinstance(self._language, BoundLanguage):
             self._language.attach(host)
 
-    def way_back(self, host: object, saved: object) -> Callable[[], None]:
+    def restore_point(self, host: object, saved: object) -> Callable[[], None]:
         """Return what the language does last when its programs go back to a state; nothing changes yet.
 
         Raises:
@@ -307,7 +307,7 @@ class Calls:
         """
         returning: Returning | None = None
         if isinstance(self._language, LastingLanguage):
-            returning = self._language.way_back(host, saved)
+            returning = self._language.restore_point(host, saved)
         elif saved is not None:
             raise SnapshotError(
                 "the program under way needs its language", hint="Restore it where it was taken."

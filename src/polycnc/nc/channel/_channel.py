@@ -3,7 +3,7 @@
 A `Reader` makes blocks of program texts, `Calls` know which program runs and which language executes it, `Prepared` is
 the queue with the records of its blocks, and the `Preparation` executes one block after the other and goes on where it
 says. Runs of plain blocks go through the compiled kernel (`fast`), every other block, and the first blocks of a
-program, through the ordinary interpreter. Where a language executes a program, its `BlockSource` gives the blocks.
+program, through the reference interpreter. Where a language executes a program, its `BlockSource` gives the blocks.
 """
 
 from __future__ import annotations
@@ -196,13 +196,13 @@ class Channel:
     # ------------------------------------------------------------------ preparing
 
     def go_on(self) -> None:
-        """Go on behind the first stop that preparation waits for; it has been executed."""
+        """Go on after the first stop that preparation waits for; it has been executed."""
         self.writer.stops -= 1
 
     def fill(self, blocks: int | None = None, *, compiled: bool = True) -> None:
         """Prepare blocks until the queue is full, the program has ended or waits; `blocks` more at the most.
 
-        Without `compiled` every block goes through the ordinary interpreter.
+        Without `compiled` every block goes through the reference interpreter.
         """
         self._preparation.fill(blocks, compiled=compiled)
         if self.on_filled is not None:
@@ -230,7 +230,7 @@ class Channel:
         self._calls.begin_at(place)
 
     def bound(self, first: int, last: int) -> None:
-        """Let the main program, which has not begun, be searched for line `first` and end behind line `last`.
+        """Let the main program, which has not begun, be searched for line `first` and end after line `last`.
 
         Raises:
             UsageError: a language executes it that cannot end there.
@@ -264,7 +264,7 @@ class Channel:
         if self.state.compensation.active:
             raise UsageError(
                 f"radius compensation is active at line {line}",
-                hint="Search a block before G41 or G42, or behind G40.",
+                hint="Search a block before G41 or G42, or after G40.",
             )
         if search.held is None:
             self._reader.jump(place, self._calls.bounds.end)
@@ -277,7 +277,7 @@ class Channel:
     # ------------------------------------------------------------------ going back
 
     def snapshot(self) -> ChannelSnapshot:
-        """Return where preparation stands and all that it has found, to go back to with `way_back`.
+        """Return where preparation stands and all that it has found, to go back to with `restore_point`.
 
         The queue itself belongs to the machine.
 
@@ -304,13 +304,13 @@ class Channel:
             self._calls.language_state(),
         )
 
-    def way_back(self, saved: ChannelSnapshot) -> Callable[[], None]:
+    def restore_point(self, saved: ChannelSnapshot) -> Callable[[], None]:
         """Return what goes back to a snapshot of this channel, or of one that was made alike; nothing changes yet.
 
         Raises:
             SnapshotError: a program of it cannot go on from there.
         """
-        take_up = self._calls.way_back(self, saved.language)
+        take_up = self._calls.restore_point(self, saved.language)
         return lambda: self._go_back(saved, take_up)
 
     def _go_back(self, saved: ChannelSnapshot, take_up: Callable[[], None]) -> None:

@@ -28,7 +28,8 @@ from polycnc.nc.modal._frame import Frame, Polar, Rotation
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot, Spindle
 from polycnc.nc.modal._placement import Placement
 from polycnc.nc.modal._suppressed import Suppressed
-from polycnc.nc.records._block_records import Call, RunBegin, SavedRecords
+from polycnc.nc.records._block_records import Call, SavedRecords
+from polycnc.nc.records._replay import RunBegin
 from polycnc.nc.text._place import Place
 from polycnc.nc.text._program import ProgramText
 

@@ -11,7 +11,7 @@ from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._interpreter import Interpreter
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import QueueItem
-from polycnc.nc.blocks._outcomes import Control, Trouble
+from polycnc.nc.blocks._outcomes import Control, Problem
 from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.blocks._tables import ProgramTables
 from polycnc.nc.dialect._dialect import Dialect
@@ -72,7 +72,7 @@ class LineCheck:
         self,
         dialect: Dialect,
         state: ChannelState,
-        call_trouble: Callable[[int, ProgramText, int], Trouble | None],
+        call_problem: Callable[[int, ProgramText, int], Problem | None],
         *,
         words_only: bool,
     ) -> None:
@@ -86,7 +86,7 @@ class LineCheck:
         self._begun = False
         self.ended_at = 0
         self._interpreter = Interpreter(
-            dialect, self.state, Messages(), _NoQueue(), call_trouble, _no_reference
+            dialect, self.state, Messages(), _NoQueue(), call_problem, _no_reference
         )
 
     def follow(self, state: ChannelState) -> None:
@@ -108,7 +108,7 @@ class LineCheck:
         """Take the blocks of a text as those that come next; refused ones change nothing.
 
         Raises:
-            ProgramError: one of them cannot be executed, or stands behind the end of the program.
+            ProgramError: one of them cannot be executed, or stands after the end of the program.
         """
         before = self.state.copy()
         tables = before.tables.save()

@@ -23,11 +23,11 @@ class MainBounds:
 
     @property
     def end(self) -> int:
-        """The byte behind the last one that is executed."""
+        """The byte after the last one that is executed."""
         return len(self._main.begin.text) if self._end is None else self._end
 
     def set(self, first: int, last: int) -> None:
-        """Let the program, which has not begun, be searched for line `first` and end behind line `last` (0: its end).
+        """Let the program, which has not begun, be searched for line `first` and end after line `last` (0: its end).
 
         Raises:
             UsageError: A language executes it that cannot end there.

@@ -15,7 +15,7 @@ class ChannelOptions:
     `answers` the path waits at auxiliary functions for whoever runs it, not for the machine file's times; with `marks`
     blocks that leave nothing in the queue are noted (see `QueueWriter`). With `collect_errors` a refused block is noted
     and left out; else preparation ends there. With `mark_refused` the queue says where it was.
-    The ordinary interpreter gives the same queue as the compiled kernel, which takes over after the first
+    The reference interpreter gives the same queue as the compiled kernel, which takes over after the first
     `ordinary_blocks`: loading it, and once compiling it, takes longer than they do.
     """
 

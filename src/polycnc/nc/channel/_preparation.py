@@ -70,6 +70,10 @@ class Preparation:
             return
         if not self.begun:
             self.begun = True
+            if (error := self._reader.text.endless_line()) is not None:
+                self._note(error)
+                self.close()
+                return
             self._calls.begin()
         if prepared.writer.backlog and not prepared.writer.catch_up():
             return
@@ -186,7 +190,7 @@ class Preparation:
                 pass
 
     def _go_behind(self, place: Place | None, block: Block) -> None:
-        """Go on behind the contour that a cycle has cut.
+        """Go on after the contour that a cycle has cut.
 
         Raises:
             ProgramError: statements stand before that place.
@@ -201,7 +205,7 @@ class Preparation:
         self._reader.jump(place, self._reader.end)
 
     def _return(self) -> None:
-        """Return to the block behind the call."""
+        """Return to the block after the call."""
         source = self._calls.running.source
         if source is not None and source.leave():
             self._reader.stop()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import replace
 
 from polycnc.kernel import free_slots
 from polycnc.machine import Machine, MachineConfig
@@ -13,9 +14,12 @@ from polycnc.nc.blocks._queue import QueueWriter
 from polycnc.nc.channel._first_state import first_state
 from polycnc.nc.channel._options import ChannelOptions
 from polycnc.nc.dialect._dialect import Dialect
-from polycnc.nc.fast._plain_blocks import RESERVE, make_fast_work, marked, run_plain
+from polycnc.nc.fast._carried import NONE, Carried
+from polycnc.nc.fast._plain_blocks import RESERVE, run_plain
+from polycnc.nc.fast._work import carried_by, carry, make_fast_work, marked
 from polycnc.nc.modal._modal import ORDINARY
-from polycnc.nc.records._block_records import BlockRecords, Call, Feeds, RunBegin
+from polycnc.nc.records._block_records import BlockRecords, Call
+from polycnc.nc.records._replay import Feeds, RunBegin
 from polycnc.nc.text._program import ProgramText
 from polycnc.nc.text._scan import ScanRules, WordColumns
 
@@ -58,10 +62,13 @@ class Prepared:
             self.state = first_state(config, dialect, tuple(axes or config.axis_names))
         if before is not None:
             self.state.tool = before.state.tool
+        spindle = config.spindle
         self._fast_work = make_fast_work(
             self.state.modal,
+            self._tables,
             CHUNK_BLOCKS if options.marks else 0,
             feed_needs_point=dialect.numbers.feed_least_input > 0.0,
+            laser_top=spindle.max_rpm if spindle.laser else None,
         )
         self.writer.stands_at_stops = options.stands_at_stops
         self.writer.answers = options.answers
@@ -98,6 +105,8 @@ class Prepared:
         begin = RunBegin(int(words.offset[first]), int(words.line[first]), feeds)
         base = self.records.run_base(text, calls, self.state.snapshot(), begin)
         kernel = self._kernel
+        before = self._carried()
+        carry(self._fast_work, before)
         stopped: tuple[int, int] = run_plain(
             words,
             first,
@@ -111,9 +120,35 @@ class Prepared:
             kernel.limits,
             self._fast_work,
         )
+        if (carried := carried_by(self._fast_work)) != before:
+            self._take(carried)
         if self.writer.marks is not None:
             self.writer.marks.extend(marked(self._fast_work))
         return stopped
+
+    def _carried(self) -> Carried:
+        """Return what is in force of the words that the compiled kernel takes note of."""
+        state = self.state
+        length, radius = state.length_said_again(), state.compensation_tool
+        return Carried(
+            state.spindle.speed,
+            float(state.spindle.direction),
+            NONE,
+            float(state.selected_tool),
+            NONE if radius is None else float(radius),
+            NONE if length is None else float(length),
+        )
+
+    def _take(self, carried: Carried) -> None:
+        """Put in force what the compiled kernel has taken note of."""
+        state = self.state
+        state.selected_tool = int(carried.tool)
+        if carried.radius_tool != NONE:
+            state.compensation_tool = int(carried.radius_tool)
+        state.spindle = replace(state.spindle, speed=carried.speed)
+        if carried.m_code != NONE:
+            state.spindle = replace(state.spindle, direction=int(carried.sense), oriented=False)
+            state.m_codes = (int(carried.m_code),)
 
     def go_straight(self, position: tuple[float, ...], line: int, tag: int) -> None:
         """Go straight at rapid to a position (machine coordinates), as part of the block on `line`."""

@@ -23,12 +23,12 @@ from polycnc.nc.text._scan import (
 )
 from polycnc.nc.text._scan_plain import Block, Word, scan_block
 
-_JUMP_BLOCKS = 1 << 8  # scanned behind a call or a return: sub-programs are short, and jumps many
+_JUMP_BLOCKS = 1 << 8  # scanned after a call or a return: sub-programs are short, and jumps many
 _WORDS_ONLY = COMMENT | LABEL
 
 
 class Reader:
-    """Read the blocks of a text up to byte `end`, a piece at a time; `place` is behind the piece.
+    """Read the blocks of a text up to byte `end`, a piece at a time; `place` is after the piece.
 
     `at_end` tells whether all blocks of the piece have been taken, `line` is that of the last one. `blocks` counts
     those that have been taken, whoever gives them; those whose skip mark is in `skip_levels` are left out.
@@ -98,7 +98,7 @@ class Reader:
         self.at_end = self._next >= self._after
         self.line = int(words.line[index])
         if words.flags[index] & PERCENT:
-            # The % behind a program ends it, the one before it does not matter.
+            # The % after a program ends it, the one before it does not matter.
             return EndSource.RETURN if running.begun else None
         if int(words.skip_level[index]) in self.skip_levels:
             self.blocks += 1
@@ -165,7 +165,7 @@ class Reader:
                 yield Word(letter, value, place, True)
 
     def _scan(self, columns: WordColumns) -> None:
-        """Scan the blocks that follow the present place; the place moves behind them."""
+        """Scan the blocks that follow the present place; the place moves after them."""
         place = self.place
         self._words = columns
         data = place.text.data[: self.end]

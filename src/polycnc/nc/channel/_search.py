@@ -13,7 +13,7 @@ from polycnc.nc.channel._reader import Reader
 from polycnc.nc.sources._block_source import (
     CallProgram,
     Drain,
-    HastyLanguage,
+    FastForwardLanguage,
     Language,
     Pause,
     SourceItem,
@@ -37,7 +37,7 @@ class Search:
         self.held: SourceItem | None = None
         self._calls = calls
         self._reader = reader
-        self._language = language if isinstance(language, HastyLanguage) else None
+        self._language = language if isinstance(language, FastForwardLanguage) else None
         self._idle = 0
         self._before = (-1, -1)
 
@@ -46,12 +46,12 @@ class Search:
         """Seek a place; no time passes meanwhile for programs that wait for it."""
         self.place = place
         self._idle, self._before = 0, (-1, -1)
-        self._be_hasty(True)
+        self._fast_forward(True)
         try:
             yield
         finally:
             self.place = None
-            self._be_hasty(False)
+            self._fast_forward(False)
 
     def begin(self) -> None:
         """Read no more than what stands before the place; the program has begun."""
@@ -133,9 +133,9 @@ class Search:
         if self.held is not None:
             raise SnapshotError(
                 "a block of a program with statements has been searched",
-                hint="Take the snapshot behind its start.",
+                hint="Take the snapshot after its start.",
             )
 
-    def _be_hasty(self, on: bool) -> None:
+    def _fast_forward(self, on: bool) -> None:
         if self._language is not None:
-            self._language.hasty = on
+            self._language.fast_forward = on

@@ -21,7 +21,7 @@ from polycnc.nc.cpl._cpl_state import (
     Standing,
     damaged,
     kept_names,
-    put_back,
+    restore_state,
 )
 from polycnc.nc.cpl._host import Event, Host, KeepingHost, Lines, NcValues, Step, SubProgram, Waiting
 from polycnc.nc.cpl._link_table import LinkTables
@@ -69,11 +69,11 @@ class CplLanguage:
         self.globals: dict[str, Any] = {}
         self.codes = codes
         self.modal: SubProgram | None = None
-        """The call that is made behind every move."""
+        """The call that is made after every move."""
         self.linker = Linker(host.program, stepping=stepping, opened=True, tables=tables, codes=codes)
         self.running: list[CplSource] = []
         """The sources under way, that of the main program first."""
-        self.hasty = False
+        self.fast_forward = False
         """Whether a WAIT is over at once: a block is sought, and no time passes."""
         self.at_line: Callable[[str, int], bool] | None = None
         """What tells a debugger's wish to stand before a line, of programs linked for stepping."""
@@ -86,7 +86,7 @@ class CplLanguage:
         """Whether statements are told to who runs the channel."""
 
     def begin_between(self, first: int, last: int) -> None:
-        """Let the main program that comes next look out for line `first`, and end behind line `last` (0: its last)."""
+        """Let the main program that comes next look out for line `first`, and end after line `last` (0: its last)."""
         self._bounds = Bounds(first, last)
 
     def source(self, text: ProgramText, offset: int, line: int, arguments: object) -> CplSource | None:
@@ -151,7 +151,7 @@ class CplLanguage:
         )
         return SavedCpl(objects.all(), shared, kept, self.modal, programs)
 
-    def way_back(self, channel: object, saved: object) -> Returning:
+    def restore_point(self, channel: object, saved: object) -> Returning:
         """Return what goes back to a state; nothing changes yet.
 
         Raises:
@@ -199,9 +199,9 @@ class CplLanguage:
         standing: Sequence[Standing | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
-        put_back(self.globals, values[0])
+        restore_state(self.globals, values[0])
         if values[1]:
-            put_back(self._host.permanent, values[1])
+            restore_state(self._host.permanent, values[1])
         self.modal = saved.modal
         self.moves_on()
         self.running = []
@@ -265,7 +265,7 @@ class CplSource:
         self._bounds = bounds
         self.is_modal = modal
         """Whether its moves are followed by no modal call: it is that call."""
-        self._behind: tuple[CodeWord, ...] | None = None  # words behind which a modal call may come
+        self._behind: tuple[CodeWord, ...] | None = None  # words after which a modal call may come
         self._left: tuple[int, int] | None = None  # plain blocks that are given one by one
         self._text = text
         self._language = language
@@ -305,7 +305,7 @@ class CplSource:
             if (item := self._left_over()) is not None:
                 return item
             if self._waiting is not None:
-                self._answer = self._waiting.answer(hasty=self._language.hasty)
+                self._answer = self._waiting.answer(fast_forward=self._language.fast_forward)
                 if self._answer is None:
                     return Pause.PAUSE
                 self._waiting = None
@@ -352,12 +352,12 @@ class CplSource:
 
     def _statement(self, line: int) -> SourceItem | None:
         """Return the item of a statement that is stepped to or looked for."""
-        is_sought = self._language.hasty and self._bounds is not None and self._bounds.first == line
+        is_sought = self._language.fast_forward and self._bounds is not None and self._bounds.first == line
         is_shown = self._language.shows_statements or is_sought
         if not is_shown or not _STATEMENT.match(self.execution.program.source.line(line)):
             return None  # of NC blocks and WAIT: these are stopped at by themselves
         if self._language.stands(self.execution.program.file, line):
-            return Drain(line)  # nothing is reckoned before the path has come here
+            return Drain(line)  # nothing is computed before the path has come here
         self._statements += 1
         return Statement(line) if self._statements % _STATEMENTS else Pause.PAUSE
 
@@ -365,7 +365,7 @@ class CplSource:
         """Return where the program stands.
 
         Raises:
-            SnapshotError: It waits for the answer of a function, or ends behind a block that was given.
+            SnapshotError: It waits for the answer of a function, or ends after a block that was given.
         """
         if self._bounds is not None and self._bounds.last:
             raise SnapshotError(
@@ -425,7 +425,7 @@ class CplSource:
         return TextSpan(self._starts[first - 1], first, self._starts[last])
 
     def _left_over(self) -> SourceItem | None:
-        """Return what a block or plain lines have left to give: the modal call behind a move, the next line."""
+        """Return what a block or plain lines have left to give: the modal call after a move, the next line."""
         while self._behind is not None or self._left is not None:
             if self._behind is None:
                 return self._next_line()
@@ -458,7 +458,7 @@ class CplSource:
         return self._span(line, line)
 
     def _call_behind(self, words: Sequence[CodeWord]) -> SourceItem | None:
-        """Return the modal call behind a block that moves, or end it."""
+        """Return the modal call after a block that moves, or end it."""
         language = self._language
         if language.modal is None or self._in_modal:
             return None

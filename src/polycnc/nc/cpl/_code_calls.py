@@ -1,4 +1,4 @@
-"""Codes that call sub-programs: alone in their block, and again behind every move (Manual 003, 3.1 and 3.2)."""
+"""Codes that call sub-programs: alone in their block, and again after every move (Manual 003, 3.1 and 3.2)."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _no_codes() -> frozenset[str]:
 class CodeCalls:
     """What a control says of codes that call programs.
 
-    `alone` are those that do so without brackets ("G322", "M50"), `modal` those whose program is executed again behind
+    `alone` are those that do so without brackets ("G322", "M50"), `modal` those whose program is executed again after
     every move. `cancels` are the G codes that end this, `stands` those whose axis words are no move. `axes` are the
     axes that words move, as addresses with their extensions ("X", "X2"), `rules` how blocks are read.
     """

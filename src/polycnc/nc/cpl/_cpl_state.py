@@ -66,9 +66,9 @@ class SavedCalled(NamedTuple):
 class SavedProgram(NamedTuple):
     """One program that runs: where it stands, and what of its present statement is left to give out.
 
-    `place` is the line of its Python, 0 before the first and None behind the last. `wait` says since when (ms) it waits
-    at a WAIT: None before that has begun, an empty tuple where it waits for nothing. `behind` are the words of a block
-    behind which a modal call may come, `left` the first and the last line of plain blocks that are given one by one.
+    `place` is the line of its Python, 0 before the first and None after the last. `wait` says since when (ms) it waits
+    at a WAIT: None before that has begun, an empty tuple where it waits for nothing. `after` are the words of a block
+    after which a modal call may come, `left` the first and the last line of plain blocks that are given one by one.
     """
 
     text: ProgramText
@@ -224,7 +224,7 @@ def kept_names(names: Mapping[str, Any], objects: Objects) -> dict[str, object]:
 _HEAD = frozenset({"G", "M", "host", "arguments"})
 
 
-def put_back(variables: MutableMapping[str, Any], values: Mapping[str, object]) -> None:
+def restore_state(variables: MutableMapping[str, Any], values: Mapping[str, object]) -> None:
     """Let variables have these values."""
     for name in [name for name in variables if name not in values]:
         del variables[name]

@@ -76,7 +76,7 @@ class BlockWord(NamedTuple):
 
 
 class NcValues(NamedTuple):
-    """An NC block whose words were reckoned: line, N number or None, level of /, words, and text of (MSG,...)."""
+    """An NC block whose words were computed: line, N number or None, level of /, words, and text of (MSG,...)."""
 
     line: int
     number: int | None

@@ -39,7 +39,7 @@ LEXICON = Lexicon(
     ),
     folded=("name", "label"),
     unfinished={
-        '"': ("the text has no end", 'write " behind it, in the same line'),
+        '"': ("the text has no end", 'write " after it, in the same line'),
         "#": ("# stands before no name", "a global variable is written #NAME"),
         "@": ("@ stands before no name", "a permanent variable is written @1 or @NAME"),
     },

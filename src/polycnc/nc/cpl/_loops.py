@@ -58,7 +58,7 @@ class WatchedHost:
 
 
 class LoopWatch:
-    """Compare states of programs that only reckon; each is kept for twice as many comparisons as the one before."""
+    """Compare states of programs that only compute; each is kept for twice as many comparisons as the one before."""
 
     def __init__(self) -> None:
         self._kept: tuple[tuple[object, ...], tuple[object, ...]] | None = None

@@ -285,7 +285,7 @@ class _ProgramReader:
         statement = self._top(Case, "LABEL", at)
         assert isinstance(statement, Case)
         if statement.branches and not statement.branches[-1][0]:
-            raise Flaw(at, "LABEL behind OTHERWISE", "OTHERWISE is the last part of its CASE")
+            raise Flaw(at, "LABEL after OTHERWISE", "OTHERWISE is the last part of its CASE")
         values = [self._constant(reader)]
         while reader.tokens.take(","):
             values.append(self._constant(reader))

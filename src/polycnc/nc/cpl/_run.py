@@ -82,7 +82,7 @@ class Execution:
 
     @property
     def place(self) -> int | None:
-        """The line of its Python at which it stands: 0 before the first, None behind the last.
+        """The line of its Python at which it stands: 0 before the first, None after the last.
 
         Raises:
             SnapshotError: It waits for the answer of a function, in the middle of a statement.
@@ -144,7 +144,7 @@ class Execution:
         return {each.name: shown(values.get(each.python)) for each in local}
 
     def state(self) -> dict[str, object]:
-        """Return what it goes on with: its place, variables, and what it is just reckoning; not what counts pauses."""
+        """Return what it goes on with: its place, variables, and what it is just computing; not what counts pauses."""
         return {name: value for name, value in self._run.state().items() if _STATE.match(name)}
 
     def _error(self, call: SubProgram, what: str, hint: str = "") -> ProgramError:

@@ -112,7 +112,7 @@ class Stores:
             self._put_checked(place, direct, kind, text)
 
     def _put_checked(self, place: str, direct: bool, kind: str, text: str) -> None:
-        """Assign what was reckoned: bring it to its type and see that it is in range."""
+        """Assign what was computed: bring it to its type and see that it is in range."""
         name = place if direct else self.temporary()
         if kind == "I":
             self._out.put(

@@ -39,7 +39,7 @@ class CharacterField:
         """Write a text over the characters from `start` on, at most `number` of them.
 
         Raises:
-            Fault: The place lies behind the assigned characters and the one that follows.
+            Fault: The place lies after the assigned characters and the one that follows.
         """
         if text is None:
             raise not_assigned()

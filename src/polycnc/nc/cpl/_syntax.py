@@ -177,7 +177,7 @@ class While(Loop):
 
 @dataclass(slots=True)
 class Repeat(Loop):
-    """REPEAT: a loop tested behind."""
+    """REPEAT: a loop tested after."""
 
     closes = True
 

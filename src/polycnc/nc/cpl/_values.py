@@ -1,7 +1,7 @@
 """Expressions of CPL turned into Python, with the type that each has.
 
 Intermediate results that are REAL are rounded to single precision, as a 32-bit machine does; where anything in an
-expression is DOUBLE all of it is reckoned with double precision (Manual 003, 2.4.2).
+expression is DOUBLE all of it is computed with double precision (Manual 003, 2.4.2).
 """
 
 from __future__ import annotations
@@ -239,7 +239,7 @@ class Values:
         dimensions = self.fields.get(tree.variable.name, 0)
         if dimensions and not tree.indices:
             return self._use(tree.variable, tree.at)
-        if any(map(_sets, tree.indices)):  # which is reckoned more than once
+        if any(map(_sets, tree.indices)):  # which is computed more than once
             raise Flaw(
                 tree.at, "the index of a variable that is set sets another one", "keep it in a variable"
             )
@@ -333,7 +333,7 @@ class Values:
         return typed
 
     def _is_flat(self, typed: Typed) -> bool:
-        """Tell whether Python reckons on with a value without a further parenthesis around it."""
+        """Tell whether Python computes on with a value without a further parenthesis around it."""
         return typed.kind != "B" and (typed.exact or self._double)
 
     def _compared(self, left: Typed, operator: str, right: Typed, at: int) -> Typed:

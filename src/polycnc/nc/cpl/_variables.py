@@ -23,7 +23,7 @@ PERMANENT_FIELD = "@_R"
 _INTERNAL = ("@_RES_DOUBLE", "@_RES_DWORD")
 _SIGNIFICANT = 8
 SIGNIFICANT_PERMANENT = 16
-"""How many characters of a permanent name count, @ among them: so the manual reckons the memory of @_R."""
+"""How many characters of a permanent name count, @ among them: so the manual computes the memory of @_R."""
 _PARAMETER = re.compile(r"P([0-9]{1,3})[A-Z_]*")
 _NUMBERED = re.compile(r"@([0-9]+)[A-Z_]*%?")
 
@@ -92,5 +92,5 @@ def _permanent(token: Token, base: str, kind: Kind) -> Variable:
     if base == PERMANENT_FIELD:
         return Variable(base, "permanent", "D")
     if not base[1:2].isalpha():
-        raise Flaw(token.at, f"{token} is no variable", "behind @ stands a number or a capital letter")
+        raise Flaw(token.at, f"{token} is no variable", "a number or a capital letter follows @")
     return Variable(base[:SIGNIFICANT_PERMANENT] + MARKS.get(kind, ""), "permanent", kind)

@@ -30,10 +30,10 @@ class Wait:
             return None
         return self.began_ms + self._wait.duration_ms
 
-    def answer(self, *, hasty: bool = False) -> int | None:
+    def answer(self, *, fast_forward: bool = False) -> int | None:
         """Return 0 if the condition holds at once, 2 if it came to, 1 if the time has passed, None for not yet.
 
-        Where it is `hasty` all that is waited for comes at once.
+        With `fast_forward`, everything waited for comes at once.
         """
         wait = self._wait
         first = self.began_ms is None
@@ -41,7 +41,7 @@ class Wait:
             self.began_ms = self._milliseconds() if wait.duration_ms is not None else 0
         if wait.condition is not None and wait.condition():
             return 0 if first else 2
-        if hasty:
+        if fast_forward:
             return 2 if wait.duration_ms is None else 1
         if wait.duration_ms is not None and self._milliseconds() - self.began_ms >= wait.duration_ms:
             return 1

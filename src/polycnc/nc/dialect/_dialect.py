@@ -21,7 +21,7 @@ from pydantic import AfterValidator, Field, model_validator
 from polycnc.errors import UsageError
 from polycnc.machine import PathConfig, StrictModel, load_toml, parse_toml, problem, validate
 from polycnc.nc.dialect._cycle_settings import CycleSettings, PeckTap
-from polycnc.nc.modal._actions import M_ACTIONS, Action, Family, MAction, of_family
+from polycnc.nc.modal._actions import M_ACTIONS, NO_SENSE, SPINDLE_SENSES, Action, Family, MAction, of_family
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
     ARC_RELATIVE,
@@ -47,6 +47,7 @@ from polycnc.nc.modal._modal import (
 from polycnc.nc.text._program import TextRules
 
 G_CODES = 10000  # G0 to G999.9
+M_SENSES = 100  # M0 to M99 are looked at for a way to turn
 
 _CODE = re.compile(r"([GgMm])[ \t]*([0-9]{1,5}(?:\.[0-9])?)")
 _PLANES = {"xy": PLANE_XY, "zx": PLANE_ZX, "yz": PLANE_YZ}
@@ -378,7 +379,11 @@ class Dialect(StrictModel):
         for tenths, action in self._by_code.items():
             if not (self.notes_codes and action is Action.FEED_PER_MINUTE):  # only ordinary blocks are noted
                 g_action[tenths] = action
-        return DialectTables(g_action, self.increment)
+        m_sense = np.full(M_SENSES, NO_SENSE, np.int8)
+        for code, m_action in self._by_m.items():
+            if code < M_SENSES and m_action in SPINDLE_SENSES:
+                m_sense[code] = SPINDLE_SENSES[m_action]
+        return DialectTables(g_action, self.increment, m_sense, self.tool_word == "select")
 
     def set_initial_state(self, modal: Modal) -> None:
         """Put the modal state that programs start with in force."""
@@ -396,10 +401,16 @@ class Dialect(StrictModel):
 
 
 class DialectTables(NamedTuple):
-    """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers."""
+    """The dialect as the compiled kernel reads it: actions by tenths of the G code, increment of numbers.
+
+    `m_sense` says of each M code which way it lets the spindle turn, or NO_SENSE; with `selects` T is for the next tool
+    change and nothing else.
+    """
 
     g_action: npt.NDArray[np.int16]
     least_input: float
+    m_sense: npt.NDArray[np.int8]
+    selects: bool
 
 
 _SHIPPED = ("din", "fanuc", "fanuc-lathe", "haas", "grbl", "linuxcnc", "bosch")

@@ -1,8 +1,9 @@
 """The compiled modal kernel: runs of plain motion blocks go straight from words into the channel queue.
 
-It knows straight and circular motion, absolute and incremental, and feed. At the first block that
-holds anything else, or anything wrong, it stops without having changed anything for that block, and the
-reference interpreter takes it. So it needs no errors of its own, and both ways give the same motion.
+It knows straight and circular motion, absolute and incremental, feed, the power of a laser, and words that only
+choose a tool. At the first block that holds anything else, or anything wrong, it stops without having changed
+anything for that block, and the reference interpreter takes it. So it needs no errors of its own, and both ways give
+the same motion.
 
 A compiled call costs by the arrays that it hands over, so what runs for every block takes those it needs.
 """
@@ -10,7 +11,6 @@ A compiled call costs by the arrays that it hands over, so what runs for every b
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,29 @@ from polycnc.kernel import (
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
 from polycnc.nc.dialect._dialect import DialectTables
+from polycnc.nc.fast._carried import (
+    CARRIED_WORDS,
+    changes_power,
+    lasts,
+    sense_of,
+    take_note,
+)
+from polycnc.nc.fast._work import (
+    AXES,
+    CENTERS,
+    LASTING,
+    LENGTH,
+    LETTER_A,
+    LETTERS,
+    MARKED,
+    NUMBER,
+    RADIUS,
+    SAYS_ABSOLUTE,
+    SAYS_MOTION,
+    SAYS_SENSE,
+    SEEN,
+    FastWork,
+)
 from polycnc.nc.modal._actions import Action
 from polycnc.nc.modal._modal import (
     ABSOLUTE,
@@ -55,7 +78,6 @@ from polycnc.nc.modal._modal import (
     MOTION_ARC_CW,
     MOTION_LINEAR,
     MOTION_RAPID,
-    NO_AXIS,
     ORDINARY,
     RAPID_STOP,
     SLOWEST_AXIS,
@@ -65,10 +87,9 @@ from polycnc.nc.modal._modal import (
     Floats,
     Ints,
     Modal,
-    has_diameters,
     short_way,
 )
-from polycnc.nc.text._scan import COMMENT, WordColumns
+from polycnc.nc.text._scan import COMMENT, OPEN_VALUE, WordColumns
 from polycnc.units import MM_PER_INCH
 
 # Why it stopped.
@@ -78,18 +99,7 @@ QUEUE_FULL = 2
 
 RESERVE = 8  # slots that the ordinary path may need for one block
 
-# What a letter is, besides G.
-_UNKNOWN = 0
-_NUMBER = 1
-_LENGTH = 2
-
-# Columns of `said`: what a block says, and the letters of each sort as bits.
-_MOTION, _ABSOLUTE, _SEEN, _AXES, _CENTERS, _RADIUS, _MARKED = range(7)
-_SAID_COLUMNS = 7
-
-_LETTERS = 26
-_A = ord("A")
-_F, _G, _I, _J, _K, _N, _R = (ord(letter) - _A for letter in "FGIJKNR")
+_F, _G, _M, _R = (ord(letter) - LETTER_A for letter in "FGMR")
 _F_BIT = 1 << _F
 _RAPID = int(Action.RAPID)
 _LINEAR = int(Action.LINEAR)
@@ -100,47 +110,6 @@ _INCREMENTAL_WORD = int(Action.INCREMENTAL)
 _PER_MINUTE_WORD = int(Action.FEED_PER_MINUTE)
 
 _short_way = compiled(short_way)
-
-
-class FastWork(NamedTuple):
-    """Scratch of the compiled kernel: what letters are, what one block says, and the point it goes to."""
-
-    role: npt.NDArray[np.int8]  # [26]
-    axis_letter: npt.NDArray[np.int8]  # [n] letter of each axis, NO_AXIS if its name is longer
-    value: Floats  # [26]
-    said: Ints
-    target: Floats  # [n]
-    marks: Ints  # [blocks, 2] of blocks with words and without motion: segment count before which they stand, tag
-
-
-def make_fast_work(modal: Modal, marks: int = 0, *, feed_needs_point: bool = False) -> FastWork:
-    """Allocate the scratch for the axes of `modal`; `marks` is the most blocks of one call, or 0 for no marks.
-
-    With `feed_needs_point` F counts increments where lengths do, if it has no decimal point.
-    """
-    role = np.full(_LETTERS, _UNKNOWN, np.int8)
-    role[[_N, _F]] = _NUMBER
-    if feed_needs_point:
-        role[_F] = _LENGTH
-    if not has_diameters(modal):  # else centres and radii are scaled otherwise than positions
-        role[[_I, _J, _K, _R]] = _LENGTH
-    axis_letter = np.full(len(modal.position), NO_AXIS, np.int8)
-    said = np.zeros(_SAID_COLUMNS, np.int64)
-    said[_CENTERS] = 1 << _I | 1 << _J | 1 << _K
-    said[_RADIUS] = 1 << _R
-    for letter, axis in enumerate(modal.letter_axis):
-        if axis != NO_AXIS:
-            role[letter] = _LENGTH
-            axis_letter[axis] = letter
-            said[_AXES] |= 1 << letter
-    said[_RADIUS] &= ~said[_AXES]  # on a machine with an axis R it is that axis
-    target = np.zeros(len(modal.position))
-    return FastWork(role, axis_letter, np.zeros(_LETTERS), said, target, np.zeros((marks, 2), np.int64))
-
-
-def marked(work: FastWork) -> list[tuple[int, int]]:
-    """Return the marks of the last call."""
-    return [(count, tag) for count, tag in work.marks[: work.said[_MARKED]].tolist()]
 
 
 @entry(
@@ -164,7 +133,7 @@ def run_plain(
 
     `base` is added to the line of a block for its reference.
     """
-    work.said[_MARKED] = 0
+    work.said[MARKED] = 0
     if modal.whole[ORDINARY] != 0:
         return block, NOT_PLAIN
     return _run(words, block, n_blocks, base, tables, modal, seg, paths, g, limits, work)
@@ -206,18 +175,21 @@ def _run(
             work,
         ):
             return block, NOT_PLAIN
-        seen = said[_SEEN]
-        motion = said[_MOTION]
+        seen = said[SEEN]
+        motion = said[SAYS_MOTION]
         feed, feed_number = modal.real[FEED], modal.real[FEED_NUMBER]
         if seen & _F_BIT:
             feed_number = work.value[_F]
             feed = feed_number * inch
             if whole[FEED_MODE] != FEED_PER_MINUTE or feed <= 0.0:
                 return block, NOT_PLAIN
+        powers = False
+        if seen & CARRIED_WORDS:
+            powers = changes_power(seen, said[SAYS_SENSE], work.value, work.carried)
         tag = base + int(words.line[block])
         moves, joined = False, NOT_MERGED
-        circular = seen & (said[_CENTERS] | said[_RADIUS])
-        if (seen & said[_AXES]) | circular:
+        circular = seen & (said[CENTERS] | said[RADIUS])
+        if (seen & said[AXES]) | circular:
             is_arc = motion >= MOTION_ARC_CW
             if (circular != 0 and not is_arc) or motion < MOTION_RAPID:
                 return block, NOT_PLAIN
@@ -247,13 +219,16 @@ def _run(
             if _reach(modal.position, work.target) > LONGEST_BLOCK_S * min(speed, modal.real[SLOWEST_AXIS]):
                 return block, NOT_PLAIN  # it may never end: the ordinary path looks closer
             moves = True
+            if powers and path[g]["merged"] > 0:
+                close_line(seg, paths, g, limits)
             if is_arc:
                 if not _arc(modal, seg, paths, g, limits, work, speed, flags, tag):
                     return block, NOT_PLAIN
             elif path[g]["tolerance_mm"] > 0.0:
                 if path[g]["merged"] > 0:
                     joined = merge_line(seg, paths, g, limits, work.target, speed, flags, tag)
-                if joined == NOT_MERGED:
+                moves = joined == NOT_MERGED
+                if moves:
                     moves = append_line(seg, paths, g, limits, work.target, speed, flags, tag)
             else:
                 moves = add_line(
@@ -271,12 +246,16 @@ def _run(
                 )
             for i in range(work.target.shape[0]):
                 modal.position[i] = work.target[i]
+        elif powers and path[g]["merged"] > 0:
+            close_line(seg, paths, g, limits)
+        if seen & CARRIED_WORDS:
+            take_note(seen, said[SAYS_SENSE], work.value, work.carried)
         if not moves and work.marks.shape[0] > 0 and first < after:
-            work.marks[said[_MARKED], 0] = path[g]["tail"] - (joined != NOT_MERGED)
-            work.marks[said[_MARKED], 1] = tag if joined == NOT_MERGED else joined
-            said[_MARKED] += 1
+            work.marks[said[MARKED], 0] = path[g]["tail"] - (joined != NOT_MERGED)
+            work.marks[said[MARKED], 1] = tag if joined == NOT_MERGED else joined
+            said[MARKED] += 1
         whole[MOTION] = motion
-        whole[ABSOLUTE] = said[_ABSOLUTE]
+        whole[ABSOLUTE] = said[SAYS_ABSOLUTE]
         modal.real[FEED], modal.real[FEED_NUMBER] = feed, feed_number
         block += 1
     return block, ALL_DONE
@@ -300,8 +279,8 @@ def _read(
     groups = 0  # modal groups that had a word, as bits
     seen = 0
     for w in range(first, after):
-        letter = int(letters[w]) - _A
-        if letter < 0 or letter >= _LETTERS:
+        letter = int(letters[w]) - LETTER_A
+        if letter < 0 or letter >= LETTERS:
             return False
         value = values[w]
         if letter == _G:
@@ -326,14 +305,25 @@ def _read(
             groups |= group
             continue
         bit = 1 << letter
-        role = work.role[letter]
-        if role == _UNKNOWN or seen & bit or (role == _LENGTH and least_input > 0.0 and points[w] == 0):
+        if seen & bit or not _is_plain(letter, value, points[w], least_input, work):
             return False
         seen |= bit
         work.value[letter] = value
     said = work.said
-    said[_MOTION], said[_ABSOLUTE], said[_SEEN] = motion, absolute, seen
+    said[SAYS_MOTION], said[SAYS_ABSOLUTE], said[SEEN] = motion, absolute, seen
     return True
+
+
+@compiled
+def _is_plain(letter: int, value: float, point: int, least_input: float, work: FastWork) -> bool:
+    """Tell whether a word besides G is one that the kernel knows; an M code leaves what it means in `work`."""
+    role = work.role[letter]
+    if role == LASTING:
+        if letter == _M:
+            work.said[SAYS_SENSE] = sense_of(value, work.m_sense)
+        # Records read these words again from the text: their numbers have to stand there.
+        return point != OPEN_VALUE and lasts(letter, value, work.said[SAYS_SENSE], work.carried)
+    return bool(role == NUMBER or (role == LENGTH and (least_input <= 0.0 or point != 0)))
 
 
 @compiled
@@ -356,8 +346,8 @@ def _target(
     work: FastWork,
 ) -> bool:
     """Put the programmed end point into `work.target`; False if it lies outside the soft limits."""
-    seen = work.said[_SEEN]
-    absolute = work.said[_ABSOLUTE]
+    seen = work.said[SEEN]
+    absolute = work.said[SAYS_ABSOLUTE]
     for i in range(work.target.shape[0]):
         at = position[i]
         letter = int(work.axis_letter[i])  # uncompiled, the shift below would stay within 8 bits
@@ -408,12 +398,12 @@ def _arc(
     tag: int,
 ) -> bool:
     whole = modal.whole
-    seen = work.said[_SEEN]
-    clockwise = work.said[_MOTION] == MOTION_ARC_CW
+    seen = work.said[SEEN]
+    clockwise = work.said[SAYS_MOTION] == MOTION_ARC_CW
     p, q = whole[AXIS_P], whole[AXIS_Q]
     bit_p, bit_q = 1 << whole[WORD_P], 1 << whole[WORD_Q]
-    center = seen & work.said[_CENTERS]
-    has_radius = (seen & work.said[_RADIUS]) != 0
+    center = seen & work.said[CENTERS]
+    has_radius = (seen & work.said[RADIUS]) != 0
     if p < 0 or q < 0 or center & ~(bit_p | bit_q) or whole[ARC_ABSOLUTE] != 0 or has_radius == (center != 0):
         return False
     start_p, start_q = modal.position[p], modal.position[q]

@@ -46,7 +46,7 @@ class MacroCalls:
 class Arguments:
     """What a program is called with: local variables, None to share those of the caller.
 
-    `modal` is a call behind a move, by G66, or in place of a block, by G66.1; `by_code` one by a G, M or T code;
+    `modal` is a call after a move, by G66, or in place of a block, by G66.1; `by_code` one by a G, M or T code;
     `interrupt` one by the interrupt signal.
     """
 

@@ -290,7 +290,7 @@ class _Compiler:
     def _jump(self, statement: Goto, number: int) -> None:
         found = self._code.shape.find(number, statement.at)
         if found is None:
-            what, hint = f"there is no block N{number} in this program", "Check the number behind GOTO."
+            what, hint = f"there is no block N{number} in this program", "Check the number after GOTO."
         elif not self._flow.reaches(found):
             what, hint = f"GOTO {number} leads into a loop", INTO_LOOP
         else:

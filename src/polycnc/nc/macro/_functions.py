@@ -151,7 +151,7 @@ def remainder(left: float, right: float) -> float:
     """Return the remainder of two whole numbers, with the sign of the first (MOD)."""
     below = rounded(right)
     if below == 0.0:
-        raise MacroError("MOD 0: a division by zero", "Check the value behind MOD.", "PS0112")
+        raise MacroError("MOD 0: a division by zero", "Check the value after MOD.", "PS0112")
     return math.fmod(rounded(left), below)
 
 

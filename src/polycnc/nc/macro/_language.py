@@ -91,7 +91,7 @@ class MacroLanguage:
             kept.clear()
 
     def interrupt(self) -> None:
-        """Give the interrupt signal: the program that M96 names is called behind the block that is executed."""
+        """Give the interrupt signal: the program that M96 names is called after the block that is executed."""
         self._interrupt = self.interrupt_program is not None
 
     def take_interrupt(self) -> bool:
@@ -259,7 +259,7 @@ class MacroLanguage:
             ),
         )
 
-    def way_back(self, channel: Host, saved: object) -> Returning:
+    def restore_point(self, channel: Host, saved: object) -> Returning:
         """Return what goes back to a state, for a channel that it is attached to by then; nothing changes yet.
 
         Raises:
@@ -293,11 +293,11 @@ class MacroLanguage:
         sources: Sequence[tuple[SavedSource, Compiled, Traced[int] | None] | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
-        self.variables.put_back(saved.variables)
-        self.system.put_back(saved.system)
+        self.variables.restore_state(saved.variables)
+        self.system.restore_state(saved.system)
         self.modals, self.interrupt_program = saved.modals, saved.interrupt_program
         self._interrupt, self.pending, self.codes_off = saved.interrupt, saved.pending, saved.codes_off
-        self.output.put_back(saved.output)
+        self.output.restore_state(saved.output)
         for stack, level, values in saved.levels:
             self._levels[stack] = list(values) if level < 0 else self.variables.locals_of(level)
         self.turns += 1

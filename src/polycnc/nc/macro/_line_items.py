@@ -1,4 +1,4 @@
-"""What blocks of a macro program give to the channel: themselves, and the calls that stand behind or instead of them.
+"""What blocks of a macro program give to the channel: themselves, and the calls that stand after or instead of them.
 
 Both iterators can tell where they stand between two items, and be made to stand there.
 """
@@ -25,7 +25,7 @@ Letters = tuple[tuple[str, float], ...]
 class LineItems:
     """The items of one block with these `letters`; `block` is the block itself, None once it has been given.
 
-    `stage` is what comes next: the block (or the call that it becomes, G66.1), the call behind its move (G66), the wait
+    `stage` is what comes next: the block (or the call that it becomes, G66.1), the call after its move (G66), the wait
     for an interrupt signal (M96), and the call by that signal.
     """
 
@@ -60,7 +60,7 @@ class LineItems:
         return SavedItems(self._letters, self._line, self._offset, self._stage, span)
 
     def only_block(self) -> SourceItem | None:
-        """Give the block, and nothing behind it."""
+        """Give the block, and nothing after it."""
         self._stage = _END
         return self._block
 
@@ -95,7 +95,7 @@ class LineItems:
         return self._call(modal.program, modal.repeats, Arguments(values, modal=True))
 
     def _modal_item(self) -> SourceItem | None:
-        """Return the call behind a block that moves."""
+        """Return the call after a block that moves."""
         language = self._language
         axes = language.channel.state.axis_names
         moves = any(letter in axes for letter, _ in self._letters)
@@ -120,7 +120,7 @@ class LineItems:
 
 
 class SpanItems:
-    """The items of plain text line by line, with the call behind every move; `number` is the span's in its program."""
+    """The items of plain text line by line, with the call after every move; `number` is the span's in its program."""
 
     def __init__(
         self, language: RunState, text: ProgramText, whole: TextSpan, number: int, values: WordValues
@@ -150,7 +150,7 @@ class SpanItems:
                 return item
 
     def _next_line(self) -> SourceItem | None:
-        """Go to the next line; return it where nothing comes behind it."""
+        """Go to the next line; return it where nothing comes after it."""
         text, channel = self._text, self._language.channel
         offset, line = self._offset, self._line
         end = min(text.next_line(offset), self._end)
@@ -183,7 +183,7 @@ def items_of(language: RunState, saved: SavedItems) -> LineItems:
 
 
 def is_stage(stage: str) -> bool:
-    """Tell whether there is such a stage behind a block."""
+    """Tell whether there is such a stage after a block."""
     return stage in _STAGES[1:]
 
 

@@ -287,13 +287,13 @@ class MacroSource:
         return WordsBlock(tuple(words), spec.line, spec.offset, skip_level=spec.skip)
 
     def words(self, index: int, values: tuple[Value, ...]) -> LineItems:
-        """Return a block of words and the calls behind it, or the call that it becomes (G66.1)."""
+        """Return a block of words and the calls after it, or the call that it becomes (G66.1)."""
         block = self._block(index, values)
         letters = tuple((word.letter, word.value) for word in block.words)
         return LineItems(self._language, block, letters, block.line, block.offset)
 
     def span(self, index: int) -> SpanItems:
-        """Return plain text line by line, with the call behind every move."""
+        """Return plain text line by line, with the call after every move."""
         whole = self._code.spans[index]
         assert isinstance(whole, TextSpan)
         return SpanItems(self._language, self._compiled.text, whole, index, self.word_values)
@@ -372,11 +372,11 @@ class _Host:
 
     @property
     def plain(self) -> bool:
-        """Whether blocks go out as they are: nothing is called behind them."""
+        """Whether blocks go out as they are: nothing is called after them."""
         return not self._language.modals and self._language.interrupt_program is None
 
     def push(self, modal: ModalCall) -> None:
-        """Call a macro behind every move, or for every block (G66, G66.1)."""
+        """Call a macro after every move, or for every block (G66, G66.1)."""
         self._language.modals += (modal,)
 
     def cancel(self) -> None:

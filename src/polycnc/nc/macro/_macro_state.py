@@ -14,7 +14,7 @@ from polycnc.nc.text._program import ProgramText
 
 @dataclass(frozen=True, slots=True)
 class ModalCall:
-    """A call behind every move: program, repetitions and arguments; `each` in place of every block (G66.1)."""
+    """A call after every move: program, repetitions and arguments; `each` in place of every block (G66.1)."""
 
     program: int
     repeats: int
@@ -36,7 +36,7 @@ class SavedSource(NamedTuple):
     """One execution of one program, which begins at `offset` of `text`, or was begun at byte `start`.
 
     `errors` are still to be told. `place` is the line of its Python at which it stands, 0 before the first and None
-    behind the last, with its `names`. `level` is that of its local variables.
+    after the last, with its `names`. `level` is that of its local variables.
     """
 
     text: ProgramText

@@ -36,7 +36,7 @@ class OutputDevice:
         """Return whether it is open and how many lines messages have told, to go back to."""
         return self.is_open, self._told
 
-    def put_back(self, saved: tuple[bool, int]) -> None:
+    def restore_state(self, saved: tuple[bool, int]) -> None:
         """Be open or closed as it was; nothing is put out for that."""
         self.is_open, self._told = saved
 

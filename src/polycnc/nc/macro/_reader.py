@@ -191,7 +191,7 @@ class _Statements:
                 raise Flaw(
                     token.at,
                     f"{token.word} ({_UNSUPPORTED[token.word]}) is not supported yet",
-                    "Take it out.",
+                    "Remove it.",
                     code=_STATEMENT,
                 )
             match token.word:
@@ -225,7 +225,7 @@ class _Statements:
         """Read an output: characters as they stand ('*' is a blank), `#n[fd]` values with their digits."""
         text, place = self._text, self._tokens.next_at
         if not text.startswith("[", place):
-            raise Flaw(at, "'[' is missing behind the output", "Write DPRNT[X#1[53]].", code=_STATEMENT)
+            raise Flaw(at, "'[' is missing after the output", "Write DPRNT[X#1[53]].", code=_STATEMENT)
         place += 1
         pieces: list[str | Printed] = []
         while not text.startswith("]", place):
@@ -240,7 +240,7 @@ class _Statements:
                     raise Flaw(
                         place,
                         "the digits of the value are missing",
-                        "Write #1[53]: five before the point, three behind it (BPRNT: #1[3]).",
+                        "Write #1[53]: five before the point, three after it (BPRNT: #1[3]).",
                         code=_STATEMENT,
                     )
                 first, second = int(found[1]), int(found[2] or 0)
@@ -317,7 +317,7 @@ class _Statements:
         if tokens.token.word != "#":
             raise Flaw(
                 tokens.token.at,
-                "behind THEN only an assignment may stand",
+                "only an assignment may follow THEN",
                 "Write IF [...] GOTO and jump over the block.",
                 code=_STATEMENT,
             )
@@ -327,7 +327,7 @@ class _Statements:
         token = self._tokens.token
         if token.word != "[":
             raise Flaw(
-                token.at, f"'[' is missing behind {word}", f"Write {word} [#1 EQ 0] ...", code=_STATEMENT
+                token.at, f"'[' is missing after {word}", f"Write {word} [#1 EQ 0] ...", code=_STATEMENT
             )
         return self._bracket()
 
@@ -379,7 +379,7 @@ class _Statements:
             if tokens.token.word == "=":
                 raise Flaw(
                     tokens.token.at,
-                    f"'=' behind the address {letter.word}",
+                    f"'=' after the address {letter.word}",
                     f"Write {letter.word}#1, or {letter.word}[...].",
                     code=_STATEMENT,
                 )
@@ -521,7 +521,7 @@ class _Statements:
         if token.kind == "word" and (token.word in FUNCTIONS or token.word in ("POW", "ADP")):
             raise Flaw(
                 token.at,
-                f"{token.word} right behind an address",
+                f"{token.word} right after an address",
                 f"Write brackets around it: [{token.word}[...]].",
                 code=_FORMAT,
             )
@@ -552,7 +552,7 @@ class _Statements:
                 raise Flaw(token.at, "ADP takes a local variable", "Write ADP[#1].", code=_FORMAT)
             return Function(token.at, "ADP", (argument,))
         if token.word in _UNSUPPORTED:
-            raise Flaw(token.at, f"{token.word} is not supported yet", "Take it out.", code=_FORMAT)
+            raise Flaw(token.at, f"{token.word} is not supported yet", "Remove it.", code=_FORMAT)
         raise Flaw(
             token.at,
             f"a value is missing before {token}",

@@ -131,7 +131,7 @@ class _Nest:
 
     def _end(self, end: End) -> None:
         if not self.open:
-            self._refuse(end.at, f"END {end.loop} without DO", "Take it out.", "PS0126")
+            self._refuse(end.at, f"END {end.loop} without DO", "Remove it.", "PS0126")
         elif (loop := self.open[-1].loop) != end.loop:
             what = f"END {end.loop} inside DO {loop}: loops cannot cross"
             self._refuse(end.at, what, f"END {loop} comes first.", "PS0124")

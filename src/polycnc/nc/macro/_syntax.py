@@ -48,7 +48,7 @@ Expression: TypeAlias = Tree[Number | Variable | Function | Name]
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """`#1=...`; `text` is the comment behind it, which is the text of an alarm or a message."""
+    """`#1=...`; `text` is the comment after it, which is the text of an alarm or a message."""
 
     at: int
     target: Variable
@@ -135,7 +135,7 @@ class Interrupt:
 
 @dataclass(frozen=True, slots=True)
 class Printed:
-    """A value in an output: its expression, and how many digits before and behind the point are put out."""
+    """A value in an output: its expression, and how many digits before and after the point are put out."""
 
     value: Expression
     whole: int
@@ -170,7 +170,7 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class SubCall:
-    """An M or T code that calls a sub-program without arguments, behind the other words of its block."""
+    """An M or T code that calls a sub-program without arguments, after the other words of its block."""
 
     at: int
     program: int
@@ -181,7 +181,7 @@ class SubCall:
 
 @dataclass(frozen=True, slots=True)
 class Cancel:
-    """`G67`, behind the other words of its block."""
+    """`G67`, after the other words of its block."""
 
     at: int
     words: tuple[Address, ...]

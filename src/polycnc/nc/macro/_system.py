@@ -115,7 +115,7 @@ class SystemVariables:
             self.sequence_number,
         )
 
-    def put_back(self, saved: SavedSystem) -> None:
+    def restore_state(self, saved: SavedSystem) -> None:
         """Go back to what it held."""
         self._stored, self._timers = dict(saved.stored), dict(saved.timers)
         self.modal_call = saved.modal_call

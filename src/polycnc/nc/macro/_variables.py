@@ -222,7 +222,7 @@ class MacroVariables:
             and lasting
         )
 
-    def put_back(self, saved: SavedVariables) -> None:
+    def restore_state(self, saved: SavedVariables) -> None:
         """Go back to variables; a store keeps those from #500 on."""
         self._levels[:] = [list(each) for each in saved.levels]
         self.common[:_FIRST_PERMANENT] = saved.common

@@ -261,5 +261,9 @@ class MAction(Enum):
         return self.value[0]
 
 
+NO_SENSE = 2
+SPINDLE_SENSES = {MAction.SPINDLE_CW: 1, MAction.SPINDLE_CCW: -1, MAction.SPINDLE_STOP: 0}
+"""Which way M codes let the spindle turn, 1 clockwise; NO_SENSE stands for all others."""
+
 M_ACTIONS: dict[str, MAction] = {action.title: action for action in MAction}
 """M actions by their name in dialect files."""

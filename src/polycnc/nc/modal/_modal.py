@@ -39,7 +39,7 @@ MOTION_RAPID = 0
 MOTION_LINEAR = 1
 MOTION_ARC_CW = 2
 MOTION_ARC_CCW = 3
-MOTION_CUBIC = 4  # a spline is gone along by its own block only: these are never in force behind it
+MOTION_CUBIC = 4  # a spline is traversed by its own block only: these are never in force after it
 MOTION_QUADRATIC = 5
 MOTION_NURBS = 6  # up to the block that ends it
 

@@ -14,7 +14,7 @@ class Spindle:
     """Hold what the program asked of the spindle: direction 1 clockwise, -1 counter-clockwise, 0 stopped or `oriented`.
 
     `speed` is in revolutions per minute, or in m/min with constant surface speed; then the spindle turns with `clamp`
-    revolutions per minute at the most.
+    revolutions per minute at the most. `coolant` are the M codes of coolant that is on.
     """
 
     speed: float = 0.0
@@ -22,6 +22,7 @@ class Spindle:
     surface_speed: bool = False
     clamp: float = math.inf
     oriented: bool = False
+    coolant: tuple[int, ...] = ()
 
 
 class ModalSnapshot(NamedTuple):

@@ -1,11 +1,11 @@
-"""What a segment is part of: block records behind one integer per segment.
+"""What a segment is part of: block records after one integer per segment.
 
 The tag of a segment is a block reference: line in the low bits, one bit that tells two executions in a row of
 the same block apart, and above them the number of a context. A context is what many blocks share: the program,
-the calls that led to it and the modal state. Blocks of the ordinary interpreter have the context that they leave
+the calls that led to it and the modal state. Blocks of the reference interpreter have the context that they leave
 behind. A run of plain blocks shares the context that stood before it; the modal words that such blocks may change
-(motion, absolute or incremental, F) are read again from the text when somebody asks. So a plain block costs its
-integer and nothing else.
+(motion, absolute or incremental, F, S, T, D, and M codes of a laser) are read again from the text when somebody asks.
+So a plain block costs its integer and nothing else.
 
 Equal contexts are one context, and those that nothing refers to any more are dropped (`keep`), so a program that
 loops for hours needs no more memory than its first round.
@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from typing import Any, NamedTuple, TypeAlias
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -36,8 +36,10 @@ from polycnc.nc.modal._modal import (
 )
 from polycnc.nc.modal._modal_snapshot import ModalSnapshot
 from polycnc.nc.modal._placement import NO_PLACEMENT, Placement
+from polycnc.nc.records._replay import PLAIN_MOTIONS, Replay, RunBegin, latest, replay_of
 from polycnc.nc.text._program import ProgramText
-from polycnc.nc.text._scan import OPEN_VALUE, ScanRules, WordColumns, open_text, scan, word_columns
+from polycnc.nc.text._scan import ScanRules, scan, word_columns
+from polycnc.units import MM_PER_INCH
 
 LINE_MASK = (1 << 31) - 1
 AGAIN = 1 << 31  # told apart from the execution just before
@@ -47,10 +49,7 @@ _MOST_READ = 32
 _FEW = 4096  # so many contexts are kept without asking who needs them
 
 _SEQUENCE = re.compile(r"\s*(?:/[1-9]?)?\s*[Nn]\s*([0-9]+)")
-_F, _G = ord("F"), ord("G")
-_PLAIN_MOTIONS = (Action.RAPID, Action.LINEAR, Action.ARC_CW, Action.ARC_CCW)
-_MOTIONS = {a.sets: a for a in (*_PLAIN_MOTIONS, Action.CUBIC_SPLINE, Action.QUADRATIC_SPLINE, Action.NURBS)}
-_DISTANCES = (Action.ABSOLUTE, Action.INCREMENTAL)
+_MOTIONS = {a.sets: a for a in (*PLAIN_MOTIONS, Action.CUBIC_SPLINE, Action.QUADRATIC_SPLINE, Action.NURBS)}
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +66,8 @@ class ModalWords:
     """The modal words in force: G codes by their group, and the other addresses as programmed.
 
     `speed` is in rpm, or m/min with constant surface speed. `tool` is in the spindle, `next_tool` comes with the
-    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any.
+    next tool change; `d` is None before the first D word. `m` are the M codes of the last block that had any,
+    `coolant` those of the coolant that is on.
     `zero` is where program zero lies in machine coordinates (mm, degree), one value per axis; `work` are the work
     offsets of all groups, `placement` what the program has shifted, scaled and turned besides.
     """
@@ -86,6 +86,7 @@ class ModalWords:
     work: tuple[str, ...] = ()
     placement: Placement = NO_PLACEMENT
     spindle_oriented: bool = False
+    coolant: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,27 +118,6 @@ class Zero(NamedTuple):
     inch: bool = False
 
 
-class _Replay(NamedTuple):
-    """What the plain blocks of a run say about motion, distance and feed: block numbers and values of each."""
-
-    lines: list[int]
-    motion: tuple[list[int], list[float]]
-    absolute: tuple[list[int], list[float]]
-    feed: tuple[list[int], list[float]]
-
-
-Feeds: TypeAlias = tuple[tuple[str, float], ...]
-"""What F words mean that have a variable for their number: how that is written, and its value."""
-
-
-class RunBegin(NamedTuple):
-    """Where a run of plain blocks begins, and the `feeds` in it; None where every word has a number."""
-
-    offset: int
-    line: int
-    feeds: Feeds | None = None
-
-
 _Key: TypeAlias = tuple[ProgramText, tuple[Call, ...], ModalSnapshot, RunBegin | None]
 
 
@@ -155,7 +135,7 @@ class _Context:
     stack: tuple[Call, ...]
     modal: ModalSnapshot
     begin: RunBegin | None  # of a run of plain blocks
-    replay: _Replay | None = None
+    replay: Replay | None = None
 
     def key(self) -> _Key:
         return self.text, self.stack, self.modal, self.begin
@@ -257,7 +237,7 @@ class BlockRecords:
         motion = float(context.modal.whole[MOTION])
         if context.begin is not None:
             replay = self._replay(context, context.begin)
-            motion = _latest(replay.motion, bisect_right(replay.lines, tag & LINE_MASK) - 1, motion)
+            motion = latest(replay.motion, bisect_right(replay.lines, tag & LINE_MASK) - 1, motion)
         return _MOTIONS.get(int(motion))
 
     def motions(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
@@ -273,6 +253,27 @@ class BlockRecords:
         found = [float(context.modal.whole[MOTION]), *motions]
         actions = np.array([_MOTIONS.get(int(motion), 0) for motion in found], np.int64)
         return actions[said]
+
+    def laser(self, tags: npt.NDArray[np.int64]) -> npt.NDArray[np.float64]:
+        """Return S, direction (M3 1, M4 -1) and programmed feed (mm/s) with the blocks of some tags [tags, 3].
+
+        The tags have one context; all are 0 where that is not known.
+        """
+        context = self._contexts.get(int(tags[0]) >> CONTEXT_SHIFT)
+        found = np.zeros((len(tags), 3))
+        if context is None:
+            return found
+        modal = context.modal
+        inch = bool(np.frombuffer(modal.whole, np.int64)[INCH])
+        found[:] = modal.spindle.speed, modal.spindle.direction, modal.feed
+        if context.begin is not None:
+            replay = context.replay or self._read_run(context.text, context.begin)
+            block = np.searchsorted(np.array(replay.lines, np.int64), tags & LINE_MASK, side="right") - 1
+            for column, said in enumerate((replay.speed, replay.direction, replay.feed)):
+                latest = np.searchsorted(np.array(said[0], np.int64), block, side="right")
+                found[:, column] = np.concatenate((found[:1, column], said[1]))[latest]
+        found[:, 2] *= (MM_PER_INCH if inch else 1.0) / 60.0
+        return found
 
     def source(self, tag: int) -> ProgramText | None:
         """Return the text that the block of a tag stands in."""
@@ -332,86 +333,53 @@ class BlockRecords:
     def _words(self, context: _Context, line: int) -> ModalWords:
         modal = context.modal
         whole: list[int] = np.frombuffer(modal.whole, np.int64).tolist()
-        feed = modal.feed
+        feed, spindle, m = modal.feed, modal.spindle, modal.m_codes
+        next_tool, d = modal.selected_tool, modal.compensation_tool
         if context.begin is not None:
             replay = self._replay(context, context.begin)
             block = bisect_right(replay.lines, line) - 1
-            whole[MOTION] = int(_latest(replay.motion, block, whole[MOTION]))
-            whole[ABSOLUTE] = int(_latest(replay.absolute, block, whole[ABSOLUTE]))
-            feed = _latest(replay.feed, block, feed)
+            whole[MOTION] = int(latest(replay.motion, block, whole[MOTION]))
+            whole[ABSOLUTE] = int(latest(replay.absolute, block, whole[ABSOLUTE]))
+            feed = latest(replay.feed, block, feed)
+            spindle = replace(spindle, speed=latest(replay.speed, block, spindle.speed))
+            next_tool = int(latest(replay.next_tool, block, next_tool))
+            if (said := latest(replay.d, block, -1.0)) >= 0.0:
+                d = int(said)
+            if (said := latest(replay.m, block, -1.0)) >= 0.0:
+                m = (int(said),)
+                turns = int(latest(replay.direction, block, 0.0))
+                spindle = replace(spindle, direction=turns, oriented=False)
         g = {action.group: code for action in _actions(modal, whole) if (code := self._codes.get(action))}
         if name := next((name for name in modal.work if name), ""):
             g[Group.WORK_OFFSET] = name
-        spindle = modal.spindle
         return ModalWords(
             g=g,
             feed=feed,
             speed=spindle.speed,
             spindle_direction=spindle.direction,
             tool=modal.tool,
-            next_tool=modal.selected_tool,
-            d=modal.compensation_tool,
+            next_tool=next_tool,
+            d=d,
             h=modal.length_tool,
-            m=modal.m_codes,
+            m=m,
             inch=bool(whole[INCH]),
             zero=tuple(np.frombuffer(modal.offset).tolist()),
             work=modal.work,
             placement=modal.placement,
             spindle_oriented=spindle.oriented,
+            coolant=spindle.coolant,
         )
 
-    def _replay(self, context: _Context, begin: RunBegin) -> _Replay:
+    def _replay(self, context: _Context, begin: RunBegin) -> Replay:
         if context.replay is None:
             context.replay = self._read_run(context.text, begin)
         return context.replay
 
-    def _read_run(self, text: ProgramText, begin: RunBegin) -> _Replay:
+    def _read_run(self, text: ProgramText, begin: RunBegin) -> Replay:
         columns = word_columns(self._columns)
         rules = self._rules if begin.feeds is None else self._rules._replace(open_words=True)
         scan(text.data, begin.offset, begin.line, rules, columns)
-        words, blocks = columns.n_words, columns.n_blocks
-        letter, value = columns.letter[:words], columns.value[:words]
-        block = np.searchsorted(columns.first_word[: blocks + 1], np.arange(words), side="right") - 1
-        is_g = letter == _G
-        codes = np.rint(value[is_g] * 10.0)
-        inside = (codes >= 0.0) & (codes < len(self._tables.g_action))
-        actions = self._tables.g_action[np.where(inside, codes, 0.0).astype(np.int64)]
-        actions = np.where(inside, actions, 0)
-        g_block = block[is_g]
-        is_f = letter == _F
-        if begin.feeds:
-            is_f = _with_feeds(text, columns, is_f, dict(begin.feeds))
-        return _Replay(
-            lines=columns.line[:blocks].tolist(),
-            motion=_said(g_block, actions, _PLAIN_MOTIONS),
-            absolute=_said(g_block, actions, _DISTANCES),
-            feed=(block[is_f].tolist(), value[is_f].tolist()),
-        )
-
-
-def _with_feeds(
-    text: ProgramText, columns: WordColumns, is_f: npt.NDArray[np.bool_], feeds: Mapping[str, float]
-) -> npt.NDArray[np.bool_]:
-    """Give F words that have a variable for their number its value; return which F words count."""
-    counts = is_f.copy()
-    for word in np.flatnonzero(is_f & (columns.point[: len(is_f)] == OPEN_VALUE)).tolist():
-        value = feeds.get(open_text(text.content, int(columns.value[word])))
-        counts[word] = value is not None
-        columns.value[word] = value or 0.0
-    return counts
-
-
-def _said(
-    blocks: npt.NDArray[np.int64], actions: npt.NDArray[np.signedinteger[Any]], words: tuple[Action, ...]
-) -> tuple[list[int], list[float]]:
-    values = {int(word): float(word.sets or 0) for word in words}
-    found = np.isin(actions, list(values))
-    return blocks[found].tolist(), [values[action] for action in actions[found].tolist()]
-
-
-def _latest(said: tuple[list[int], list[float]], block: int, before: float) -> float:
-    index = bisect_right(said[0], block)
-    return said[1][index - 1] if index else before
+        return replay_of(columns, self._tables, text, begin.feeds)
 
 
 def _codes(dialect: Dialect) -> dict[Action, str]:

@@ -38,7 +38,7 @@ def modes_of(state: ChannelState) -> tuple[Words, ...]:
     letters = modal.letter_axis
     x = int(letters[ord("X") - ord("A")])
     diameter = x >= 0 and float(modal.scale[x]) != length_scale(modal)
-    mist, flood = state.coolant
+    mist, flood = 7 in spindle.coolant, 8 in spindle.coolant
     found: list[Words] = [
         (("G", 20.0 if whole[INCH] else 21.0),),
         (("G", 7.0 if diameter else 8.0),) if x >= 0 else (),

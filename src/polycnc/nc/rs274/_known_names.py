@@ -94,8 +94,8 @@ KNOWN_NAMES: dict[str, Value] = {
     "_lathe_radius_mode": lambda of: float(not _has_diameters(of)),
     "_spindle_on": lambda of: float(of.state.spindle.direction != 0),
     "_spindle_cw": lambda of: float(of.state.spindle.direction == 1),
-    "_mist": lambda of: float(of.state.coolant[0]),
-    "_flood": lambda of: float(of.state.coolant[1]),
+    "_mist": lambda of: float(7 in of.state.spindle.coolant),
+    "_flood": lambda of: float(8 in of.state.spindle.coolant),
     "_call_level": lambda of: float(of.level),
     "_ccomp": lambda of: {0: 400.0, 1: 410.0, -1: 420.0}[of.state.side],
     "_speed_override": lambda _: 1.0,  # M48 to M53 are functions for others: these never change

@@ -10,10 +10,10 @@ block is prepared:
   compiled kernel where they are long; so a language hands over what holds no expression, in pieces as long as
   possible. A source that knows `word_values` may leave words in there whose numbers are single variables.
 - `Drain`: preparation stops until everything before it has been executed; then `next` is called again. What a
-  language reads in that next call (positions, system variables, answers of the PLC) is read behind the drain.
+  language reads in that next call (positions, system variables, answers of the PLC) is read after the drain.
   Radius compensation gives out the move that it holds back.
 - `CallProgram`: a sub-program with arguments, for calls that no M code makes. The language is asked for the
-  source of the program that is called and gets the arguments. The caller's `next` is called again behind the
+  source of the program that is called and gets the arguments. The caller's `next` is called again after the
   return.
 - `EndSource`: `RETURN` ends the present program as an M99 would, `END` everything. `None` is a RETURN in a
   sub-program, an END in the main program.
@@ -149,7 +149,7 @@ class WordValues(Protocol):
     """What words stand for whose numbers are variables or expressions, in the text spans of one program."""
 
     def value(self, letter: str, text: str, place: int) -> float | None:
-        """Return the number of a word, written as `text` behind the letter at byte `place`; None: it does not count.
+        """Return the number of a word, written as `text` after the letter at byte `place`; None: it does not count.
 
         Nothing that it reads may be changed by the blocks of a span, but by the programs that they call.
 
@@ -193,10 +193,10 @@ class TidyLanguage(Language, Protocol):
 
 
 @runtime_checkable
-class HastyLanguage(Language, Protocol):
+class FastForwardLanguage(Language, Protocol):
     """A language whose programs may wait for time to pass."""
 
-    hasty: bool
+    fast_forward: bool
     """Whether no time passes: what waits for it goes on at once."""
 
     def loops(self) -> bool:
@@ -213,7 +213,7 @@ class BoundedLanguage(Language, Protocol):
     """A language whose programs may begin and end at blocks that are given."""
 
     def begin_between(self, first: int, last: int) -> None:
-        """Let the main program that comes next look out for line `first`, and end behind line `last` (0: its last)."""
+        """Let the main program that comes next look out for line `first`, and end after line `last` (0: its last)."""
         ...
 
 
@@ -254,7 +254,7 @@ class LastingLanguage(Language, Protocol[HostT]):
         """
         ...
 
-    def way_back(self, channel: HostT, saved: object) -> Returning:
+    def restore_point(self, channel: HostT, saved: object) -> Returning:
         """Return what goes back to a state, for a channel that it is attached to by then; nothing changes yet.
 
         Raises:

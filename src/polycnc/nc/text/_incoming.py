@@ -15,7 +15,7 @@ _LINE_END = re.compile(rb"\r\n|\n|\r")
 
 
 class Arrived(NamedTuple):
-    """What a piece of text adds: the whole lines, what stands behind the last newline, whether that was a bare CR."""
+    """What a piece of text adds: the whole lines, what stands after the last newline, whether that was a bare CR."""
 
     lines: tuple[bytes, ...]
     rest: bytes

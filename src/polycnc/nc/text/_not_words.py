@@ -27,7 +27,7 @@ _LETTERS = re.compile(r"[A-Za-z]{2,}")
 
 
 @dataclass(frozen=True, slots=True)
-class Slip:
+class SyntaxHint:
     """Say what is wrong with a line: place of the character from its beginning, what, and what to do."""
 
     place: int
@@ -35,7 +35,7 @@ class Slip:
     hint: str
 
 
-def slip(line: str, rules: TextRules) -> Slip | None:
+def syntax_hint(line: str, rules: TextRules) -> SyntaxHint | None:
     """Return what is wrong with a line that would be words but for a slip; None for a statement of a language.
 
     `line` is one character a byte. A comma in a number and letters without a number are slips.
@@ -78,43 +78,47 @@ def _without_comments(line: str, rules: TextRules) -> str:
     return line
 
 
-def _decimal_comma(code: str) -> Slip | None:
+def _decimal_comma(code: str) -> SyntaxHint | None:
     found = _DECIMAL_COMMA.search(code) or _BARE_COMMA.search(code)
     several = _THOUSANDS.search(code)
     if several is not None and (found is None or several.start() <= found.start()):
         text = several[0]
         if text.count(",") + text.count(".") > 1:
-            return Slip(several.start(), f"'{text}' is no number", "Write it without commas, like X1250.5.")
+            return SyntaxHint(
+                several.start(), f"'{text}' is no number", "Write it without commas, like X1250.5."
+            )
     if found is None:
         return None
     groups = found.groupdict()
     whole = re.sub(r"\s", "", groups.get("number") or groups.get("sign") or "")
-    return Slip(
+    return SyntaxHint(
         found.start(),
         f"'{found[0]}' has a comma in its number",
         f"Write {found['word']}{whole}.{found['rest']}: a decimal point, no comma.",
     )
 
 
-def _letters_and_commas(code: str) -> Slip | None:
+def _letters_and_commas(code: str) -> SyntaxHint | None:
     letters, comma = _LETTERS.search(code), _COMMA.search(code)
     if letters is not None and (comma is None or letters.start() < comma.start()):
         word = letters[0][0]
-        return Slip(
+        return SyntaxHint(
             letters.start(),
             f"'{word}' has no number",
-            f"'{_shown(letters[0])}' is no word: write the number right behind the letter, like {word}10.",
+            f"'{_shown(letters[0])}' is no word: write the number right after the letter, like {word}10.",
         )
     if comma is None:
         return None
     if between := _BETWEEN_BLOCKS.match(code, comma.start()):
         word = between["word"].upper()
-        return Slip(
+        return SyntaxHint(
             comma.start(),
             f"',{word}' (a chamfer or a rounding between blocks) is not known here",
             "Write the chamfer or the rounding as a block of its own.",
         )
-    return Slip(comma.start(), "',' may not stand in a block", "A block holds words like X12.5; take it out.")
+    return SyntaxHint(
+        comma.start(), "',' may not stand in a block", "A block holds words like X12.5; take it out."
+    )
 
 
 def _shown(letters: str) -> str:

@@ -14,13 +14,16 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.errors import SourcePosition, UsageError
+from polycnc.errors import ProgramError, SourcePosition, UsageError
 
 _UTF8_MARK = b"\xef\xbb\xbf"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 _NEWLINE = ord("\n")
 _RETURN = ord("\r")
 _PIECE_BYTES = 1 << 20
+
+
+MOST_LINE = 1 << 18  # bytes
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +126,27 @@ class ProgramText:
         end = len(self.content) if feed < 0 else feed
         carriage = self.content.find(b"\r", offset, end)
         return end if carriage < 0 else carriage
+
+    def line_longer_than(self, most: int) -> int | None:
+        """Return where the first line with more than `most` bytes begins, None where no line has.
+
+        It looks at the last newline in each piece of so many bytes, and at hardly any other byte.
+        """
+        content, begin = self.content, 0
+        while len(content) - begin > most:
+            behind = max(content.rfind(sign, begin, begin + most + 1) for sign in (b"\n", b"\r")) + 1
+            if behind <= begin:
+                return begin
+            begin = behind
+        return None
+
+    def endless_line(self) -> ProgramError | None:
+        """Return the error of a line that is longer than anybody writes, before anything looks at its words."""
+        offset = self.line_longer_than(MOST_LINE)
+        if offset is None:
+            return None
+        what = f"a line with more than {MOST_LINE} characters"
+        return ProgramError(what, position=self.position(offset), hint="Check the line ends.")
 
     def next_line(self, offset: int) -> int:
         """Return the offset of the first byte after the line of `offset` and its newline."""

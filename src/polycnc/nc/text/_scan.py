@@ -24,7 +24,7 @@ BAD = 2
 PERCENT = 4
 """A line that begins with %; what follows on the line is skipped."""
 LABEL = 8
-"""A colon opens the block (alignment block, program number); a number behind it is a word of letter ':'."""
+"""A colon opens the block (alignment block, program number); a number after it is a word of letter ':'."""
 COMMENT = 16
 MESSAGE = 32
 """A comment of the form (MSG, text)."""
@@ -348,7 +348,7 @@ def _scan_block(
 
 @compiled
 def _scan_value(data: npt.NDArray[np.uint8], letter: int, rules: ScanRules) -> tuple[int, float, int, int]:
-    """Read the number behind a letter; return the offset behind it (or of the error), value, point, flag."""
+    """Read the number after a letter; return the offset after it (or of the error), value, point, flag."""
     end = len(data)
     position = _skip_blanks(data, letter + 1, rules.classes)
     if position < end and data[position] == _EQUALS:
@@ -374,7 +374,7 @@ def _scan_value(data: npt.NDArray[np.uint8], letter: int, rules: ScanRules) -> t
 
 @compiled
 def _find_open_end(data: npt.NDArray[np.uint8], begin: int) -> int:
-    """Return the offset behind #12, #<name> or [...]; `begin` where none of them is complete on its line."""
+    """Return the offset after #12, #<name> or [...]; `begin` where none of them is complete on its line."""
     end = len(data)
     position = begin + 1
     if data[begin] == _BRACKET:
@@ -441,7 +441,7 @@ def _scan_number(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -
 
 @compiled
 def _scan_skip_mark(data: npt.NDArray[np.uint8], slash: int) -> tuple[int, int]:
-    """Read '/' or '/1' to '/9'; return the offset behind it and the level."""
+    """Read '/' or '/1' to '/9'; return the offset after it and the level."""
     after = slash + 1
     if after < len(data) and _ZERO < data[after] <= _ZERO + 9:
         return after + 1, int(data[after] - _ZERO)
@@ -452,7 +452,7 @@ def _scan_skip_mark(data: npt.NDArray[np.uint8], slash: int) -> tuple[int, int]:
 def _scan_label(
     data: npt.NDArray[np.uint8], colon: int, word: int, rules: ScanRules, columns: WordColumns
 ) -> tuple[int, int, int]:
-    """Read ':' and the number behind it, if any, as a word; return the offset behind it, words, a flag."""
+    """Read ':' and the number after it, if any, as a word; return the offset after it, words, a flag."""
     end = len(data)
     position = _skip_blanks(data, colon + 1, rules.classes)
     if position == end or rules.classes[data[position]] != DIGIT:
@@ -488,7 +488,7 @@ def _is_word_end(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -
 
 @compiled
 def _find_close(data: npt.NDArray[np.uint8], position: int, rules: ScanRules) -> int:
-    """Return the offset behind the comment that opens here, NO_TROUBLE when it is not closed and must be."""
+    """Return the offset after the comment that opens here, NO_TROUBLE when it is not closed and must be."""
     end = len(data)
     while position < end and rules.classes[data[position]] != NEWLINE:
         if data[position] == _CLOSE:
@@ -521,7 +521,7 @@ def _skip_blanks(data: npt.NDArray[np.uint8], position: int, classes: npt.NDArra
 
 @compiled
 def _after_newline(data: npt.NDArray[np.uint8], position: int) -> int:
-    """Return the offset behind the newline at `position`: LF, CR LF or CR, or nothing at the end."""
+    """Return the offset after the newline at `position`: LF, CR LF or CR, or nothing at the end."""
     if position + 1 < len(data) and data[position] == _RETURN and data[position + 1] == _FEED:
         return position + 2
     return min(position + 1, len(data))

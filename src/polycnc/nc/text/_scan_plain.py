@@ -214,7 +214,7 @@ class _LineReader:
         else:
             letter = self.line[self.place]
             raise self._error(
-                f"'{letter}' has no number", f"Write the number right behind the letter, like {letter}10."
+                f"'{letter}' has no number", f"Write the number right after the letter, like {letter}10."
             )
 
     def _add(self, letter: str, sign: str, digits: str, index: int | None = None) -> None:

@@ -37,7 +37,7 @@ class Parameters(MotionParameters):
     separator: str = Field(
         default="",
         max_length=8,
-        description="Text before each code and function variable that does not begin its block, and behind a "
+        description="Text before each code and function variable that does not begin its block, and after a "
         "sequence number.",
     )
     sequence_place: Literal[0, 1, 2] = Field(

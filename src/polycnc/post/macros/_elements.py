@@ -104,7 +104,7 @@ def _closing(line: str, at: int, what: str) -> int:
     end = line.find(line[at], at + 1)
     if end < 0:
         raise Flaw(
-            at, f"{what} has no end", f"write {line[at]} behind it too; to output {_quotable(line[at])}"
+            at, f"{what} has no end", f"write {line[at]} after it too; to output {_quotable(line[at])}"
         )
     return end
 
@@ -176,7 +176,7 @@ def _assignment(line: str, at: int) -> tuple[Element, int]:
         raise Flaw(target.end(), f"{name} takes a text in double quotes", f'write <{name}="text">')
     end = line.find(">", target.end())
     if end < 0:
-        raise Flaw(at, "the assignment has no end", "write > behind its expression")
+        raise Flaw(at, "the assignment has no end", "write > after its expression")
     return Assignment(at, name, read_value(line, target.end(), end)), end + 1
 
 

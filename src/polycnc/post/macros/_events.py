@@ -103,7 +103,7 @@ WORDS: tuple[WordRow, ...] = (
     WordRow("MACHINENAME", "text", "name in the MACHIN record"),
     WordRow("UNITS", "number", "21: lengths are written in mm; 20: in inch"),
     WordRow("WORD", "text", "first word of the record, like AUXFUN", added=True, kept=True),
-    WordRow("WORDTEXT", "text", "what stands behind its slash, as it stands", added=True, kept=True),
+    WordRow("WORDTEXT", "text", "what stands after its slash, as it stands", added=True, kept=True),
     WordRow("NUMBERS", "number", "how many numbers the record has", added=True, kept=True),
     *(
         WordRow(name, "number", f"its number {name[6:]} as it stands, 0 if it has fewer", added=True, kept=True)
@@ -128,7 +128,7 @@ EVENTS: tuple[EventRow, ...] = (
     EventRow("COMP_LEFT", "state", "CUTCOM/LEFT", ("D",)),
     EventRow("COMP_RIGHT", "state", "CUTCOM/RIGHT", ("D",)),
     EventRow("COMP_OFF", "state", "CUTCOM/OFF"),
-    EventRow("RAPID", "motion", "a move behind RAPID", _MOVE),
+    EventRow("RAPID", "motion", "a move after RAPID", _MOVE),
     EventRow("LINEAR", "motion", "a move with feed, a piece of an arc that is split into lines", (*_MOVE, *_FEED)),
     EventRow("THREAD", "motion", "a cut of a thread, between THREAD/TURN and THREAD/OFF", (*_MOVE, "LEAD"), added=True),
     EventRow("ARC_CW", "arc", "an arc clockwise in its plane, or a helix", _ARC),
@@ -139,7 +139,7 @@ EVENTS: tuple[EventRow, ...] = (
     EventRow("CYCLE_CHIP_BREAK", "cycle", "each hole of CYCLE/BRKCHP", (*_HOLE, "Q", "P")),
     EventRow("CYCLE_TAP", "cycle", "each hole of CYCLE/TAP", (*_HOLE, "PITCH", "S", "P")),
     EventRow("CYCLE_BORE", "cycle", "each hole of CYCLE/BORE, REAM", (*_HOLE, "P")),
-    EventRow("CYCLE_OFF", "frame", "behind the last hole that a cycle macro drilled"),
+    EventRow("CYCLE_OFF", "frame", "after the last hole that a cycle macro drilled"),
     EventRow("DWELL", "state", "DELAY", ("DWELL", "DWELLREV")),
     EventRow("STOP", "state", "STOP"),
     EventRow("OPTIONAL_STOP", "state", "OPSTOP"),
@@ -152,8 +152,8 @@ EVENTS: tuple[EventRow, ...] = (
 STATES: tuple[WordRow, ...] = (
     WordRow("SPINDLESTATE", "number", "3: the spindle turns clockwise; 4: counter-clockwise; 5: it stands", True, True),
     WordRow("COOLANTSTATE", "number", "8: flood; 7: mist; 88: through the tool; 9: off", True, True),
-    WordRow("NEXTTOOL", "number", "tool of the next tool change, 0 behind the last one", True, True),
-    WordRow("FIRSTMOTION", "number", "2: the first move or hole of the program, behind a tool change or in another "
+    WordRow("NEXTTOOL", "number", "tool of the next tool change, 0 after the last one", True, True),
+    WordRow("FIRSTMOTION", "number", "2: the first move or hole of the program, after a tool change or in another "
             "work offset; 1: the first of an operation otherwise; 0: any other", True, True),
     WordRow("WORKOFFSET", "number", "number of the work offset, 1 if the tool path names none", True, True),
 )  # fmt: skip
@@ -189,7 +189,7 @@ _WORD_MACRO = re.compile(r"WORD(_[A-Z][A-Z0-9]*){1,2}")
 def word_macros(name: str, first: str) -> Iterable[str]:
     """Return the macros that may take a record, the narrowest first.
 
-    A condition cannot compare texts (Manual 001, 8), so the name of the record, and the first word behind its slash,
+    A condition cannot compare texts (Manual 001, 8), so the name of the record, and the first word after its slash,
     are part of the macro's: WORD_OPSKIP_ON, WORD_OPSKIP, WORD.
     """
     return f"WORD_{name}_{first}", f"WORD_{name}", "WORD"

@@ -87,7 +87,7 @@ Expression: TypeAlias = Tree[Constant | Name | Call]
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Two expressions that are compared, behind a logical operator or ""."""
+    """Two expressions that are compared, after a logical operator or ""."""
 
     logic: str
     left: Expression

@@ -22,7 +22,7 @@ class FormatError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class NumberFormat:
-    """A format taken apart: text before and behind the number, the conversion, and what is done to its end.
+    """A format taken apart: text before and after the number, the conversion, and what is done to its end.
 
     `zeros`: "keep" all decimals, "trim" zeros at the end and then the point, "point": trim zeros but keep the point.
     """

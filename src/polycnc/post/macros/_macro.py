@@ -56,7 +56,7 @@ def read_macro(text: str) -> tuple[list[Statement], list[Flaw]]:
             reader.flaws.append(flaw)
     for opened in reader.open:
         number = opened.branches[0].number
-        reader.flaws.append(Flaw(0, "the IF has no ENDIF", "write ENDIF behind its last line", line=number))
+        reader.flaws.append(Flaw(0, "the IF has no ENDIF", "write ENDIF after its last line", line=number))
     return reader.top, reader.flaws
 
 
@@ -101,9 +101,7 @@ class _Reader:
             self._if(number, line, control)
             return
         if not self.open:
-            raise Flaw(
-                control.start(1), f"{word} stands behind no IF", "to output the word, put it in quotes"
-            )
+            raise Flaw(control.start(1), f"{word} stands after no IF", "to output the word, put it in quotes")
         if word in ("ELSE", "ENDIF") and line[control.end() :].strip(" \t"):
             raise Flaw(
                 control.end(), f"{word} stands alone in its line", "put what follows into the next line"

@@ -117,7 +117,7 @@ class MotionParameters(StrictModel):
     )
     units: Literal["mm", "inch"] = Field(default="mm", description="Units in which lengths are written.")
     decimals: Annotated[int, Field(ge=0, le=9)] = Field(
-        default=3, description="Decimals of positions; centres of arcs are reckoned from rounded positions."
+        default=3, description="Decimals of positions; centres of arcs are computed from rounded positions."
     )
     arcs: Literal["arcs", "lines"] = Field(default="arcs", description="Arcs stay arcs, or become lines.")
     arc_center: Literal["relative", "absolute"] = Field(

@@ -89,7 +89,7 @@ A line is read from left to right. Each element acts when it is reached.
 | no number | `@0@` | the block gets no sequence number |
 | number | `@1@` | the block gets one, with `sequence_place = 2`; with `@0@` in the block too it gets none |
 | assignment | `<V1=100+1>` | sets a function variable, OUTPUTORDER or a variable of that name |
-| line text | `<STARTOFLINE="/">`, `<ENDOFLINE=";">` | text before and behind every block from now on; `""` for none |
+| line text | `<STARTOFLINE="/">`, `<ENDOFLINE=";">` | text before and after every block from now on; `""` for none |
 | initialisation | `&F&`, `&G01&` | the next output is not omitted; of a code, its whole group has no mode |
 | the same with a value | `&X*0&` | also sets the variable; without a value X, Y, Z go to the machining origin |
 
@@ -148,11 +148,11 @@ RULINGS = [
         "`group`",
     ),
     ("Sequence number: its place with OUTPUTORDER 1", "-100", "`[nc_code]` SEQUENCE_NUMBER"),
-    ("Sequence number: its place otherwise", "the first of the block, behind STARTOFLINE", "fixed"),
+    ("Sequence number: its place otherwise", "the first of the block, after STARTOFLINE", "fixed"),
     ("Sequence number: options besides 2", "0: no block, 1: every block", "`sequence_place`"),
     ("`@0@` and `@1@` in one block", "no number", "fixed"),
     ("Lines without output, also of nothing but blanks", "no block, no number", "fixed"),
-    ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds behind", "fixed"),
+    ("DMS, ADMS: the packed form", "D.MMSS, with decimals of seconds after", "fixed"),
     ("TAN, ASIN, ACOS, ATAN", "in radians", "fixed"),
     ("`&&` and `||`", "`&&` binds closer; what is decided is not looked at further", "fixed"),
     ("IF on texts", "refused: an expression is of words with numbers, constants and operators (8)", "fixed"),

@@ -108,8 +108,8 @@ class Rows:
     ) -> tuple[str, int, int, int]:
         """Return the blocks of rows, their number, how many rows are done, and the next sequence number.
 
-        It ends before a number of more than nine digits. `lasts` is what was written last of each axis, and `behind`
-        gets how many blocks there are behind each row.
+        It ends before a number of more than nine digits. `lasts` is what was written last of each axis, and `after`
+        gets how many blocks there are after each row.
         """
         state = np.zeros(9, np.int64)
         state[_COUNT] = number
@@ -268,7 +268,7 @@ def _value(
     out: npt.NDArray[np.uint8],
     at: int,
 ) -> int:
-    """Write a word: its address, the number with its point, and what stands behind."""
+    """Write a word: its address, the number with its point, and what stands after."""
     at = _text(texts, axes[axis + _BEFORE], axes[axis + _BEFORE_BYTES], out, at)
     decimals, trim = axes[axis + _DECIMALS], axes[axis + _TRIM]
     if value < 0:

@@ -102,7 +102,7 @@ class MacroRun:
     def call_along(self, rows: Iterable[Sequence[float]], feed: float, mode: float) -> Iterator[None]:
         """Run LINEAR once for each row, as `call` does with its numbers as X, Y, Z and STARTX, STARTY, STARTZ.
 
-        A row has all six if any macro names one of the latter, else three; F and FEEDMODE stay the same. Yields behind
+        A row has all six if any macro names one of the latter, else three; F and FEEDMODE stay the same. Yields after
         each.
 
         Raises:
@@ -126,7 +126,7 @@ class MacroRun:
     ) -> tuple[str, int, int]:
         """Write LINEAR for the rows of `ends`, [rows, 3 or 6], as far as that goes.
 
-        `behind` gets how many blocks there are behind each row, from none.
+        `behind` gets how many blocks there are after each row, from none.
 
         Returns:
             The blocks, their number, and how many rows are done.
@@ -178,7 +178,7 @@ class MacroRun:
         self._known = len(self._values)
 
     def _explain(self, error: Exception, words: Mapping[str, Value]) -> NoReturn:
-        """Raise what stands behind an error in compiled code, at its place in the macro; others go on as they are."""
+        """Raise what stands after an error in compiled code, at its place in the macro; others go on as they are."""
         if isinstance(error, UsageError):
             raise error
         found = self._place(error)

@@ -114,7 +114,7 @@ class Motion:
     ) -> None:
         """Move straight with the feed to one point after the other, [points, 3], where that is plain.
 
-        `blocks` gets how many blocks there are behind each of them.
+        `blocks` gets how many blocks there are after each of them.
         """
         if self._flat and len(off := np.flatnonzero(np.abs(ends[:, 1]) > _OFF_PLANE_MM)):
             raise self._off_plane(line + int(off[0]), float(ends[off[0], 1]))
@@ -161,7 +161,7 @@ class Motion:
         self._call("LINEAR", words)
 
     def travelled(self, steps: Iterable[Step], end: Vector) -> None:
-        """Take the position behind a hole that a macro drilled, and the lengths of its steps."""
+        """Take the position after a hole that a macro drilled, and the lengths of its steps."""
         here = self.position
         for step in steps:
             length = 0.0 if here is None else math.dist(here, step.point)

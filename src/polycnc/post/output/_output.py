@@ -55,7 +55,7 @@ class Output:
         """Call LINEAR for each row of X, Y, Z, and of where the move starts if the control file wants that.
 
         Returns:
-            With `counts` how many blocks there are behind each.
+            With `counts` how many blocks there are after each.
         """
         done, together = 0, self._tool_path.is_long
         behind = np.zeros(len(rows) if counts else 0, np.intc)
@@ -115,7 +115,7 @@ class Output:
         self._run.forget(names)
 
     def formatted(self, variable: str, value: float) -> str:
-        """Return a number as the control writes it behind an address, plainly if it has no such address."""
+        """Return a number as the control writes it after an address, plainly if it has no such address."""
         if variable in self.control.variables:
             return self._run.formatted(variable, value)
         return f"{variable}{value:g}"

@@ -92,7 +92,7 @@ class Arc:
         return self.radius * (1.0 - math.cos(min(self.sweep, TWO_PI) * 0.5))
 
     def point(self, angle: float) -> Vector:
-        """Return the point behind `angle` rad; a difference of the radii at both ends is spread along the arc."""
+        """Return the point after `angle` rad; a difference of the radii at both ends is spread along the arc."""
         if angle >= self.sweep:
             return self.end
         out = across(self.start, self.center, self.normal)

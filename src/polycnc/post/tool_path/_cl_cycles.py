@@ -118,14 +118,14 @@ def _check_pecks(statement: Statement, kind: CycleKind, peck: float, bare: list[
 
 
 def _is_kind(word: str) -> bool:
-    """Return whether numbers by place may stand behind a word."""
+    """Return whether numbers by place may stand after a word."""
     return word in _KINDS or word in _TURNING
 
 
 def _split(
     statement: Statement, scale: float, units: Mapping[str, tuple[float, bool]]
 ) -> tuple[dict[str, float], list[float], float | None, bool]:
-    """Return the numbers behind words, those without one, the feed, and whether that is per revolution."""
+    """Return the numbers after words, those without one, the feed, and whether that is per revolution."""
     values: dict[str, float] = {}
     bare: list[float] = []
     feed: float | None = None
@@ -143,7 +143,7 @@ def _split(
         elif token.text == "RTRCTO" and (after := statement.peek()) is not None and after.text == "AUTO":
             continue
         elif token.text in _NUMBERED:
-            value = statement.number(f"a number behind {token.text}")
+            value = statement.number(f"a number after {token.text}")
             values[token.text] = value if token.text == "DWELL" else value * scale
             if token.text in _PECKS:  # several pecks, each smaller than the one before
                 values[token.text] = min((value, *(n for n in statement.numbers() if n > 0.0))) * scale
@@ -152,7 +152,7 @@ def _split(
         ):
             raise statement.fail(
                 f"{token.text},{after.text} in a cycle is not known",
-                "Take it out of the tool path, or let the CAM system write the moves of the holes as points.",
+                "Remove it of the tool path, or let the CAM system write the moves of the holes as points.",
                 token,
             )
     if feed is not None and not feed > 0.0:

@@ -190,10 +190,10 @@ def check_upright(statement: Statement, numbers: tuple[float, ...]) -> None:
 
 
 def circle(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read CIRCLE or MOVARC; the arc comes with the point behind it.
+    """Read CIRCLE or MOVARC; the arc comes with the point after it.
 
     The axis is by the right-hand rule, in a CLSF of NX it is for a clockwise direction. The numbers stand by place, or
-    behind CENTER, AXIS and RADIUS.
+    after CENTER, AXIS and RADIUS.
     """
     numbers = statement.numbers()
     if not numbers and (first := statement.peek()) is not None and first.text == "CENTER":

@@ -99,7 +99,7 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
     if pieces and end is None:
         yield from reading.hold(_statement(source, reading, pieces))
     if reading.circle is not None:
-        raise reading.circle.statement.fail("an arc without an end point", "Write a GOTO behind it.")
+        raise reading.circle.statement.fail("an arc without an end point", "Write a GOTO after it.")
     _check_recognised(source, reading)
     yield from reading.release()
     if end is not None:
@@ -108,9 +108,9 @@ def read_cl(source: Source, remarks: Remarks, arc_axis: ArcAxis = "auto") -> Ite
 
 def _behind_the_end(source: Source, line: int) -> ProgramError:
     return ProgramError(
-        "a move behind END, which ends the program",
+        "a move after END, which ends the program",
         position=source.position(line),
-        hint="Take END out, or make a tool path of its own of what stands behind it.",
+        hint="Take END out, or make a tool path of its own of what stands after it.",
     )
 
 
@@ -182,7 +182,7 @@ def _frame_in_remarks(reading: Reading, line: int, text: str) -> Iterator[Record
 
 
 def _behind_goto(raw: bytes) -> bytes:
-    """Return what stands behind GOTO/, nothing if the line is another statement."""
+    """Return what stands after GOTO/, nothing if the line is another statement."""
     if raw.startswith(b"GOTO/"):
         return raw[5:]
     head, _, rest = raw.partition(b"/")

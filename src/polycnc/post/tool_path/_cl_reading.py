@@ -103,7 +103,7 @@ class Reading:
     offset: int | None = None
     """The number of the length offset in force."""
     held: list[Record] = field(default_factory=list)
-    """A tool change and what stands behind it up to the first move, for its offset; at first what comes before it."""
+    """A tool change and what stands after it up to the first move, for its offset; at first what comes before it."""
     before_tools: bool = True
     """Whether nothing but rapids came so far."""
     cycle_began: int = 0
@@ -130,7 +130,7 @@ class Reading:
         return self.resumes or self.announced is not None or self.axis_unsure is not None
 
     def hold(self, records: Iterable[Record]) -> Iterator[Record]:
-        """Yield records, but a tool change and what stands behind it only before the first move.
+        """Yield records, but a tool change and what stands after it only before the first move.
 
         Rapids before the first tool change are left out: the length of the tool that is in the spindle then is unknown.
         """
@@ -183,7 +183,7 @@ class Reading:
             raise statement.fail(
                 f"length offset {number} for a tool that has moved with "
                 + ("none" if self.offset is None else str(self.offset)),
-                "Write it right behind the tool change, before the tool moves.",
+                "Write it right after the tool change, before the tool moves.",
             )
         self.offset = number
 
@@ -196,7 +196,7 @@ class Reading:
         self.resumes = False
         if self.side is None:
             raise statement.fail(
-                "CUTCOM/ON without a side before or behind it", "Write CUTCOM/LEFT or CUTCOM/RIGHT."
+                "CUTCOM/ON without a side before or after it", "Write CUTCOM/LEFT or CUTCOM/RIGHT."
             )
         return self.side._replace(line=statement.line)
 
@@ -266,8 +266,8 @@ class Reading:
             self.is_tilted, self.axis_unsure = axis != UPRIGHT, None
         elif self.axis_unsure is not None:
             raise self.axis_unsure.fail(
-                "MULTAX/OFF while the tool is tilted, and points without a tool axis behind it",
-                "Write TLAXIS/0,0,1 behind it if the tool stands upright there, or let the CAM system write the axis.",
+                "MULTAX/OFF while the tool is tilted, and points without a tool axis after it",
+                "Write TLAXIS/0,0,1 after it if the tool stands upright there, or let the CAM system write the axis.",
             )
         if self.scale != 1.0:
             x, y, z = x * self.scale, y * self.scale, z * self.scale
@@ -320,7 +320,7 @@ class Reading:
         if off := off_circle(start, end, circle.center, circle.normal):
             raise statement.fail(
                 f"the end point of the arc lies {off:.4g} mm off the circle through its start",
-                "Check the centre, and the points before and behind the arc.",
+                "Check the centre, and the points before and after the arc.",
             )
         turns, normal = circle.turns, circle.normal
         if circle.angle_deg is not None:
@@ -346,7 +346,7 @@ class Reading:
         if not with_axis and not against:
             raise circle.statement.fail(
                 f"ANGLE,{angle:g} of an arc whose points are {sweep:.5g} degree apart",
-                "Check the angle, the centre, and the points before and behind the arc.",
+                "Check the angle, the centre, and the points before and after the arc.",
             )
         if with_axis and against:
             self.both_ways = self.both_ways or circle.statement

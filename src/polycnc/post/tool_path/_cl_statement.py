@@ -86,7 +86,7 @@ class Statement:
         """
         token = self.peek()
         if token is None:
-            raise self.fail(f"{self.major} needs {what}", f"Write it behind {self.major}/.")
+            raise self.fail(f"{self.major} needs {what}", f"Write it after {self.major}/.")
         value = token.number
         if value is None:
             raise self.fail(
@@ -128,17 +128,17 @@ class Statement:
         return value
 
     def value_of(self, word: str, what: str) -> float | None:
-        """Return the number behind a word, wherever it stands; None if the word is not there.
+        """Return the number after a word, wherever it stands; None if the word is not there.
 
         Raises:
-            ProgramError: no number stands behind the word.
+            ProgramError: no number stands after the word.
         """
         for index, token in enumerate(self._tokens):
             if token.text == word:
                 after = self._tokens[index + 1] if index + 1 < len(self._tokens) else None
                 value = after.number if after is not None else None
                 if value is None:
-                    raise self.fail(f"{word} needs {what}", f"Write it behind {word}, like {word},5.", token)
+                    raise self.fail(f"{word} needs {what}", f"Write it after {word}, like {word},5.", token)
                 return self._sane(token, value)
         return None
 

@@ -171,7 +171,7 @@ def _units(reading: Reading, statement: Statement) -> Iterator[Record]:
         raise statement.fail(f"{statement.major} without a unit", "Write UNITS/MM or UNITS/INCHES.")
     if reading.moves and reading.scale != before:
         raise statement.fail(
-            "the unit changes behind the first move",
+            "the unit changes after the first move",
             f"Write {statement.major} before all points, and one tool path for each unit.",
         )
     return iter(())
@@ -237,7 +237,7 @@ def _tool(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def _change(reading: Reading, statement: Statement, number: int) -> Tool:
-    """Return the change to a tool, with the length and the offsets that stand behind its number."""
+    """Return the change to a tool, with the length and the offsets that stand after its number."""
     length = statement.value_of("LENGTH", "a length")
     more = statement.numbers()
     offset = statement.value_of("ADJUST", "an offset number")
@@ -492,7 +492,7 @@ def _end(reading: Reading, statement: Statement) -> Iterator[Record]:
 
 
 def _multax(reading: Reading, statement: Statement) -> Iterator[Record]:
-    """Read MULTAX: behind OFF a point without an axis is for an upright tool, for some systems."""
+    """Read MULTAX: after OFF a point without an axis is for an upright tool, for some systems."""
     reading.axis_unsure = statement if "OFF" in statement.words() and reading.is_tilted else None
     return iter(())
 

@@ -92,7 +92,7 @@ class Course:
         self.cycle: Cycle | None = None
         self._home: Vector | None = None
         self._rapid = False
-        self._changed = False  # behind a tool change nobody knows where the machine stands
+        self._changed = False  # after a tool change nobody knows where the machine stands
         self._last: Cycle | None = None
         self._initial: Vector | None = None
         self._jumped = 0  # the line of a FROM that says the tool is elsewhere than it went
@@ -188,7 +188,7 @@ class Course:
         return Hole(line, start, point, self.axis, self.cycle, levels)
 
     def _arrive(self, line: int, by_rapid: bool) -> None:
-        """Know the way that a move begins with: behind a FROM elsewhere it cannot be a feed.
+        """Know the way that a move begins with: after a FROM elsewhere it cannot be a feed.
 
         Raises:
             CourseError: it is.
@@ -237,7 +237,7 @@ class Course:
         if self._changed and self.here is not None:
             raise CourseError(
                 record.line,
-                "an arc right behind a tool change, from where the tool is not yet",
+                "an arc right after a tool change, from where the tool is not yet",
                 "Write a GOTO to the start of the arc before it.",
             )
         start, self._rapid = self.here, False

@@ -326,7 +326,7 @@ def _check_arc(source: Source, start: records.Vector | None, arc: records.Circle
         raise ProgramError(
             f"the end point of the arc lies {off:.4g} mm off the circle through its start",
             position=source.position(arc.line),
-            hint="Check the centre, and the points before and behind the arc.",
+            hint="Check the centre, and the points before and after the arc.",
         )
 
 

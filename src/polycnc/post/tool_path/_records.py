@@ -240,9 +240,9 @@ class Stop(NamedTuple):
 
 
 class Word(NamedTuple):
-    """A record that is not known here: its first word, the numbers and the text behind its slash.
+    """A record that is not known here: its first word, the numbers and the text after its slash.
 
-    `first` is the first word behind the slash, empty if there is none.
+    `first` is the first word after the slash, empty if there is none.
     """
 
     line: int

@@ -35,7 +35,7 @@ class Sweep(NamedTuple):
 
 
 class Ways(NamedTuple):
-    """Straight moves with the feed, one behind the other from `start`: to the rows of `ends`, [moves, 3] in mm.
+    """Straight moves with the feed, one after the other from `start`: to the rows of `ends`, [moves, 3] in mm.
 
     The first is of `record` on `line`, and each further one of the next record on the next line.
     """
@@ -64,7 +64,7 @@ def sweep_tool_path(records: Iterable[Record | Points]) -> Iterator[Sweep]:
 
 
 def sweep_in_runs(records: Iterable[Record | Points]) -> Iterator[Sweep | Ways]:
-    """Yield the moves of a tool path as `sweep_tool_path` does, many at once where points lie behind each other.
+    """Yield the moves of a tool path as `sweep_tool_path` does, many at once where points lie one after another.
 
     Raises:
         ProgramError: a record comes to no move.

@@ -29,7 +29,7 @@ class Tangency:
         """The line of the first arc that turns back, 0 if none does."""
         self._way: Vector | None = None
         self._segment: tuple[Vector, Vector] | None = None
-        """The last move, if its direction is not in `_way` yet: only an arc behind it asks for it."""
+        """The last move, if its direction is not in `_way` yet: only an arc after it asks for it."""
         self._leaves: Vector | None = None
         self._vote = 0
         self._line = 0
@@ -42,7 +42,7 @@ class Tangency:
             self._segment = (start, end)
 
     def run(self, start: Vector, ends: npt.NDArray[np.float64], lengths: npt.NDArray[np.float64]) -> None:
-        """Take straight feed moves, one behind the other, with their lengths in mm."""
+        """Take straight feed moves, one after the other, with their lengths in mm."""
         long = np.flatnonzero(lengths > _SHORT_MM)
         for place in sorted({*long[:1].tolist(), *long[-1:].tolist()}):
             before = start if not place else _vector(ends[place - 1])

@@ -30,7 +30,7 @@ class ToolPath:
         return one_by_one(self.runs())
 
     def runs(self) -> Iterator[Record | Points]:
-        """Return the records, where many points lie behind each other together."""
+        """Return the records, where many points lie one after another together."""
         self.remarks = Remarks()
         return self._read(self._source, self.remarks)
 

@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.machine import MachineConfig
-from polycnc.runner.plots import END, RAPID, tool_colour
-from polycnc.runner.view import Track, kept_rows, turns, with_part_frame
+from polycnc.runner.plots._styles import END, RAPID, tool_colour
+from polycnc.runner.view._part_frame import turns, with_part_frame
+from polycnc.runner.view._thin import kept_rows
+from polycnc.runner.view._track import Track
 
 WIDTH, HEIGHT = 96.0, 64.0
 _EDGE = 3.0

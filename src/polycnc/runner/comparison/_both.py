@@ -5,32 +5,34 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path as FilePath
 
-from polycnc.nc import ProgramText
 from polycnc.runner._result import RunResult
-from polycnc.runner.comparison._compare import Compared, Comparison, PathDeviation
+from polycnc.runner.comparison._compared import Compared, PathDeviation
 from polycnc.runner.view import Beside, Mark, Track, View, page
 
 
-def view_of_comparison(comparison: Comparison) -> View:
-    """Return a page with path A, its blocks and times, path B beside it, and the greatest deviations marked."""
-    axes = comparison.axes
+def view_of_both(
+    sides: tuple[Compared, Compared],
+    ways: tuple[PathDeviation, PathDeviation],
+    axes: tuple[tuple[str, str], ...],
+    tracks: tuple[Track, Track],
+    track_axes: tuple[tuple[str, ...], tuple[str, ...]],
+) -> View:
+    """Return a page with path A, its blocks and times, path B beside it, and the greatest deviations marked.
+
+    `ways` are the greatest deviations of A from B and of B from A; the tracks have the axes `track_axes`, and those
+    that both have are `axes`.
+    """
+    texts = ("A is farthest from B", "B is farthest from A")
     marks = [
-        _mark("A is farthest from B", comparison.a_from_b, axes, own=True),
-        _mark("B is farthest from A", comparison.b_from_a, axes, own=False),
-    ]
-    marks = [
-        mark
-        for mark, found in zip(marks, (comparison.a_from_b, comparison.b_from_a), strict=True)
+        _mark(text, found, axes, own=found is ways[0])
+        for text, found in zip(texts, ways, strict=True)
         if found.mm
     ]
-    result = _result_of(comparison.a)
-    both = zip(comparison.tracks, comparison.track_axes, strict=True)
-    own, beside = (_of_axes(track, names, axes) for track, names in both)
-    shown = Beside(_name(comparison.b), _name(comparison.a), beside, tuple(marks))
-    texts: dict[str, ProgramText] = {}
-    html = page(result, axes, own, texts, shown)
-    inputs = tuple(FilePath(each.name) for each in (comparison.a, comparison.b) if "\0" not in each.name)
-    return View(html, result, inputs)
+    a, b = sides
+    own, beside = (_of_axes(track, names, axes) for track, names in zip(tracks, track_axes, strict=True))
+    html = page(_result_of(a), axes, own, {}, Beside(_name(b), _name(a), beside, tuple(marks)))
+    inputs = tuple(FilePath(each.name) for each in sides if "\0" not in each.name)
+    return View(html, _result_of(a), inputs)
 
 
 def _name(side: Compared) -> str:

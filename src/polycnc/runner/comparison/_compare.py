@@ -13,11 +13,14 @@ from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import BlockRecords, Dialect, ProgramText, dialect_for
 from polycnc.runner._blocks import execution_by_lines
 from polycnc.runner._execution import Progress
-from polycnc.runner._result import RunResult, Trace
+from polycnc.runner._outcome import Trace
+from polycnc.runner._result import RunResult
 from polycnc.runner._run import run_program
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import read_trace
 from polycnc.runner._trace_formats import TRACE_FORMATS
+from polycnc.runner.comparison._both import view_of_both
+from polycnc.runner.comparison._compared import Compared, PathDeviation
 from polycnc.runner.comparison._distance import PRECISION_MM, Boxes, greatest_distance, in_one_order
 from polycnc.runner.comparison._first_difference import BlockDifference, first_difference
 from polycnc.runner.comparison._path import (
@@ -34,67 +37,13 @@ _SLACK = 2.0 * THINNING_MM + PRECISION_MM  # what may be off in a distance betwe
 Side = str | FilePath | ProgramText | RunResult | Trace
 
 
-@dataclass(frozen=True, slots=True)
-class PathDeviation:
-    """The greatest distance of one path from another, and where on the one: positions by axis, block, time.
-
-    `mm` counts a degree of a rotary axis as a millimetre. `line` is 0 where there is no path.
-    """
-
-    mm: float = 0.0
-    position: dict[str, float] = field(default_factory=dict)
-    program: str = ""
-    line: int = 0
-    time_s: float = 0.0
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        names = ("mm", "position", "program", "line", "time_s")
-        return {name: getattr(self, name) for name in names}
-
-
-@dataclass(frozen=True, slots=True)
-class Compared:
-    """What is compared: its name, path and extents, and the result of the run where it was one.
-
-    `top_feed_mm_min` is None for a trace from a file, which does not say what was a rapid.
-    """
-
-    name: str
-    machine: str
-    time_s: float
-    path_mm: float
-    extents_mm: dict[str, tuple[float, float]]
-    top_feed_mm_min: float | None
-    result: RunResult | None = field(repr=False)
-
-    @property
-    def ok(self) -> bool:
-        """Whether the program ran to its end."""
-        return self.result is None or self.result.ok
-
-    def as_dict(self) -> dict[str, Any]:
-        """Return plain data for JSON."""
-        names = ("name", "machine", "ok", "time_s", "path_mm", "top_feed_mm_min")
-        data: dict[str, Any] = {name: getattr(self, name) for name in names}
-        data["extents_mm"] = {axis: list(extent) for axis, extent in self.extents_mm.items()}
-        if self.result is not None:
-            data |= {
-                "cutting_time_s": self.result.cutting_time_s,
-                "cutting_path_mm": self.result.cutting_path_mm,
-                "tool_times": self.result.as_dict()["tool_times"],
-                "alarms": self.result.as_dict()["alarms"],
-            }
-        return data
-
-
 @dataclass(frozen=True)
 class Comparison:
     """Say how two runs differ.
 
     `a_from_b` is the greatest distance of a point of path A from path B, `b_from_a` the other way round.
     `cuts_a_from_b` and `cuts_b_from_a` look at everything but rapids alone; they are None where nobody knows what was
-    a rapid. `same_order` says whether both paths, cuts as cuts and rapids as rapids, can be gone along together within
+    a rapid. `same_order` says whether both paths, cuts as cuts and rapids as rapids, can be traversed together within
     the tolerance, with the same tools; where not, `parts_at` are the blocks (program, line) of A and B up to which they
     can. `same_order` is None where the paths are too far apart anyway. `lone_axes` move in one run and do not exist in
     the other.
@@ -135,9 +84,8 @@ class Comparison:
 
     def view(self) -> View:
         """Return both paths as one page, to be saved, opened, or shown in a notebook."""
-        from polycnc.runner.comparison._both import view_of_comparison
-
-        return view_of_comparison(self)
+        ways = self.a_from_b, self.b_from_a
+        return view_of_both((self.a, self.b), ways, self.axes, self.tracks, self.track_axes)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
@@ -365,7 +313,7 @@ class _Lines:
     def order_with(
         self, other: _Lines, reach: float, *, kinds: bool
     ) -> tuple[bool, tuple[tuple[str, int], tuple[str, int]] | None]:
-        """Say whether both can be gone along together, and if not, up to which blocks."""
+        """Say whether both can be traversed together, and if not, up to which blocks."""
         if not len(self.point) or not len(other.point):
             return len(self.point) == len(other.point), None
         looser = reach + 2.0 * max(self._path.step, other._path.step)  # a rapid ends within one control cycle

@@ -1,4 +1,4 @@
-"""How far two polylines lie apart: exactly between their points too, and whether both are gone along in one order.
+"""How far two polylines lie apart: exactly between their points too, and whether both are traversed in one order.
 
 The greatest distance is found by bounds: the distance to one segment is convex along a line, and that to a whole
 polyline changes by no more than one goes. A stretch whose bound is below what was found already is left; any other
@@ -207,7 +207,7 @@ def _free(point: Floats, path: Floats, at: int, reach: float) -> tuple[float, fl
 
 @entry(steps=lambda a, b, reach: len(a) * len(b))
 def in_one_order(a: Floats, b: Floats, reach: float) -> tuple[bool, int, int]:
-    """Say whether two polylines can be gone along together, never back, and never farther apart than `reach`.
+    """Say whether two polylines can be traversed together, never back, and never farther apart than `reach`.
 
     This is the decision of Alt and Godau for the distance of Fréchet. Where the answer is no, the numbers are the
     segments up to which it goes.

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from polycnc.kernel import IS_RAPID, LEADING, TIME_S
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import Blocks, ExecutionCollector, execution_by_lines
-from polycnc.runner._result import Trace
+from polycnc.runner._outcome import Trace
 from polycnc.runner.view import kept_rows
 
 Floats = npt.NDArray[np.float64]

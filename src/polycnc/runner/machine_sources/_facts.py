@@ -139,7 +139,7 @@ class Facts:
     axes: tuple[AxisFacts, ...]
     left_out: tuple[LeftOut, ...] = ()
     path: Mapping[str, float | str] = field(default_factory=dict)
-    spindle: Mapping[str, float] = field(default_factory=dict)
+    spindle: Mapping[str, float | bool] = field(default_factory=dict)
     offsets: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     cycle_s: float | None = None
 

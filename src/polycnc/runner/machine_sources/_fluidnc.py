@@ -10,7 +10,7 @@ from polycnc.runner.machine_sources._facts import AXIS_LETTERS, AxisFacts, Entry
 
 CONTROL = "a FluidNC configuration"
 DEVIATION_MM, SPEED_MM_MIN, ACCELERATION_MM_S2, TRAVEL_MM = 0.01, 1000.0, 25.0, 1000.0  # the control's own
-LEFT_OUT = {"arc_tolerance_mm": "arcs are gone along as arcs, not as chords"}
+LEFT_OUT = {"arc_tolerance_mm": "arcs are traversed as arcs, not as chords"}
 
 
 def recognises(text: str) -> bool:
@@ -48,9 +48,11 @@ def read(text: str, file: str) -> Facts:
         )
     if not axes:
         raise ConfigurationError(f"{file}: there is no axis", hint="Axes lie under 'axes:', like x: and y:.")
+    has_laser = any(name.lower().startswith("laser.") for name in settings.entries)
     return Facts(
         control=CONTROL,
         axes=tuple(axes),
+        spindle={"laser": True} if has_laser else {},
         path={"junction_deviation_mm": settings.positive("junction_deviation_mm", DEVIATION_MM)},
         left_out=others(settings, LEFT_OUT),
     )

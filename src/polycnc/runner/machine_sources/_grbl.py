@@ -21,11 +21,17 @@ OFFSET = re.compile(r"\s*\[(G5[4-9]):([^\]]*)\]")
 AXES = 6
 DEVIATION_MM = 0.01  # what the control takes where the listing says nothing
 SPEED, ACCELERATION, TRAVEL = 110, 120, 130  # the first axis; mm/min, mm/s2, mm
-DEVIATION, ARC_TOLERANCE, SOFT_LIMITS, HOMING, HOME_SIDES, PULL_OFF, TOP_RPM = 11, 12, 20, 22, 23, 27, 30
-LEFT_OUT = {
-    f"${ARC_TOLERANCE}": "arcs are gone along as arcs, not as chords",
-    "$32": "a laser that follows the speed is no motion",
-}
+DEVIATION, ARC_TOLERANCE, SOFT_LIMITS, HOMING, HOME_SIDES, PULL_OFF, TOP_RPM, LASER = (
+    11,
+    12,
+    20,
+    22,
+    23,
+    27,
+    30,
+    32,
+)
+LEFT_OUT = {f"${ARC_TOLERANCE}": "arcs are traversed as arcs, not as chords"}
 
 
 def recognises(text: str) -> bool:
@@ -68,6 +74,9 @@ def read(text: str, file: str) -> Facts:
             )
         )
     top = settings.get(f"${TOP_RPM}")
+    spindle: dict[str, float | bool] = {} if top is None else {"max_rpm": top.positive}
+    if settings.switch(f"${LASER}"):
+        spindle["laser"] = True
     deviation_mm = settings.positive(f"${DEVIATION}", DEVIATION_MM)
     left_out = others(settings, LEFT_OUT)
     if left:
@@ -79,7 +88,7 @@ def read(text: str, file: str) -> Facts:
         axes=tuple(axes),
         left_out=left_out,
         path={"junction_deviation_mm": deviation_mm},
-        spindle={} if top is None else {"max_rpm": top.positive},
+        spindle=spindle,
         offsets={name: dict(zip(names, values, strict=False)) for name, values in offsets.items()},
     )
 

@@ -13,8 +13,8 @@ ACTUATORS = {"X": "alpha", "Y": "beta", "Z": "gamma", "A": "delta", "B": "epsilo
 DEVIATION_MM = 0.05  # what the control takes where the file says nothing
 LEFT_OUT = {
     "z_junction_deviation": "one deviation holds for all corners",
-    "mm_per_arc_segment": "arcs are gone along as arcs, not as chords",
-    "mm_max_arc_error": "arcs are gone along as arcs, not as chords",
+    "mm_per_arc_segment": "arcs are traversed as arcs, not as chords",
+    "mm_max_arc_error": "arcs are traversed as arcs, not as chords",
     "default_seek_rate": "rapids go as fast as the axes",
     "default_feed_rate": "a program says its feed",
     "minimum_planner_speed": "the path may come to rest",

@@ -64,12 +64,12 @@ def _axis(axis: AxisFacts) -> Iterator[str]:
         yield f"home_{unit} = {_number(axis.home)}"
 
 
-def _table(name: str, values: Mapping[str, float | str]) -> Iterator[str]:
+def _table(name: str, values: Mapping[str, float | bool | str]) -> Iterator[str]:
     if values:
         yield ""
         yield f"[{name}]"
         for key, value in values.items():
-            yield f"{key} = {json.dumps(value) if isinstance(value, str) else _number(value)}"
+            yield f"{key} = {json.dumps(value) if isinstance(value, str | bool) else _number(value)}"
 
 
 def _number(value: float) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from polycnc.runner.plots._scene import RAPIDS, Scene
 from polycnc.runner.plots._styles import RAPID, tool_colour
-from polycnc.runner.view import Track
+from polycnc.runner.view._track import Track
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from polycnc.runner._operations import Operation
-from polycnc.runner._result import counted
+from polycnc.runner._outcome import counted
 from polycnc.runner.plots._scene import RAPIDS, Floats, Scene
 from polycnc.runner.plots._styles import END, RAPID, tool_colour, tool_line
 

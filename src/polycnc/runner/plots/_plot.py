@@ -11,11 +11,11 @@ import numpy as np
 from polycnc.errors import UsageError
 from polycnc.outputs import check_output, complete_or_absent, format_of
 from polycnc.runner._blocks import execution_by_lines
-from polycnc.runner._result import RunResult, counted, time_text
+from polycnc.runner._outcome import RunOutcome, counted, time_text
 from polycnc.runner.plots._over_time import draw_positions, draw_speed
 from polycnc.runner.plots._paths import draw_legend, draw_perspective, draw_plan
 from polycnc.runner.plots._scene import Scene, scene
-from polycnc.runner.view import Track, TrackCollector
+from polycnc.runner.view._track import Track, TrackCollector
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -37,7 +37,7 @@ def check_plot_file(path: str | Path) -> Path:
     return checked
 
 
-def plot(result: RunResult, path: str | Path | None = None) -> Figure:
+def plot(result: RunOutcome, path: str | Path | None = None) -> Figure:
     """Draw `result`, which must hold a trace, to a .png, .svg or .pdf file; return the matplotlib figure.
 
     Without a path nothing is written.
@@ -57,7 +57,7 @@ def plot(result: RunResult, path: str | Path | None = None) -> Figure:
 
 
 def plot_track(
-    result: RunResult, axes: tuple[tuple[str, str], ...], track: Track, path: str | Path | None = None
+    result: RunOutcome, axes: tuple[tuple[str, str], ...], track: Track, path: str | Path | None = None
 ) -> Figure:
     """Draw the track of a result, as `plot` does; `axes` are names and units.
 
@@ -91,7 +91,7 @@ def _figure_class() -> type[Figure]:
     return Figure
 
 
-def _figure(result: RunResult, axes: tuple[tuple[str, str], ...], track: Track) -> Figure:
+def _figure(result: RunOutcome, axes: tuple[tuple[str, str], ...], track: Track) -> Figure:
     width, height = _SIZE_INCH
     figure = _figure_class()(figsize=(width, height), layout="constrained")
     figure.suptitle(_title(result), parse_math=False)
@@ -121,7 +121,7 @@ def _figure(result: RunResult, axes: tuple[tuple[str, str], ...], track: Track) 
     return figure
 
 
-def _title(result: RunResult) -> str:
+def _title(result: RunOutcome) -> str:
     name = Path(result.program).name.encode("utf-8", "replace").decode()
     if len(name) > _MOST_LETTERS:
         name = f"{name[: _MOST_LETTERS - 13]}…{name[-12:]}"

@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.machine import LinearAxis, MachineConfig
-from polycnc.runner.view import Track, turns, with_part_frame
+from polycnc.runner.view._part_frame import turns, with_part_frame
+from polycnc.runner.view._track import Track
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import Blocks
-from polycnc.runner._result import RunResult
+from polycnc.runner._outcome import RunOutcome
 from polycnc.runner.view._track import Track
 
 _MOST_LINES = 250_000  # of a listing; of longer programs only the lines that the path shows are listed
@@ -19,7 +19,7 @@ _MOST_COLUMNS = 400  # of a listed line
 class Listing:
     """The lines beside the path: of each program that was executed, the main program first."""
 
-    def __init__(self, result: RunResult, track: Track, texts: dict[str, ProgramText]) -> None:
+    def __init__(self, result: RunOutcome, track: Track, texts: dict[str, ProgramText]) -> None:
         if result.source is not None:
             texts = {result.source.name: result.source, **texts}
         self.whole = sum(text.content.count(b"\n") + 1 for text in texts.values()) <= _MOST_LINES
@@ -64,7 +64,7 @@ class Listing:
         place = np.minimum(np.searchsorted(shown, lines), len(shown) - 1)
         return np.where(shown[place] == lines, first + place, -1)
 
-    def remarks(self, result: RunResult) -> list[dict[str, Any]]:
+    def remarks(self, result: RunOutcome) -> list[dict[str, Any]]:
         """Return alarms and remarks with the rows that they are about, -1 where there is none."""
         alarms = [
             {

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from polycnc.machine import MachineConfig
 from polycnc.nc import ProgramText
 from polycnc.runner._blocks import KINDS
-from polycnc.runner._result import RunResult, counted, time_text
+from polycnc.runner._outcome import RunOutcome, counted, time_text
 from polycnc.runner.view._film import Film, film_of
 from polycnc.runner.view._listing import Listing
 from polycnc.runner.view._motion import DERIVATIVES
@@ -58,7 +58,7 @@ class Mark:
 
 
 def page(
-    result: RunResult,
+    result: RunOutcome,
     axes: Axes,
     track: Track,
     texts: dict[str, ProgramText],
@@ -143,6 +143,8 @@ def _columns(
         "zero_s": np.array(track.zeros.start, np.float64) * track.cycle_s,
         "zero": np.ascontiguousarray(track.zeros.offsets(len(axes)).T),
     }
+    if track.power is not None:
+        columns["power"] = track.power.astype(np.float32)
     tips = places(track, axes, machine)
     if not np.array_equal(tips, places(track, axes, None)):
         columns["tip"] = _single(tips)
@@ -162,7 +164,7 @@ def _single(rows: npt.NDArray[np.float64]) -> npt.NDArray[np.float32]:
 
 
 def _about(
-    result: RunResult, axes: Axes, track: Track, listing: Listing, beside: Beside | None
+    result: RunOutcome, axes: Axes, track: Track, listing: Listing, beside: Beside | None
 ) -> dict[str, Any]:
     """Return what the page says of the run."""
     begins = np.cumsum([0.0, *(each.time_s for each in result.operations)]).tolist()
@@ -225,7 +227,7 @@ def _note(track: Track, listing: Listing) -> str:
 
 
 def _packed(columns: dict[str, npt.NDArray[Any]]) -> tuple[bytes, dict[str, dict[str, Any]]]:
-    """Return arrays one behind the other, each at a multiple of 8 bytes, and where each is."""
+    """Return arrays one after the other, each at a multiple of 8 bytes, and where each is."""
     pieces: list[bytes] = []
     places: dict[str, dict[str, Any]] = {}
     at = 0

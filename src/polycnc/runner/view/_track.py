@@ -8,9 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from polycnc.kernel import FEED_MM_S, IS_RAPID, LEADING, TIME_S
+from polycnc.machine import MachineConfig
 from polycnc.nc import BlockRecords
 from polycnc.runner._blocks import Blocks, Execution, ExecutionCollector
-from polycnc.runner._result import Trace
+from polycnc.runner._outcome import Trace
+from polycnc.runner._power import powers
 from polycnc.runner._zeros import NO_ZEROS, Zeros
 from polycnc.runner.view._motion import Motion, MotionCollector
 from polycnc.runner.view._thin import Floats, kept_rows
@@ -18,6 +20,7 @@ from polycnc.runner.view._thin import Floats, kept_rows
 MOST_POINTS = 100_000
 _PIECE = 1 << 16  # rows of a trace that are thinned at a time
 _TOLERANCE = {"mm": 0.005, "deg": 0.01}
+_POWER = 0.01  # of full power, the same for a laser
 _SPEED_MM_S = 0.1  # deviation of the speed that counts as much as a tolerance of position
 
 
@@ -40,6 +43,7 @@ class Track:
     motion: Motion
     zeros: Zeros = NO_ZEROS
     cycle_s: float = 0.0
+    power: Floats | None = None  # of a laser
 
     def block_at(self) -> npt.NDArray[np.int64]:
         """Return the place in `blocks` of each point's block; the rows before the first block count for it."""
@@ -56,13 +60,22 @@ class Track:
 
 
 class TrackCollector:
-    """Thin a record while it comes; memory is bounded by `most` points, and the executions of blocks."""
+    """Thin a record while it comes; memory is bounded by `most` points, and the executions of blocks.
 
-    def __init__(self, units: tuple[str, ...], *, most: int = MOST_POINTS) -> None:
-        self._scale = 1.0 / np.array([*(_TOLERANCE[unit] for unit in units), _SPEED_MM_S])
+    Of a machine with a `laser` its power is kept too.
+    """
+
+    def __init__(
+        self, units: tuple[str, ...], *, most: int = MOST_POINTS, laser: MachineConfig | None = None
+    ) -> None:
+        self._laser = laser if laser is not None and laser.spindle.laser else None
+        tolerances = [*(_TOLERANCE[unit] for unit in units), _SPEED_MM_S]
+        if self._laser is not None:
+            tolerances.append(_POWER * self._laser.spindle.max_rpm)
+        self._scale = 1.0 / np.array(tolerances)
         self._axes = len(units)
         self._most = most
-        self._pieces: list[Floats] = []  # columns: time, rapid, style, axes, speed
+        self._pieces: list[Floats] = []  # columns: time, rapid, style, axes, speed, power of a laser
         self._held = 0
         self._factor = 1.0
         self._missed = 1.0
@@ -77,7 +90,10 @@ class TrackCollector:
             style = self._executions.table.styles(self._executions.add(tags, records))
             axes = rows[:, LEADING : LEADING + self._axes]
             self._motion.add(rows[:, TIME_S], axes)
-            self._take(np.column_stack((rows[:, TIME_S], rows[:, IS_RAPID], style, axes, rows[:, FEED_MM_S])))
+            columns = [rows[:, TIME_S], rows[:, IS_RAPID], style, axes, rows[:, FEED_MM_S]]
+            if self._laser is not None:
+                columns.append(powers(rows, tags, records, self._laser))
+            self._take(np.column_stack(columns))
 
     def add_trace(self, trace: Trace, execution: Execution) -> None:
         """Take a whole trace."""
@@ -85,7 +101,9 @@ class TrackCollector:
         style = execution.blocks.styles(number)
         for first in range(0, len(trace), _PIECE):
             part = slice(first, first + _PIECE)
-            columns = (trace.t_s, trace.rapid, style, trace.setpoint, trace.feed_mm_s)
+            columns = [trace.t_s, trace.rapid, style, trace.setpoint, trace.feed_mm_s]
+            if self._laser is not None and trace.power is not None:
+                columns.append(trace.power)
             self._motion.add(trace.t_s[part], trace.setpoint[part])
             self._take(np.column_stack([column[part] for column in columns]))
 
@@ -96,7 +114,7 @@ class TrackCollector:
     def track(self, execution: Execution) -> Track:
         """Return what was collected."""
         ends = [] if self._last is None else [self._last]
-        points = np.concatenate([*self._pieces, *ends]) if ends else np.zeros((0, 4 + self._axes))
+        points = np.concatenate([*self._pieces, *ends]) if ends else np.zeros((0, 3 + len(self._scale)))
         cycle_s = float(points[-1, 0]) / self._rows if self._rows else 0.0
         start, number = execution.start, execution.number
         start_s = start.astype(np.float64) * cycle_s
@@ -107,8 +125,9 @@ class TrackCollector:
             start_s, number = start_s[chosen], number[chosen]
         return Track(
             t_s=points[:, 0],
-            position=points[:, 3:-1],
-            feed_mm_s=points[:, -1],
+            position=points[:, 3 : 3 + self._axes],
+            feed_mm_s=points[:, 3 + self._axes],
+            power=None if self._laser is None else points[:, -1],
             rapid=points[:, 1] != 0.0,
             start_s=start_s,
             number=number,

@@ -9,14 +9,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from polycnc.errors import UsageError
-from polycnc.machine import MachineConfig, load_machine
-from polycnc.nc import Dialect, ProgramText
+from polycnc.nc import ProgramText
 from polycnc.outputs import check_output, complete_or_absent, keep_inputs
 from polycnc.runner._blocks import Execution
-from polycnc.runner._execution import Progress
-from polycnc.runner._result import RunResult, Trace
-from polycnc.runner._run import run_program
-from polycnc.runner._settings import RunSettings, program_text
+from polycnc.runner._outcome import RunOutcome, Trace
 from polycnc.runner.view._page import page
 from polycnc.runner.view._track import TrackCollector
 
@@ -33,7 +29,7 @@ class View:
     """
 
     html: str = field(repr=False)
-    result: RunResult
+    result: RunOutcome
     inputs: tuple[Path, ...] = ()
 
     def save(self, path: str | Path) -> Path:
@@ -81,48 +77,16 @@ def open_in_browser(path: Path) -> bool:
     return webbrowser.open(path.resolve().as_uri())
 
 
-def view_of_trace(result: RunResult, trace: Trace, execution: Execution) -> View:
+def view_of_trace(result: RunOutcome, trace: Trace, execution: Execution) -> View:
     """Return the view of a result with its trace."""
-    collector = TrackCollector(trace.units)
+    collector = TrackCollector(trace.units, laser=None if trace.power is None else result.config)
     collector.add_trace(trace, execution)
     axes = tuple(zip(trace.axes, trace.units, strict=True))
     shown = page(result, axes, collector.track(execution), execution.texts)
-    return View(shown, result, _files(execution.texts, result.source))
+    return View(shown, result, files_of(execution.texts, result.source))
 
 
-def view_program(
-    program: str | Path | ProgramText,
-    machine: str | Path | MachineConfig | None = None,
-    dialect: str | Dialect | None = None,
-    *,
-    skip_levels: Iterable[int] = (),
-    inch: bool | None = None,
-    stock: str | None = None,
-    resolution_mm: float | None = None,
-    progress: Progress | None = None,
-) -> View:
-    """Run a program and return its view, in memory that does not grow with the length of the run.
-
-    Alarms are in the view and in its `result`; arguments are those of `run`. Lengths are shown in inches
-    or not (`inch`), as the program has them if that is None.
-
-    Raises:
-        UsageError: no such file, machine or dialect.
-    """
-    text = program_text(program)
-    config = load_machine(machine)
-    collector = TrackCollector(tuple(axis.unit for axis in config.axes))
-    settings = RunSettings(
-        config, dialect, skip_levels=frozenset(skip_levels), stock=stock, resolution_mm=resolution_mm
-    )
-    result = run_program(text, settings, check=False, tagged_rows=collector.add, progress=progress)
-    execution = collector.execution()
-    axes = tuple((axis.name, axis.unit) for axis in config.axes)
-    shown = page(result, axes, collector.track(execution), execution.texts, inch=inch)
-    given = (Path(each) for each in (machine, dialect) if isinstance(each, str | Path))
-    return View(shown, result, (*_files(execution.texts, text), *given))
-
-
-def _files(texts: dict[str, ProgramText], main: ProgramText | None) -> tuple[Path, ...]:
+def files_of(texts: dict[str, ProgramText], main: ProgramText | None) -> tuple[Path, ...]:
+    """Return the files that a run was made from."""
     names = [*texts, *([] if main is None else [main.name])]
     return tuple(dict.fromkeys(Path(name) for name in names if "\0" not in name))

@@ -28,6 +28,7 @@ export class Path {
     this.topFeed = cutFeeds.reduce((top, feed) => Math.max(top, feed), 1e-9);
     this.topRapid = rapids.reduce((top, k) => Math.max(top, record.feed[k]), 0);
     this.usualFeed = this.usual(cuts);
+    this.topPower = (record.power || []).reduce((top, power) => Math.max(top, power), 1e-9); // of a laser
   }
 
   lines(which, width, order) {
@@ -65,6 +66,7 @@ export class Path {
     const { record } = this, classes = (of) => (k) => rgb(paletteColour(of(k)));
     const [low, high] = this.depths;
     return {
+      power: (k) => scaled(record.power[k] / this.topPower),
       speed: (k) => scaled(record.feed[k] / this.usualFeed),
       depth: (k) => scaled((this.at[3 * k + 2] - low) / Math.max(high - low, 1e-6)),
       tool: classes((k) => this.tools.indexOf(record.toolOf(record.blockAt[k]))),

@@ -89,10 +89,10 @@ export async function start(buffers) {
   function drawLegend() {
     const legend = element("legend"), how = element("colour").value;
     legend.replaceChildren();
-    if (how === "speed" || how === "depth") {
+    if (how === "speed" || how === "depth" || how === "power") {
       const bar = make("div", { className: "scale" }), ends = make("div", { className: "ends" }), [low, high] = path.depths;
       bar.style.background = `linear-gradient(to right, ${scaleColours().join(",")})`;
-      const texts = how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
+      const texts = how === "power" ? ["0", `S${+path.topPower.toFixed(1)}`] : how === "speed" ? ["0", `${path.usualFeed < 0.99 * path.topFeed ? "≥ " : ""}${unit.feed(path.usualFeed)}`] : [unit.length(low), unit.length(high)];
       ends.append(...texts.map((textContent) => make("span", { textContent })));
       legend.append(bar, ends);
     } else if (how === "tool") path.tools.forEach((number, i) => legend.append(chip(paletteColour(i), `T${number}`)));
@@ -316,6 +316,7 @@ export async function start(buffers) {
   element("frame").onchange = () => goTo(now);
   element("slider").oninput = () => goTo(Number(element("slider").value));
   element("play").onclick = () => play(!playing);
+  if (record.power) { element("colour").prepend(make("option", { value: "power", textContent: "power" })); element("colour").value = "power"; }
   element("colour").onchange = recolour;
   element("shown").onchange = () => { drawChart(); chart.now(now); };
   element("measure").onclick = toggleMeasure;

@@ -18,6 +18,13 @@ NUMBERS = {reason: number for number, reason in enumerate(Refusal, 1)}
 _MOST_MARKS = 1000
 
 
+class NotMeantError(ControlError):
+    """What was asked is not of the form that it has to have: no control was asked."""
+
+    def __init__(self, what: str, hint: str) -> None:
+        super().__init__(Refusal.DATA, what, hint=hint)
+
+
 class Asked(BaseModel):
     """What every command has: unknown fields are refused, and numbers have to be numbers."""
 
@@ -69,9 +76,7 @@ def carry_out(machine: ServedMachine, asked: Mapping[str, Any]) -> object:
     """
     name = asked.get("command")
     if not isinstance(name, str) or name not in COMMANDS:
-        raise ControlError(
-            Refusal.DATA, f"there is no command {name!r:.80}", hint=f"Commands are {', '.join(COMMANDS)}."
-        )
+        raise NotMeantError(f"there is no command {name!r:.80}", f"Commands are {', '.join(COMMANDS)}.")
     row = COMMANDS[name]
     control = machine.control
     if control is None:
@@ -81,7 +86,7 @@ def carry_out(machine: ServedMachine, asked: Mapping[str, Any]) -> object:
     try:
         values = model_of(name).model_validate(dict(asked)).model_dump(exclude={"command"})
     except ValidationError as error:
-        raise ControlError(Refusal.DATA, f"{name}: {_told(error)}", hint=_takes(row)) from None
+        raise NotMeantError(f"{name}: {_told(error)}", _takes(row)) from None
     own = machine.own.get(name)
     try:
         return row.call(control, **values) if own is None else own(**values)

@@ -42,7 +42,7 @@ def explain_capture(data: bytes, name: str = "the capture", port: int = 8193) ->
 
 
 def from_hex(data: bytes, name: str = "the capture") -> bytes:
-    """Return the bytes that a text of hex digits says, with offsets and notes in [], <> or behind # left out.
+    """Return the bytes that a text of hex digits says, with offsets and notes in [], <> or after # left out.
 
     Raises:
         UsageError: It is no text, or a line has something else than hex digits.
@@ -62,7 +62,7 @@ def from_hex(data: bytes, name: str = "the capture") -> bytes:
             if found is None or len(found[1]) % 2:
                 raise UsageError(
                     f"{name}:{number}: '{word[:20]}' is no byte in hex",
-                    hint="Write bytes as pairs of hex digits; notes go into [] or behind #.",
+                    hint="Write bytes as pairs of hex digits; notes go into [] or after #.",
                 )
             made += bytes.fromhex(found[1])
     return bytes(made)
@@ -135,7 +135,7 @@ def _explain_packets(data: bytes, name: str, port: int) -> Iterator[str]:
     for key, halves in connections.items():
         for half in halves:
             if half.early:
-                yield f"{key[0]}:{key[1]}: {sum(map(len, half.early.values()))} bytes behind a gap"
+                yield f"{key[0]}:{key[1]}: {sum(map(len, half.early.values()))} bytes after a gap"
             yield from half.stream.end()
     if not connections:
         yield f"no connection to port {port}"

@@ -150,7 +150,7 @@ class FocasControl:
             return Status(_BUSY)
         if control.programs.key_protects:
             return Status(PROTECTED)
-        self._transfer = control.transfer = Transfer(control, owner=self)
+        self._transfer = control.begin_transfer(owner=self)
         return Status()
 
     def download(self, text: bytes) -> None:

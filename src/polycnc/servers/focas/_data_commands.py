@@ -181,7 +181,7 @@ def settings(view: View, request: Request) -> Content:
 
 @answers(0x10)
 def parameter_types(view: View, request: Request) -> Content:
-    """Return numbers and type words of so many parameters from one on, and the numbers before and behind."""
+    """Return numbers and type words of so many parameters from one on, and the numbers before and after."""
     first, count = request.arguments[:2]
     if not 0 < count <= MOST_NUMBERS:
         raise RefusedError(LENGTH)
@@ -202,7 +202,7 @@ _PLAIN = {"unit": 0, "dimension": 0, "input": 0, "display": 0}
 
 
 def _infos(request: Request, rows: Mapping[int, tuple[Kind, int, int]]) -> Content:
-    """Return what so many rows are, from a number on, with the numbers before and behind.
+    """Return what so many rows are, from a number on, with the numbers before and after.
 
     A row is its kind, how it is repeated (once, for each axis, for each spindle), and its other attributes.
     """

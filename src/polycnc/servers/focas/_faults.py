@@ -198,7 +198,11 @@ class Faults:
                     course.since_request = self.requests
                 if self.requests >= course.since_request + fault.for_requests:
                     self._finish(course, control)
-        on = self.active
+        return self.plan_of(self.active)
+
+    @staticmethod
+    def plan_of(on: Sequence[Fault]) -> Plan:
+        """Return what faults that hold together do to a frame."""
         kinds = [fault.kind for fault in on if fault.kind in (FaultKind.DROP, FaultKind.HALF, FaultKind.MUTE)]
         missing = [fault.codes for fault in on if fault.kind is FaultKind.NO_OPTION]
         return Plan(

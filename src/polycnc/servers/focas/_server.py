@@ -14,6 +14,7 @@ from typing import Any
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
 from polycnc.machine import Host
+from polycnc.servers.calls import MAGIC, CallsServer
 from polycnc.servers.focas._control import FocasControl
 from polycnc.servers.focas._faults import FaultKind, Faults
 from polycnc.servers.focas._profile import Profile
@@ -29,6 +30,7 @@ class FocasServer:
     """Serve a control on `address`:`port`; port 0 takes a free one, see `port`.
 
     `owner` lets its time pass: a running host, or a `Keeper`. `faults` are those of the script that it follows.
+    Programs that come through the C library, told by their first bytes, are answered by `calls`.
     """
 
     def __init__(
@@ -46,6 +48,7 @@ class FocasServer:
         self.owner: Owner = HostOwner(owner) if isinstance(owner, Host) else owner
         keep = isinstance(owner, Keeper) and owner.pace.rate >= 1.0
         self.control = FocasControl(control, profile, faults, keep=keep)
+        self.calls: CallsServer | None = None
         self._server: asyncio.Server | None = None
         self._lines: set[_Line] = set()
         self._watch: asyncio.TimerHandle | None = None
@@ -56,8 +59,10 @@ class FocasServer:
         """Return the door of a served Power Mate; faults of its scenario act on the connections too."""
         scenario, control = machine.served.scenario, machine.device
         assert isinstance(control, PowerMate)
-        faults = scenario if isinstance(scenario, Faults) else None
-        return cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
+        faults = scenario if isinstance(scenario, Faults) else getattr(scenario, "faults", None)
+        made = cls(machine.keeper, control, profile, address=address, port=port, faults=faults)
+        made.calls = CallsServer([machine])
+        return made
 
     @property
     def said(self) -> str:
@@ -117,6 +122,8 @@ class FocasServer:
             self._server.close()
         for line in tuple(self._lines):
             line.abort()
+        if self.calls is not None:
+            await self.calls.close()
         await asyncio.sleep(0)  # lets the connections tell that they are lost
 
     def joined(self, line: _Line) -> None:
@@ -141,6 +148,7 @@ class _Line(asyncio.Protocol):
         self._server = server
         self._session = Session(server.control)
         self._full = self._waiting = self._gone = False
+        self._new = True
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.Transport)
@@ -148,7 +156,12 @@ class _Line(asyncio.Protocol):
         self._server.joined(self)
 
     def data_received(self, data: bytes) -> None:
-        session = self._session
+        session, calls = self._session, self._server.calls
+        if self._new and calls is not None and data[:1] == MAGIC[:1]:
+            self._end()
+            calls.adopt(self._transport, data)
+            return
+        self._new = False
         if session.ending is None:
             self._server.owner.submit(lambda: session.receive(data), self._answer)
 
@@ -217,6 +230,10 @@ class _Line(asyncio.Protocol):
             self._go_on()
 
     def connection_lost(self, error: Exception | None) -> None:
+        self._end()
+
+    def _end(self) -> None:
+        """End the session."""
         self._gone = True
         self._server.left(self)
         self._server.owner.submit(self._session.lost, lambda _: None)

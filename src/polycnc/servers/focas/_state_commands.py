@@ -232,7 +232,7 @@ def servo_meter(view: View, request: Request) -> Content:
     for number, axis in enumerate(view.control.control.axes().values(), 1):
         share = math.copysign(axis.load_percent, axis.velocity)
         most = signals.torque_override(number)
-        made.append(Value8.of(0.0 if signals.servo_is_off(number) else max(-most, min(most, share)), 0))
+        made.append(Value8.of(0.0 if signals.state.servo_is_off(number) else max(-most, min(most, share)), 0))
     return padded(made, view)
 
 

@@ -5,6 +5,7 @@ from polycnc.servers.grbl._core import GrblCore
 from polycnc.servers.grbl._make import grbl_control, grbl_dialect
 from polycnc.servers.grbl._server import PORT, GrblServer, Owner
 from polycnc.servers.grbl._settings import ROWS as SETTINGS
+from polycnc.servers.grbl._watching import GrblWatch
 
 __all__ = [
     "PORT",
@@ -13,6 +14,7 @@ __all__ = [
     "GrblCore",
     "GrblError",
     "GrblServer",
+    "GrblWatch",
     "Owner",
     "grbl_control",
     "grbl_dialect",

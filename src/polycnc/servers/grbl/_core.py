@@ -10,15 +10,13 @@ from polycnc.servers.grbl._codes import GrblAlarm, GrblError, RefusedError
 from polycnc.servers.grbl._commands import Commands
 from polycnc.servers.grbl._lines import LINE, Line, LineReader
 from polycnc.servers.grbl._motion import Sending
+from polycnc.servers.grbl._overrides import override_of
 from polycnc.servers.grbl._reports import PLANNER_BLOCKS, WELCOME, StatusReport, Units
 from polycnc.servers.grbl._settings import HOMING, GrblSettings
 from polycnc.servers.grbl._state import DoorState
 
 _CYCLE_START, _HOLD, _STATUS, _RESET = ord("~"), ord("!"), ord("?"), 0x18
 _DOOR, _JOG_CANCEL = 0x84, 0x85
-_FEED = {0x90: None, 0x91: 10, 0x92: -10, 0x93: 1, 0x94: -1}
-_RAPID = {0x95: 1.0, 0x96: 0.5, 0x97: 0.25}
-_SPINDLE = {0x99: None, 0x9A: 10, 0x9B: -10, 0x9C: 1, 0x9D: -1}
 
 
 class GrblCore:
@@ -180,16 +178,12 @@ class GrblCore:
                 self._override(byte)
 
     def _override(self, byte: int) -> None:
-        each = self._control.channel_status().overrides
-        set_overrides = self._control.set_overrides
-        if byte in _FEED:
-            feed = _stepped(each.feed, _FEED[byte])
-            self._tried(lambda: set_overrides(feed=feed))
-        elif byte in _RAPID:
-            self._tried(lambda: set_overrides(rapid=_RAPID[byte]))
-        elif byte in _SPINDLE:
-            spindle = _stepped(each.spindle, _SPINDLE[byte])
-            self._tried(lambda: set_overrides(spindle=spindle))
+        given = override_of(byte, self._control.channel_status().overrides).get
+        self._tried(
+            lambda: self._control.set_overrides(
+                feed=given("feed"), rapid=given("rapid"), spindle=given("spindle")
+            )
+        )
 
     def _tried(self, command: Callable[[], object]) -> None:
         """Carry out a command that has no answer."""
@@ -287,8 +281,3 @@ class GrblCore:
             accessories,
             "",
         )
-
-
-def _stepped(factor: float, step: int | None) -> float:
-    """Return an override one step on, in percent, between 10 and 200; without a step 100 %."""
-    return 1.0 if step is None else min(200, max(10, round(factor * 100) + step)) / 100

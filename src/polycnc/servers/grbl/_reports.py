@@ -85,8 +85,9 @@ class StatusReport:
             parts = [state, "WPos:" + self._units.lengths(work)]
         if mask & 2:
             parts.append(f"Bf:{max(0, PLANNER_BLOCKS - queued)},{free}")
-        feed = status.channel.feed.actual if status.channel.motion != "none" else 0.0
-        parts.append(f"FS:{self._units.rate(feed)},{abs(status.spindle.actual_rpm):.0f}")
+        parts.append(
+            f"FS:{self._units.rate(status.channel.feed.actual)},{abs(status.spindle.actual_rpm):.0f}"
+        )
         if pins:
             parts.append("Pn:" + pins)
         parts += self._seldom(state.split(":")[0] in _IDLE_STATES, status, zero, accessories)

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Protocol, TypeVar
 
 from polycnc.errors import UsageError
-from polycnc.servers.grbl._core import GrblCore
 
 R = TypeVar("R")
 PORT = 8123
@@ -26,6 +25,23 @@ class Owner(Protocol):
         """Carry out `command` and give its result to `done` in the event loop."""
 
 
+class Core(Protocol):
+    """What answers a sender; each returns what it gets."""
+
+    @property
+    def busy(self) -> bool:
+        """Whether something that was begun has not ended."""
+
+    def greet(self) -> bytes:
+        """Greet a sender."""
+
+    def receive(self, data: bytes) -> bytes:
+        """Take bytes."""
+
+    def turn(self) -> bytes:
+        """Go on when time has passed."""
+
+
 class GrblServer:
     """Let a sender reach `core`: one at a time on a TCP port (0: a free one), besides one on a pseudo terminal.
 
@@ -35,7 +51,7 @@ class GrblServer:
     def __init__(
         self,
         owner: Owner,
-        core: GrblCore,
+        core: Core,
         *,
         address: str = "127.0.0.1",
         port: int = PORT,

@@ -15,6 +15,7 @@ AXES = 3
 SOFT_LIMITS, HARD_LIMITS, HOMING = 20, 21, 22
 REPORT_MASK, REPORT_INCHES = 10, 13
 MAX_RPM = 30
+LASER = 32
 _STEPS, _RATE, _ACCELERATION, _TRAVEL = 100, 110, 120, 130
 
 
@@ -60,7 +61,7 @@ ROWS = (
     Setting(27, "Homing switch pull-off", "mm", 1),
     Setting(MAX_RPM, "Maximum spindle speed", "RPM", 1000),
     Setting(31, "Minimum spindle speed", "RPM", 0),
-    Setting(32, "Laser mode", "boolean", 0, True, 1),
+    Setting(LASER, "Laser mode", "boolean", 0, True, 1),
     *_axis_rows(_STEPS, "steps per mm", "steps/mm", 250),
     *_axis_rows(_RATE, "maximum rate", "mm/min", 500),
     *_axis_rows(_ACCELERATION, "acceleration", "mm/s^2", 10),
@@ -83,6 +84,9 @@ def _travel(axis: AnyAxis) -> float:
 
 
 _READ: dict[int, Callable[[AnyAxis], float]] = {_RATE: _rate, _ACCELERATION: _acceleration, _TRAVEL: _travel}
+
+
+_OF_THE_FILE = {MAX_RPM: "the highest spindle speed stands", LASER: "the laser stands, as [spindle] laser,"}
 
 
 class GrblSettings:
@@ -110,6 +114,8 @@ class GrblSettings:
             return float(any(_travel(axis) > 0.0 for axis in axes[:AXES]))
         if number == MAX_RPM:
             return self._control.machine.config.spindle.max_rpm
+        if number == LASER:
+            return float(self._control.machine.config.spindle.laser)
         read = _READ.get(number // 10 * 10) if number >= _STEPS else None
         if read is not None:
             axis = axes[number % 10]
@@ -142,8 +148,8 @@ class GrblSettings:
             raise RefusedError(GrblError.NUMBER, f"${number} cannot be {value:g}")
         if number == SOFT_LIMITS and value and not self.flag(HOMING):
             raise RefusedError(GrblError.NEEDS_HOMING)
-        if number == MAX_RPM and value != self[MAX_RPM]:
-            raise RefusedError(GrblError.STATEMENT, "the highest spindle speed stands in the machine file")
+        if number in _OF_THE_FILE and value != self[number]:
+            raise RefusedError(GrblError.STATEMENT, f"{_OF_THE_FILE[number]} in the machine file")
 
     def write(self, number: int, value: float) -> None:
         """Write a setting that `check` let pass.
@@ -156,7 +162,7 @@ class GrblSettings:
             axes = self._control.machine.config.axes
             changed = [self._changed(axis, index, number, value) for index, axis in enumerate(axes)]
             self._control.change_axes(tuple(changed))
-        elif number != MAX_RPM:
+        elif number not in _OF_THE_FILE:
             self._area[number] = value
             self._kept[number] = value
         if number == HOMING and not value and self.flag(SOFT_LIMITS):

@@ -10,15 +10,18 @@ from fastapi.exceptions import RequestValidationError
 from prometheus_client import CollectorRegistry, Counter, Gauge, generate_latest
 from starlette.exceptions import HTTPException
 from starlette.responses import FileResponse
+from starlette.routing import Match, Route
 from starlette.types import ASGIApp
 
 from polycnc import __version__
 from polycnc.errors import PolycncError
+from polycnc.servers.http._description import describe
 from polycnc.servers.http._guard import COOKIE, Guard, TooLargeError
 from polycnc.servers.http._problem import of_error, problem
 from polycnc.servers.http._routes import Api
 from polycnc.servers.machines import Log, ServedMachine
 
+METHOD_NOT_ALLOWED = 405
 PAGE = Path(__file__).parent / "page"
 FILES = {
     "": ("index.html", "text/html; charset=utf-8"),
@@ -47,6 +50,7 @@ def make_app(
         title="polycnc", version=__version__, docs_url=None, redoc_url=None, openapi_url="/openapi.json"
     )
     app.include_router(Api(by_name, log).router)
+    describe(app, list(by_name))
     _add_errors(app, log)
     _add_figures(app, by_name)
     guard = Guard(app, hosts=hosts, token=token)
@@ -82,15 +86,26 @@ def _add_errors(app: FastAPI, log: Log) -> None:
         return problem(422, "the request cannot be meant", "See /openapi.json.", errors=places)
 
     @app.exception_handler(HTTPException)
-    async def other(_: Request, error: HTTPException) -> Response:
+    async def other(request: Request, error: HTTPException) -> Response:
         said = problem(error.status_code, str(error.detail), "See /openapi.json.")
         said.headers.update(error.headers or {})
+        if error.status_code == METHOD_NOT_ALLOWED:
+            said.headers["allow"] = ", ".join(sorted(_methods(app, request)))
         return said
 
     @app.exception_handler(Exception)
     async def internal(_: Request, error: Exception) -> Response:
         log.write("internal error", error=repr(error)[:500])
         return problem(503, "an internal error", "Please report it; it is in the log.")
+
+
+def _methods(app: FastAPI, request: Request) -> set[str]:
+    """Return the methods of all routes of a path."""
+    found: set[str] = set()
+    for route in app.routes:
+        if isinstance(route, Route) and route.matches(dict(request.scope))[0] is not Match.NONE:
+            found |= route.methods or set()
+    return found
 
 
 def _add_figures(app: FastAPI, machines: dict[str, ServedMachine]) -> None:

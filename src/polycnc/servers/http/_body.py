@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import Any, TypeVar
 
+from pydantic import BaseModel, ValidationError
 from starlette.requests import Request
 
-from polycnc.cnc import ControlError, Refusal
+from polycnc.servers.commands import NotMeantError
+from polycnc.servers.http._guard import TooLargeError
 
+M = TypeVar("M", bound=BaseModel)
 MOST_JSON_BYTES = 1 << 20
+_EXACT = 2.0**53
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -17,6 +21,12 @@ def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(made) != len(pairs):
         raise ValueError("a field is there twice")
     return made
+
+
+def _number(text: str) -> float:
+    """Return a number; one without a fraction is whole however it is written, as JSON Schema counts it."""
+    value = float(text)
+    return int(value) if abs(value) <= _EXACT and value == int(value) else value
 
 
 def _no_number(text: str) -> float:
@@ -27,19 +37,31 @@ async def json_object(request: Request) -> dict[str, Any]:
     """Return the object that a request brings.
 
     Raises:
-        ControlError: It is none, or too large.
+        NotMeantError: It is none.
+        TooLargeError: It is too large.
     """
     body = await request.body()
     if len(body) > MOST_JSON_BYTES:
-        raise ControlError(
-            Refusal.FULL, "the body is too large", hint=f"Send at most {MOST_JSON_BYTES} bytes."
-        )
+        raise TooLargeError
     try:
-        found = json.loads(body, object_pairs_hook=_once, parse_constant=_no_number)
+        found = json.loads(body, object_pairs_hook=_once, parse_constant=_no_number, parse_float=_number)
     except (ValueError, RecursionError) as error:
-        raise ControlError(
-            Refusal.DATA, f"the body is not JSON: {str(error)[:200]}", hint="Send an object in UTF-8."
-        ) from None
+        raise NotMeantError(f"the body is not JSON: {str(error)[:200]}", "Send an object in UTF-8.") from None
     if not isinstance(found, dict):
-        raise ControlError(Refusal.DATA, "the body is not an object", hint="Send an object.")
+        raise NotMeantError("the body is not an object", "Send an object.")
     return found
+
+
+def checked(model: type[M], found: dict[str, Any]) -> M:
+    """Return an object as the model that checks it.
+
+    Raises:
+        NotMeantError: It is not of this form.
+    """
+    try:
+        return model.model_validate(found)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False, include_context=False)[0]
+        place = ".".join(str(each)[:32] for each in first["loc"])
+        takes = ", ".join(model.model_fields)
+        raise NotMeantError(f"{place}: {first['msg'][:200]}".lstrip(": "), f"It takes {takes}.") from None

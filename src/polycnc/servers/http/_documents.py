@@ -47,9 +47,17 @@ def inventory_parts(machine: ServedMachine, known: dict[str, int]) -> dict[str, 
     return {name: whole[name] for name in ("revisions", *changed)}
 
 
-STATUS_SCHEMA = "Status"
-
-
-def status_schema() -> dict[str, Any]:
-    """Return the JSON schema of the status of a control."""
-    return TypeAdapter(Status).json_schema(mode="serialization", ref_template="#/components/schemas/{model}")
+def schemas() -> dict[str, Any]:
+    """Return JSON schemas by name: the status and the inventory of a control, and what they are made of."""
+    found: dict[str, Any] = {}
+    for kind in (Status, Inventory):
+        made = TypeAdapter(kind).json_schema(
+            mode="serialization", ref_template="#/components/schemas/{model}"
+        )
+        found |= made.pop("$defs", {})
+        found[kind.__name__] = made
+    for each in found.values():
+        for field in each.get("properties", {}).values():
+            if field.get("format") == "date-time":
+                del field["format"]  # a machine's clock has no time zone
+    return found

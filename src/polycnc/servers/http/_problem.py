@@ -10,15 +10,11 @@ from starlette.responses import Response
 
 from polycnc.cnc import ControlError, Refusal
 from polycnc.errors import PolycncError
-from polycnc.servers.commands import NUMBERS
+from polycnc.servers.commands import NUMBERS, NotMeantError
 from polycnc.servers.machines import MachineError
 
-_STATUS = {
-    Refusal.NOT_FOUND: 404,
-    Refusal.DATA: 422,
-    Refusal.FULL: 413,
-    Refusal.PROTECTED: 403,
-}
+_STATUS = {Refusal.NOT_FOUND: 404, Refusal.PROTECTED: 403}
+"""Status codes of a control's refusals; the others are 409: what was asked is well-formed."""
 
 
 class Problem(BaseModel):
@@ -43,7 +39,7 @@ def problem(status: int, detail: str, hint: str = "", **more: Any) -> Response:
 def of_error(error: PolycncError) -> Response:
     """Return the refusal of a control, 409 where its state is in the way."""
     if isinstance(error, ControlError):
-        status = _STATUS.get(error.reason, 409)
+        status = 422 if isinstance(error, NotMeantError) else _STATUS.get(error.reason, 409)
         return problem(
             status, error.what, error.hint, number=NUMBERS[error.reason], reason=error.reason.value
         )

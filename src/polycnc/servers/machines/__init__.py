@@ -2,13 +2,28 @@
 
 from polycnc.servers.machines._door import LOOPBACK, Door, DoorKind, Wanted
 from polycnc.servers.machines._log import Log
-from polycnc.servers.machines._machine import MachineError, ServedMachine
+from polycnc.servers.machines._machine import AS_USUAL, MachineError, ServedMachine, Treatment
 from polycnc.servers.machines._owner import HostOwner, Keeper, Kept, Owner
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import Nothing, Scenario, ServedDevice
+from polycnc.servers.machines._values import (
+    NO_PARAMETERS,
+    NO_VARIABLES,
+    NamedValue,
+    ReadValues,
+    Single,
+    Values,
+    no_such,
+)
+from polycnc.servers.machines._watch import BUSY_S, IDLE_S, Watch
 
 __all__ = [
+    "AS_USUAL",
+    "BUSY_S",
+    "IDLE_S",
     "LOOPBACK",
+    "NO_PARAMETERS",
+    "NO_VARIABLES",
     "Door",
     "DoorKind",
     "HostOwner",
@@ -17,11 +32,18 @@ __all__ = [
     "Log",
     "MachineError",
     "MemoryPrograms",
+    "NamedValue",
     "Nothing",
     "Owner",
     "Programs",
+    "ReadValues",
     "Scenario",
     "ServedDevice",
     "ServedMachine",
+    "Single",
+    "Treatment",
+    "Values",
     "Wanted",
+    "Watch",
+    "no_such",
 ]

@@ -13,8 +13,20 @@ from polycnc.machine import Device
 from polycnc.servers.machines._owner import Keeper
 from polycnc.servers.machines._programs import MemoryPrograms, Programs
 from polycnc.servers.machines._scenario import ServedDevice
+from polycnc.servers.machines._values import NO_PARAMETERS, NO_VARIABLES, Values
 
 R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class Treatment:
+    """How a door treats a request: `drop` ends the connection instead, `delay_s` answers later."""
+
+    drop: bool = False
+    delay_s: float = 0.0
+
+
+AS_USUAL = Treatment()
 
 
 class MachineError(PolycncError):
@@ -39,6 +51,10 @@ class ServedMachine:
     programs: Programs | None = None
     end: Callable[[], None] = lambda: None
     """Switches the device off and keeps its memory."""
+    parameters: Values = NO_PARAMETERS
+    variables: Values = NO_VARIABLES
+    treat: Callable[[str], Treatment] = lambda door: AS_USUAL
+    """A door tells its name with every request, and does with it what is said."""
 
     def __post_init__(self) -> None:
         if self.programs is None and self.find_control is not None:

@@ -6,10 +6,13 @@ import math
 from collections.abc import Callable
 from typing import Any, Generic, Protocol, TypeVar
 
-from polycnc.cnc import Control, ControlError, RunState
+from polycnc.cnc import Control, ControlError, ControlEvent, RunState
 from polycnc.machine import Clock, Device, Snapshot
+from polycnc.servers.machines._watch import Watch
 
 _LOOK_CYCLES = 20
+_ANY_EVENT = int(ControlEvent.RUN_STATE | ControlEvent.ALARM | ControlEvent.MANUAL | ControlEvent.FUNCTION)
+_ANY_ATTENTION = (1 << 30) - 1
 _PIECE_CYCLES = 500  # between two looks at the wall clock where the device cannot be told to share its thread
 
 D = TypeVar("D", bound=Device[Any])
@@ -57,7 +60,12 @@ class ServedDevice(Generic[D]):
         self._control = control
         self.scenario: Scenario[D] = scenario or Nothing()
         self.again = again
+        self._watches: list[Watch] = []
         self.scenario.look(device)
+
+    def watch(self, look: Callable[[], object]) -> None:
+        """Call `look` from now on at times of the device's own clock, 10 times a second while something happens."""
+        self._watches.append(Watch(self.clock, lambda: self.busy, look))
 
     @property
     def clock(self) -> Clock:
@@ -73,8 +81,10 @@ class ServedDevice(Generic[D]):
         control = self._control()
         return control.manual.active or any(channel.active for channel in control.channels)
 
-    def advance(self, cycles: int, *, is_enough: Callable[[], bool] | None = None) -> int:
-        """Let up to `cycles` control cycles pass, or until `is_enough` says so; return how many did."""
+    def advance(
+        self, cycles: int, *, is_enough: Callable[[], bool] | None = None, until: int | None = None
+    ) -> int:
+        """Let up to `cycles` control cycles pass, until `is_enough` says so or something of `until` has happened."""
         done = 0
         most = 1 << 30
         if self._control is not None:
@@ -83,12 +93,14 @@ class ServedDevice(Generic[D]):
             most = _PIECE_CYCLES
         while done < cycles:
             asked = min(cycles - done, most, self._to_next())
-            passed = self.device.advance(asked)
+            passed = self.device.advance(asked, until=until)
             done += passed
             self.scenario.look(self.device)
             if self.again is not None:
                 self._start_again(self.again)
-            if passed < asked or (is_enough is not None and is_enough()):
+            for watch in self._watches:
+                watch.passed()
+            if passed < asked or (is_enough is not None and is_enough()) or self._has_happened(until):
                 break
         return done
 
@@ -98,10 +110,14 @@ class ServedDevice(Generic[D]):
         # a program's end is looked for at cycles that do not depend on how time is cut
         looks = self.again is not None and (self.busy or self._is_over)
         most = _LOOK_CYCLES - clock.cycles % _LOOK_CYCLES if looks else 1 << 30
+        most = min([most, *(watch.cycles_left() for watch in self._watches)])
         next_s = self.scenario.next_s()
         if next_s == math.inf:
             return most
         return max(1, min(most, math.ceil((next_s - clock.now_s) / clock.cycle_s - 1e-6)))
+
+    def _has_happened(self, events: int | None) -> bool:
+        return bool(events) and self._control is not None and bool(self._control().raised & (events or 0))
 
     @property
     def _is_over(self) -> bool:
@@ -113,6 +129,24 @@ class ServedDevice(Generic[D]):
                 again()
             except ControlError:
                 return  # an alarm or another mode: later
+
+    def jump(self, most: int, is_enough: Callable[[], bool]) -> tuple[int, bool]:
+        """Let time pass to the next event, for at most so many cycles or until `is_enough`.
+
+        Return how many cycles have passed, and whether it has ended: an event has come, or all have passed. Events are
+        the starts, stops and ends of programs, alarms, ends of manual motion and auxiliary functions of a control; of a
+        board or card what its program calls are told.
+        """
+        events = _ANY_EVENT if self._control is not None else _ANY_ATTENTION
+        enough = False
+
+        def had_enough() -> bool:
+            nonlocal enough
+            enough = enough or is_enough()
+            return enough
+
+        passed = self.advance(most, is_enough=had_enough, until=events)
+        return passed, passed >= most or self._has_happened(events) or not enough
 
     def status(self) -> Any:
         """Return the status of the device."""

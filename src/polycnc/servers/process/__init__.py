@@ -1,7 +1,19 @@
 """A process that serves machines: kinds of machines, the table of doors, and what opens and ends them."""
 
-from polycnc.servers.process._doors import DOORS, FOCAS_PROFILE, focas_kind
-from polycnc.servers.process._kinds import KINDS, Machinery
+from polycnc.servers.process._doors import DOORS, FOCAS_PROFILE, focas_kind, plant_kinds
+from polycnc.servers.process._kinds import KINDS
+from polycnc.servers.process._made import Machinery
+from polycnc.servers.process._rehearsal import rehearse
 from polycnc.servers.process._serving import MachineWanted, Serving
 
-__all__ = ["DOORS", "FOCAS_PROFILE", "KINDS", "MachineWanted", "Machinery", "Serving", "focas_kind"]
+__all__ = [
+    "DOORS",
+    "FOCAS_PROFILE",
+    "KINDS",
+    "MachineWanted",
+    "Machinery",
+    "Serving",
+    "focas_kind",
+    "plant_kinds",
+    "rehearse",
+]

@@ -11,7 +11,6 @@ from typing import Any
 from polycnc.cnc import Control
 from polycnc.errors import UsageError
 from polycnc.machine import Device, Wall
-from polycnc.nc import ProgramText
 from polycnc.servers.machines import (
     Door,
     DoorKind,
@@ -22,15 +21,20 @@ from polycnc.servers.machines import (
     ServedMachine,
     Wanted,
 )
-from polycnc.servers.process._kinds import KINDS, Machinery, Made
+from polycnc.servers.process._kinds import KINDS
+from polycnc.servers.process._made import Machinery, Made
 
 _SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
 _MOST_PROGRAM_BYTES = 64 << 20
+Load = Callable[[str, bytes], None]
 
 
 @dataclass(frozen=True, slots=True)
 class MachineWanted:
-    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device."""
+    """A machine that is to be served; `program` runs again and again, `scenario` makes what happens to the device.
+
+    `story` makes what happens to the machine and its doors, once it is made.
+    """
 
     kind: str
     machinery: Machinery = field(default_factory=Machinery)
@@ -38,6 +42,7 @@ class MachineWanted:
     rate: float = 1.0
     scenario: Callable[[Device[Any]], Scenario[Any]] | None = None
     doors: tuple[tuple[DoorKind, Wanted], ...] = ()
+    story: Callable[[ServedMachine, Log], Scenario[Any]] | None = None
 
 
 @dataclass(slots=True)
@@ -49,7 +54,7 @@ class Serving:
     on_late: Callable[[float], None]
     machines: list[ServedMachine] = field(default_factory=list)
     doors: list[tuple[str, Door]] = field(default_factory=list)
-    programs: dict[str, Path] = field(default_factory=dict)
+    programs: dict[str, tuple[Load, Path]] = field(default_factory=dict)
 
     async def open(
         self, wanted: Sequence[MachineWanted], shared: Sequence[tuple[DoorKind, Wanted]] = ()
@@ -62,7 +67,9 @@ class Serving:
         for each in wanted:
             self._make(each, _SHARE_S / len(wanted))
         asked = [(kind, at, [self._of(each)]) for each in wanted for kind, at in each.doors]
-        asked += [(kind, at, self.machines) for kind, at in shared]
+        asked += [
+            (kind, at, list(filter(kind.serves, self.machines)) or self.machines) for kind, at in shared
+        ]
         for kind, at, machines in asked:
             if not all(map(kind.serves, machines)):
                 raise UsageError(
@@ -76,11 +83,16 @@ class Serving:
 
     def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
+        self.start_programs()
         for machine in self.machines:
-            if (path := self.programs.get(machine.name)) is not None:
-                _start(machine, path)
             machine.served.advance(1)
             machine.keeper.start()
+
+    def start_programs(self) -> None:
+        """Start the programs, without letting time pass."""
+        for machine in self.machines:
+            if (found := self.programs.get(machine.name)) is not None:
+                _start(machine, *found)
 
     async def run(self) -> None:
         """Serve until the time of a machine cannot pass any more, or this is cancelled."""
@@ -110,12 +122,12 @@ class Serving:
             raise UsageError(f"there is no kind '{wanted.kind}'", hint=f"Kinds are {', '.join(KINDS)}.")
         made = KINDS[wanted.kind](wanted.machinery)
         if wanted.program is not None:
-            if made.find_control is None:
+            if made.load is None:
                 made.end()
                 raise UsageError(
                     f"machine {name} runs no part programs", hint="Leave the program out, or serve another."
                 )
-            self.programs[name] = wanted.program
+            self.programs[name] = made.load, wanted.program
         served: ServedDevice[Any] = ServedDevice(
             made.device,
             made.find_control,
@@ -123,11 +135,23 @@ class Serving:
             again=None if wanted.program is None else _again(made),
         )
         keeper = Keeper(served, self.wall, rate=wanted.rate, share_s=share_s, on_late=self.on_late)
-        self.machines.append(
-            ServedMachine(
-                name, wanted.kind, made.device, served, keeper, made.find_control, made.own, None, made.end
-            )
+        machine = ServedMachine(
+            name,
+            wanted.kind,
+            made.device,
+            served,
+            keeper,
+            made.find_control,
+            made.own,
+            None,
+            made.end,
+            made.parameters,
+            made.variables,
         )
+        self.machines.append(machine)
+        if wanted.story is not None:
+            served.scenario = wanted.story(machine, self.log)
+            served.scenario.look(made.device)
 
 
 def _again(made: Made) -> Callable[[], None]:
@@ -144,8 +168,8 @@ def _again(made: Made) -> Callable[[], None]:
     return again
 
 
-def _start(machine: ServedMachine, path: Path) -> None:
-    """Put a program into the memory of a machine, select it and start it."""
+def _start(machine: ServedMachine, load: Load, path: Path) -> None:
+    """Let a machine take a program over, and start it."""
     try:
         if path.stat().st_size > _MOST_PROGRAM_BYTES:
             raise UsageError(
@@ -154,21 +178,7 @@ def _start(machine: ServedMachine, path: Path) -> None:
         content = path.read_bytes()
     except OSError as error:
         raise UsageError(f"{path}: cannot be read: {error.strerror}", hint="Name a program file.") from None
-    control = machine.control
-    assert control is not None
-    if machine.kind == "fanuc":
-        from polycnc.servers.focas import numbered
-
-        number, text = numbered(content)
-        name = f"O{number:04d}"
-        assert machine.programs is not None
-        machine.programs.put(name, text)
-        machine.own["select_program"](program=name, channel=0)
-    elif machine.kind == "plain" and machine.programs is not None:
-        machine.programs.put(path.name, content)
-        control.select_program(path.name)
-    else:
-        control.select_program(ProgramText(path.name, content))
+    load(path.name, content)
     again = machine.served.again
     assert again is not None
     again()

@@ -21,6 +21,7 @@ class MachineTable(StrictModel):
     file: str | None = None
     program: str | None = None
     faults: str | None = None
+    scenario: str | None = None
     memory: str | None = None
     rate: Annotated[float, Field(ge=0.0, le=1000.0)] = 1.0
     axes: Annotated[int, Field(ge=1, le=6)] = 3
@@ -28,10 +29,14 @@ class MachineTable(StrictModel):
 
 
 class ServeFile(StrictModel):
-    """Machines, and `doors` that all of them share (`http`)."""
+    """Machines, and `doors` that all of them share (`http`, `opcua`).
+
+    `opcua_nodesets` is a folder of node sets that `opcua` takes its types from.
+    """
 
     machine: Annotated[tuple[MachineTable, ...], Field(min_length=1, max_length=MOST_MACHINES)]
     doors: dict[str, Port] = Field(default_factory=dict)
+    opcua_nodesets: str | None = None
 
 
 def load_serve_file(path: Path) -> ServeFile:

@@ -10,8 +10,10 @@ from typing import Any
 from polycnc.errors import UsageError
 from polycnc.machine import Device
 from polycnc.servers.focas import Faults, load_faults, load_profile
-from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, Wanted
-from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind
+from polycnc.servers.machines import LOOPBACK, DoorKind, Log, Scenario, ServedMachine, Wanted
+from polycnc.servers.mtconnect import USUAL_VERSION, VERSIONS
+from polycnc.servers.process import DOORS, Machinery, MachineWanted, focas_kind, plant_kinds
+from polycnc.servers.scenarios import Story, load_script
 from polycnc.servers.setup._file import MachineTable, load_serve_file
 
 _MOST_PORT = 65535
@@ -39,16 +41,25 @@ class Flags:
     rate: float = 1.0
     memory: Path | None = None
     faults: Path | None = None
+    mtconnect: str = USUAL_VERSION
+    node_sets: Path | None = None
+    scenario: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """What is to be served, and what the user is warned of."""
+    """What is to be served, what the user is warned of, and why opening the doors lasts."""
 
     machines: tuple[MachineWanted, ...]
     shared: tuple[tuple[DoorKind, Wanted], ...]
     log: Log
     warnings: tuple[str, ...] = ()
+
+    @property
+    def lasting(self) -> tuple[str, ...]:
+        """Return why opening the doors takes seconds; nothing where it does not."""
+        doors = [*self.shared, *(door for each in self.machines for door in each.doors)]
+        return tuple(dict.fromkeys(row.lasts for row, _ in doors if row.lasts))
 
 
 def doors_of(text: str, table: Mapping[str, DoorKind], kind: str) -> list[tuple[DoorKind, Wanted]]:
@@ -86,25 +97,32 @@ def _at(name: str, at: str) -> Wanted:
     return Wanted(path=at)
 
 
+def check_version(version: str) -> None:
+    """Refuse a version of MTConnect that is not served.
+
+    Raises:
+        UsageError: It is none.
+    """
+    if version not in VERSIONS:
+        raise UsageError(
+            f"there is no version '{version[:20]}' of MTConnect", hint=f"Versions are {', '.join(VERSIONS)}."
+        )
+
+
 def plan_of(flags: Flags) -> Plan:
     """Return what is to be served.
 
     Raises:
         UsageError: It is not said what, or it cannot be.
     """
-    table = {**DOORS, "focas": focas_kind(flags.profile)}
     load_profile(flags.profile)
-    named = [kind for kind, machine in flags.kinds.items() if machine is not None]
-    if flags.file is not None:
-        if named:
-            raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
-        machines, shared = _of_file(flags.file, table)
-    elif len(named) != 1:
-        raise UsageError(
-            "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
-        )
-    else:
-        machines, shared = _of_flags(flags, named[0], table)
+    check_version(flags.mtconnect)
+    rows = (focas_kind(flags.profile), *plant_kinds(flags.mtconnect))
+    table = {**DOORS, **{row.name: row for row in rows}}
+    machines, shared, node_sets = _asked(flags, table)
+    keep = next(
+        (_kept(each.machinery.memory) for each in machines if each.machinery.memory is not None), None
+    )
     token = None if flags.token is None else _token(flags.token)
     insecure = frozenset(filter(None, (flags.insecure or "").split(",")))
     if unknown := insecure - set(table):
@@ -113,7 +131,9 @@ def plan_of(flags: Flags) -> Plan:
     warnings: dict[str, None] = {}
 
     def exposed(row: DoorKind, wanted: Wanted) -> tuple[DoorKind, Wanted]:
-        wanted = replace(wanted, log=log, token=token if row.knows_token else None)
+        wanted = replace(
+            wanted, log=log, token=token if row.knows_token else None, keep=keep, node_sets=node_sets
+        )
         if flags.expose is None:
             return row, wanted
         if row.knows_token and token is None:
@@ -123,8 +143,9 @@ def plan_of(flags: Flags) -> Plan:
         if not row.knows_token and row.name not in insecure:
             return row, wanted
         if not row.knows_token:
+            does = "command" if row.commands else "read"
             warnings[
-                f"{row.name} on {flags.expose} knows no passwords: whoever reaches it can command the machine"
+                f"{row.name} on {flags.expose} knows no passwords: whoever reaches it can {does} the machine"
             ] = None
         return row, replace(wanted, address=flags.expose)
 
@@ -134,6 +155,27 @@ def plan_of(flags: Flags) -> Plan:
         log,
         tuple(warnings),
     )
+
+
+def _asked(
+    flags: Flags, table: Mapping[str, DoorKind]
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
+    """Return the machines, the doors that they share, and the folder of node sets."""
+    named = [kind for kind, machine in flags.kinds.items() if machine is not None]
+    if flags.file is None:
+        if len(named) != 1:
+            raise UsageError(
+                "which machine shall be served?", hint="Write --fanuc, --plain mill3, or a file of machines."
+            )
+        return *_of_flags(flags, named[0], table), flags.node_sets
+    if named:
+        raise UsageError("a file and a machine at once", hint="Put the machine into the file.")
+    for key, given in (("opcua_nodesets", flags.node_sets), ("scenario", flags.scenario)):
+        if given is not None:
+            raise UsageError(
+                f"{given} and a file of machines at once", hint=f'Write {key} = "..." into the file.'
+            )
+    return _of_file(flags.file, table)
 
 
 def _of_flags(
@@ -158,6 +200,7 @@ def _of_flags(
             flags.rate,
             _scenario(flags.faults, kind),
             tuple((row, replace(at, address=address)) for row, at in own),
+            _story(flags.scenario, flags.faults),
         )
         for number, address in enumerate(flags.addresses, 1)
     ]
@@ -166,7 +209,7 @@ def _of_flags(
 
 def _of_file(
     path: Path, table: Mapping[str, DoorKind]
-) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]]]:
+) -> tuple[list[MachineWanted], list[tuple[DoorKind, Wanted]], Path | None]:
     said = load_serve_file(path)
     machines = []
     for each in said.machine:
@@ -179,9 +222,16 @@ def _of_file(
                 each.rate,
                 _scenario(_beside(path, each.faults), each.controller),
                 tuple(doors),
+                _story(_beside(path, each.scenario), _beside(path, each.faults)),
             )
         )
-    return machines, [_row(table, name, port, shared=True) for name, port in said.doors.items()]
+    shared = [_row(table, name, port, shared=True) for name, port in said.doors.items()]
+    return machines, shared, _beside(path, said.opcua_nodesets)
+
+
+def _kept(memory: Path) -> Path:
+    """Return the folder beside a machine's memory in which doors keep theirs."""
+    return memory.with_name(f"{memory.name}.doors")
 
 
 def _row(table: Mapping[str, DoorKind], name: str, port: int, *, shared: bool) -> tuple[DoorKind, Wanted]:
@@ -211,6 +261,17 @@ def _scenario(path: Path | None, kind: str) -> Callable[[Device[Any]], Scenario[
         raise UsageError(f"no script of faults for a machine of the kind {kind}", hint="Serve a fanuc.")
     script = load_faults(path)
     return lambda device: Faults(script, device.clock.now_s)
+
+
+def _story(path: Path | None, faults: Path | None) -> Callable[[ServedMachine, Log], Scenario[Any]] | None:
+    if path is None:
+        return None
+    if faults is not None:
+        raise UsageError(
+            "a scenario and a script of faults at once", hint="Write the faults as steps of the scenario."
+        )
+    script = load_script(path)
+    return lambda machine, log: Story(script, machine, log)
 
 
 def _token(path: Path) -> str:

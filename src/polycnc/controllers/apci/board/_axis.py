@@ -3,22 +3,22 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
-from polycnc.controllers.apci.board._motor_command import counts_for
+from polycnc.controllers.apci.board._motor_command import MotorCommand
 from polycnc.controllers.apci.board._parameter import Parameter
-from polycnc.controllers.apci.board._system_axis import AxisSetup
+from polycnc.controllers.apci.board._system_file import SystemFile
 from polycnc.controllers.apci.board._units import seconds
+from polycnc.controllers.apci.core._compiled_entries import change_override
+from polycnc.controllers.apci.core._motion import profile_velocity
 from polycnc.controllers.apci.core._registers import Axst, Digi
-from polycnc.controllers.apci.core._state import LEFT, RIGHT
+from polycnc.controllers.apci.core._state import LEFT, RIGHT, BoardState
+from polycnc.kernel import ADDED, SHORT_OVERSHOOT, KernelState, move_to
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
-    from polycnc.controllers.apci.board._system_file import SystemFile
-
-
+_AT_ONCE = 1e9  # 1/s: how steep an offset that moves with a velocity of its own begins
 # In the order of `Axis.status_word`.
 _STATUS_BITS = tuple(
     map(
@@ -47,7 +47,7 @@ _STATUS_BITS = tuple(
 
 
 class Axis:
-    """Axis `index` of a board."""
+    """Axis `index` of a board: `inputs` returns the board's, `units_changed` is told when its units are others."""
 
     jvl = Parameter("jvl", 1)
     jtvl = Parameter("jtvl", 1)
@@ -75,13 +75,23 @@ class Axis:
     kfca = Parameter("kfca")
     kfcv = Parameter("kfcv")
 
-    def __init__(self, board: Board, index: int, setup: AxisSetup) -> None:
-        self.board = board
+    def __init__(
+        self,
+        config: SystemFile,
+        state: BoardState,
+        kernel: KernelState,
+        index: int,
+        inputs: Callable[[], int],
+        units_changed: Callable[[], None],
+    ) -> None:
         self.index = index
-        self.setup = setup
-        self.row: Any = board.state.axis[index]
-        self.servo: Any = board.kernel.servo.row[index]
-        self.time_unit_s = seconds(setup.velocity_time_unit, board.config.sample_time_s)
+        self.setup = setup = config.axes[index]
+        self.row: Any = state.axis[index]
+        self.servo: Any = kernel.servo.row[index]
+        self.time_unit_s = seconds(setup.velocity_time_unit, config.sample_time_s)
+        self._config, self._state, self._kernel = config, state, kernel
+        self._inputs, self._units_changed = inputs, units_changed
+        self._motor = MotorCommand(self.row, self.servo, setup, self.time_unit_s, config.stepper_clock_hz)
         self.varint = np.zeros(100, np.int32)  # application-specific axis variables
         self.vardbl = np.zeros(100)
         self.ctrlparams = np.zeros((15, 15))
@@ -119,7 +129,7 @@ class Axis:
     @jovr.setter
     def jovr(self, value: float) -> None:
         if value > 0.0 and math.isfinite(value):
-            self.board.change_jog_override(self.index, value)
+            self.change_jog_override(value)
 
     @property
     def jerkrel(self) -> float:
@@ -140,7 +150,7 @@ class Axis:
     def dpoffset(self, value: float) -> None:
         if math.isfinite(value):
             self.row["dpoffset"] = value
-            self.board.move_offset(self.index)
+            self._move_offset()
 
     # ------------------------------------------------------------------ positions
 
@@ -152,12 +162,12 @@ class Axis:
     @property
     def rp(self) -> float:
         """Actual position."""
-        return float(self.board.kernel.servo.actual[self.index] - self.row["shift"]) - self.origin
+        return float(self._kernel.servo.actual[self.index] - self.row["shift"]) - self.origin
 
     @property
     def dp(self) -> float:
         """Setpoint position."""
-        return float(self.board.kernel.setpoint[self.index] - self.row["shift"]) - self.origin
+        return float(self._kernel.setpoint[self.index] - self.row["shift"]) - self.origin
 
     @property
     def rv(self) -> float:
@@ -167,7 +177,7 @@ class Axis:
     @property
     def dv(self) -> float:
         """Setpoint velocity of the profile generator."""
-        return self.board.profile_velocity(self.index) * self.time_unit_s
+        return self.profile_velocity() * self.time_unit_s
 
     @property
     def position_error(self) -> float:
@@ -182,6 +192,36 @@ class Axis:
     def displayed(self, position: float) -> float:
         """Return a position in the display unit."""
         return position * (self.setup.display_ratio(self.counts_per_unit) or 1.0)
+
+    def profile_velocity(self) -> float:
+        """Return the velocity of the profile (axis units/s)."""
+        return float(profile_velocity(self._state, self.index))
+
+    def change_jog_override(self, value: float) -> None:
+        """Take another jog override, at once."""
+        change_override(self._state, self.index, value)
+
+    def change_units(self) -> None:
+        """Take over what follows from the resolution, the gear factor or the effective radius."""
+        self._motor.change_units(self.counts_per_unit)
+        self._units_changed()
+
+    def update_filter(self) -> None:
+        """Hand the six filter coefficients to the position loop."""
+        for name in ("kp", "ki", "kd", "kpl", "kfcv", "kfca"):
+            self.servo[name] = getattr(self, name)
+
+    def _move_offset(self) -> None:
+        """Bring what is added to the setpoint to `dpoffset`, at once or with `dvoffset`."""
+        row, ptp, i = self.row, self._kernel.ptp, self.index
+        velocity = abs(float(row["dvoffset"]))
+        if velocity > 0.0:
+            rate = velocity * _AT_ONCE
+            move_to(ptp, ADDED, i, float(row["dpoffset"]), 0.0, velocity, rate, rate, 0.0, SHORT_OVERSHOOT)
+        else:
+            ptp.row[ADDED, i]["active"] = 0
+            ptp.row[ADDED, i]["position"] = row["dpoffset"]
+            ptp.row[ADDED, i]["velocity"] = 0.0
 
     # ------------------------------------------------------------------ latches
 
@@ -214,17 +254,15 @@ class Axis:
         """Motor command port (Manual 002, 4.4.88 and 4.4.162)."""
         if not self.row["closed"]:
             return int(self.row["mcp"])
-        return counts_for(self, float(self.servo["output"]))
+        return self._motor.counts_for(float(self.servo["output"]))
 
     def step_frequency_hz(self, mcp: int) -> float:
         """Return the signed step frequency of a stepper's motor command."""
-        if mcp == 0:
-            return 0.0
-        return math.copysign(self.board.config.stepper_clock_hz / 2.0 / (abs(mcp) + 1), mcp)
+        return self._motor.step_frequency_hz(mcp)
 
     def check_configuration(self, planned: SystemFile) -> None:
         """Compare the board with the system file that was loaded."""
-        self.row["cef"] = bool(planned.differences(self.board.config))
+        self.row["cef"] = bool(planned.differences(self._config))
 
     # ------------------------------------------------------------------ status
 
@@ -236,7 +274,7 @@ class Axis:
     @property
     def status_word(self) -> int:
         """Axis status word as a number, quickly: programs poll it."""
-        row, plan, inputs = self.row, self.board.state.plan[self.index], self.board.inputs
+        row, plan, inputs = self.row, self._state.plan[self.index], self._inputs()
         drive_ready = int(plan["DR"])
         status = (
             inputs & int(plan["EO"]),
@@ -269,7 +307,7 @@ class Axis:
             Digi.index_latched: row["index_seen"],
             Digi.strobe_latched: row["strobe_seen"],
         }
-        return Digi(self.board.inputs | self.alarms | sum(bit for bit, value in signals.items() if value))
+        return Digi(self._inputs() | self.alarms | sum(bit for bit, value in signals.items() if value))
 
     @property
     def relay(self) -> bool:

@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.core._command_port import set_command
 from polycnc.controllers.apci.core._compiled_entries import go_on_with, stand
 from polycnc.controllers.apci.core._registers import ModeReg
 from polycnc.kernel import ADDED
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
-
-def cl(board: Board, axes: Sequence[int]) -> None:
+def cl(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Close the position loops of `axes`; each stays where it is (Manual 002, 4.4.8)."""
     for i in axes:
         _close(board, i)
 
 
-def clv(board: Board, axes: Sequence[int]) -> None:
+def clv(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Close the position loops of `axes`; each goes on with its actual velocity (Manual 002, 4.4.9)."""
     for i in axes:
         velocity = float(board.state.axis[i]["rv"])
@@ -31,7 +28,7 @@ def clv(board: Board, axes: Sequence[int]) -> None:
             go_on_with(board.state, i, float(board.kernel.base[i]), velocity)
 
 
-def _close(board: Board, i: int) -> None:
+def _close(board: CommandedBoard, i: int) -> None:
     row, kernel = board.state.axis[i], board.kernel
     board.cancel_commands(i)
     stand(board.state, i)
@@ -47,20 +44,20 @@ def _close(board: Board, i: int) -> None:
     board.outputs |= int(board.state.plan[i]["PAE"])
 
 
-def _base_at_actual(board: Board, i: int) -> float:
+def _base_at_actual(board: CommandedBoard, i: int) -> float:
     """Return what the profile must give for the setpoint to be where the axis is."""
     added = board.kernel.ptp.row[ADDED, i]["position"] + board.state.axis[i]["shift"]
     return float(board.kernel.servo.actual[i] - added)
 
 
-def ol(board: Board, axes: Sequence[int]) -> None:
+def ol(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Open the position loops of `axes`: 0 V or 0 Hz, PAE off (Manual 002, 4.4.41)."""
     for i in axes:
         _open(board, i)
         board.outputs &= ~int(board.state.plan[i]["PAE"])
 
 
-def _open(board: Board, i: int) -> None:
+def _open(board: CommandedBoard, i: int) -> None:
     row = board.state.axis[i]
     board.cancel_commands(i)
     stand(board.state, i)
@@ -73,12 +70,12 @@ def _open(board: Board, i: int) -> None:
     servo["output"] = 0.0
 
 
-def write_mcp(board: Board, i: int, value: int) -> None:
+def write_mcp(board: CommandedBoard, i: int, value: int) -> None:
     """Write the motor command port; it lasts while the loop is open (Manual 002, 4.4.162)."""
     set_command(board.state, board.kernel, i, value)
 
 
-def ra(board: Board, axes: Sequence[int]) -> None:
+def ra(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Reset `axes` (Manual 002, 4.4.42)."""
     for i in axes:
         row = board.state.axis[i]
@@ -92,13 +89,12 @@ def ra(board: Board, axes: Sequence[int]) -> None:
         row["saf"] = 0
 
 
-def rs(board: Board) -> None:
-    """Reset the whole system (Manual 002, 4.4.113)."""
-    board.reset()
+def rs(board: CommandedBoard) -> None:
+    """Reset the whole system (Manual 002, 4.4.113).
 
-
-def reset_system(board: Board) -> None:
-    """Open all loops, empty all queues, halt the tasks; positions and common variables stay."""
+    All loops are opened, queues emptied, tasks halted; positions and common variables stay.
+    """
+    board.pending.clear()
     for axis in board.axes:
         _open(board, axis.index)
         _clear(board, axis.index)
@@ -109,18 +105,18 @@ def reset_system(board: Board) -> None:
         board.tasks.halt()
 
 
-def _clear(board: Board, i: int) -> None:
+def _clear(board: CommandedBoard, i: int) -> None:
     row = board.state.axis[i]
     row["referenced"] = row["dhef"] = row["soft_limit"] = row["held"] = 0
     row["jovr"] = row["tovr"] = row["override_goal"] = 1.0
 
 
-def _at_reset(board: Board, group: int) -> int:
+def _at_reset(board: CommandedBoard, group: int) -> int:
     """Return the outputs after the reset of an axis: planned defaults, and the PAE outputs of its group off."""
     return board.config.outputs_at_reset & ~group
 
 
-def RPtoDP(board: Board, axes: Sequence[int]) -> None:  # noqa: N802  the manual's name
+def RPtoDP(board: CommandedBoard, axes: Sequence[int]) -> None:  # noqa: N802  the manual's name
     """Make the setpoint of `axes` their actual position, where no profile runs (Manual 002, 4.4.112)."""
     for i in axes:
         row, actual = board.state.axis[i], _base_at_actual(board, i)
@@ -130,7 +126,7 @@ def RPtoDP(board: Board, axes: Sequence[int]) -> None:  # noqa: N802  the manual
             board.kernel.base[i] = actual
 
 
-def shp(board: Board, i: int, position: float) -> None:
+def shp(board: CommandedBoard, i: int, position: float) -> None:
     """Set the actual position, and with it the machine zero (Manual 002, 4.4.116).
 
     Without effect on an axis that moves or has moves queued: its targets would be elsewhere.
@@ -143,7 +139,7 @@ def shp(board: Board, i: int, position: float) -> None:
     row["referenced"] = 1
 
 
-def write_rp(board: Board, i: int, position: float) -> None:
+def write_rp(board: CommandedBoard, i: int, position: float) -> None:
     """Write the actual position register, with the loop open (Manual 002, 4.4.167)."""
     axis = board.axes[i]
     row = axis.row
@@ -152,7 +148,7 @@ def write_rp(board: Board, i: int, position: float) -> None:
         row["referenced"] = 0
 
 
-def write_dp(board: Board, i: int, position: float) -> None:
+def write_dp(board: CommandedBoard, i: int, position: float) -> None:
     """Write the setpoint, with the loop closed; the axis goes there at once (Manual 002, 4.4.140)."""
     axis = board.axes[i]
     if axis.row["closed"] and axis.row["pe"] and not axis.row["past"] and math.isfinite(position):
@@ -160,7 +156,7 @@ def write_dp(board: Board, i: int, position: float) -> None:
         board.kernel.base[i] = position + axis.origin - added
 
 
-def azo(board: Board, number: int) -> None:
+def azo(board: CommandedBoard, number: int) -> None:
     """Put zero offsets 0 to 4 in force for all axes, none for a higher number (Manual 002, 4.4.3)."""
     for axis in board.axes:
         if number < 0:
@@ -168,23 +164,23 @@ def azo(board: Board, number: int) -> None:
         axis.row["offset"] = axis.zero_offsets[number] if number < len(axis.zero_offsets) else 0.0
 
 
-def szpa(board: Board, i: int, position: float) -> None:
+def szpa(board: CommandedBoard, i: int, position: float) -> None:
     """Set the virtual zero of an axis to `position` from the machine zero (Manual 002, 4.4.127)."""
     axis = board.axes[i]
     if not axis.is_busy and not axis.queued and math.isfinite(position):
         axis.row["offset"] = position
 
 
-def szpr(board: Board, i: int, position: float) -> None:
+def szpr(board: CommandedBoard, i: int, position: float) -> None:
     """Move the virtual zero of an axis by `position` (Manual 002, 4.4.128)."""
     szpa(board, i, float(board.state.axis[i]["offset"]) + position)
 
 
-def utrovr(board: Board, axes: Sequence[int]) -> None:
+def utrovr(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Take over the trajectory override for `axes`, in the same scan (Manual 002, 4.4.132)."""
     copies = not board.modereg & ModeReg.OvrMode
     for i in axes:
         row = board.state.axis[i]
         row["override_goal"] = board.trovr
         if row["tovr"] == board.trovr and copies:  # nothing settles that would bring it along
-            board.change_jog_override(i, board.trovr)
+            board.axes[i].change_jog_override(board.trovr)

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import fields
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._interpolation import Speeds, begin_interpolation, queue_interpolation
 from polycnc.controllers.apci.board._jog_commands import jog, search_index, search_reference
-from polycnc.controllers.apci.board._path_units import PathUnits
 from polycnc.controllers.apci.board._shapes import Circle, Helix, Line, SpaceCircle
 from polycnc.controllers.apci.board._spool_commands import (
     add_points,
@@ -20,9 +20,7 @@ from polycnc.controllers.apci.board._spool_commands import (
     reject_queued,
     start_spoolers,
 )
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._units import PathUnits
 
 # How each command begins, and what shapes its path; the names stand in snapshots.
 _BEGINNINGS: Mapping[str, Callable[..., Any]] = {
@@ -63,7 +61,7 @@ def as_data(begin: partial[None]) -> dict[str, Any]:
     }
 
 
-def from_data(board: Board, data: Mapping[str, Any]) -> partial[None]:
+def from_data(board: CommandedBoard, data: Mapping[str, Any]) -> partial[None]:
     """Return how a command begins on a board.
 
     Raises:

@@ -6,30 +6,28 @@ Everything is read and made before anything is changed, so a snapshot that does 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._beginnings import as_data, from_data
 from polycnc.controllers.apci.board._command import Command
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._system_file import parse_system_file
 from polycnc.controllers.apci.board._system_text import system_file_text
 from polycnc.errors import UsageError
 from polycnc.machine import Array, Snapshot, SnapshotError, arrays_of
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._axis import Axis
-    from polycnc.controllers.apci.board._board import Board
 
 _KIND = "board"
 _AXIS_VALUES = ("ControllerFlags", "GCR", "alarms")
 _BOARD_VALUES = ("pu", "tu", "trac", "trvl", "trtvl", "ledgn", "ledrd", "ledyl", "irqpc")
 
 
-def take_snapshot(board: Board) -> Snapshot:
+def take_snapshot(board: CommandedBoard) -> Snapshot:
     """Return the state of a board, with that of its tasks."""
     return Snapshot.take(_KIND, _made_from(board), board.clock.cycles, _arrays(board), _beside(board))
 
 
-def put_back(board: Board, snapshot: Snapshot) -> None:
+def restore_state(board: CommandedBoard, snapshot: Snapshot) -> None:
     """Go back to a snapshot.
 
     Raises:
@@ -44,22 +42,22 @@ def put_back(board: Board, snapshot: Snapshot) -> None:
         raise SnapshotError(
             f"the snapshot of a {_KIND} is damaged: {error}", hint="use another one"
         ) from error
-    snapshot.put_back(arrays)
+    snapshot.restore_state(arrays)
     board.clock.go_back(snapshot.cycle, epoch)
     for change in changes:
         change()
 
 
-def _made_from(board: Board) -> str:
+def _made_from(board: CommandedBoard) -> str:
     return f"{board.config.model_dump_json()} {'with' if board.tasks else 'without'} tasks"
 
 
-def _arrays(board: Board) -> list[Array]:
+def _arrays(board: CommandedBoard) -> list[Array]:
     axes = tuple((axis.varint, axis.vardbl, axis.ctrlparams) for axis in board.axes)
     return arrays_of((board.kernel, board.state, board.sysvarint, board.sysvardbl, axes))
 
 
-def _beside(board: Board) -> dict[str, Any]:
+def _beside(board: CommandedBoard) -> dict[str, Any]:
     variables = board.variables
     return {
         "epoch": board.clock.epoch.isoformat(),
@@ -79,7 +77,7 @@ def _beside(board: Board) -> dict[str, Any]:
     }
 
 
-def _changes(board: Board, data: Mapping[str, Any]) -> list[Callable[[], None]]:
+def _changes(board: CommandedBoard, data: Mapping[str, Any]) -> list[Callable[[], None]]:
     """Return what puts the state beside the arrays back; nothing of it can fail any more."""
     planned = parse_system_file(data["planned"])
     variables = {name: data["variables"][name] for name in _BOARD_VALUES}

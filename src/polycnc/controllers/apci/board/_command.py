@@ -1,4 +1,4 @@
-"""A command between being given and taking effect: a direct one, or one of the spoolers behind it."""
+"""A command between being given and taking effect: a direct one, or one of the spoolers after it."""
 
 from __future__ import annotations
 
@@ -14,4 +14,4 @@ class Command:
     axes: tuple[int, ...]
     orders: tuple[int, ...]  # of these axes, when it was given
     begin: partial[None]
-    moves: bool = True  # False for one that only waits for its turn behind those that move
+    moves: bool = True  # False for one that only waits for its turn after those that move

@@ -6,12 +6,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polycnc.controllers.apci.board._path_units import PathUnits, path_units
+from polycnc.controllers.apci.board._commanded import CommandedBoard
+from polycnc.controllers.apci.board._path_units import path_units
 from polycnc.controllers.apci.board._shapes import Line, Shape
+from polycnc.controllers.apci.board._units import PathUnits
 from polycnc.controllers.apci.core._compiled_entries import begin_move
 from polycnc.controllers.apci.core._registers import ErrorReg, ModeReg
 from polycnc.controllers.apci.core._spool_entries import (
@@ -21,9 +22,6 @@ from polycnc.controllers.apci.core._spool_entries import (
     spool_line,
     spool_move,
 )
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,14 +33,14 @@ class Speeds:
     tvl: float = 0.0
 
 
-def go(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds) -> None:
+def go(board: CommandedBoard, axes: Sequence[int], shape: Shape, speeds: Speeds) -> None:
     """Begin an interpolation at once, if nothing is wrong with it."""
     units = _checked(board, axes, speeds, shape.numbers)
     if units is not None:
         board.command(tuple(axes), partial(begin_interpolation, board, units, speeds, shape))
 
 
-def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index: int = -1) -> None:
+def queue(board: CommandedBoard, axes: Sequence[int], shape: Shape, speeds: Speeds, index: int = -1) -> None:
     """Put an interpolation into the spoolers, if nothing is wrong with it; a line may have an `index` (PcapIndex)."""
     units = _checked(board, axes, speeds, shape.numbers)
     if units is None:
@@ -54,9 +52,9 @@ def queue(board: Board, axes: Sequence[int], shape: Shape, speeds: Speeds, index
 
 
 def queue_interpolation(
-    board: Board, units: PathUnits, speeds: Speeds, shape: Shape, *, index: int = -1
+    board: CommandedBoard, units: PathUnits, speeds: Speeds, shape: Shape, *, index: int = -1
 ) -> None:
-    """Put an interpolation behind what the spoolers of its axes hold."""
+    """Put an interpolation after what the spoolers of its axes hold."""
     ac, vl, tvl = units.acceleration(speeds.ac), units.velocity(speeds.vl), units.velocity(speeds.tvl)
     bases = units.velocity_unit, units.acceleration_unit
     if isinstance(shape, Line):
@@ -70,7 +68,9 @@ def queue_interpolation(
         spool_move(board.state, e, units.axes, units.weight, ac, vl, tvl, *bases)
 
 
-def _checked(board: Board, axes: Sequence[int], speeds: Speeds, numbers: Sequence[float]) -> PathUnits | None:
+def _checked(
+    board: CommandedBoard, axes: Sequence[int], speeds: Speeds, numbers: Sequence[float]
+) -> PathUnits | None:
     """Return the units of an interpolation; None, with the reason in ErrorReg and dhef, if it is refused."""
     if len(set(axes)) < len(axes):
         board.raise_error(ErrorReg.errAxDef)
@@ -89,7 +89,7 @@ def _checked(board: Board, axes: Sequence[int], speeds: Speeds, numbers: Sequenc
     return None
 
 
-def _is_consistent(board: Board, units: PathUnits, speeds: Speeds) -> bool:
+def _is_consistent(board: CommandedBoard, units: PathUnits, speeds: Speeds) -> bool:
     """Tell whether speeds can be meant; without velocity or acceleration it depends on InhibitProfileRefuse."""
     if speeds.vl == 0.0:
         board.raise_error(ErrorReg.VelocityZero)
@@ -101,7 +101,7 @@ def _is_consistent(board: Board, units: PathUnits, speeds: Speeds) -> bool:
     return speeds.ac >= 0.0 and speeds.vl >= 0.0 and all(map(math.isfinite, taken))
 
 
-def _path(board: Board, units: PathUnits, shape: Shape, start: Sequence[float]) -> int:
+def _path(board: CommandedBoard, units: PathUnits, shape: Shape, start: Sequence[float]) -> int:
     """Make an entry with a path that begins at machine positions `start`; -1 if there is none."""
     e = int(new_entry(board.state))
     if e < 0:
@@ -114,14 +114,14 @@ def _path(board: Board, units: PathUnits, shape: Shape, start: Sequence[float]) 
     return e
 
 
-def begin_interpolation(board: Board, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
+def begin_interpolation(board: CommandedBoard, units: PathUnits, speeds: Speeds, shape: Shape) -> None:
     """Begin a direct interpolation from where the axes are now, with the speed they have."""
     state = board.state
     e = _path(board, units, shape, [float(board.kernel.base[i]) for i in units.axes])
     if e < 0:
         return
     velocities = [
-        board.profile_velocity(i) * weight for i, weight in zip(units.axes, units.weight, strict=True)
+        board.axes[i].profile_velocity() * weight for i, weight in zip(units.axes, units.weight, strict=True)
     ]
     counted = [v for i, v in zip(units.axes, velocities, strict=True) if state.feed_axis[i]]
     begin_move(

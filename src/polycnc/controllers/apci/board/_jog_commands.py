@@ -5,32 +5,29 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.core._compiled_entries import begin_jog, brake_axis, brake_on_path, reject_queue
 from polycnc.controllers.apci.core._registers import ErrorReg, ModeReg
 from polycnc.controllers.apci.core._state import JOG, MOVE, NO_SEARCH, SEARCH_INDEX, SEARCH_REFERENCE
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
-
-def ja(board: Board, axes: Sequence[int], targets: Sequence[float]) -> None:
+def ja(board: CommandedBoard, axes: Sequence[int], targets: Sequence[float]) -> None:
     """Jog to absolute positions, each axis by itself (Manual 002, 4.4.19)."""
     _command(board, axes, targets, "jac", partial(jog, relative=False))
 
 
-def jr(board: Board, axes: Sequence[int], distances: Sequence[float]) -> None:
+def jr(board: CommandedBoard, axes: Sequence[int], distances: Sequence[float]) -> None:
     """Jog by distances from the instantaneous positions (Manual 002, 4.4.23)."""
     _command(board, axes, distances, "jac", partial(jog, relative=True))
 
 
 def _command(
-    board: Board,
+    board: CommandedBoard,
     axes: Sequence[int],
     values: Sequence[float],
     acceleration: str,
-    begin: Callable[[Board, int, float], None],
+    begin: Callable[[CommandedBoard, int, float], None],
 ) -> None:
     """Command what can be run: an axis named twice refuses all, an open loop or wrong data its axis."""
     if len(set(axes)) < len(axes):
@@ -46,7 +43,7 @@ def _command(
         board.command((i,), partial(begin, board, i, value))
 
 
-def jog(board: Board, i: int, value: float, *, relative: bool) -> None:
+def jog(board: CommandedBoard, i: int, value: float, *, relative: bool) -> None:
     """Begin to jog to, or by, `value`."""
     row, base = board.state.axis[i], board.kernel.base
     here = float(base[i])
@@ -61,12 +58,12 @@ def jog(board: Board, i: int, value: float, *, relative: bool) -> None:
         begin_jog(board.state, base, i, NO_SEARCH, True, 0.0, direction * jvl, abs(jvl), jac, jac)
 
 
-def jhi(board: Board, axes: Sequence[int], distances: Sequence[float]) -> None:
+def jhi(board: CommandedBoard, axes: Sequence[int], distances: Sequence[float]) -> None:
     """Search the encoder's index over a distance (Manual 002, 4.4.20)."""
     _command(board, axes, distances, "hac", search_index)
 
 
-def search_index(board: Board, i: int, distance: float) -> None:
+def search_index(board: CommandedBoard, i: int, distance: float) -> None:
     """Begin to search the index."""
     row, base = board.state.axis[i], board.kernel.base
     target = float(base[i]) + distance
@@ -75,31 +72,31 @@ def search_index(board: Board, i: int, distance: float) -> None:
     begin_jog(board.state, base, i, SEARCH_INDEX, False, target, 0.0, hvl, hac, hac)
 
 
-def jhl(board: Board, axes: Sequence[int]) -> None:
+def jhl(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Search the reference switch to the left, without end (Manual 002, 4.4.21)."""
     _command(board, axes, [-1.0] * len(axes), "hac", search_reference)
 
 
-def jhr(board: Board, axes: Sequence[int]) -> None:
+def jhr(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Search the reference switch to the right, without end (Manual 002, 4.4.22)."""
     _command(board, axes, [1.0] * len(axes), "hac", search_reference)
 
 
-def search_reference(board: Board, i: int, direction: float) -> None:
+def search_reference(board: CommandedBoard, i: int, direction: float) -> None:
     """Begin to search the reference switch."""
     row = board.state.axis[i]
     hvl, hac = float(row["hvl"]), float(row["hac"])
     begin_jog(board.state, board.kernel.base, i, SEARCH_REFERENCE, True, 0.0, direction * hvl, hvl, hac, hac)
 
 
-def js(board: Board, axes: Sequence[int]) -> None:
+def js(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Stop each axis by itself with its stop deceleration, and reject the queues (Manual 002, 4.4.24)."""
     for i in axes:
         board.cancel_commands(i)
         brake_axis(board.state, board.kernel, i, float(board.state.axis[i]["sdec"]))
 
 
-def ms(board: Board, axes: Sequence[int], *, deceleration: float | None = None) -> None:
+def ms(board: CommandedBoard, axes: Sequence[int], *, deceleration: float | None = None) -> None:
     """Stop along the path, and reject the queues (Manual 002, 4.4.39).
 
     `deceleration` is that of the path (path units/s2); None for the one in force. An axis past its profile's end, or
@@ -119,6 +116,6 @@ def ms(board: Board, axes: Sequence[int], *, deceleration: float | None = None) 
             brake_axis(board.state, board.kernel, i, float(row["sdec"]))
 
 
-def ms_of_pc(board: Board, axes: Sequence[int], trac: float) -> None:
+def ms_of_pc(board: CommandedBoard, axes: Sequence[int], trac: float) -> None:
     """Stop along the path as the PC's ms does: with TRAC, in path units, if MS_DECEL says so."""
     ms(board, axes, deceleration=trac if board.modereg & ModeReg.MS_DECEL else None)

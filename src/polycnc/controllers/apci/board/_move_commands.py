@@ -6,13 +6,11 @@ Axes by their numbers, distances one per axis in that order; speeds and distance
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._interpolation import Speeds, go, queue
 from polycnc.controllers.apci.board._shapes import Circle, Helix, Line, Shape, SpaceCircle
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
 Kind: TypeAlias = Callable[..., Shape]
 
@@ -33,7 +31,9 @@ def _command(name: str) -> Callable[..., None]:
     """Return a command: the numbers of its shape, one after the other, then the speeds."""
     kind, relative = MOVES[name]
 
-    def move(board: Board, axes: Sequence[int], *given: Any, spool: bool = False, index: int = -1) -> None:
+    def move(
+        board: CommandedBoard, axes: Sequence[int], *given: Any, spool: bool = False, index: int = -1
+    ) -> None:
         *numbers, speeds = given
         shape = kind(*numbers, relative=relative)
         if spool:

@@ -8,42 +8,25 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from polycnc.controllers.apci.board._units import DEGREES, MILLIMETRES, PositionUnit, TimeUnit, seconds
+from polycnc.controllers.apci.board._commanded import CommandedBoard
+from polycnc.controllers.apci.board._units import (
+    DEGREES,
+    MILLIMETRES,
+    PathUnits,
+    PositionUnit,
+    TimeUnit,
+    seconds,
+)
 from polycnc.controllers.apci.core._registers import ModeReg
-from polycnc.controllers.apci.core._state import Floats, Whole
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
 _ROTARY = int(ModeReg.rotaxisunit)
 _KEPT = 64
 
 
-@dataclass(frozen=True, slots=True)
-class PathUnits:
-    """How the numbers of one interpolation are meant; the arrays go with its axes, in their order."""
-
-    velocity_unit: float  # path units/s per unit of velocity
-    acceleration_unit: float  # path units/s2 per unit of acceleration
-    axes: Whole
-    weight: Floats  # path units per unit of each axis
-    distance: Floats  # path units per unit in which the axis' distances are given
-
-    def velocity(self, value: float) -> float:
-        """Return a velocity in path units/s."""
-        return value * self.velocity_unit
-
-    def acceleration(self, value: float) -> float:
-        """Return an acceleration in path units/s2."""
-        return value * self.acceleration_unit
-
-
-def path_units(board: Board, axes: Sequence[int]) -> PathUnits | None:
+def path_units(board: CommandedBoard, axes: Sequence[int]) -> PathUnits | None:
     """Return the units in force for an interpolation of `axes`; None if an axis does not fit the position unit.
 
     They are kept on the board until something changes that they depend on.
@@ -58,7 +41,7 @@ def path_units(board: Board, axes: Sequence[int]) -> PathUnits | None:
     return known[key]
 
 
-def trajectory_units(board: Board) -> tuple[float, float]:
+def trajectory_units(board: CommandedBoard) -> tuple[float, float]:
     """Return path units/s and path units/s2 per unit of velocity and acceleration, whatever the axes."""
     variables = board.variables
     if (
@@ -72,7 +55,7 @@ def trajectory_units(board: Board) -> tuple[float, float]:
     return length / time_s, length / (time_s * time_s)
 
 
-def _units(board: Board, axes: Sequence[int]) -> PathUnits | None:
+def _units(board: CommandedBoard, axes: Sequence[int]) -> PathUnits | None:
     variables = board.variables
     if (
         variables.pu not in PositionUnit.__members__.values()

@@ -77,7 +77,7 @@ class AS(_declared.AS):
 
 
 def pack_all(records: Iterable[Structure]) -> bytes:
-    """Return records that lie directly behind each other, as the library wants its TSRP."""
+    """Return records that lie directly one after another, as the library wants its TSRP."""
     return b"".join(record.pack() for record in records)
 
 

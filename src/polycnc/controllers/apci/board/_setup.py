@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._system_file import InputFunction, SystemFile
 from polycnc.controllers.apci.board._units import PositionUnit, TimeUnit
 from polycnc.controllers.apci.core._registers import STROBE_INPUT_OF_AXIS, ErrorReg
 from polycnc.controllers.apci.core._state import SMA, SMD, TOM
 from polycnc.kernel import LIMIT_HIGH, LIMIT_LOW, OTHER_SOURCE, PIDF, REFERENCE, place_machine
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
 _LIMIT_FUNCTIONS = {"none": 0, "TOM": TOM, "SMA": SMA, "SMD": SMD}
 _INPUT_FUNCTIONS: tuple[InputFunction, ...] = (
@@ -26,7 +23,7 @@ _PARAMETERS = (
 )
 
 
-def set_up_plant(board: Board) -> None:
+def set_up_plant(board: CommandedBoard) -> None:
     """Set up what stays with the board: drives, encoders, switches."""
     kernel = board.kernel
     for axis in board.axes:
@@ -57,7 +54,7 @@ def set_up_plant(board: Board) -> None:
     kernel.owner[:] = OTHER_SOURCE
 
 
-def load_parameters(board: Board, system: SystemFile) -> None:
+def load_parameters(board: CommandedBoard, system: SystemFile) -> None:
     """Take over the parameters and the planning of a system file."""
     board.planned = system
     for axis, setup in zip(board.axes, system.axes, strict=False):
@@ -68,7 +65,7 @@ def load_parameters(board: Board, system: SystemFile) -> None:
         axis.check_configuration(system)
         if not setup.mcp_limits_are_possible:
             board.raise_error(ErrorReg.LimitDefError)
-        board.update_filter(axis.index)
+        axis.update_filter()
         _plan_inputs(board, system, axis.index)
     variables, planned, row = board.variables, system.board, board.state.board[0]
     variables.pu = int(PositionUnit[planned.pu])
@@ -81,7 +78,7 @@ def load_parameters(board: Board, system: SystemFile) -> None:
     board.nfrax = system.nfrax
 
 
-def _plan_inputs(board: Board, system: SystemFile, i: int) -> None:
+def _plan_inputs(board: CommandedBoard, system: SystemFile, i: int) -> None:
     plan = board.state.plan[i]
     for function in _INPUT_FUNCTIONS:
         plan[function] = system.inputs_for(function, i)

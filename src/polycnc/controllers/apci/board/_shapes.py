@@ -5,23 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import Protocol
 
 import numpy as np
 
-from polycnc.controllers.apci.board._path_units import PathUnits
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._records import TARGET_POINT_PHI
+from polycnc.controllers.apci.board._units import PathUnits
 from polycnc.controllers.apci.core._paths import fill_arc, fill_circle3d, fill_line
 from polycnc.controllers.apci.core._registers import ErrorReg
 from polycnc.controllers.apci.core._spool_entries import HARDLY_ANY
 from polycnc.controllers.apci.core._state import Floats
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
-
 
 def _ends(
-    board: Board, units: PathUnits, begin: Floats, values: Sequence[float], relative: bool, count: int
+    board: CommandedBoard,
+    units: PathUnits,
+    begin: Floats,
+    values: Sequence[float],
+    relative: bool,
+    count: int,
 ) -> Floats:
     """Return the end point of a path of the first `count` axes, path units."""
     end = begin.copy()
@@ -31,7 +34,7 @@ def _ends(
     return end
 
 
-def _is_path(board: Board, units: PathUnits, length: float) -> bool:
+def _is_path(board: CommandedBoard, units: PathUnits, length: float) -> bool:
     if length < HARDLY_ANY:
         board.raise_error(ErrorReg.ZeroProfile)
         return False
@@ -41,12 +44,12 @@ def _is_path(board: Board, units: PathUnits, length: float) -> bool:
     return True
 
 
-def _refuse(board: Board, units: PathUnits) -> None:
+def _refuse(board: CommandedBoard, units: PathUnits) -> None:
     for i in units.axes:
         board.state.axis[i]["dhef"] = 1
 
 
-def _refuse_radius(board: Board, units: PathUnits) -> bool:
+def _refuse_radius(board: CommandedBoard, units: PathUnits) -> bool:
     board.raise_error(ErrorReg.RadiusError)
     board.raise_error(ErrorReg.errCenterPoint)
     _refuse(board, units)
@@ -61,7 +64,7 @@ class Shape(Protocol):
         """Return all its numbers, which must be finite."""
         ...
 
-    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+    def path(self, board: CommandedBoard, e: int, units: PathUnits, begin: Floats) -> bool:
         """Make entry `e` the path from `begin`, path units; False, with the reason in ErrorReg, if there is none."""
         ...
 
@@ -78,7 +81,7 @@ class Line:
         """Return all its numbers."""
         return self.values
 
-    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+    def path(self, board: CommandedBoard, e: int, units: PathUnits, begin: Floats) -> bool:
         """Make entry `e` the line."""
         end = _ends(board, units, begin, self.values, self.relative, len(units.axes))
         return _is_path(board, units, fill_line(board.state.seg, e, board.state.feed_axis, begin, end))
@@ -97,7 +100,7 @@ class Circle:
         """Return all its numbers."""
         return (*self.center, self.phi_deg)
 
-    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+    def path(self, board: CommandedBoard, e: int, units: PathUnits, begin: Floats) -> bool:
         """Make entry `e` the circle."""
         return _arc(board, e, units, begin, self.center, self.phi_deg, (), self.relative)
 
@@ -119,7 +122,7 @@ class Helix:
         """Return all its numbers."""
         return (*self.center, self.phi_deg, *self.ends)
 
-    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+    def path(self, board: CommandedBoard, e: int, units: PathUnits, begin: Floats) -> bool:
         """Make entry `e` the helix."""
         return _arc(board, e, units, begin, self.center, self.phi_deg, self.ends, self.relative)
 
@@ -138,7 +141,7 @@ class SpaceCircle:
         """Return all its numbers."""
         return (*self.center, *self.normal, self.phi_deg)
 
-    def path(self, board: Board, e: int, units: PathUnits, begin: Floats) -> bool:
+    def path(self, board: CommandedBoard, e: int, units: PathUnits, begin: Floats) -> bool:
         """Make entry `e` the circle."""
         if len(units.axes) < 3:
             _refuse(board, units)
@@ -153,7 +156,7 @@ class SpaceCircle:
 
 
 def _arc(
-    board: Board,
+    board: CommandedBoard,
     e: int,
     units: PathUnits,
     begin: Floats,

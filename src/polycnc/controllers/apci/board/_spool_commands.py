@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.board._path_units import path_units, trajectory_units
 from polycnc.controllers.apci.core._compiled_entries import aim_at_velocity, reject_queue
 from polycnc.controllers.apci.core._registers import ErrorReg
@@ -27,23 +28,20 @@ from polycnc.controllers.apci.core._state import (
     WAITING,
 )
 
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
-
 MOST_POINTS = 1000  # of one spd call
 
 RESET_TARGET_VELOCITY = 2001
 
 
-def ssms(board: Board, axes: Sequence[int]) -> None:
+def ssms(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Start the spoolers of `axes` together; ends a wait for time or inputs (Manual 002, 4.4.120).
 
-    An axis that still carries out the entry at which sstps will halt it goes on behind that entry.
+    An axis that still carries out the entry at which sstps will halt it continues after that entry.
     """
     board.in_turn(axes, partial(start_spoolers, board, axes))
 
 
-def start_spoolers(board: Board, axes: Sequence[int]) -> None:
+def start_spoolers(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Start the spoolers of `axes`, if they are at rest."""
     rows = [board.state.axis[i] for i in axes]
     for row in rows:
@@ -62,24 +60,24 @@ def _works_on_its_queue(row: Any) -> bool:
     return bool(row["motion"] in (MOVE, TABLE) and not row["direct"] and not row["stopping"])
 
 
-def sstps(board: Board, axes: Sequence[int]) -> None:
-    """Pause the spoolers of `axes` behind what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
+def sstps(board: CommandedBoard, axes: Sequence[int]) -> None:
+    """Pause the spoolers of `axes` after what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
     for i in axes:
         board.state.axis[i]["running"] = 0
 
 
-def sdels(board: Board, axes: Sequence[int]) -> None:
-    """Reject what `axes` have queued behind what they carry out now (Manual 002, 4.4.115)."""
+def sdels(board: CommandedBoard, axes: Sequence[int]) -> None:
+    """Reject what `axes` have queued after what they carry out now (Manual 002, 4.4.115)."""
     board.in_turn(axes, partial(reject_queued, board, axes))
 
 
-def reject_queued(board: Board, axes: Sequence[int]) -> None:
+def reject_queued(board: CommandedBoard, axes: Sequence[int]) -> None:
     """Reject what `axes` have queued."""
     for i in axes:
         reject_queue(board.state, i)
 
 
-def sstvl(board: Board, axes: Sequence[int], tvl: float) -> None:
+def sstvl(board: CommandedBoard, axes: Sequence[int], tvl: float) -> None:
     """Give the last move queued for `axes` another target velocity (Manual 002, 4.4.122)."""
     units = path_units(board, axes)
     if units is None:
@@ -88,14 +86,14 @@ def sstvl(board: Board, axes: Sequence[int], tvl: float) -> None:
         board.in_turn(axes, partial(aim_last_moves, board, axes, units.velocity(tvl), units.velocity_unit))
 
 
-def aim_last_moves(board: Board, axes: Sequence[int], tvl: float, velocity_unit: float) -> None:
+def aim_last_moves(board: CommandedBoard, axes: Sequence[int], tvl: float, velocity_unit: float) -> None:
     """Give the last move queued for `axes` another target velocity, path units/s."""
     for e in {_last_move(board, i) for i in axes} - {-1}:
         aim_at_velocity(board.state, e, tvl)
     look_ahead_again(board.state, sum(1 << i for i in axes), velocity_unit)
 
 
-def _last_move(board: Board, i: int) -> int:
+def _last_move(board: CommandedBoard, i: int) -> int:
     row = board.state.axis[i]
     for count in range(int(row["tail"]) - 1, int(row["head"]) - 1, -1):
         e = int(board.state.ring[i, count % SPOOL_ENTRIES])
@@ -104,7 +102,7 @@ def _last_move(board: Board, i: int) -> int:
     return -1
 
 
-def ssf(board: Board, i: int, command: int, value: float, *, index: int = -1) -> None:
+def ssf(board: CommandedBoard, i: int, command: int, value: float, *, index: int = -1) -> None:
     """Put a special function into the spooler of one axis (Manual 002, 4.4.123)."""
     if not _is_command(command) or not math.isfinite(value):
         return
@@ -114,8 +112,8 @@ def ssf(board: Board, i: int, command: int, value: float, *, index: int = -1) ->
         board.in_turn((i,), partial(add_special, board, i, command, value, index=index))
 
 
-def add_special(board: Board, i: int, command: int, value: float, *, index: int) -> None:
-    """Put a special function behind what the spooler of an axis holds."""
+def add_special(board: CommandedBoard, i: int, command: int, value: float, *, index: int) -> None:
+    """Put a special function after what the spooler of an axis holds."""
     e = _new(board, i, SPECIAL, index)
     if e < 0:
         return
@@ -125,7 +123,7 @@ def add_special(board: Board, i: int, command: int, value: float, *, index: int)
     queue_entry(board.state, e, 0.0)
 
 
-def _new(board: Board, i: int, kind: int, index: int) -> int:
+def _new(board: CommandedBoard, i: int, kind: int, index: int) -> int:
     """Take an entry for one axis; -1 if there is none."""
     e = int(new_entry(board.state))
     if e >= 0:
@@ -147,15 +145,17 @@ def _is_command(command: int) -> bool:
     )
 
 
-def spd(board: Board, i: int, points: Sequence[float], *, relative: bool = False, index: int = -1) -> None:
+def spd(
+    board: CommandedBoard, i: int, points: Sequence[float], *, relative: bool = False, index: int = -1
+) -> None:
     """Put setpoints, one a scan, into the spooler of an axis (Manual 002, 4.4.117 to 4.4.119)."""
     if not 1 <= len(points) <= MOST_POINTS or not all(map(math.isfinite, points)):
         return
     board.in_turn((i,), partial(add_points, board, i, tuple(points), relative=relative, index=index))
 
 
-def add_points(board: Board, i: int, points: Sequence[float], *, relative: bool, index: int) -> None:
-    """Put a table behind what the spooler of an axis holds."""
+def add_points(board: CommandedBoard, i: int, points: Sequence[float], *, relative: bool, index: int) -> None:
+    """Put a table after what the spooler of an axis holds."""
     state, axis = board.state, board.axes[i]
     end = queued_position(state, board.kernel.base, i) + sum(points) if relative else points[-1] + axis.origin
     e = _new(board, i, TABLE, index) if math.isfinite(end) else -1
@@ -172,12 +172,12 @@ def add_points(board: Board, i: int, points: Sequence[float], *, relative: bool,
             state.points[i, (first + k) % POINTS] = value if relative else value + axis.origin
 
 
-def free_bytes(board: Board, i: int) -> int:
+def free_bytes(board: CommandedBoard, i: int) -> int:
     """Return the free spooler memory of an axis (Manual 002, 4.4.84)."""
     return SPOOL_BYTES - int(board.state.axis[i]["used"])
 
 
-def moves_queued(board: Board, i: int) -> int:
+def moves_queued(board: CommandedBoard, i: int) -> int:
     """Return the number of motion commands in the spooler of an axis (Manual 002, 4.4.87)."""
     state, row = board.state, board.state.axis[i]
     kinds = (

@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from polycnc.controllers.apci.board._commanded import CommandedBoard
 from polycnc.controllers.apci.core._registers import Axst, ErrorReg, ModeReg
-
-if TYPE_CHECKING:
-    from polycnc.controllers.apci.board._board import Board
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +34,7 @@ class BoardStatus:
     modereg: ModeReg
 
 
-def board_status(board: Board) -> BoardStatus:
+def board_status(board: CommandedBoard) -> BoardStatus:
     """Return the status of a board in its present scan."""
     return BoardStatus(
         cycle=board.clock.cycles,

@@ -7,7 +7,10 @@ so a unit of the axis has `slsp * gf` counts.
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import IntEnum
+
+from polycnc.controllers.apci.core._state import Floats, Whole
 
 
 class PositionUnit(IntEnum):
@@ -48,3 +51,22 @@ def ratio(unit: PositionUnit, other: PositionUnit, counts_per_unit: float) -> fl
     if unit in (PositionUnit.counts, PositionUnit.steps):
         return 1.0 if other in (PositionUnit.counts, PositionUnit.steps) else None
     return counts_per_unit if other in (PositionUnit.counts, PositionUnit.steps) else None
+
+
+@dataclass(frozen=True, slots=True)
+class PathUnits:
+    """How the numbers of one interpolation are meant; the arrays go with its axes, in their order."""
+
+    velocity_unit: float  # path units/s per unit of velocity
+    acceleration_unit: float  # path units/s2 per unit of acceleration
+    axes: Whole
+    weight: Floats  # path units per unit of each axis
+    distance: Floats  # path units per unit in which the axis' distances are given
+
+    def velocity(self, value: float) -> float:
+        """Return a velocity in path units/s."""
+        return value * self.velocity_unit
+
+    def acceleration(self, value: float) -> float:
+        """Return an acceleration in path units/s2."""
+        return value * self.acceleration_unit

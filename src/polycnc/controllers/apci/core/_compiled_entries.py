@@ -99,7 +99,7 @@ def brake_axis(b: BoardState, state: KernelState, i: int, rate: float) -> None:
 
 @entry
 def brake_on_path(b: BoardState, i: int, rate: float) -> None:
-    """Brake axis `i` to rest along its path, and reject what its queue holds behind that."""
+    """Brake axis `i` to rest along its path, and reject what its queue holds after that."""
     row = b.axis[i]
     drop_entries(b, i, 1 if row["direct"] == 0 else 0)
     row["running"] = 0

@@ -36,7 +36,7 @@ def _corner_speed(b: BoardState, e: int, following: int, velocity_unit: float) -
 def look_ahead(b: BoardState, i: int, velocity_unit: float) -> bool:
     """Set the end speeds of what axis `i` has queued, as fast as its corners allow; True if it came too late.
 
-    `velocity_unit` is path units/s per unit of MDVEL. What lies behind the queue is unknown: it ends at rest there, as
+    `velocity_unit` is path units/s per unit of MDVEL. What lies after the queue is unknown: it ends at rest there, as
     it does in front of a table, or with the velocity that sstvl has given. Goes back only as far as something changes.
     """
     row = b.axis[i]

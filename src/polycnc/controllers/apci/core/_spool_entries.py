@@ -76,7 +76,7 @@ def rest_position(b: BoardState, base: Floats, i: int) -> float:
 
 @compiled
 def position_behind_queue(b: BoardState, base: Floats, i: int) -> float:
-    """Return the machine position of axis `i` behind everything it has queued."""
+    """Return the machine position of axis `i` after everything it has queued."""
     row = b.axis[i]
     for count in range(row["tail"] - 1, row["head"] - 1, -1):
         e = int(b.ring[i, count % SPOOL_ENTRIES])
@@ -91,7 +91,7 @@ def position_behind_queue(b: BoardState, base: Floats, i: int) -> float:
 
 @entry
 def queued_position(b: BoardState, base: Floats, i: int) -> float:
-    """Return the machine position of axis `i` behind everything it has queued; `base[n]` are those they have now."""
+    """Return the machine position of axis `i` after everything it has queued; `base[n]` are those they have now."""
     return position_behind_queue(b, base, i)
 
 

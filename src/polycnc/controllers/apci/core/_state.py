@@ -1,7 +1,7 @@
 """Everything that one board is made of in the scan, as arrays that Python and the compiled scan share.
 
 Positions are machine positions in axis units; what a caller calls zero is subtracted at the edges (`zero`). Paths are
-gone along in *path units*: millimetres, degrees or counts, by the position unit in force when the entry was made.
+traversed in *path units*: millimetres, degrees or counts, by the position unit in force when the entry was made.
 `weight` is path units per axis unit.
 """
 

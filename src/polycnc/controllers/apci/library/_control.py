@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 from polycnc.controllers.apci.board import _axis_commands as commands
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import AS
 from polycnc.controllers.apci.library._call import (
@@ -76,13 +76,13 @@ def azo(board: Board, set_: INT) -> None:
 
 
 @axis_call
-def szpa(an: Axis, Position: DOUBLE) -> None:  # noqa: N803
+def szpa(an: BoardAxis, Position: DOUBLE) -> None:  # noqa: N803
     """Set the virtual zero of an axis to `Position`, from the machine zero (Manual 002, 4.4.127)."""
     commands.szpa(an.board, an.index, Position)
 
 
 @axis_call
-def szpr(an: Axis, Position: DOUBLE) -> None:  # noqa: N803
+def szpr(an: BoardAxis, Position: DOUBLE) -> None:  # noqa: N803
     """Move the virtual zero of an axis by `Position` (Manual 002, 4.4.128)."""
     commands.szpr(an.board, an.index, Position)
 

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.core._registers import assigned_inputs, bit_of, with_output
 from polycnc.controllers.apci.library._call import (
     CODE,
@@ -23,15 +23,15 @@ from polycnc.controllers.apci.library._session import Exchange, Session
 from polycnc.controllers.apci.library._table import Rule, read_record, record_pair
 
 
-def _digi(axis: Axis) -> int:
+def _digi(axis: BoardAxis) -> int:
     return int(axis.digi) & assigned_inputs(axis.board.config.type_number)
 
 
-def _outputs(axis: Axis) -> int:
+def _outputs(axis: BoardAxis) -> int:
     return axis.board.outputs
 
 
-def _set_outputs(axis: Axis, value: int) -> None:
+def _set_outputs(axis: BoardAxis, value: int) -> None:
     axis.board.outputs = value
 
 
@@ -50,19 +50,19 @@ def rdaxstb(session: Session, an: INT, bitnr: INT) -> INT:
 
 
 @polled_axis_call
-def rddigib(an: Axis, bitnr: INT) -> INT:
+def rddigib(an: BoardAxis, bitnr: INT) -> INT:
     """Return a digital input or encoder signal, 1 or 0; inputs are 1 to 16 (Manual 002, 4.4.53)."""
     return bit_of(_digi(an), bitnr)
 
 
 @polled_axis_call
-def rddigob(an: Axis, bitnr: INT) -> INT:
+def rddigob(an: BoardAxis, bitnr: INT) -> INT:
     """Return a digital output, 1 or 0; they count from 1 (Manual 002, 4.4.55)."""
     return bit_of(an.board.outputs, bitnr)
 
 
 @axis_call
-def wrdigob(an: Axis, bitnr: INT, value: INT) -> None:
+def wrdigob(an: BoardAxis, bitnr: INT, value: INT) -> None:
     """Set a digital output, or reset it with 0; they count from 1 (Manual 002, 4.4.139)."""
     an.board.outputs = with_output(an.board.outputs, bitnr, value)
 
@@ -85,7 +85,7 @@ def rdifs(tsrp: Exchange) -> CODE:
 
 
 @polled_axis_call
-def rdifsb(an: Axis, bitnr: INT) -> INT:
+def rdifsb(an: BoardAxis, bitnr: INT) -> INT:
     """Return a bit of the interface status, 1 or 0; bits count from 1: edv is 1 (Manual 002, 4.4.71)."""
     return bit_of(an.board.variables.interface.word, bitnr)
 

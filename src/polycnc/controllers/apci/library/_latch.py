@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from polycnc.controllers.apci.board._axis import Axis
-from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._commanded import BoardAxis, CommandedBoard
 from polycnc.controllers.apci.board._records import LATCH_INFOS
 from polycnc.controllers.apci.library._call import INT, LIBRARY, axes_call, axis_call, session_call
 from polycnc.controllers.apci.library._session import Selection, Session
@@ -14,7 +13,7 @@ from polycnc.controllers.library import Refused
 
 
 @axis_call
-def lps(an: Axis, mst: INT) -> None:
+def lps(an: BoardAxis, mst: INT) -> None:
     """Latch the actual position of an axis every `mst` scans, until `mst` is 0 (Manual 002, 4.4.27)."""
     if mst >= 0:
         an.row["latch_scans"], an.row["latch_count"] = mst, 0
@@ -36,7 +35,7 @@ def lprs(asel: Selection, latch_infos: LATCH_INFOS) -> None:
     _record(asel.board, asel.axes)
 
 
-def _record(board: Board, axes: tuple[int, ...]) -> None:
+def _record(board: CommandedBoard, axes: tuple[int, ...]) -> None:
     row = board.state.board[0]
     row["record_axes"] = sum(1 << axis for axis in set(axes))
     row["record_every"] = 1

@@ -9,10 +9,10 @@ from typing import Annotated
 
 import numpy as np
 
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._axis_commands import write_dp, write_mcp, write_rp
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Success
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import CTRLPARAMS, STRUCTURES, TRU
 from polycnc.controllers.apci.board._spool_commands import free_bytes, moves_queued
@@ -58,15 +58,15 @@ _RECORD_ELEMENTS = {each.name for each in STRUCTURES["TSRP"].fields} - {"an", "s
 _FILTER = ("kp", "ki", "kd", "kpl", "kfca", "kfcv")
 
 
-def _put_rp(axis: Axis, value: float) -> None:
+def _put_rp(axis: BoardAxis, value: float) -> None:
     write_rp(axis.board, axis.index, value)
 
 
-def _put_dp(axis: Axis, value: float) -> None:
+def _put_dp(axis: BoardAxis, value: float) -> None:
     write_dp(axis.board, axis.index, value)
 
 
-def _put_mcp(axis: Axis, value: int) -> None:
+def _put_mcp(axis: BoardAxis, value: int) -> None:
     write_mcp(axis.board, axis.index, value)
 
 
@@ -78,23 +78,23 @@ def _put_nfrax(board: Board, value: int) -> None:
     board.nfrax = value
 
 
-def _displayed(name: str) -> Callable[[Axis], float]:
+def _displayed(name: str) -> Callable[[BoardAxis], float]:
     return lambda axis: axis.displayed(getattr(axis, name))
 
 
-def _free_bytes(axis: Axis) -> int:
+def _free_bytes(axis: BoardAxis) -> int:
     return free_bytes(axis.board, axis.index)
 
 
-def _moves_queued(axis: Axis) -> int:
+def _moves_queued(axis: BoardAxis) -> int:
     return moves_queued(axis.board, axis.index)
 
 
-def _pcap_index(axis: Axis) -> int:
+def _pcap_index(axis: BoardAxis) -> int:
     return int(axis.row["pcap_index"])
 
 
-def _offset(axis: Axis) -> float:
+def _offset(axis: BoardAxis) -> float:
     return float(axis.row["offset"])
 
 
@@ -245,11 +245,11 @@ def uf(tsrp: Exchange) -> None:
         raise Refused(UNKNOWN_ERROR)
     for name, value in values.items():
         setattr(tsrp.axis, name, value)
-    tsrp.axis.board.update_filter(tsrp.axis.index)
+    tsrp.axis.update_filter()
 
 
 @LIBRARY.through(Session.axis, LONG)
-def scp(an: Axis, ctrlparams: CTRLPARAMS) -> None:
+def scp(an: BoardAxis, ctrlparams: CTRLPARAMS) -> None:
     """Send the field of 15 by 15 parameters for extensions of an axis (Manual 002, 4.4.114)."""
     field = np.array(ctrlparams.parameters, np.float64)
     if not bool(np.isfinite(field).all()):

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 from pathlib import Path
 
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Status, TransferCode
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._environment import InterruptLine, Messages, Show
 from polycnc.controllers.apci.board._records import AS, TSRP
 from polycnc.controllers.apci.core._registers import Axst
@@ -46,7 +46,7 @@ class Exchange:
     """A record, and the axis that it names."""
 
     record: TSRP
-    axis: Axis
+    axis: BoardAxis
     session: Session
 
 
@@ -67,6 +67,7 @@ class Session(AnySession):
 
     def __init__(self) -> None:
         super().__init__()
+        self.lines: dict[InstalledBoard, InterruptLine] = {}
         self._memory: Store | None = None
         self._owns_memory = False
         self.attach()
@@ -123,6 +124,7 @@ class Session(AnySession):
             installed.on_new_board.append(connect)
             installed.load_cnc = partial(_load_cnc, kept)
         with self.lock:
+            self._disconnect()
             self.application = Application(pc, folder, path)
             self.messages = Messages(show)
             self.polling, self.lines = Polling(clock, self._boards), lines
@@ -132,6 +134,14 @@ class Session(AnySession):
     def detach(self) -> None:
         """Take all boards out of the PC."""
         self.attach()
+
+    def _disconnect(self) -> None:
+        """Take the interrupt routines of this program from boards that other programs may go on using."""
+        for installed, line in self.lines.items():
+            interrupts = installed.board.interrupts
+            interrupts[:] = [
+                each for each in interrupts if getattr(each, "func", None) != line.raise_interrupt
+            ]
 
     def _close_memory(self) -> None:
         if self._memory is not None and self._owns_memory:
@@ -183,7 +193,7 @@ class Session(AnySession):
         self.polling.read(board, self.asked, until=EVENTS)
         return board
 
-    def axis(self, number: int) -> Axis:
+    def axis(self, number: int) -> BoardAxis:
         """Return an axis of the selected board.
 
         Raises:
@@ -194,14 +204,14 @@ class Session(AnySession):
             raise Refused(UNKNOWN_ERROR)
         return board.axes[number]
 
-    def polled_axis(self, number: int) -> Axis:
+    def polled_axis(self, number: int) -> BoardAxis:
         """Return an axis of the selected board after time has passed.
 
         Raises:
             Refused: There is none, or the board is not reached.
         """
         axis = self.axis(number)
-        self.polling.read(axis.board, (self.asked, number), until=EVENTS)
+        self.polling.read(self.usable(), (self.asked, number), until=EVENTS)
         return axis
 
     def named_in(self, record: TSRP) -> Exchange:
@@ -271,7 +281,7 @@ class Session(AnySession):
         slot = self.application.slot
         return slot.revision if slot else ""
 
-    def status_of(self, axis: Axis) -> int:
+    def status_of(self, axis: BoardAxis) -> int:
         """Return the status of an axis, without bits that the operating system does not have yet."""
         return axis.status_word & _status_mask(self.revision)
 

@@ -1,6 +1,6 @@
 """Variables that special firmware defines, of the board and of its axes (Manual 002, 2.5).
 
-The manual names the functions without their arguments: an index comes first, behind the axis where there is one.
+The manual names the functions without their arguments: an index comes first, after the axis where there is one.
 """
 
 # ruff: noqa: N802  the names are the manual's

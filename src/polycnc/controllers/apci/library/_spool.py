@@ -8,8 +8,8 @@ Commands with PcapIndex show it in rdPcapIndex while they are executed.
 from __future__ import annotations
 
 from polycnc.controllers.apci.board import _spool_commands as spooler
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import SPDBUF
 from polycnc.controllers.apci.library._call import (
@@ -33,7 +33,7 @@ def ssms(asel: Selection) -> None:
 
 @axes_call
 def sstps(asel: Selection) -> None:
-    """Pause the spoolers behind what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
+    """Pause the spoolers after what they carry out now; ssms goes on (Manual 002, 4.4.121)."""
     asel.order(spooler.sstps)
 
 
@@ -56,42 +56,42 @@ def ClearCI99(board: Board) -> None:  # noqa: N802
 
 
 @axis_call
-def ssf(axis: Axis, command: INT, value: DOUBLE) -> None:
+def ssf(axis: BoardAxis, command: INT, value: DOUBLE) -> None:
     """Queue a special function of one axis: outputs, waits, variables, ... (Manual 002, 4.4.123)."""
     spooler.ssf(axis.board, axis.index, command, value)
 
 
 @axis_call
-def ssfi(axis: Axis, command: INT, value: DOUBLE, PcapIndex: LONG) -> None:
+def ssfi(axis: BoardAxis, command: INT, value: DOUBLE, PcapIndex: LONG) -> None:
     """Queue a special function with an index; only named in the manual (Manual 002, 4.4.94)."""
     spooler.ssf(axis.board, axis.index, command, value, index=PcapIndex)
 
 
 @axis_call
-def ssfni(axis: Axis, command: INT, value: DOUBLE, PcapIndex: LONG) -> None:
+def ssfni(axis: BoardAxis, command: INT, value: DOUBLE, PcapIndex: LONG) -> None:
     """Queue a special function with an index, as ssfi; only named in the manual (Manual 002, 4.4.94)."""
     spooler.ssf(axis.board, axis.index, command, value, index=PcapIndex)
 
 
 @axis_call
-def spd(an: Axis, size: PointCount, spdbuf: SPDBUF) -> None:
+def spd(an: BoardAxis, size: PointCount, spdbuf: SPDBUF) -> None:
     """Queue `size` absolute setpoints, 1 to 1000, one a scan (Manual 002, 4.4.117)."""
     _points(an, size, spdbuf)
 
 
 @axis_call
-def spda(an: Axis, size: PointCount, spdbuf: SPDBUF, PcapIndex: LONG) -> None:
+def spda(an: BoardAxis, size: PointCount, spdbuf: SPDBUF, PcapIndex: LONG) -> None:
     """Queue `size` absolute setpoints, one a scan; the index counts up with each (Manual 002, 4.4.118)."""
     _points(an, size, spdbuf, PcapIndex)
 
 
 @axis_call
-def spdr(an: Axis, size: PointCount, spdbuf: SPDBUF, PcapIndex: LONG) -> None:
+def spdr(an: BoardAxis, size: PointCount, spdbuf: SPDBUF, PcapIndex: LONG) -> None:
     """Queue `size` relative setpoints, one a scan; the index counts up with each (Manual 002, 4.4.119)."""
     _points(an, size, spdbuf, PcapIndex, relative=True)
 
 
-def _points(an: Axis, size: int, spdbuf: SPDBUF, index: int = -1, *, relative: bool = False) -> None:
+def _points(an: BoardAxis, size: int, spdbuf: SPDBUF, index: int = -1, *, relative: bool = False) -> None:
     points = spdbuf.position[: max(size, 0)]
     if not points or size > len(points) or not all(map(is_number, points)):
         raise Refused(UNKNOWN_ERROR)

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import Annotated, Any, TypeAlias, TypeVar
 
-from polycnc.controllers.apci.board._axis import Axis
 from polycnc.controllers.apci.board._board import Board
 from polycnc.controllers.apci.board._codes import Status
+from polycnc.controllers.apci.board._commanded import BoardAxis
 from polycnc.controllers.apci.board._numbers import is_number
 from polycnc.controllers.apci.board._records import TSRP
 from polycnc.controllers.apci.library._call import (
@@ -166,11 +166,11 @@ def read_axis(stem: str, get: Get, what: str, unit: str, section: int, rule: Rul
     """Make the function that returns a register of an axis."""
     value_of = _getter(get)
 
-    def read(an: Axis) -> Any:
+    def read(an: BoardAxis) -> Any:
         return value_of(an)
 
     text = _text("Read", what, unit, " of axis `an`", section, rule)
-    body = named(read, f"rd{stem}", text, {"an": Axis}, _out(rule))
+    body = named(read, f"rd{stem}", text, {"an": BoardAxis}, _out(rule))
     return _axis_call(rule, LONG)(body)  # type: ignore[no-any-return]
 
 
@@ -178,11 +178,11 @@ def write_axis(stem: str, get: Get, what: str, unit: str, section: int, rule: Ru
     """Make the function that writes a register of an axis."""
     store = _storer(get, rule)
 
-    def write(an: Axis, value: float) -> None:
+    def write(an: BoardAxis, value: float) -> None:
         store(an, value)
 
     text = _text("Write", what, unit, " of axis `an`", section, rule)
-    body = named(write, f"wr{stem}", text, {"an": Axis, "value": _AT[rule.kind]})
+    body = named(write, f"wr{stem}", text, {"an": BoardAxis, "value": _AT[rule.kind]})
     return LIBRARY.through(Session.axis, LONG)(body)
 
 
@@ -199,11 +199,11 @@ def read_axis_coded(
     """Make the function that returns a code and a register of an axis."""
     value_of, done = _getter(get), int(rule.done)
 
-    def read(an: Axis) -> Any:
+    def read(an: BoardAxis) -> Any:
         return done, value_of(an)
 
     text = _text("Read", what, unit, f" of axis `an`; {done} means done", section, rule)
-    body = named(read, f"rd{stem}", text, {"an": Axis}, _coded(_out(rule)))
+    body = named(read, f"rd{stem}", text, {"an": BoardAxis}, _coded(_out(rule)))
     return _axis_call(rule, INT)(body)  # type: ignore[no-any-return]
 
 
@@ -213,12 +213,12 @@ def axis_pair_coded(
     """Make both functions by axis number that return a code."""
     store = _storer(get, rule)
 
-    def send(an: Axis, value: float) -> int:
+    def send(an: BoardAxis, value: float) -> int:
         store(an, value)
         return int(Status.DONE)
 
     text = _text("Write", what, unit, " of axis `an`; 0 means done", write, rule)
-    body = named(send, f"wr{stem}", text, {"an": Axis, "value": DOUBLE_AT}, CODE)
+    body = named(send, f"wr{stem}", text, {"an": BoardAxis, "value": DOUBLE_AT}, CODE)
     return read_axis_coded(stem, get, what, unit, read, rule), LIBRARY.through(Session.axis, INT)(body)
 
 

@@ -270,7 +270,7 @@ class BoardHost:
 
 
 def _flat(numbers: Sequence[float | tuple[float, ...]]) -> list[float]:
-    """Return numbers and those of tables behind one another."""
+    """Return numbers and those of tables one after another."""
     return [each for part in numbers for each in (part if isinstance(part, tuple) else (part,))]
 
 

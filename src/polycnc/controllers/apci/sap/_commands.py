@@ -29,7 +29,7 @@ class Axes(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Command:
-    """A command: how it names axes, how many it takes at least and at most, and the numbers behind them.
+    """A command: how it names axes, how many it takes at least and at most, and the numbers after them.
 
     `numbers` are (name, type); the last `optional` of them may be left out, all or none.
     """

@@ -46,9 +46,9 @@ class _Away:
         row = self._all.turns.task[self._task.number]
         return int(row["next"]), int(row["depth"]), int(row["frames"]), bool(row["wait"] != ts.NOTHING)
 
-    def bring_home(self) -> None:
+    def reclaim(self) -> None:
         """Put the state back into the task."""
-        self._all.bring_home(self._task)
+        self._all.reclaim(self._task)
 
 
 class CompiledTurns:
@@ -176,7 +176,7 @@ class CompiledTurns:
                 known.index(wait.axes),
             )
 
-    def bring_home(self, task: Task) -> None:
+    def reclaim(self, task: Task) -> None:
         """Put the state of a task back into it."""
         number, turns = task.number, self.turns
         row = turns.task[number]
@@ -225,7 +225,7 @@ class CompiledTurns:
         self._join()
 
     def _join(self) -> None:
-        """Put all programs behind one another."""
+        """Put all programs one after another."""
         rows: list[tuple[Any, ...]] = []
         routines: list[tuple[int, ...]] = []
         cells: list[int] = []

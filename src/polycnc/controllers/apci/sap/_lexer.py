@@ -76,7 +76,7 @@ def tokens(source: SourceText, errors: list[ProgramError]) -> list[Token]:
         if match is None or (text.startswith("(*", offset) and match.lastgroup == "symbol"):
             what, hint = _UNFINISHED.get(
                 text[offset],
-                (f"unexpected character {text[offset]!r}", "Take it out, or put it into a comment."),
+                (f"unexpected character {text[offset]!r}", "Remove it, or put it into a comment."),
             )
             errors.append(source.error(at, what, hint))
             if text[offset] in "{(":

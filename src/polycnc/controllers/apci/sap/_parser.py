@@ -1,6 +1,6 @@
 """Recursive descent over the tokens of a SAP program: declarations and statements, to a tree.
 
-A mistake ends its statement or declaration; the parser goes on behind it, so that every mistake of a file is
+A mistake ends its statement or declaration; the parser continues after it, so that every mistake of a file is
 reported in one go.
 """
 
@@ -48,7 +48,7 @@ class _Parser(StatementParser):
             if self._take("."):
                 if self._token.kind != END:
                     self._errors.append(
-                        self._error(f"{self._token} behind the end of the program", "Put it before 'END.'.")
+                        self._error(f"{self._token} after the end of the program", "Put it before 'END.'.")
                     )
             elif plain and (self._take(";") or self._token.kind == END):
                 body += self._statements(frozenset())
@@ -80,7 +80,7 @@ class _Parser(StatementParser):
                 elif word.word in ("procedure", "function", "event") and word.kind == NAME:
                     if inside:
                         error = self._error(
-                            f"{word} inside another routine", "Declare it before or behind this one."
+                            f"{word} inside another routine", "Declare it before or after this one."
                         )
                         self._next()
                         raise error

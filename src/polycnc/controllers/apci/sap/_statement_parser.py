@@ -1,4 +1,4 @@
-"""Recursive descent over statements; a mistake ends its statement and the parser goes on behind it."""
+"""Recursive descent over statements; a mistake ends its statement and the parser continues after it."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class StatementParser(ExpressionParser):
         return body
 
     def _body(self) -> Block:
-        """Read the one statement behind THEN, ELSE, DO and case labels; it may be none."""
+        """Read the one statement after THEN, ELSE, DO and case labels; it may be none."""
         if self._token.word in _BEHIND_STATEMENT:
             return ()
         with self._nested():
@@ -177,7 +177,7 @@ class StatementParser(ExpressionParser):
     # Recovery
 
     def _head(self, word: str, hint: str) -> Expression:
-        """Read the expression in the head of a statement and `word` behind it."""
+        """Read the expression in the head of a statement and `word` after it."""
         at = self._token.at
         try:
             value = self._expression()

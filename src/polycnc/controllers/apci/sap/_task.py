@@ -64,10 +64,10 @@ class TaskStatus(NamedTuple):
     csrcline: int
 
 
-class Away(Protocol):
+class Offloaded(Protocol):
     """What has the state of a task while it is not in the task itself."""
 
-    def bring_home(self) -> None:
+    def reclaim(self) -> None:
         """Put the state back into the task."""
 
     def where(self) -> tuple[int, int, int, bool]:
@@ -92,7 +92,7 @@ class Task:
         self.next = 0
         self._errnum = self._errline = 0
         self._steps: list[Step] = []
-        self.away: Away | None = None  # has stack, memory, frames, wait and place of the program
+        self.away: Offloaded | None = None  # has stack, memory, frames, wait and place of the program
         self._by_writeln = False
         self._in_event = False
         self._waiting_before: Wait | None = None  # of the program that an event handler interrupts
@@ -142,7 +142,7 @@ class Task:
         """Have the state of the program in the task itself."""
         if self.away is not None:
             away, self.away = self.away, None
-            away.bring_home()
+            away.reclaim()
 
     def _reset(self) -> None:
         self.come_home()
@@ -264,7 +264,7 @@ class Task:
     # Messages
 
     def write(self, text: str) -> None:
-        """Append to the message string, which begins anew behind a complete one; it ends at 512 characters."""
+        """Append to the message string, which begins anew after a complete one; it ends at 512 characters."""
         if self._text_bits & COMPLETE:
             self._text, self._text_bits = "", 0
         self._text = (self._text + text)[:STRING_BYTES]

@@ -1,4 +1,4 @@
-"""How PRN# and DSP put values into words: formats of # take the numbers behind them (Manual 003, 6.3 and 7.3)."""
+"""How PRN# and DSP put values into words: formats of # take the numbers after them (Manual 003, 6.3 and 7.3)."""
 
 from __future__ import annotations
 

@@ -10,7 +10,7 @@ CALL = re.compile(
     r"[ \t]*(?:N[ \t]*[0-9]+)?[ \t]*(?:P[ \t]*([A-Z_][\w.]*)|([A-Z][ \t]*[0-9]+))[ \t]*(?:\[(.*)\])?",
     re.IGNORECASE,
 )
-"""A block that calls a sub-program: name behind P, or code; arguments."""
+"""A block that calls a sub-program: name after P, or code; arguments."""
 _ARGUMENT = re.compile(r'(?:"[^"]*"|[^,"])*')
 _LOGICAL = {"TRUE": True, "FALSE": False}
 

@@ -41,8 +41,8 @@ def read_block(text: str) -> Words | None:
 def find_block(blocks: Sequence[str], wanted: str, begin: int = 0) -> int | None:
     """Return the first block that begins with a text, None if there is none (MCOPS 3).
 
-    A text that begins with a digit and is not found is looked for with N before it; behind a digit at its end no
-    further digit may follow, behind a letter a blank has to.
+    A text that begins with a digit and is not found is looked for with N before it; after a digit at its end no
+    further digit may follow, after a letter a blank has to.
     """
     for text in (wanted, "N" + wanted) if wanted[:1].isdigit() else (wanted,):
         for index in range(begin, len(blocks)):

@@ -40,7 +40,7 @@ class NcsServer:
     connected: bool = True
     ledger: Ledger = field(default_factory=Ledger)
     orders: list[Iterator[None]] = field(default_factory=list)
-    """What is carried out behind the cycle: it ends the program that has asked for it."""
+    """What is carried out after the cycle: it ends the program that has asked for it."""
 
     def check(self, magic: int) -> None:
         """Make sure that a message can be received.

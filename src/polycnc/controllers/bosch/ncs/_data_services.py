@@ -23,7 +23,7 @@ LARGEST_CUSTOMER_SELECTION = 65535
 
 
 class Asked(NamedTuple):
-    """What a data service is asked for: a channel and the values behind the size, None where left out."""
+    """What a data service is asked for: a channel and the values after the size, None where left out."""
 
     image: Image
     channel: int
@@ -39,7 +39,7 @@ class Asked(NamedTuple):
 class DataService:
     """A data service; `kind` of its elements is I, R, D, S, or X where the data decide.
 
-    `fill` stands for elements of the buffer behind the last value, None if they keep theirs.
+    `fill` stands for elements of the buffer after the last value, None if they keep theirs.
     """
 
     number: int

@@ -261,7 +261,7 @@ class Channel:
 
     @property
     def in_order(self) -> list[Coordinate]:
-        """Return the working range coordinates, behind them the pseudo coordinates."""
+        """Return the working range coordinates, after them the pseudo coordinates."""
         return sorted(self.coordinates, key=lambda coordinate: not coordinate.working_range)
 
 
@@ -292,7 +292,7 @@ class Image:
         return [axis for axis in self.feed_axes() if axis.channel == number]
 
     def selected(self, number: int) -> list[Axis | None]:
-        """Return all physical axes (-1), or those of a channel and behind them the asynchronous ones."""
+        """Return all physical axes (-1), or those of a channel and after them the asynchronous ones."""
         if number < 0:
             return self.physical()
         return [*self.channel_axes(number), *(axis for axis in self.feed_axes() if axis.channel is None)]

@@ -24,7 +24,7 @@ class Prepared:
 class Job:
     """Blocks to be executed; `at` is the next one to prepare, `last` the last of them (None: all).
 
-    `frozen` are blocks as they were when they were prepared first: reckoned values stay what they were then.
+    `frozen` are blocks as they were when they were prepared first: computed values stay what they were then.
     """
 
     name: str
@@ -43,7 +43,7 @@ class Job:
     frozen: dict[int, str] = field(default_factory=dict)
 
     def extend(self, blocks: list[str]) -> None:
-        """Put blocks behind those that wait."""
+        """Put blocks after those that wait."""
         self.blocks = [*(self.blocks or []), *blocks]
         self.over = False
 

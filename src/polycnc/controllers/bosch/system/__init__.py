@@ -11,6 +11,9 @@ from polycnc.controllers.bosch.system._system_data import SD_GROUPS, Area, AxisC
 from polycnc.controllers.bosch.system._time import clock_ms, date_text, time_text
 from polycnc.controllers.bosch.system._tool_data import ToolDatabase
 from polycnc.controllers.bosch.system._tool_tables import DATABASE as DATABASE_TOOLS
+from polycnc.controllers.bosch.system._tool_tables import KIND as TOOL_KIND
+from polycnc.controllers.bosch.system._tool_tables import LENGTH as TOOL_LENGTH
+from polycnc.controllers.bosch.system._tool_tables import RADIUS as TOOL_RADIUS
 from polycnc.controllers.bosch.system._tool_tables import ToolCompensations, ToolTable
 
 __all__ = [
@@ -21,6 +24,9 @@ __all__ = [
     "RESET_EXECUTED",
     "SD_GROUPS",
     "SHIFT_CODES",
+    "TOOL_KIND",
+    "TOOL_LENGTH",
+    "TOOL_RADIUS",
     "Area",
     "AxisCoupling",
     "Category",

@@ -40,7 +40,7 @@ def _servo_bits(power_mate: PowerMate, axis: int) -> int:
 def _stopped(power_mate: PowerMate, axis: int) -> int:
     signals = power_mate.signals
     emergency = power_mate.control.emergency is Emergency.ON
-    return signals.reset_is_on << 2 | emergency << 3 | signals.hold_is_on << 5
+    return signals.state.reset_is_on << 2 | emergency << 3 | signals.state.hold_is_on << 5
 
 
 def _axis_state(power_mate: PowerMate, axis: int) -> int:

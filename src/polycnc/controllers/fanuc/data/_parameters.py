@@ -33,14 +33,21 @@ class Change:
 class Parameters:
     """Keep the values; a change is durable when the call returns, several changes come all or not at all.
 
-    `on_change` is told the rows that were changed, after they are durable.
+    `bound` are those that live elsewhere; `on_change` is told the rows that were changed, after they are durable.
     """
 
-    def __init__(self, store: Store, axes: int, defaults: Mapping[tuple[int, int], int]) -> None:
+    def __init__(
+        self,
+        store: Store,
+        axes: int,
+        defaults: Mapping[tuple[int, int], int],
+        bound: Mapping[int, Bound],
+        on_change: Callable[[tuple[ParameterRow, ...]], None],
+    ) -> None:
         self.rows = parameter_rows()
         self.axes = axes
-        self.bound: dict[int, Bound] = {}
-        self.on_change: Callable[[tuple[ParameterRow, ...]], None] = lambda rows: None
+        self._bound = bound
+        self._on_change = on_change
         self._store = store
         self._area = store.area(_AREA, int)
         self._values = {
@@ -59,7 +66,7 @@ class Parameters:
 
     def value(self, number: int, axis: int = NO_AXIS) -> int:
         """Return a value; KeyError if there is no such parameter or axis. Axes that are not there have 0."""
-        bound = self.bound.get(number)
+        bound = self._bound.get(number)
         if bound is not None and (number, axis) in self._values:
             return bound.get(axis)
         if self.rows[number].per_axis and axis > self.axes:
@@ -75,15 +82,15 @@ class Parameters:
         there = [each for each in changes if (each.row.number, each.axis) in self._values]
         with self._store.transaction():
             for each in there:
-                bound = self.bound.get(each.row.number)
+                bound = self._bound.get(each.row.number)
                 if bound is None:
                     self._area[_key(each.row.number, each.axis)] = each.value
                 else:
                     bound.set(each.axis, each.value)
         for each in there:
-            if each.row.number not in self.bound:
+            if each.row.number not in self._bound:
                 self._values[each.row.number, each.axis] = each.value
-        self.on_change(tuple(dict.fromkeys(each.row for each in there)))
+        self._on_change(tuple(dict.fromkeys(each.row for each in there)))
 
     def set(self, number: int, value: int, axis: int = NO_AXIS) -> None:
         """Write one value as the control itself does, write protection notwithstanding.

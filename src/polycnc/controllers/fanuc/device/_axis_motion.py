@@ -6,76 +6,37 @@ feed override holds, and so does a hold. An alarm, a reset or the emergency stop
 
 from __future__ import annotations
 
-from collections import deque
-from dataclasses import dataclass, replace
-from enum import Enum, auto
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 from polycnc.cnc import ControlError, ControlEvent, Emergency
 from polycnc.controllers.fanuc.device._alarms import shown
+from polycnc.controllers.fanuc.device._device_state import (
+    PATHS,
+    AxisMotionState,
+    Block,
+    Order,
+    PathBuffers,
+    SignalState,
+)
+from polycnc.controllers.fanuc.device._positions import Positions
+from polycnc.controllers.fanuc.device._power import Power
+from polycnc.controllers.fanuc.device._units import Units
 
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
-
-PATHS = 6
 BUFFERS = 2
 _MM_PER_MIN = 60.0
 _FOR_EVER = 1 << 40
 
 
-class Order(Enum):
-    """What a direct command does."""
-
-    REFERENCE = auto()
-    ABSOLUTE = auto()
-    INCREMENTAL = auto()
-    DWELL = auto()
-    SET = auto()
-
-
-@dataclass(frozen=True, slots=True)
-class Block:
-    """A direct command: values by axis (from 1), in increments of the output unit, of a dwell in milliseconds."""
-
-    order: Order
-    values: tuple[tuple[int, int], ...]
-    feed: int = 0
-    flag: bool = False
-
-    @property
-    def axes(self) -> frozenset[int]:
-        """The axes that it is about."""
-        return frozenset(axis for axis, _ in self.values)
-
-
-@dataclass(slots=True)
-class PathBuffers:
-    """The buffers of a path: blocks with the number of the buffer that they are in, the first is executed."""
-
-    blocks: deque[tuple[int, Block]]
-    begun: bool = False
-    until: int = 0  # the cycle at which a dwell ends
-
-
-@dataclass(slots=True)
-class AxisMotionState:
-    """Buffers, flags and coordinates."""
-
-    shift: list[int]
-    paths: list[PathBuffers]
-    finished: list[bool]
-
-    @classmethod
-    def of(cls, axes: int) -> AxisMotionState:
-        """Return what there is when the power comes on."""
-        return cls([0] * axes, [PathBuffers(deque()) for _ in range(PATHS)], [False] * PATHS)
-
-
 class AxisMotion:
     """Execute direct commands on the machine of a Power Mate."""
 
-    def __init__(self, power_mate: PowerMate, state: AxisMotionState) -> None:
-        self._power_mate = power_mate
+    def __init__(
+        self, power: Power, units: Units, positions: Positions, signals: SignalState, state: AxisMotionState
+    ) -> None:
+        self._power = power
+        self._axis_name, self._scale = units.axis_name, units.output_scale
+        self._positions = positions
+        self._signals = signals
         self.state = state
 
     def clear(self) -> None:
@@ -89,7 +50,7 @@ class AxisMotion:
         for path in self.state.paths:
             if path.begun:
                 for axis in path.blocks[0][1].axes:
-                    self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
+                    self._power.control.manual.stop(self._axis_name(axis))
             path.blocks.clear()
             path.begun = False
 
@@ -104,7 +65,7 @@ class AxisMotion:
     def moving(self) -> frozenset[str]:
         """The names of the axes that move by a command."""
         moves = (path.blocks[0][1] for path in self.state.paths if path.begun)
-        return frozenset(self._power_mate.axis_name(axis) for block in moves for axis in block.axes)
+        return frozenset(self._axis_name(axis) for block in moves for axis in block.axes)
 
     def buffers(self, path: int) -> tuple[bool, bool]:
         """Return which execution buffers of a path (from 1) hold a block."""
@@ -113,12 +74,8 @@ class AxisMotion:
 
     def has_room(self, path: int) -> bool:
         """Whether a path (from 1) takes a block now: a buffer is free, and no program has the axes."""
-        programs = any(channel.active for channel in self._power_mate.control.channels)
+        programs = any(channel.active for channel in self._power.control.channels)
         return len(self.state.paths[path - 1].blocks) < BUFFERS and not programs
-
-    def shift(self, axis: int) -> int:
-        """Return by how much the coordinate of an axis (from 1) was shifted by setting it, in increments."""
-        return self.state.shift[axis - 1]
 
     # ------------------------------------------------------------------ commands
 
@@ -134,7 +91,7 @@ class AxisMotion:
         """Return how many cycles may pass before somebody has to look."""
         if not self.busy:
             return _FOR_EVER
-        now = self._power_mate.clock.cycles
+        now = self._power.control.clock.cycles
         dwells = [path.until - now for path in self.state.paths if path.begun and path.until > now]
         waits = any(path.blocks and not path.begun for path in self.state.paths)
         return 1 if waits else min(dwells, default=_FOR_EVER)
@@ -143,7 +100,7 @@ class AxisMotion:
 
     def look(self) -> None:
         """Begin blocks whose turn it is, and end those that are over."""
-        control = self._power_mate.control
+        control = self._power.control
         if self.busy and (control.emergency is not Emergency.OFF or shown(control.alarms.active)):
             self.drop()
         for number, path in enumerate(self.state.paths):
@@ -158,16 +115,15 @@ class AxisMotion:
                     self.state.finished[number] = True
 
     def _is_over(self, path: PathBuffers) -> bool:
-        control, block = self._power_mate.control, path.blocks[0][1]
+        control, block = self._power.control, path.blocks[0][1]
         if block.order is Order.DWELL:
             return control.clock.cycles >= path.until
-        names = map(self._power_mate.axis_name, block.axes)
+        names = map(self._axis_name, block.axes)
         return all(control.manual.motion(name).kind.value == "none" for name in names)
 
     def _begin(self, path: PathBuffers) -> bool:
         """Begin the first block; tell whether it could."""
-        power_mate, block = self._power_mate, path.blocks[0][1]
-        signals = power_mate.signals
+        control, signals, block = self._power.control, self._signals, path.blocks[0][1]
         if signals.hold_is_on or any(signals.servo_is_off(axis) for axis in block.axes):
             return False
         taken = {
@@ -180,19 +136,19 @@ class AxisMotion:
             return False
         if block.order is Order.DWELL:
             longest_s = max(value for _, value in block.values) / 1000.0
-            path.until = power_mate.clock.cycles + power_mate.clock.cycles_for(longest_s)
+            path.until = control.clock.cycles + control.clock.cycles_for(longest_s)
         elif block.order is Order.SET:
             for axis, value in block.values:
-                self.state.shift[axis - 1] += value - power_mate.positions.read()[axis - 1].absolute
+                self.state.shift[axis - 1] += value - self._positions.read()[axis - 1].absolute
         else:
             try:
-                for channel in power_mate.control.channels:
-                    channel.lend()
+                for channel in control.channels:
+                    channel.release()
                 for axis, value in block.values:
                     self._move(block, axis, value)
             except ControlError as error:
                 for each in block.axes:
-                    power_mate.control.manual.stop(power_mate.axis_name(each))
+                    control.manual.stop(self._axis_name(each))
                 if error.reason.name == "TRAVEL":
                     self.drop()
                     self._travel_alarm(block, axis, value)
@@ -202,23 +158,20 @@ class AxisMotion:
 
     def _travel_alarm(self, block: Block, axis: int, value: int) -> None:
         """Raise the alarm of the limit that a command would go past."""
-        power_mate = self._power_mate
-        position = 0 if block.order is Order.INCREMENTAL else power_mate.positions.read()[axis - 1].absolute
+        position = 0 if block.order is Order.INCREMENTAL else self._positions.read()[axis - 1].absolute
         number, sign = (500, "+") if value > position else (501, "-")
-        power_mate.raise_alarm(number, f"OVER TRAVEL : {sign}{power_mate.axis_name(axis)}", axis=axis)
+        self._power.raise_alarm(number, f"OVER TRAVEL : {sign}{self._axis_name(axis)}", axis=axis)
 
     def _move(self, block: Block, axis: int, value: int) -> None:
-        power_mate = self._power_mate
-        manual, name = power_mate.control.manual, power_mate.axis_name(axis)
+        control, name = self._power.control, self._axis_name(axis)
+        manual = control.manual
         if block.order is Order.REFERENCE:
             manual.reference(name)
             return
-        position = power_mate.positions.read()[axis - 1]
-        scale = power_mate.output_scale(axis)
+        position = self._positions.read()[axis - 1]
+        scale = self._scale(axis)
         distance = value if block.order is Order.INCREMENTAL else value - position.absolute
-        target = float(
-            power_mate.machine.state.base[power_mate.control.machine.config.axis_names.index(name)]
-        )
+        target = float(control.machine.state.base[axis - 1])
         there = scale.value(scale.counts(target) + distance)
         speeds = manual.data.jog_speeds
         speed = block.feed / _MM_PER_MIN * (0.254 if scale.inch else 1.0)

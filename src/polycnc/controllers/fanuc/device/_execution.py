@@ -4,17 +4,15 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from polycnc.cnc import ControlError, Refusal, RunState
+from polycnc.controllers.fanuc.device._device_state import DeviceState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
-from polycnc.controllers.fanuc.device._programs import number_of
+from polycnc.controllers.fanuc.device._power import Power
+from polycnc.controllers.fanuc.device._programs import Programs, number_of
 from polycnc.controllers.fanuc.device._remote_program import REMOTE_NAME
 from polycnc.nc import BlockRecord
 from polycnc.units import whole
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
 _SEQUENCE = re.compile(rb"/?[0-9]?N([0-9]+)")
 
@@ -32,20 +30,22 @@ class MdiPointers:
 class Execution:
     """Read what a Power Mate executes."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
-        self._power_mate = power_mate
+    def __init__(self, power: Power, programs: Programs, state: DeviceState) -> None:
+        self._power = power
+        self._programs = programs
+        self._state = state
 
     # ------------------------------------------------------------------ numbers
 
     @property
     def block(self) -> BlockRecord | None:
         """The block that is executed, or was last; None when there is none of a program that goes on."""
-        return self._power_mate.control.channel_status().block
+        return self._power.control.channel_status().block
 
     @property
     def _going_on(self) -> BlockRecord | None:
         """The block of a program that is executed or interrupted."""
-        channel = self._power_mate.control.channel_status()
+        channel = self._power.control.channel_status()
         going = channel.active or channel.interrupted or channel.run_state is RunState.ALARM
         return channel.block if going else None
 
@@ -54,7 +54,7 @@ class Execution:
         """The numbers of the program in execution and of its main program; at rest both that of the selected one."""
         block = self._going_on
         if block is None:
-            return self._power_mate.selected, self._power_mate.selected
+            return self._programs.selected, self._programs.selected
         main = block.stack[0].program if block.stack else block.program
         return number_of(block.program), number_of(main)
 
@@ -62,8 +62,8 @@ class Execution:
     def sequence(self) -> int:
         """The last sequence number on the way to the executed block; at rest the one at the cursor."""
         block = self.block
-        if self._power_mate.cursor:
-            return self._sequence_before(self._power_mate.selected, self._power_mate.cursor + 1)
+        if self._state.cursor:
+            return self._sequence_before(self._programs.selected, self._state.cursor + 1)
         if block is None:
             return 0
         if block.sequence is not None:
@@ -85,15 +85,14 @@ class Execution:
         return 0
 
     def _lines(self, number: int) -> list[bytes]:
-        power_mate = self._power_mate
         if number == 0:
-            return [block.encode() for block in power_mate.mdi.state.blocks]
-        return power_mate.programs.read(number).split(b"\n") if number in power_mate.programs else []
+            return [block.encode() for block in self._state.mdi.blocks]
+        return self._programs.read(number).split(b"\n") if number in self._programs else []
 
     @property
     def count(self) -> int:
         """How many blocks have been executed since the program began, of those that move, dwell or have functions."""
-        run = self._power_mate.control.channels[0].run
+        run = self._power.control.channels[0].run
         return 0 if run is None else run.blocks_done
 
     # ------------------------------------------------------------------ texts
@@ -101,7 +100,7 @@ class Execution:
     @property
     def prepared(self) -> BlockRecord | None:
         """The block that was read ahead last."""
-        return self._power_mate.control.channels[0].prepared
+        return self._power.control.channels[0].prepared
 
     @property
     def ahead(self) -> int:
@@ -114,23 +113,22 @@ class Execution:
     def text(self, most: int) -> bytes:
         """Return the program from the executed block on, or from the cursor at rest; at most so many characters."""
         block = self._going_on
-        power_mate = self._power_mate
         if block is not None and block.program == REMOTE_NAME:
             return block.text.encode()[:most]
         if block is not None:
             lines = self._lines(number_of(block.program))
             return b"\n".join(lines[block.line - 1 :])[:most]
-        if power_mate.mode is PowerMateMode.MDI:
-            return b"\n".join(self._lines(0)[power_mate.mdi.state.start :])[:most]
-        if not power_mate.selected:
+        if self._state.mode is PowerMateMode.MDI:
+            return b"\n".join(self._lines(0)[self._state.mdi.start :])[:most]
+        if not self._programs.selected:
             return b""
-        return b"\n".join(self._lines(power_mate.selected)[power_mate.cursor :])[:most]
+        return b"\n".join(self._lines(self._programs.selected)[self._state.cursor :])[:most]
 
     @property
     def mdi_pointers(self) -> MdiPointers:
         """The pointers of MDI operation."""
         block, ahead = self._going_on, self.prepared
-        start = self._power_mate.mdi.state.start
+        start = self._state.mdi.start
         if block is None or ahead is None:
             return MdiPointers(0, start, 0, start)
         return MdiPointers(number_of(block.program), block.line - 1, number_of(ahead.program), ahead.line - 1)
@@ -144,12 +142,12 @@ class Execution:
             ControlError: A program is being executed or is interrupted.
         """
         self._check_idle()
-        if not self._power_mate.selected:
+        if not self._programs.selected:
             return False
-        for line, text in enumerate(self._lines(self._power_mate.selected)):
+        for line, text in enumerate(self._lines(self._programs.selected)):
             found = _SEQUENCE.match(text)
             if found and whole(found[1]) == sequence:
-                self._power_mate.set_cursor(line)
+                self._state.cursor = line
                 return True
         return False
 
@@ -160,12 +158,12 @@ class Execution:
             ControlError: A program is being executed or is interrupted, or none is selected.
         """
         self._check_idle()
-        if not self._power_mate.selected:
+        if not self._programs.selected:
             raise ControlError(Refusal.NOT_FOUND, "no program is selected", hint="Select one.")
-        self._power_mate.set_cursor(0)
+        self._state.cursor = 0
 
     def _check_idle(self) -> None:
-        if self._power_mate.programs.in_operation:
+        if self._programs.in_operation:
             raise ControlError(
                 Refusal.RUNNING, "a program is being executed or is interrupted", hint="Reset it first."
             )

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
 from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from typing import Any, TypeAlias
 
 from polycnc.cnc import Alarm
 from polycnc.controllers.fanuc.device._alarms import bit_of
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._device_state import SamplingState
+from polycnc.controllers.fanuc.device._power import Power
+from polycnc.machine import Store
 
 NAMES = " XGYF"
 """Letters of monitored signals by their number in the histories (Manual 000, cnc_rdhissgnl); 0 is none."""
 _ALARMS = "cnc.alarm_history"
+Note: TypeAlias = Callable[[str, int, int, int], None]
+"""Is told letter and address of a byte that has changed, and what it was and is."""
 _KEEP_OPERATIONS = 1000
 _KEEP_ALARMS = 50
 
@@ -39,19 +42,13 @@ class Monitored:
     mask: int = 0
 
 
-@dataclass(slots=True)
-class SamplingState:
-    """Whether sampling has been stopped."""
-
-    stopped: bool = False
-
-
 class Histories:
-    """Sample and read both histories of a Power Mate; both are durable."""
+    """Sample and read both histories of a Power Mate; both are durable. `byte` returns the byte of an F address."""
 
-    def __init__(self, power_mate: PowerMate, state: SamplingState) -> None:
-        self._power_mate = power_mate
-        store = power_mate.store
+    def __init__(self, store: Store, power: Power, byte: Callable[[int], int], state: SamplingState) -> None:
+        self._store = store
+        self._power = power
+        self._byte = byte
         self._operations = store.history("fanuc.operation_history")
         self._alarms = store.history("fanuc.alarm_history")
         self._source = store.history(_ALARMS)
@@ -67,7 +64,7 @@ class Histories:
     @property
     def is_awake(self) -> bool:
         """Whether the next cycle may bring something to note."""
-        return self._watches_f or self._power_mate.control.alarms.active != self._active
+        return self._watches_f or self._power.control.alarms.active != self._active
 
     def look(self) -> None:
         """Note what a cycle has brought, in that cycle."""
@@ -76,7 +73,7 @@ class Histories:
     def switched_on(self) -> None:
         """Note date and time at which the power came on; sampling goes on."""
         self.state.stopped = False
-        now = self._power_mate.control.clock.now
+        now = self._power.control.clock.now
         self._note({"kind": Kind.DATE, "date": [now.year % 100, now.month, now.day], "power": 1})
         self._note({"kind": Kind.TIME, "time": [now.hour, now.minute, now.second], "power": 1})
 
@@ -107,7 +104,7 @@ class Histories:
 
         Not forced it looks at the alarms that are on, which is quick.
         """
-        active = self._power_mate.control.alarms.active
+        active = self._power.control.alarms.active
         if not force and active == self._active and not self._watches_f:
             return
         self._active = active
@@ -118,14 +115,14 @@ class Histories:
                 self._note_alarm(entry.content)
         for each in self._monitored.values():
             if each.letter == "F":
-                new = self._power_mate.signals.f(each.address)
+                new = self._byte(each.address)
                 old = self._shown.get(("F", each.address), new)
                 self._shown["F", each.address] = new
                 if old != new:
                     self.note_signal("F", each.address, old, new)
 
     def _note_alarm(self, content: dict[str, Any]) -> None:
-        names = self._power_mate.control.machine.config.axis_names
+        names = self._power.control.machine.config.axis_names
         name = content["axis"]
         axis = names.index(name) + 1 if name in names else 0
         number = content["number"]
@@ -175,7 +172,7 @@ class Histories:
     def monitor(self, entries: dict[int, Monitored]) -> None:
         """Set monitored signals by their numbers; the others stay."""
         self.sample()
-        with self._power_mate.store.transaction():
+        with self._store.transaction():
             for entry, each in entries.items():
                 self._signals[str(entry)] = {
                     "letter": each.letter,

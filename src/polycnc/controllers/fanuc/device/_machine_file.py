@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from polycnc.controllers.fanuc.data._increment import Increment
 from polycnc.errors import UsageError
 from polycnc.machine import AnyAxis, LinearAxis, MachineConfig, RotaryAxis
 
 LINEAR_NAMES = ("X", "Y", "Z", "U", "V", "W")
 ROTARY_NAMES = ("A", "B", "C", "P", "Q", "R")
 CYCLE_S = 0.001
+MOST_AXES = {"H": 6, "D": 2}
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,3 +91,42 @@ def usable_names(codes: Sequence[int], rotary: Sequence[bool]) -> tuple[str, ...
         if not names[k]:
             names[k] = next(name for name in (ROTARY_NAMES if turns else LINEAR_NAMES) if name not in names)
     return tuple(names)
+
+
+def axes_of(model: str, increment: str, axes: int | None) -> tuple[int, int]:
+    """Return how many axes a model has at the most, and how many it gets.
+
+    Raises:
+        UsageError: There is no such model, increment system, or number of axes.
+    """
+    if model not in MOST_AXES:
+        raise UsageError(f"there is no Power Mate-{model}", hint="Models are H and D.")
+    if increment not in set(Increment):
+        raise UsageError(
+            f"there is no increment system '{increment}'", hint=f"There are {', '.join(Increment)}."
+        )
+    most = MOST_AXES[model]
+    given = min(3, most) if axes is None else axes
+    if not 1 <= given <= most:
+        raise UsageError(f"a Power Mate-{model} has no {given} axes", hint=f"Give 1 to {most}.")
+    return most, given
+
+
+def defaults(
+    names: Sequence[tuple[str, bool]], increment: Increment, inch_input: bool, inch_output: bool
+) -> dict[tuple[int, int], int]:
+    """Return the values of parameters that the arguments of a control say."""
+    made: dict[tuple[int, int], int] = {
+        (0, 0): 4 if inch_input else 0,
+        (1001, 0): int(inch_output),
+        (1004, 0): {Increment.IS_A: 1, Increment.IS_B: 0, Increment.IS_C: 2}[increment],
+        (1010, 0): len(names),
+    }
+    for axis, (name, rotary) in enumerate(names, 1):
+        made |= {
+            (1006, axis): int(rotary),
+            (1020, axis): ord(name),
+            (1022, axis): axis if axis <= 3 and not rotary else 0,
+            (1023, axis): axis,
+        }
+    return made

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Callable
 
 from polycnc.cnc import Timer
 from polycnc.controllers.fanuc.data._macro_variables import SharedMacros
+from polycnc.controllers.fanuc.data._parameters import Parameters
+from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
+from polycnc.controllers.fanuc.device._device_state import MacroState, SignalState
+from polycnc.controllers.fanuc.device._history import Note
+from polycnc.controllers.fanuc.device._power import Power
 from polycnc.machine import Clock
 from polycnc.nc.macro import MacroCalls, MacroError, MacroLanguage, MacroVariables, SystemVariables, Value
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
 OPTION = "custom_macro"
 _JUMPS_PER_CYCLE = 500
@@ -29,18 +30,20 @@ _OFFSET_BASES = (2000, 10_000)
 _FIRST_FEW = 200
 
 
-@dataclass(slots=True)
-class MacroState:
-    """What macros have that is neither a variable nor theirs while they run."""
-
-    user_outputs: int = 0
-
-
 class Macros:
     """The macro language of a Power Mate, whose variables are those that programs on a PC read and write."""
 
-    def __init__(self, power_mate: PowerMate, shared: SharedMacros, state: MacroState) -> None:
-        self._power_mate = power_mate
+    def __init__(
+        self,
+        shared: SharedMacros,
+        power: Power,
+        parameters: Parameters,
+        new_system: Callable[[], PowerMateVariables],
+        state: MacroState,
+    ) -> None:
+        self._power = power
+        self._parameters = parameters
+        self._new_system = new_system
         self.state = state
         self._variables = shared.variables
         self._turns = 0
@@ -51,7 +54,7 @@ class Macros:
     def _new_language(self) -> MacroLanguage:
         language = MacroLanguage(
             self._variables,
-            system=PowerMateVariables(self._power_mate, self),
+            system=self._new_system(),
             main_repeats=True,
             endless_loops=True,
             pause_jumps=_JUMPS_PER_CYCLE,
@@ -64,18 +67,13 @@ class Macros:
         del self.printed[:-_MOST_PRINTED]
 
     @property
-    def languages(self) -> tuple[MacroLanguage, ...]:
-        """The language of the control's programs; without the option programs have none."""
-        return (self.language,) if self._power_mate.has_option(OPTION) else ()
-
-    @property
     def variables(self) -> MacroVariables:
         """The variables of programs."""
         return self._variables
 
     def local(self, number: int) -> Value:
         """Return a local variable of the macro that is being executed, of the main program at rest."""
-        channel = self._power_mate.control.channel_status()
+        channel = self._power.control.channel_status()
         block = channel.block if channel.active or channel.interrupted else None
         return self.language.locals_of(() if block is None else block.stack)[number]
 
@@ -98,7 +96,7 @@ class Macros:
         Raises:
             MacroError: The value is out of range.
         """
-        return PowerMateVariables(self._power_mate, self).offset_counts(number, value)
+        return self._new_system().offset_counts(number, value)
 
     def switched_on(self) -> None:
         """Begin with the power: what does not outlast it is vacant, timers count from 0."""
@@ -109,21 +107,20 @@ class Macros:
 
     def reset(self) -> None:
         """Do what parameter 6001 says of a reset: #7 keeps local variables, #6 those from #100 to #199."""
-        parameters = self._power_mate.parameters
-        if not parameters.bit(6001, 6):
+        if not self._parameters.bit(6001, 6):
             self._variables.clear_common()
-        if not parameters.bit(6001, 7):
+        if not self._parameters.bit(6001, 7):
             self._variables.clear_locals()
 
     def begin(self) -> None:
         """Take over what parameters say of macros, before a program begins."""
-        self.language.output.bare = self._power_mate.parameters.bit(6001, 1)
-        value = self._power_mate.parameters.value
+        self.language.output.bare = self._parameters.bit(6001, 1)
+        value = self._parameters.value
         self.language.calls = MacroCalls(
             g={float(value(number)): program for number, program in _G_CALLS.items() if value(number)},
             m={value(number): program for number, program in _M_CALLS.items() if value(number)},
             m_sub={value(number): program for number, program in _SUB_CALLS.items() if value(number)},
-            t=_TOOL_PROGRAM if self._power_mate.parameters.bit(6001, 5) else None,
+            t=_TOOL_PROGRAM if self._parameters.bit(6001, 5) else None,
         )
 
     def keep(self) -> None:
@@ -136,15 +133,27 @@ class Macros:
 class PowerMateVariables(SystemVariables):
     """The system variables of a Power Mate; every signal and counter is read when the blocks before are executed."""
 
-    def __init__(self, power_mate: PowerMate, macros: Macros) -> None:
+    def __init__(
+        self,
+        power: Power,
+        parameters: Parameters,
+        offsets: ToolOffsets,
+        signals: SignalState,
+        state: MacroState,
+        note: Note,
+    ) -> None:
         super().__init__()
-        self._power_mate = power_mate
-        self._macros = macros
+        self._power = power
+        self._parameters = parameters
+        self._offsets = offsets
+        self._signals = signals
+        self._state = state
+        self._note = note
 
     @property
     def machine_clock(self) -> Clock:
         """The clock of the control, before its first program too."""
-        return self._power_mate.clock
+        return self._power.control.clock
 
     def has(self, number: int) -> bool:
         """Tell whether there is a variable."""
@@ -162,26 +171,26 @@ class PowerMateVariables(SystemVariables):
         Raises:
             MacroError: There is none of this number.
         """
-        power_mate = self._power_mate
+        control = self._power.control
         if number in _INPUTS:
             return float(self._inputs() >> number - _INPUTS.start & 1)
         if number in _OUTPUTS:
-            return float(self._macros.state.user_outputs >> number - _OUTPUTS.start & 1)
+            return float(self._state.user_outputs >> number - _OUTPUTS.start & 1)
         match number:
             case 1032:
                 return float(self._inputs())
             case 1132:
-                return float(self._macros.state.user_outputs)
+                return float(self._state.user_outputs)
             case 3002:
-                return power_mate.control.timers.seconds(Timer.OPERATING) / 3600.0
+                return control.timers.seconds(Timer.OPERATING) / 3600.0
             case 3005:
-                return float(power_mate.parameters.value(0))
+                return float(self._parameters.value(0))
             case 3901:
-                return float(power_mate.control.parts.parts.made)
+                return float(control.parts.parts.made)
             case 3902:
-                return float(power_mate.control.parts.parts.required)
+                return float(control.parts.parts.required)
         if (offset := self._offset_number(number)) is not None:
-            return power_mate.tool_offsets.get(offset) * 10.0**-power_mate.tool_offsets.decimals
+            return self._offsets.get(offset) * 10.0**-self._offsets.decimals
         return super().read(number)
 
     def write(self, number: int, value: Value) -> None:
@@ -190,27 +199,27 @@ class PowerMateVariables(SystemVariables):
         Raises:
             MacroError: There is none of this number, it can only be read, or it does not take the value.
         """
-        power_mate = self._power_mate
+        control = self._power.control
         new = 0.0 if value is None else value
         if number in _OUTPUTS:
             if new not in (0.0, 1.0):
                 raise _wrong(number, new, "0 or 1")
             bit = 1 << number - _OUTPUTS.start
-            self._give(self._macros.state.user_outputs & ~bit | (bit if new else 0))
+            self._give(self._state.user_outputs & ~bit | (bit if new else 0))
         elif number == _OUTPUT_WORD:
             self._give(_whole(number, new, _ALL_BITS))
         elif number == _HOURS:
             if not 0.0 <= new < 1e6:
                 raise _wrong(number, new, "0 to 1000000")
-            power_mate.control.timers.set_seconds(Timer.OPERATING, new * 3600.0)
+            control.timers.set_seconds(Timer.OPERATING, new * 3600.0)
         elif number == _SETTINGS:
-            power_mate.parameters.set(0, _whole(number, new, 0xFF))
+            self._parameters.set(0, _whole(number, new, 0xFF))
         elif number == _PARTS:
-            power_mate.control.parts.set(made=_whole(number, new, 99_999_999))
+            control.parts.set(made=_whole(number, new, 99_999_999))
         elif number == _PARTS_REQUIRED:
-            power_mate.control.parts.set(required=_whole(number, new, 99_999_999))
+            control.parts.set(required=_whole(number, new, 99_999_999))
         elif (offset := self.offset_counts(number, new)) is not None:
-            power_mate.tool_offsets.set_all(dict([offset]))
+            self._offsets.set_all(dict([offset]))
         elif self.is_signal(number):
             raise MacroError(f"#{number} can only be read", "Write another variable.", "PS0116")
         else:
@@ -225,9 +234,8 @@ class PowerMateVariables(SystemVariables):
         offset = self._offset_number(number)
         if offset is None:
             return None
-        offsets = self._power_mate.tool_offsets
-        counts = round(value * 10.0**offsets.decimals)
-        if abs(counts) > offsets.limit:
+        counts = round(value * 10.0**self._offsets.decimals)
+        if abs(counts) > self._offsets.limit:
             raise _wrong(number, value, "tool offsets in their range")
         return offset, counts
 
@@ -237,21 +245,21 @@ class PowerMateVariables(SystemVariables):
         return number in _INPUTS or number in _OUTPUTS or number in (_INPUT_WORD, _OUTPUT_WORD)
 
     def _inputs(self) -> int:
-        low, high = (self._power_mate.signals.g(address) for address in _INPUT_BYTES)
+        low, high = (self._signals.given.get(address, 0) for address in _INPUT_BYTES)
         return low | high << 8
 
     def _give(self, outputs: int) -> None:
-        old, self._macros.state.user_outputs = self._macros.state.user_outputs, outputs
+        old, self._state.user_outputs = self._state.user_outputs, outputs
         for place, address in enumerate(OUTPUT_BYTES):
             before, after = old >> 8 * place & 0xFF, outputs >> 8 * place & 0xFF
             if before != after:
-                self._power_mate.history.note_signal("F", address, before, after)
+                self._note("F", address, before, after)
 
     def _offset_number(self, number: int) -> int | None:
         """Return the number of the tool offset that is a variable: #2001 to #2200, or #10001 on."""
         for base in _OFFSET_BASES:
             offset = number - base
-            if 1 <= offset <= self._power_mate.tool_offsets.count and (base != 2000 or offset <= _FIRST_FEW):
+            if 1 <= offset <= self._offsets.count and (base != 2000 or offset <= _FIRST_FEW):
                 return offset
         return None
 

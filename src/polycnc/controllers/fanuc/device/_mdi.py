@@ -2,32 +2,22 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
+from polycnc.controllers.fanuc.data._parameters import Parameters
+from polycnc.controllers.fanuc.device._device_state import MdiState
+from polycnc.controllers.fanuc.device._power import Power
 from polycnc.controllers.fanuc.device._transfer import Fault, ProgramStream, TransferError
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
 
 def _anything(_: object) -> None:
     """Refuse nothing: MDI programs are not registered."""
 
 
-@dataclass(slots=True)
-class MdiState:
-    """The blocks that were put in, and the one that execution begins at."""
-
-    blocks: tuple[str, ...] = ()
-    start: int = 0
-
-
 class MdiProgram:
     """The program of MDI operation; its blocks count from 0, without the O word."""
 
-    def __init__(self, power_mate: PowerMate, state: MdiState) -> None:
-        self._power_mate = power_mate
+    def __init__(self, power: Power, parameters: Parameters, state: MdiState) -> None:
+        self._power = power
+        self._parameters = parameters
         self.state = state
 
     def __bool__(self) -> bool:
@@ -45,7 +35,7 @@ class MdiProgram:
             ControlError: Not in MDI, or a program is being executed or interrupted.
         """
         stream = ProgramStream(
-            tv_check=self._power_mate.parameters.bit(0, 0),
+            tv_check=self._parameters.bit(0, 0),
             ends_at_m=False,
             on_program=_anything,
             on_block=_anything,
@@ -71,4 +61,4 @@ class MdiProgram:
         self.state.start = block
 
     def _hand_over(self, blocks: tuple[str, ...]) -> None:
-        self._power_mate.control.set_mdi("\n".join(blocks) + "\n")
+        self._power.control.set_mdi("\n".join(blocks) + "\n")

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-from polycnc.controllers.fanuc.device._programs import number_of
-from polycnc.nc import Group
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
-    from polycnc.nc import BlockRecord
+from polycnc.controllers.fanuc.data._parameters import Parameters
+from polycnc.controllers.fanuc.device._device_state import MdiState
+from polycnc.controllers.fanuc.device._execution import Execution
+from polycnc.controllers.fanuc.device._programs import Programs, number_of
+from polycnc.controllers.fanuc.device._units import Units
+from polycnc.nc import BlockRecord, Group
 
 GROUPS = 21
 ADDRESSES = (
@@ -71,12 +70,18 @@ class ModalBlock:
 class ModalData:
     """Read modal data of a Power Mate."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
-        self._power_mate = power_mate
+    def __init__(
+        self, execution: Execution, programs: Programs, mdi: MdiState, parameters: Parameters, units: Units
+    ) -> None:
+        self._execution = execution
+        self._programs = programs
+        self._mdi = mdi
+        self._parameters = parameters
+        self._units = units
 
     def block(self, ahead: int) -> ModalBlock:
-        """Return what holds with the executed block (0), the next one (1) or the one behind it (2)."""
-        executed = self._power_mate.execution.block
+        """Return what holds with the executed block (0), the next one (1) or the one after it (2)."""
+        executed = self._execution.block
         if executed is None:
             return ModalBlock(self._at_start(), {})
         lines = self._lines(executed.program)
@@ -93,15 +98,14 @@ class ModalData:
         )
 
     def _lines(self, program: str) -> list[str]:
-        power_mate = self._power_mate
         number = number_of(program)
         if number == 0:
-            return list(power_mate.mdi.state.blocks)
-        return power_mate.programs.read(number).decode("latin-1").split("\n")
+            return list(self._mdi.blocks)
+        return self._programs.read(number).decode("latin-1").split("\n")
 
     def _at_start(self) -> dict[int, tuple[int, bool]]:
         codes = dict.fromkeys(range(GROUPS), (0, False))
-        codes[5] = (0 if self._power_mate.inch_input else 1, False)
+        codes[5] = (0 if self._units.inch_input else 1, False)
         return codes
 
     def _codes(
@@ -150,17 +154,16 @@ class ModalData:
 
     def value(self, name: str, text: str) -> int:
         """Return the number of a word as a program reads it: lengths and angles in increments."""
-        power_mate = self._power_mate
         if not text:
             return 0
         digits = text.replace(".", "")
         if name == "F":
             return int(digits)
-        names = power_mate.control.machine.config.axis_names
+        names = self._units.axis_names
         is_length = name in names or name in _LENGTHS
         axis = names.index(name) + 1 if name in names else 1
-        decimals = power_mate.input_scale(axis).decimals
-        if "." in text or (is_length and power_mate.parameters.bit(3401, 0)):
+        decimals = self._units.input_scale(axis).decimals
+        if "." in text or (is_length and self._parameters.bit(3401, 0)):
             increments: float = float(text) * 10.0**decimals
             return round(increments)
         return int(digits)

@@ -5,14 +5,13 @@ Ruling: the PMC of this control passes them on as they are, when they are writte
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
+from polycnc.controllers.fanuc.device._device_state import DeviceState
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._signals import Signals
+from polycnc.machine import Store
 
 JOG_PERCENT = (
     0.0, 0.1, 0.14, 0.2, 0.27, 0.37, 0.52, 0.72, 1.0, 1.4, 2.0, 2.7, 3.7, 5.2, 7.2, 10.0, 14.0, 20.0, 27.0, 37.0,
@@ -50,10 +49,15 @@ _BLANK = " " * NAME_LENGTH
 class Panel:
     """Hold the signals of the software operator's panel, durably."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
-        self._power_mate = power_mate
-        self._area = power_mate.store.area("fanuc.panel", int)
-        self._names = power_mate.store.area("fanuc.panel_names", str)
+    def __init__(
+        self, store: Store, signals: Signals, state: DeviceState, select: Callable[[PowerMateMode], None]
+    ) -> None:
+        self._store = store
+        self._signals = signals
+        self._state = state
+        self._select = select
+        self._area = store.area("fanuc.panel", int)
+        self._names = store.area("fanuc.panel_names", str)
         self._used = bool(len(self._area))
 
     def value(self, name: str) -> int:
@@ -62,7 +66,7 @@ class Panel:
 
     def set(self, values: Mapping[str, int]) -> None:
         """Set signals that have been checked, and let the control have them."""
-        with self._power_mate.store.transaction():
+        with self._store.transaction():
             for name, value in values.items():
                 self._area[name] = value
         self._pass_on(values)
@@ -72,12 +76,12 @@ class Panel:
         self._pass_on({name: self._area[name] for name, _ in MEMBERS.values() if name in self._area})
 
     def _pass_on(self, values: Mapping[str, int]) -> None:
-        signals = self._power_mate.signals
+        signals = self._signals
         for name, value in values.items():
             match name:
                 case "mode":
-                    if not (value == 3 and self._power_mate.mode is PowerMateMode.INC):
-                        self._power_mate.select_mode(_MODES[value])
+                    if not (value == 3 and self._state.mode is PowerMateMode.INC):
+                        self._select(_MODES[value])
                 case "rpd_ovrd":
                     signals.give_bits(14, 3, value)
                 case "jog_ovrd":
@@ -114,7 +118,7 @@ class Panel:
 
     def set_names(self, names: Mapping[int, str]) -> None:
         """Name general-purpose signals."""
-        with self._power_mate.store.transaction():
+        with self._store.transaction():
             for signal, name in names.items():
                 self._names[str(signal)] = name
 

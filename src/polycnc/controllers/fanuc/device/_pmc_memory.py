@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._history import Note
+from polycnc.controllers.fanuc.device._signals import Signals
+from polycnc.machine import Store
 
 LETTERS = "GFYXARTKCD"
 """Address letters in the order of their codes (Manual 000, pmc_rdpmcrng)."""
@@ -61,12 +62,19 @@ def writable(letter: str, first: int, last: int) -> bool:
 class PmcMemory:
     """Read and write the memory; timers, keep relays, counters and the data table outlast switching off."""
 
-    def __init__(self, power_mate: PowerMate, volatile: dict[tuple[str, int], int]) -> None:
-        self._power_mate = power_mate
+    def __init__(
+        self,
+        store: Store,
+        signals: Signals,
+        volatile: dict[tuple[str, int], int],
+        note: Note,
+        skip: Callable[[bool], None],
+    ) -> None:
+        self._signals = signals
         self._volatile = volatile
-        self._areas = {
-            letter: power_mate.store.area(f"fanuc.pmc_{letter.lower()}", int) for letter in _DURABLE
-        }
+        self._note = note
+        self._skip = skip
+        self._areas = {letter: store.area(f"fanuc.pmc_{letter.lower()}", int) for letter in _DURABLE}
         self._kept = {letter: area.load() for letter, area in self._areas.items()}
 
     def read(self, letter: str, first: int, last: int) -> bytes:
@@ -82,7 +90,7 @@ class PmcMemory:
             return
         for address, value in enumerate(data, first):
             if letter == "G":
-                self._power_mate.signals.give(address, value)
+                self._signals.give(address, value)
             else:
                 self._put(letter, address, value)
 
@@ -90,7 +98,7 @@ class PmcMemory:
         """Let the machine give a byte of X signals."""
         self._put("X", address, value)
         if address == _SKIP_ADDRESS:
-            self._power_mate.skip_signal(bool(value & _SKIP_BIT))
+            self._skip(bool(value & _SKIP_BIT))
 
     def clear(self) -> None:
         """Forget what does not outlast switching off."""
@@ -100,10 +108,10 @@ class PmcMemory:
         old = self._volatile.get((letter, address), 0)
         self._volatile[letter, address] = value
         if letter in "XY" and old != value:
-            self._power_mate.history.note_signal(letter, address, old, value)
+            self._note(letter, address, old, value)
 
     def _byte(self, letter: str, address: int) -> int:
-        signals = self._power_mate.signals
+        signals = self._signals
         if letter == "G":
             return signals.g(address)
         if letter == "F":

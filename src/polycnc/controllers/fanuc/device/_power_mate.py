@@ -6,88 +6,51 @@ It is a control without a vendor (`cnc.Control`) with this one's modes, alarms, 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from polycnc.cnc import (
-    AfterManual,
     Control,
-    ControlData,
     ControlError,
-    ManualData,
-    OnModeChange,
     Refusal,
     Script,
     Status,
     Step,
 )
-from polycnc.controllers.fanuc.data._bindings import bind
+from polycnc.controllers.fanuc.data._bindings import bound
 from polycnc.controllers.fanuc.data._configuration import Configuration
-from polycnc.controllers.fanuc.data._increment import Increment, Scale, scale
+from polycnc.controllers.fanuc.data._increment import Increment, Scale
 from polycnc.controllers.fanuc.data._macro_variables import CommonRange, SharedMacros
-from polycnc.controllers.fanuc.data._parameter_rows import Attribute, ParameterRow
+from polycnc.controllers.fanuc.data._parameter_rows import ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
 from polycnc.controllers.fanuc.device._alarms import (
-    NAME_ALARM,
-    POWER_MATE_ALARMS,
-    PREFIX,
     AlarmBit,
-    alarm_bits,
 )
-from polycnc.controllers.fanuc.device._axis_motion import AxisMotion, AxisMotionState
+from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
 from polycnc.controllers.fanuc.device._device_state import DeviceState
 from polycnc.controllers.fanuc.device._execution import Execution
 from polycnc.controllers.fanuc.device._history import Histories
-from polycnc.controllers.fanuc.device._machine_file import (
-    AxisSetting,
-    axis_of,
-    default_names,
-    machine_of,
-    usable_names,
-)
+from polycnc.controllers.fanuc.device._machine_file import axes_of, default_names, defaults
 from polycnc.controllers.fanuc.device._macros import OPTION as MACRO_OPTION
-from polycnc.controllers.fanuc.device._macros import Macros
+from polycnc.controllers.fanuc.device._macros import Macros, PowerMateVariables
 from polycnc.controllers.fanuc.device._mdi import MdiProgram
 from polycnc.controllers.fanuc.device._modal_data import ModalData
 from polycnc.controllers.fanuc.device._modes import CONTROL_MODES, PowerMateMode, mode_of
 from polycnc.controllers.fanuc.device._panel import Panel
 from polycnc.controllers.fanuc.device._pmc_memory import PmcMemory
 from polycnc.controllers.fanuc.device._positions import Positions
+from polycnc.controllers.fanuc.device._power import Fitted, Power
 from polycnc.controllers.fanuc.device._programs import Programs, memory_data, name_of
 from polycnc.controllers.fanuc.device._remote_program import RemoteProgram
-from polycnc.controllers.fanuc.device._signals import MOST_FEED_PERCENT, Signals, SignalState
+from polycnc.controllers.fanuc.device._signals import Buttons, Signals
 from polycnc.controllers.fanuc.device._snapshot import DEVICE, PowerMateSnapshot
 from polycnc.controllers.fanuc.device._transfer import Transfer
+from polycnc.controllers.fanuc.device._units import Units
 from polycnc.errors import UsageError
-from polycnc.machine import AnyAxis, Clock, Machine, Snapshot, SnapshotError, Store, copied, put_back
-from polycnc.nc import Dialect, load_dialect
+from polycnc.machine import Clock, Machine, Snapshot, SnapshotError, Store, copied, restore_state
 
-MOST_AXES = {"H": 6, "D": 2}
-_STATE = "fanuc.state"
-_MM_PER_MIN = 60.0
-_BLOCKS_AHEAD = 1  # Manual 000, cnc_modal: the next block, and the next but one at the most
-_ACT_ON_MOTION = frozenset({0, 1301, 1320, 1321, 1420, 1423, 1620, 1825, 1828, 3401})
 _ALL_KEYS = frozenset({1, 2, 3, 4})
-
-
-def _axes_of(model: str, increment: str, axes: int | None) -> tuple[int, int]:
-    """Return how many axes a model has at the most, and how many it gets.
-
-    Raises:
-        UsageError: There is no such model, increment system, or number of axes.
-    """
-    if model not in MOST_AXES:
-        raise UsageError(f"there is no Power Mate-{model}", hint="Models are H and D.")
-    if increment not in set(Increment):
-        raise UsageError(
-            f"there is no increment system '{increment}'", hint=f"There are {', '.join(Increment)}."
-        )
-    most = MOST_AXES[model]
-    given = min(3, most) if axes is None else axes
-    if not 1 <= given <= most:
-        raise UsageError(f"a Power Mate-{model} has no {given} axes", hint=f"Give 1 to {most}.")
-    return most, given
 
 
 class PowerMate:
@@ -102,6 +65,10 @@ class PowerMate:
     Raises:
         UsageError: There is no such model, increment system, number of axes, or rotary axis.
     """
+
+    units: Units
+    signals: Signals
+    panel: Panel
 
     def __init__(
         self,
@@ -121,49 +88,55 @@ class PowerMate:
         most_programs: int = 125,
     ) -> None:
         self.model = model
-        self.max_axis, self.axes = _axes_of(model, increment, axes)
+        self.max_axis, self.axes = axes_of(model, increment, axes)
         self.options = options if isinstance(options, bool) else frozenset(options)
-        self.store = memory if isinstance(memory, Store) else Store(memory)
+        self.store = store = memory if isinstance(memory, Store) else Store(memory)
         self.transfer: Transfer | None = None
-        self.power_ups = 0
-        """How often it was switched off and on."""
-        self._script = script
-        self._servo = servo
-        self._sizes = characters, most_programs
-        self._state = self.store.area(_STATE, int)
-        self._stale = False  # parameters have changed that the control could not take over yet
-        names = default_names(self.axes, rotary)
-        self.parameters = Parameters(
-            self.store, self.axes, _defaults(names, Increment(increment), inch_input, inch_output)
-        )
-        self.state = DeviceState(
-            SignalState([255] * self.max_axis), AxisMotionState.of(self.max_axis), self.parameters.bit(0, 2)
-        )
+        self.power_ups = 0  # how often it was switched off and on
+        begun = defaults(default_names(self.axes, rotary), Increment(increment), inch_input, inch_output)
+        elsewhere = bound(lambda: self.control, lambda: self.units)
+        changed = self._parameters_changed
+        self.parameters = parameters = Parameters(store, self.axes, begun, elsewhere, changed)
+        self.state = state = DeviceState.of(self.max_axis, parameters.bit(0, 2))
         """What does not outlast switching off."""
-        self.macros = SharedMacros(self.store, self._common_range())
-        self.programs = Programs(self)
-        self.mdi = MdiProgram(self, self.state.mdi)
+        self.units = units = Units(parameters, state, lambda: self.machine.config)
+        fitted = Fitted(script, servo, memory_data(characters, most_programs), self.has_option(MACRO_OPTION))
+        self.power = power = Power(store, parameters, units, state, fitted)
+        self.macros = SharedMacros(store, self._common_range())
+        self.programs = Programs(store, power, parameters, state)
+        self.mdi = MdiProgram(power, parameters, state.mdi)
         self.remote = RemoteProgram(lambda: self.mode, lambda: self.control)
-        self.execution = Execution(self)
-        self.positions = Positions(self)
-        self.tool_offsets = ToolOffsets(self, offsets)
-        self.signals = Signals(self, self.state.signals)
-        self.panel = Panel(self)
-        self.pmc = PmcMemory(self, self.state.pmc)
-        self.history = Histories(self, self.state.sampling)
-        self.axis_motion = AxisMotion(self, self.state.axis_motion)
-        self.modal_data = ModalData(self)
+        self.execution = Execution(power, self.programs, state)
+        self.positions = Positions(power, units, state.axis_motion)
+        self.tool_offsets = ToolOffsets(store, power, units, offsets)
+        self.history = Histories(store, power, lambda address: self.signals.f(address), state.sampling)
+        note = self.history.note_signal
+        read = power, parameters, self.tool_offsets, state.signals, state.macros, note
+        self.custom_macros = Macros(
+            self.macros, power, parameters, partial(PowerMateVariables, *read), state.macros
+        )
+        buttons = Buttons(
+            *(self.cycle_start, self.feed_hold, self.reset, self.emergency_stop, self.select_mode),
+            protect=lambda on, key: self.protect_key(on, key=key),
+        )
+        ports = power, parameters, units, self.positions, self.custom_macros, state
+        self.signals = Signals(*ports, buttons, lambda address: self.panel.image(address), note)
+        self.panel = Panel(store, self.signals, state, self.select_mode)
+        self.pmc = PmcMemory(store, self.signals, state.pmc, note, self.skip_signal)
+        self.axis_motion = AxisMotion(power, units, self.positions, state.signals, state.axis_motion)
+        self.modal_data = ModalData(self.execution, self.programs, state.mdi, parameters, units)
         self.configuration = Configuration()
-        bind(self)
-        self.parameters.on_change = self._parameters_changed
-        self.custom_macros = Macros(self, self.macros, self.state.macros)
-        self.control = self._switched_on(None)
-        self.control.be_watched(self.history)
+        self._switch_on(None)
         if self.selected not in self.programs:
             self.unselect()
         self._begin_signals()
 
     # ------------------------------------------------------------------ what it is
+
+    @property
+    def control(self) -> Control:
+        """The control without a vendor that it is within; another one after the power was off."""
+        return self.power.control
 
     @property
     def clock(self) -> Clock:
@@ -182,12 +155,7 @@ class PowerMate:
     @property
     def increment(self) -> Increment:
         """The increment system (parameter 1004)."""
-        value = self.parameters.value(1004)
-        return Increment.IS_A if value & 1 else Increment.IS_C if value & 2 else Increment.IS_B
-
-    def is_rotary(self, axis: int) -> bool:
-        """Whether an axis (from 1) is rotary."""
-        return self.control.machine.config.axes[axis - 1].kind == "rotary"
+        return self.units.increment
 
     @property
     def inch_input(self) -> bool:
@@ -197,19 +165,23 @@ class PowerMate:
     @property
     def inch_output(self) -> bool:
         """Whether the machine counts in inch (1001#0)."""
-        return self.parameters.bit(1001, 0)
-
-    def input_scale(self, axis: int) -> Scale:
-        """Return the scale of positions as programs see them; axes count from 1."""
-        return scale(self.increment, linear=not self.is_rotary(axis), inch=self.inch_input)
-
-    def output_scale(self, axis: int) -> Scale:
-        """Return the scale of machine positions and stroke limits; axes count from 1."""
-        return scale(self.increment, linear=not self.is_rotary(axis), inch=self.inch_output)
+        return self.units.inch_output
 
     def axis_name(self, axis: int) -> str:
         """Return the name of an axis, which counts from 1."""
-        return self.control.machine.config.axis_names[axis - 1]
+        return self.units.axis_name(axis)
+
+    def is_rotary(self, axis: int) -> bool:
+        """Whether an axis (from 1) is rotary."""
+        return self.units.is_rotary(axis)
+
+    def input_scale(self, axis: int) -> Scale:
+        """Return the scale of positions as programs see them; axes count from 1."""
+        return self.units.input_scale(axis)
+
+    def output_scale(self, axis: int) -> Scale:
+        """Return the scale of machine positions and stroke limits; axes count from 1."""
+        return self.units.output_scale(axis)
 
     # ------------------------------------------------------------------ what the operator does
 
@@ -235,20 +207,16 @@ class PowerMate:
         Raises:
             ControlError: There is no such program, or one is being executed or interrupted.
         """
-        self.control.select_program(name_of(number))
-        self._state["selected"] = number
-        self.state.cursor = 0
+        self.programs.select(number)
 
     @property
     def selected(self) -> int:
         """The number of the selected program, 0 for none."""
-        return self._state.get("selected", 0)
+        return self.programs.selected
 
     def unselect(self) -> None:
         """Have no program selected."""
-        self._state["selected"] = 0
-        self.state.cursor = 0
-        self.control.channels[0].select(None)
+        self.programs.unselect()
 
     @property
     def cursor(self) -> int:
@@ -265,8 +233,8 @@ class PowerMate:
         Raises:
             ControlError: As `cnc.Control.cycle_start`; feed hold is given; nothing sends a program in RMT.
         """
-        self._take_over()
-        if self.signals.hold_is_on:
+        self.power.take_over()
+        if self.state.signals.hold_is_on:
             raise ControlError(
                 Refusal.HELD, "feed hold is given (*SP)", hint="Take feed hold away, at G8#5 or on the panel."
             )
@@ -364,7 +332,12 @@ class PowerMate:
         """
         if self.transfer is not None:
             raise ControlError(Refusal.IN_USE, "a transfer is under way", hint="End it first.")
-        self.transfer = Transfer(self, compare=True)
+        self.begin_transfer(compare=True)
+
+    def begin_transfer(self, *, compare: bool = False, owner: object = None) -> Transfer:
+        """Begin to take programs, or to compare; `transfer` is None when nothing is under way."""
+        self.transfer = Transfer(self.programs, self.parameters, compare=compare, owner=owner)
+        return self.transfer
 
     def raise_alarm(self, number: int, text: str = "", *, axis: int | None = None) -> None:
         """Put an alarm on by its number.
@@ -376,13 +349,12 @@ class PowerMate:
         """
         if not 0 <= number <= 5999 or (axis is not None and not 1 <= axis <= self.axes):
             raise UsageError(f"there is no alarm {number} of axis {axis}", hint="Numbers are 0 to 5999.")
-        name = None if axis is None else self.axis_name(axis)
-        self.control.put_alarm(f"{PREFIX}{number}", axis=name, detail=text)
+        self.power.raise_alarm(number, text, axis=axis)
 
     @property
     def alarm_bits(self) -> AlarmBit:
         """The groups of the alarms that are on."""
-        return alarm_bits(self.control.alarms.active)
+        return self.power.alarm_bits
 
     @property
     def transfers_blocked(self) -> bool:
@@ -399,8 +371,7 @@ class PowerMate:
         self.mdi.clear()
         self.state.inch = self.parameters.bit(0, 2)
         self.custom_macros.switched_on()
-        self.control = self._switched_on(old.machine)
-        self.control.be_watched(self.history)
+        self._switch_on(old.machine)
         self.control.clock.go_back(old.clock.cycles, old.clock.epoch)
         self.state.mode = PowerMateMode.MEM
         if self.selected:
@@ -411,8 +382,7 @@ class PowerMate:
 
     def advance(self, cycles: int, *, until: int | Callable[[], bool] | None = None) -> int:
         """Let up to `cycles` control cycles pass; return how many did, see `cnc.Control.advance`."""
-        if self._stale:
-            self._take_over()
+        self.power.take_over()
         channel = self.control.channels[0]
         active = channel.active
         done = self._pass(cycles, until)
@@ -420,8 +390,7 @@ class PowerMate:
         block = channel.executed if active else None
         if block is not None and block.modal.inch is not self.state.inch:
             self.parameters.set(0, self.parameters.value(0) ^ 4)
-        if self._stale:
-            self._take_over()
+        self.power.take_over()
         return done
 
     def _pass(self, cycles: int, until: int | Callable[[], bool] | None) -> int:
@@ -473,7 +442,7 @@ class PowerMate:
                 hint="restore it where it was taken",
             )
         self.control.restore(snapshot.control)
-        put_back(self.state, snapshot.state)
+        restore_state(self.state, snapshot.state)
         self.control.channels[0].set_skip_signal(self.state.skip)
         self.signals.restored()
 
@@ -497,143 +466,16 @@ class PowerMate:
             return CommonRange.LARGE
         return CommonRange.MIDDLE if self.has_option("macro_variables_300") else CommonRange.SMALL
 
-    def _switched_on(self, before: Machine | None) -> Control:
-        """Return the control as it is when power comes on; encoders are absolute."""
-        axes = self._axes()
-        characters, most_programs = self._sizes
-        names = [axis.name for axis in axes]
-        start = (
-            dict.fromkeys(names, 0.0)
-            if before is None
-            else dict(zip(names, before.actual.values(), strict=True))
-        )
-        control = Control(
-            machine_of(axes, start),
-            memory=self.store,
-            dialect=self._dialect(),
-            script=self._script,
-            servo=self._servo,
-            languages=self.custom_macros.languages,
-            data=ControlData(
-                memory=memory_data(characters, most_programs),
-                alarms=POWER_MATE_ALARMS,
-                mode_change_while_running=OnModeChange.HOLD,
-                after_manual=AfterManual.RETURN,
-                dry_run_mm_min=float(self.parameters.value(1410)),
-                most_feed_override=MOST_FEED_PERCENT / 100.0,
-                sub_program_names=("O{number:04d}",),
-                manual=ManualData(jog_speeds=self._jog_speeds(axes)),
-                emergency_needs_reset=False,
-            ),
-        )
-
+    def _switch_on(self, before: Machine | None) -> None:
         def note_skip() -> None:  # a function, not a method: a copy of the run shares it
             self._note_skip()
 
-        control.channels[0].on_skip = note_skip
-        control.change_axes(axes)
-        for axis, name in enumerate(names, 1):
-            if self.parameters.value(1020, axis) != ord(name):
-                control.put_alarm(
-                    f"{PREFIX}{NAME_ALARM}", axis=name, detail=f"PARAMETER 1020 OF AXIS {axis}: {name}"
-                )
-        return control
-
-    def _dialect(self) -> Dialect:
-        data = load_dialect("fanuc").model_dump()
-        data["name"] = "power mate"
-        data["blocks_ahead"] = _BLOCKS_AHEAD
-        data["soft_limits"] = "before" if self.parameters.bit(1301, 7) else "at_limit"
-        data["language"] = "macro" if self.has_option(MACRO_OPTION) else "none"
-        data["numbers"] = {
-            "decimal_point": "calculator" if self.parameters.bit(3401, 0) else "least_input",
-            "least_input": 10.0**-self.increment.decimals,
-        }
-        data["initial"]["units"] = "inch" if self.state.inch else "metric"
-        return Dialect.model_validate(data)
-
-    def _axes(self) -> tuple[AnyAxis, ...]:
-        """Return the axes as the parameters describe them."""
-        value = self.parameters.value
-        numbers = range(1, self.axes + 1)
-        turning = [self.parameters.bit(1006, 0, axis) for axis in numbers]
-        names = usable_names([value(1020, axis) for axis in numbers], turning)
-        made = []
-        for axis, name, rotary in zip(numbers, names, turning, strict=True):
-            units = scale(self.increment, linear=not rotary, inch=self.inch_output)
-            vmax = self._speed(value(1420, axis), units)
-            high, low = value(1320, axis), value(1321, axis)
-            kp = value(1825, axis) / 100.0 if self._servo else None
-            made.append(
-                axis_of(
-                    AxisSetting(
-                        name=name,
-                        rotary=rotary,
-                        vmax=vmax,
-                        amax=vmax / (value(1620, axis) / 1000.0),
-                        soft_limits=(units.value(low), units.value(high)) if low < high else None,
-                        servo_kp=kp,
-                        error_limit=units.step * value(1828, axis) if kp and value(1828, axis) else None,
-                    )
-                )
-            )
-        return tuple(made)
-
-    @staticmethod
-    def _speed(value: int, units: Scale) -> float:
-        """Return a speed parameter (mm/min, deg/min; on an inch machine 0.1 inch/min) per second."""
-        return value / _MM_PER_MIN * (2.54 if units.inch else 1.0)
-
-    def _jog_speeds(self, axes: tuple[AnyAxis, ...]) -> dict[str, float]:
-        return {
-            each.name: self._speed(
-                self.parameters.value(1423, axis),
-                scale(self.increment, linear=each.kind == "linear", inch=self.inch_output),
-            )
-            for axis, each in enumerate(axes, 1)
-        }
+        languages = (self.custom_macros.language,) if self.has_option(MACRO_OPTION) else ()
+        self.power.switch_on(before, languages, note_skip)
+        self.control.set_observer(self.history)
 
     def _parameters_changed(self, rows: tuple[ParameterRow, ...]) -> None:
-        if any(Attribute.POWER_OFF in row.attributes for row in rows):
-            self.raise_alarm(0)
-        if any(row.number == 0 for row in rows):
-            self.state.inch = self.parameters.bit(0, 2)
-        if any(row.number in _ACT_ON_MOTION for row in rows):
-            self._stale = True
-            self._take_over()
-
-    def _take_over(self) -> None:
-        """Let the control have what parameters say now, as soon as nothing moves; axes and units wait for the power."""
-        if not self._stale or self.alarm_bits & AlarmBit.PS000:
-            return
-        axes = self._axes()
-        try:
-            self.control.change_axes(axes)
-            self.control.change_dialect(self._dialect())
-        except (ControlError, UsageError):
-            return  # something moves; tried again when time has passed
-        self.control.manual.data = replace(self.control.manual.data, jog_speeds=self._jog_speeds(axes))
-        self._stale = False
-
-
-def _defaults(
-    names: Sequence[tuple[str, bool]], increment: Increment, inch_input: bool, inch_output: bool
-) -> dict[tuple[int, int], int]:
-    """Return the values of parameters that the arguments of a control say."""
-    made: dict[tuple[int, int], int] = {
-        (0, 0): 4 if inch_input else 0,
-        (1001, 0): int(inch_output),
-        (1004, 0): {Increment.IS_A: 1, Increment.IS_B: 0, Increment.IS_C: 2}[increment],
-        (1010, 0): len(names),
-    }
-    for axis, (name, rotary) in enumerate(names, 1):
-        made |= {
-            (1006, axis): int(rotary),
-            (1020, axis): ord(name),
-            (1022, axis): axis if axis <= 3 and not rotary else 0,
-            (1023, axis): axis,
-        }
-    return made
+        self.power.parameters_changed(rows)
 
 
 __all__ = ["PowerMate"]

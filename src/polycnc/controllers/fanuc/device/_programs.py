@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import re
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from polycnc.cnc import MemoryData, ProgramEdit, ProgramMemory, RunState
+from polycnc.controllers.fanuc.data._parameters import Parameters
+from polycnc.controllers.fanuc.device._device_state import DeviceState
+from polycnc.controllers.fanuc.device._power import Power
+from polycnc.machine import Store
 from polycnc.units import whole
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
 FIRST, LAST = 1, 9999
 COMMENT_MOST = 48
@@ -39,7 +40,7 @@ def number_of(name: str | None) -> int:
 
 
 def comment_of(content: bytes) -> str:
-    """Return the comment behind the program number."""
+    """Return the comment after the program number."""
     found = _COMMENT.match(content)
     return found[1].decode("latin-1") if found else ""
 
@@ -65,16 +66,20 @@ class Listed:
 
 
 class Programs:
-    """The programs of a Power Mate."""
+    """The programs of a Power Mate, and which is selected."""
 
-    def __init__(self, power_mate: PowerMate) -> None:
-        self._power_mate = power_mate
+    def __init__(self, store: Store, power: Power, parameters: Parameters, state: DeviceState) -> None:
+        self._store = store
+        self._power = power
+        self._parameters = parameters
+        self._state = state
+        self._area = store.area("fanuc.state", int)
         self._edits: list[ProgramEdit] = []
 
     @property
     def memory(self) -> ProgramMemory:
         """The memory itself."""
-        return self._power_mate.control.programs
+        return self._power.control.programs
 
     def __contains__(self, number: object) -> bool:
         return isinstance(number, int) and FIRST <= number <= LAST and name_of(number) in self.memory
@@ -111,7 +116,7 @@ class Programs:
 
     def parameter_protects(self, number: int) -> bool:
         """Whether parameters keep a program from being changed: 3202 by its thousand, 3210 as a password."""
-        parameters = self._power_mate.parameters
+        parameters = self._parameters
         if 8000 <= number <= 8999:
             return parameters.bit(3202, 0)
         if 9000 <= number <= 9999:
@@ -122,8 +127,12 @@ class Programs:
     @property
     def key_protects(self) -> bool:
         """Whether the key that protects programs is on (3290#7 says which one it is)."""
-        key = 1 if self._power_mate.parameters.bit(3290, 7) else 3
-        return key in self._power_mate.state.protection_keys
+        key = 1 if self._parameters.bit(3290, 7) else 3
+        return key in self._state.protection_keys
+
+    def transaction(self) -> AbstractContextManager[object]:
+        """Return within what changes of several programs are one."""
+        return self._store.transaction()
 
     def delete(self, number: int) -> None:
         """Delete a program.
@@ -141,14 +150,35 @@ class Programs:
         """
         numbers = [each.number for each in self.directory()]
         doomed = [number for number in numbers if not self.parameter_protects(number)]
-        with self._power_mate.store.transaction():
+        with self.transaction():
             for number in doomed:
                 self.delete(number)
-        if self._power_mate.selected in doomed:
-            self._power_mate.unselect()
+        if self.selected in doomed:
+            self.unselect()
         return len(numbers) - len(doomed)
 
     # ------------------------------------------------------------------ who uses what
+
+    @property
+    def selected(self) -> int:
+        """The number of the selected program, 0 for none."""
+        return self._area.get("selected", 0)
+
+    def select(self, number: int) -> None:
+        """Select a program for MEM and EDIT.
+
+        Raises:
+            ControlError: There is no such program, or one is being executed or interrupted.
+        """
+        self._power.control.select_program(name_of(number))
+        self._area["selected"] = number
+        self._state.cursor = 0
+
+    def unselect(self) -> None:
+        """Have no program selected."""
+        self._area["selected"] = 0
+        self._state.cursor = 0
+        self._power.control.channels[0].select(None)
 
     def edit(self, number: int, *, background: bool = False) -> ProgramEdit:
         """Open a program on the screen of the control; `close` ends it.
@@ -156,7 +186,7 @@ class Programs:
         Raises:
             ControlError: Not in EDIT (in the background: in any mode), or the program is not there or in use.
         """
-        edit = self._power_mate.control.edit(name_of(number), background=background)
+        edit = self._power.control.edit(name_of(number), background=background)
         self._edits = [*(each for each in self._edits if each.is_open), edit]
         return edit
 
@@ -173,4 +203,4 @@ class Programs:
     @property
     def in_operation(self) -> bool:
         """The OP signal: automatic operation has begun and has not ended."""
-        return self._power_mate.control.channels[0].run_state in _IN_OPERATION
+        return self._power.control.channels[0].run_state in _IN_OPERATION

@@ -7,15 +7,19 @@ state only: reading an address shows what holds, whoever has set it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from dataclasses import replace
+from typing import NamedTuple
 
 from polycnc.cnc import ControlError, Emergency, Mode, Overrides
+from polycnc.controllers.fanuc.data._parameters import Parameters
+from polycnc.controllers.fanuc.device._device_state import AT_POWER_ON, ERS, ESP, SERVO_OFF, SP, DeviceState
+from polycnc.controllers.fanuc.device._history import Note
+from polycnc.controllers.fanuc.device._macros import Macros
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
 from polycnc.controllers.fanuc.device._output_signals import Seen, output_byte
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._positions import Positions
+from polycnc.controllers.fanuc.device._power import Power
+from polycnc.controllers.fanuc.device._units import Units
 
 _M = PowerMateMode
 _MD, _DNCI, _ZRN = 0x07, 0x20, 0x80
@@ -35,37 +39,52 @@ _HANDLE = 4  # the handle or, where there is none, increments
 _JOGS = frozenset({_M.JOG, _M.T_JOG, _M.INC})
 RAPID_STEPS = {0: 1.0, 1: 0.5, 2: 0.25}
 F0 = 3
-MOST_FEED_PERCENT = 254
-"""The largest feed override (Manual 000, cnc_opdi: 11111110)."""
 _INCREMENTS = (1, 10, 100, 1000)
-_FIN, _ST, _SP, _ESP, _ERS = 1 << 3, 1 << 2, 1 << 5, 1 << 4, 1 << 7
+_FIN, _ST = 1 << 3, 1 << 2
 _RT = 1 << 7
 _MLK = 2
 _UINT = 8
 
 
-_AT_POWER_ON = {4: 0, 7: 0, 8: _SP | _ESP, 126: 0}
+class Buttons(NamedTuple):
+    """What signals press at the control, as its operator does."""
 
-
-@dataclass(slots=True)
-class SignalState:
-    """The signals that are given."""
-
-    torque_override: list[int]
-    given: dict[int, int] = field(default_factory=_AT_POWER_ON.copy)
-    feed: int = 100
-    rapid: int = 0
-    jog: float = 100.0
-    battery_low: bool = False
-    torque_mode: int = 0
+    start: Callable[[], None]
+    hold: Callable[[], None]
+    reset: Callable[[], None]
+    emergency_stop: Callable[[bool], None]
+    select_mode: Callable[[PowerMateMode], None]
+    protect: Callable[[bool, int], None]
 
 
 class Signals:
-    """Read and give the operation signals of a Power Mate; `state.battery_low` is a condition that a test can set."""
+    """Read and give the operation signals of a Power Mate; `state.battery_low` is a condition that a test can set.
 
-    def __init__(self, power_mate: PowerMate, state: SignalState) -> None:
-        self._power_mate = power_mate
-        self.state = state
+    `device` is the state of the whole control; `panel` returns the byte of an F address that shows the panel.
+    """
+
+    def __init__(
+        self,
+        power: Power,
+        parameters: Parameters,
+        units: Units,
+        positions: Positions,
+        macros: Macros,
+        device: DeviceState,
+        buttons: Buttons,
+        panel: Callable[[int], int | None],
+        note: Note,
+    ) -> None:
+        self._power = power
+        self._parameters = parameters
+        self._units = units
+        self._positions = positions
+        self._macros = macros
+        self._device = device
+        self._buttons = buttons
+        self._panel = panel
+        self._note = note
+        self.state = device.signals
         self.clear()
         self._handlers: dict[int, Callable[[int, int], None]] = {
             4: self._finish,
@@ -81,31 +100,30 @@ class Signals:
             53: self._interrupt,
             100: lambda old, new: self._jog_keys(old, new, 1),
             102: lambda old, new: self._jog_keys(old, new, -1),
-            126: lambda old, new: self._servo_off(new),
+            SERVO_OFF: lambda old, new: self._servo_off(new),
         }
 
     def clear(self) -> None:
         """Let all signals be as they are when the power comes on."""
         state = self.state
-        state.given = _AT_POWER_ON.copy()
+        state.given = AT_POWER_ON.copy()
         state.feed, state.rapid, state.jog = 100, 0, 100.0
         self._applied = Overrides()
 
     def restored(self) -> None:
         """Take note that the state and the control behind it have gone back."""
-        self._applied = self._power_mate.control.overrides
+        self._applied = self._power.control.overrides
 
     # ------------------------------------------------------------------ G addresses
 
     def g(self, address: int) -> int:
         """Return the byte of a G address, with the switches as they are."""
-        power_mate = self._power_mate
-        switches = power_mate.control.switches
+        switches = self._power.control.switches
         given = self.state.given.get(address, 0)
         match address:
             case 8:
-                on = power_mate.control.emergency is Emergency.ON
-                return given & ~_ESP | (0 if on else _ESP)
+                on = self._power.control.emergency is Emergency.ON
+                return given & ~ESP | (0 if on else ESP)
             case 10 | 11:
                 return self._jog_complement >> (8 * (address - 10)) & 0xFF
             case 12:
@@ -113,11 +131,11 @@ class Signals:
             case 14:
                 return given & ~3 | self.rapid_override
             case 43:
-                return given & ~(_MD | _DNCI | _ZRN) | _MODE_SIGNALS.get(power_mate.mode, _HANDLE)
+                return given & ~(_MD | _DNCI | _ZRN) | _MODE_SIGNALS.get(self._device.mode, _HANDLE)
             case 44:
                 return given & ~1 | (1 in switches.block_delete)
             case 46:
-                keys = sum(1 << 2 + key for key in range(1, 5) if key not in power_mate.state.protection_keys)
+                keys = sum(1 << 2 + key for key in range(1, 5) if key not in self._device.protection_keys)
                 return given & 0x05 | switches.single_block << 1 | keys | switches.dry_run << 7
             case _:
                 return given
@@ -131,7 +149,7 @@ class Signals:
             handler(old, value)
         new = self.g(address)
         if new != old:
-            self._power_mate.history.note_signal("G", address, old, new)
+            self._note("G", address, old, new)
 
     def give_bits(self, address: int, mask: int, value: int) -> None:
         """Give some bits of an address; the others stay."""
@@ -180,25 +198,25 @@ class Signals:
 
     def apply_overrides(self) -> None:
         """Let the control have the overrides; with a servo off nothing is fed."""
-        power_mate, control = self._power_mate, self._power_mate.control
-        f0 = min(1.0, power_mate.parameters.value(1421, 1) / power_mate.parameters.value(1420, 1))
+        control, value = self._power.control, self._parameters.value
+        f0 = min(1.0, value(1421, 1) / value(1420, 1))
         rapid = RAPID_STEPS.get(self.state.rapid, f0)
         control.data = replace(control.data, rapid_overrides=(0.0, *RAPID_STEPS.values(), f0))
         feed = self.state.feed / 100.0
-        interlock = bool(self.state.given.get(126))
+        interlock = bool(self.state.given.get(SERVO_OFF))
         control.set_overrides(feed=0.0 if interlock else feed, rapid=0.0 if interlock else rapid)
         self._applied = control.overrides
         self.mode_changed()
 
     def mode_changed(self) -> None:
         """Let manual motion have the override of its mode: that of jogging, or the feed override."""
-        power_mate, control = self._power_mate, self._power_mate.control
-        by_hand = power_mate.mode in _JOGS and not self.state.given.get(126)
+        control = self._power.control
+        by_hand = self._device.mode in _JOGS and not self.state.given.get(SERVO_OFF)
         control.manual.set_overrides(feed=self.state.jog / 100.0 if by_hand else control.overrides.feed)
 
     def _adopt(self) -> None:
         """Take over overrides that were set at the control itself."""
-        there = self._power_mate.control.overrides
+        there = self._power.control.overrides
         if there == self._applied:
             return
         if there.feed != self._applied.feed:
@@ -216,10 +234,6 @@ class Signals:
         for k in range(len(self.state.torque_override)) if axis == 0 else (axis - 1,):
             self.state.torque_override[k] = value
 
-    def servo_is_off(self, axis: int) -> bool:
-        """Whether the servo of an axis (from 1) is switched off by its signal."""
-        return bool(self.state.given.get(126, 0) >> axis - 1 & 1)
-
     # ------------------------------------------------------------------ what signals do
 
     def _press(self, button: Callable[[], None]) -> None:
@@ -231,30 +245,19 @@ class Signals:
 
     def _finish(self, old: int, new: int) -> None:
         if new & ~old & _FIN:
-            self._press(lambda: self._power_mate.control.plc.answer())
+            self._press(lambda: self._power.control.plc.answer())
 
     def _start(self, old: int, new: int) -> None:
         if old & ~new & _ST:
-            self._press(self._power_mate.cycle_start)
-
-    @property
-    def hold_is_on(self) -> bool:
-        """Whether the signal of feed hold is given, so that nothing can start."""
-        return not self.state.given[8] & _SP
-
-    @property
-    def reset_is_on(self) -> bool:
-        """Whether the signal of external reset is given."""
-        return bool(self.state.given[8] & _ERS)
+            self._press(self._buttons.start)
 
     def _stops(self, old: int, new: int) -> None:
-        power_mate = self._power_mate
-        if (old ^ new) & _ESP:
-            power_mate.emergency_stop(not new & _ESP)
-        if old & ~new & _SP:
-            power_mate.feed_hold()
-        if new & ~old & _ERS:
-            power_mate.reset()
+        if (old ^ new) & ESP:
+            self._buttons.emergency_stop(not new & ESP)
+        if old & ~new & SP:
+            self._buttons.hold()
+        if new & ~old & ERS:
+            self._buttons.reset()
 
     def _jog_override_changed(self, old: int, new: int) -> None:
         low = self.state.given.get(10, self._jog_complement & 0xFF)
@@ -266,67 +269,65 @@ class Signals:
         wanted = value & (_MD | _ZRN | _DNCI)
         code = wanted & _MD
         if code == _HANDLE:
-            mode = _M.INC if self._power_mate.mode is _M.INC else _M.HND
+            mode = _M.INC if self._device.mode is _M.INC else _M.HND
         else:
             mode = next(
                 (mode for mode, signals in _MODE_SIGNALS.items() if signals == wanted),
                 next(mode for mode, signals in _MODE_SIGNALS.items() if signals == code),
             )
-        self._power_mate.select_mode(mode)
+        self._buttons.select_mode(mode)
         self._hold_keys()
 
     def _interrupt(self, old: int, new: int) -> None:
         if new & ~old & _UINT:
-            self._power_mate.custom_macros.language.interrupt()
+            self._macros.language.interrupt()
 
     def _delete_and_lock(self, old: int, new: int) -> None:
-        self._power_mate.control.set_switches(block_delete=frozenset({1} if new & 1 else ()))
+        self._power.control.set_switches(block_delete=frozenset({1} if new & 1 else ()))
         self.apply_lock()
 
     def apply_lock(self) -> None:
         """Let the machine lock be as its signal is, within a program not before the next start."""
         lock = bool(self.state.given.get(44, 0) & _MLK)
-        if lock is not self._power_mate.control.switches.machine_lock:
-            self._press(lambda: self._power_mate.control.set_switches(machine_lock=lock))
+        if lock is not self._power.control.switches.machine_lock:
+            self._press(lambda: self._power.control.set_switches(machine_lock=lock))
 
     def _switches(self, old: int, new: int) -> None:
-        power_mate = self._power_mate
-        power_mate.control.set_switches(single_block=bool(new & 2), dry_run=bool(new & 0x80))
+        self._power.control.set_switches(single_block=bool(new & 2), dry_run=bool(new & 0x80))
         for key in range(1, 5):
-            power_mate.protect_key(not new >> 2 + key & 1, key=key)
+            self._buttons.protect(not new >> 2 + key & 1, key)
 
     # ------------------------------------------------------------------ axes
 
     def _jog_keys(self, old: int, new: int, direction: int) -> None:
-        for axis in range(1, self._power_mate.axes + 1):
+        for axis in range(1, self._parameters.axes + 1):
             bit = 1 << axis - 1
             if (old ^ new) & bit:
                 self._jog_key(axis, direction, bool(new & bit))
 
     def _jog_key(self, axis: int, direction: int, on: bool) -> None:
-        power_mate = self._power_mate
-        control, name = power_mate.control, power_mate.axis_name(axis)
+        control, name = self._power.control, self._units.axis_name(axis)
         rapid = bool(self.state.given.get(19, 0) & _RT)
-        if on and self.servo_is_off(axis):
+        if on and self.state.servo_is_off(axis):
             return
         if control.mode is Mode.REF and on:
             self._press(lambda: control.reference(name))
         elif control.mode is Mode.INC and on:
-            size = power_mate.output_scale(axis).value(_INCREMENTS[self.state.given.get(19, 0) >> 4 & 3])
+            size = self._units.output_scale(axis).value(_INCREMENTS[self.state.given.get(19, 0) >> 4 & 3])
             self._press(lambda: control.increment(name, direction, size, rapid=rapid))
         else:
             self._press(lambda: control.jog(name, direction if on else None, rapid=rapid))
 
     def _hold_keys(self) -> None:
         """Let keys that are held down act in the mode that has come."""
-        if self._power_mate.control.mode is Mode.JOG:
+        if self._power.control.mode is Mode.JOG:
             self._jog_keys(0, self.state.given.get(100, 0), 1)
             self._jog_keys(0, self.state.given.get(102, 0), -1)
 
     def _servo_off(self, new: int) -> None:
-        for axis in range(1, self._power_mate.axes + 1):
+        for axis in range(1, self._parameters.axes + 1):
             if new >> axis - 1 & 1:
-                self._power_mate.control.manual.stop(self._power_mate.axis_name(axis))
+                self._power.control.manual.stop(self._units.axis_name(axis))
         self._adopt()
         self.apply_overrides()
 
@@ -334,18 +335,17 @@ class Signals:
 
     def f(self, address: int) -> int:
         """Return the byte of an F address."""
-        power_mate = self._power_mate
-        panel = power_mate.panel.image(address)
+        panel = self._panel(address)
         if panel is not None:
             return panel
         seen = Seen(
-            power_mate.status(),
-            power_mate.mode,
-            power_mate.inch_input,
-            self.reset_is_on,
+            self._power.control.status(),
+            self._device.mode,
+            self._device.inch,
+            self.state.reset_is_on,
             bool(self.g(44) & _MLK),
             self.state.battery_low,
-            power_mate.custom_macros.state.user_outputs,
-            lambda: [each.machine == 0 for each in power_mate.positions.read()[: power_mate.axes]],
+            self._device.macros.user_outputs,
+            lambda: [each.machine == 0 for each in self._positions.read()],
         )
         return output_byte(address, seen)

@@ -7,13 +7,18 @@ from dataclasses import dataclass
 from typing import Self
 
 from polycnc.cnc import ControlSnapshot
-from polycnc.controllers.fanuc.device._axis_motion import AxisMotionState, Block, Order, PathBuffers
-from polycnc.controllers.fanuc.device._device_state import DeviceState
-from polycnc.controllers.fanuc.device._history import SamplingState
-from polycnc.controllers.fanuc.device._macros import MacroState
-from polycnc.controllers.fanuc.device._mdi import MdiState
+from polycnc.controllers.fanuc.device._device_state import (
+    AxisMotionState,
+    Block,
+    DeviceState,
+    MacroState,
+    MdiState,
+    Order,
+    PathBuffers,
+    SamplingState,
+    SignalState,
+)
 from polycnc.controllers.fanuc.device._modes import PowerMateMode
-from polycnc.controllers.fanuc.device._signals import SignalState
 from polycnc.machine import Form, Snapshot, SnapshotError, Values
 
 DEVICE = "power mate"

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from polycnc.cnc import Emergency, Motion, RunState
 from polycnc.controllers.fanuc.device._alarms import shown
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
+from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
 _RUN = {
     RunState.ACTIVE: 4,
@@ -42,7 +39,7 @@ def read_state(power_mate: PowerMate, *, uploading: bool = False) -> State:
     """Return the state in the present cycle; `uploading` says whether a program is going out."""
     control = power_mate.control
     channel = control.channel_status()
-    reset = power_mate.signals.reset_is_on or control.emergency is Emergency.RESET_NEEDED
+    reset = power_mate.signals.state.reset_is_on or control.emergency is Emergency.RESET_NEEDED
     stopped = control.emergency is Emergency.ON
     battery = _BATTERY if power_mate.signals.state.battery_low else 0
     return State(

@@ -10,14 +10,11 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import TYPE_CHECKING
 
 from polycnc.cnc import ControlError, Refusal
-from polycnc.controllers.fanuc.device._programs import FIRST, LAST, name_of
+from polycnc.controllers.fanuc.data._parameters import Parameters
+from polycnc.controllers.fanuc.device._programs import FIRST, LAST, Programs, name_of
 from polycnc.units import whole
-
-if TYPE_CHECKING:
-    from polycnc.controllers.fanuc.device._power_mate import PowerMate
 
 LF = b"\n"
 _BLOCK_OK = frozenset(b"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-./*=,#[]&?@: ")
@@ -168,15 +165,16 @@ def text_of(blocks: list[bytes]) -> bytes:
 class Transfer:
     """The one transfer into the control: a download, or a comparison with what is registered."""
 
-    def __init__(self, power_mate: PowerMate, *, compare: bool = False, owner: object = None) -> None:
-        parameters = power_mate.parameters
+    def __init__(
+        self, programs: Programs, parameters: Parameters, *, compare: bool = False, owner: object = None
+    ) -> None:
         self.compare = compare
         self.owner = owner  # whose end ends the transfer
         self.fault: Fault | None = None
-        self._power_mate = power_mate
+        self._programs = programs
         self._replaces = parameters.bit(3201, 2)
         self._characters = 0
-        self._room = power_mate.programs.memory.free_bytes or 0
+        self._room = programs.memory.free_bytes or 0
         self._stream = ProgramStream(
             tv_check=parameters.bit(0, 0),
             ends_at_m=not parameters.bit(3201, 6),
@@ -225,34 +223,29 @@ class Transfer:
         if self.compare:
             self._compare(programs)
             return
-        memory = self._power_mate.programs.memory
         try:
-            with self._power_mate.store.transaction():
+            with self._programs.transaction():
                 for number, content in programs.items():
                     self._check_program(number, again=True)
-                    if number in self._power_mate.programs:
-                        memory.write(name_of(number), content)
-                    else:
-                        memory.create(name_of(number), content)
+                    self._programs.register(number, content)
         except ControlError as error:
             faults = {Refusal.FULL: Fault.FULL, Refusal.PROTECTED: Fault.PROTECTED}
             raise TransferError(faults.get(error.reason, Fault.REGISTERED)) from error
 
     def _compare(self, programs: dict[int, bytes]) -> None:
-        known = self._power_mate.programs
+        known = self._programs
         if any(number not in known or known.read(number) != text for number, text in programs.items()):
             raise TransferError(Fault.DIFFERENT)
 
     def _check_program(self, number: int, *, again: bool = False) -> None:
         if self.compare:
             return
-        power_mate = self._power_mate
-        if power_mate.programs.parameter_protects(number):
+        if self._programs.parameter_protects(number):
             raise TransferError(Fault.PROTECTED)
-        if number == power_mate.selected:
+        if number == self._programs.selected:
             raise TransferError(Fault.SELECTED)
         twice = not again and any(number == known for known, _ in self._stream.programs)
-        if twice or (number in power_mate.programs and not self._replaces):
+        if twice or (number in self._programs and not self._replaces):
             raise TransferError(Fault.REGISTERED)
 
     def _count(self, block: bytes) -> None:

@@ -122,7 +122,7 @@ def cnc_rdalminfo(
 ) -> tuple[EW, Annotated[ALMINFO, Out("alarminfo")]]:
     """Read number, axis and, with `type` 1, text of alarms of the chosen groups (Manual 000, cnc_rdalminfo).
 
-    Ruling: as many alarms as `length` has room for, oldest first; behind the last one stands FFFFH.
+    Ruling: as many alarms as `length` has room for, oldest first; after the last one stands FFFFH.
     """
     if type not in (0, 1):
         raise Refused(EW.EW_NUMBER)
@@ -201,7 +201,7 @@ def cnc_rdcurrent(link: Link) -> tuple[EW, Annotated[list[int], LONG, Out("crrnt
         rated = device.parameters.value(2086, k + 1)
         share = math.copysign(axis.load_percent / 100.0, axis.velocity)
         most = device.signals.torque_override(k + 1) / 100.0
-        if not device.signals.servo_is_off(k + 1):
+        if not device.signals.state.servo_is_off(k + 1):
             found[k] = round(rated * max(-most, min(most, share)))
     return EW.EW_OK, found
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Annotated, TypeAlias
 
-from polycnc.controllers.fanuc.device._axis_motion import PATHS, Block, Order
+from polycnc.controllers.fanuc.device._device_state import PATHS, Block, Order
 from polycnc.controllers.fanuc.device._power_mate import PowerMate
 from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW

@@ -241,7 +241,7 @@ def cnc_rdparainfo(
 ) -> tuple[EW, Annotated[ODBPARAIF, Out("paraif")]]:
     """Tell which parameters there are from a number on, and their attributes (Manual 000, cnc_rdparainfo).
 
-    Ruling: before the first and behind the last parameter there is number -1.
+    Ruling: before the first and after the last parameter there is number -1.
     """
     rows = list(link.device.parameters.rows.values())
     found = [k for k, row in enumerate(rows) if row.number >= s_number]

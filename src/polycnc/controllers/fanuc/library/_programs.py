@@ -64,7 +64,7 @@ def cnc_dwnstart(link: Link) -> EW:
     )
     _refuse_if(busy, EW.EW_BUSY)
     _refuse_if(device.programs.key_protects, EW.EW_PROT)
-    device.transfer = Transfer(device, owner=link)
+    device.begin_transfer(owner=link)
     return EW.EW_OK
 
 

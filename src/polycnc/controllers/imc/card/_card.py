@@ -11,7 +11,7 @@ from enum import IntEnum
 
 from polycnc.controllers.imc.card._config import CardConfig
 from polycnc.controllers.imc.card._power_on import CYCLE_S, make_card, make_machine
-from polycnc.controllers.imc.card._status import CardStatus, card_status
+from polycnc.controllers.imc.card._status import AxisStatus, CardStatus
 from polycnc.controllers.imc.core._addresses import COUNTS, EVENTS, GIN, GINLAT, MOVING
 from polycnc.controllers.imc.core._cycle import run_cycles
 from polycnc.controllers.imc.core._event_codes import LOAD_MOST
@@ -324,7 +324,7 @@ class Card:
 
     def status(self) -> CardStatus:
         """Return what the card is and does in the present cycle."""
-        return card_status(self)
+        return _status(self)
 
     def snapshot(self) -> Snapshot:
         """Return the whole state of the card and of the drives around it, and the clock."""
@@ -340,7 +340,7 @@ class Card:
         arrays = self._arrays()
         snapshot.check(_KIND, self._made_from, arrays)
         epoch = snapshot.moment("epoch")
-        snapshot.put_back(arrays)
+        snapshot.restore_state(arrays)
         self.clock.go_back(snapshot.cycle, epoch)
 
     @property
@@ -349,3 +349,29 @@ class Card:
 
     def _arrays(self) -> list[Array]:
         return arrays_of((self.kernel, self.state))
+
+
+def _status(card: Card) -> CardStatus:
+    """Return the status of a card in its present cycle."""
+    return CardStatus(
+        cycle=card.clock.cycles,
+        time_s=card.clock.now_s,
+        axes=tuple(
+            AxisStatus(
+                command=card.read("curpos", i),
+                encoder=card.read("encp", i),
+                velocity=card.read("curvel", i),
+                is_moving=card.is_moving(i),
+                error=card.read_words(parameter("error").address, i, 1)[0],
+            )
+            for i in range(card.axes)
+        ),
+        inputs=_bits(card, "gin1", "gin2"),
+        outputs=_bits(card, "gout1", "gout2", "gout3"),
+        queued=tuple(int(words) for words in card.state.fifo["words"]),
+    )
+
+
+def _bits(card: Card, *names: str) -> int:
+    words = (card.read_words(parameter(name).address, 0, 1)[0] for name in names)
+    return sum(word << 16 * k for k, word in enumerate(words))

@@ -33,7 +33,7 @@ from polycnc.kernel import compiled
 
 @compiled
 def follows(s: CardState, i: int) -> bool:
-    """Tell whether axis `i` is a slave, which has its turn behind those it follows."""
+    """Tell whether axis `i` is a slave, which has its turn after those it follows."""
     mode = s.system[0, i]["mode"]
     return bool(mode in (GEAR, SYNC))
 

@@ -53,7 +53,7 @@ def _queue_cycle(s: CardState, f: int) -> None:
 
 @compiled
 def queues_cycle(s: CardState) -> None:
-    """Give every queue its turn, and the path spaces behind two of them."""
+    """Give every queue its turn, and the path spaces after two of them."""
     for f in range(CFIFO):
         path = f >= PFIFO1
         if path and not begin_space_cycle(s, f - PFIFO1):

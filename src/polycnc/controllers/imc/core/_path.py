@@ -1,4 +1,4 @@
-"""The two path spaces: segments of mapped axes, gone along with one speed profile each, joined within a cycle."""
+"""The two path spaces: segments of mapped axes, traversed with one speed profile each, joined within a cycle."""
 
 from __future__ import annotations
 
@@ -161,7 +161,7 @@ def _sample(s: CardState, g: int) -> float:
 
 @compiled
 def _rest_space(s: CardState, g: int) -> None:
-    """Let space `g` be at rest behind its last segment, and its axes go once they have taken what they were given."""
+    """Let space `g` be at rest after its last segment, and its axes go once they have taken what they were given."""
     n = s.axis.shape[0]
     s.space[g]["speed"] = 0.0
     put16(s.memory, n, g * addr.SPACE + addr.PATHMOVING, 0)

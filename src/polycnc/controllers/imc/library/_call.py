@@ -41,7 +41,7 @@ def check_place(handle: IMC_HANDLE, address: int, axis: int, *, written: bool = 
     """Make sure that there is a parameter at `address`, and an axis if it needs one; return the axis to ask for.
 
     For a parameter of the card any axis will do; one that is not there becomes axis 0, which counts only where a wide
-    access reaches words of an axis behind it.
+    access reaches words of an axis after it.
 
     Raises:
         Refused: There is not, or it is to be written and cannot.

@@ -147,7 +147,7 @@ def IMC_PutContourData(
     """Add points of a contour: displacements of 16 bits, axis after axis, point after point (Manual 004, 3.6).
 
     Only whole points: `nWords`, at most 126, is a multiple of the number of axes if that is set: of groupnum for CFIFO.
-    A path queue takes points too, of pathaxisnum axes; these are gone along with segtgvel and pathacc.
+    A path queue takes points too, of pathaxisnum axes; these are traversed with segtgvel and pathacc.
     """
     if nWords > len(pdata):
         raise Refused(IMC_OUT_OF_RANGE)

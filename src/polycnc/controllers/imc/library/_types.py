@@ -77,7 +77,7 @@ class Queues:
 
 @dataclass(frozen=True, slots=True)
 class Fixed:
-    """A number that becomes fixed point: `bits` whole bits with sign, `fraction` bits behind the point."""
+    """A number that becomes fixed point: `bits` whole bits with sign, `fraction` bits after the point."""
 
     bits: int = 16
     fraction: int = 32

@@ -11,7 +11,7 @@ from polycnc.nc import Event, Suppressed
 
 
 @dataclass(slots=True)
-class RunMoment:
+class RunProgress:
     """What a run is doing, what is switched on for it, and what it has met on the path.
 
     `hold` is a feed hold; a stop holds the path as well. `held_back` is one that comes when the program lets it.
@@ -44,7 +44,7 @@ class RunMoment:
     rests: tuple[int, int] = (-1, 0)
     enough_at: int | None = None
 
-    def copy(self) -> RunMoment:
+    def copy(self) -> RunProgress:
         """Return a moment that changes no more with this one."""
         return replace(
             self,

@@ -1,4 +1,4 @@
-"""What a program run does along its path: lets it go, meets what stands on it, and brings it to a stand.
+"""What a program run does along its path: lets it go, meets what stands on it, and stops it.
 
 Nothing here changes where the path leads; see `ProgramRun`, which has the commands.
 """
@@ -17,7 +17,7 @@ from polycnc.cnc._axis_alarms import axis_alarm
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._probing import Probing, cannot_begin, delete_rest, positions
-from polycnc.cnc._run_moment import RunMoment
+from polycnc.cnc._run_progress import RunProgress
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
 from polycnc.cnc._stops import Step, Stopper
 from polycnc.cnc._tool_times import ToolTime
@@ -44,15 +44,21 @@ RESTS_PER_CYCLE = 16
 """Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
 
 
-class Conduct:
-    """Conduct one path of a machine along what its channel prepares, as `moment` says.
+class PathRunner:
+    """PathRunner one path of a machine along what its channel prepares, as `moment` says.
 
     `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes. `rows`, `on_event` and
     `on_skip` are told what happens, see `ProgramRun`.
     """
 
     def __init__(
-        self, machine: Machine, channel: Channel, options: RunOptions, moment: RunMoment, *, ahead: int | None
+        self,
+        machine: Machine,
+        channel: Channel,
+        options: RunOptions,
+        moment: RunProgress,
+        *,
+        ahead: int | None,
     ) -> None:
         self.machine = machine
         self.path = channel.path
@@ -121,7 +127,7 @@ class Conduct:
     def advance(self, cycles: int, *, until: Until | None = None, asleep: bool = False) -> int:
         """Let up to `cycles` cycles pass; return how many did.
 
-        It returns early when the run comes to a stand (a block's end, a program stop, its end, an alarm), and with
+        It returns early when the run stops (a block's end, a program stop, its end, an alarm), and with
         `until` when one of those reasons was met or the condition holds after a cycle. `asleep`: a language that waits
         is not asked meanwhile, since nothing can have come.
         """
@@ -292,7 +298,7 @@ class Conduct:
                 self.feed.replan()
 
     def _stand_at_marks(self) -> bool:
-        """Carry out the blocks without segments that come next; return whether the program stops behind one."""
+        """Carry out the blocks without segments that come next; return whether the program stops after one."""
         for _ in range(_MOST_MARKS):  # a loop may have no other blocks
             if (tag := self.feed.take_mark()) is None:
                 break
@@ -355,7 +361,7 @@ class Conduct:
                 self.feed.keep_box()
                 self.set_hold()
             if self.stopper.alone:
-                self.feed.let_pass()  # what is read behind it belongs to it
+                self.feed.let_pass()  # what is read after it belongs to it
             self._go_on()
         elif event.stop is not None and self.stands_at(event.stop):
             self.moment.stop = event
@@ -377,13 +383,13 @@ class Conduct:
         self.set_hold()
 
     def _pass_barrier(self) -> None:
-        """Let preparation go on behind functions that have been answered: what they change counts for what follows."""
+        """Continue preparing after functions that have been answered: what they change counts for what follows."""
         if self.moment.barrier and not self.moment.unanswered:
             self.moment.barrier = False
             self._go_on()
 
     def _go_on(self) -> None:
-        """Let preparation go on behind what has been met."""
+        """Let preparation continue after what has been met."""
         self.channel.go_on()
         self.feed.wake()
 

@@ -1,0 +1,110 @@
+"""The page of the C libraries: exports, what lies behind pointers, codes when nobody is there, the protocol."""
+
+# ruff: noqa: E501  a row of a table is a line
+
+from collections.abc import Iterator
+
+from polycnc.controllers.library.clib import PORT, CLibrary, Slot, Way
+from polycnc.servers.calls import LIBRARIES, TARGETS, library_of
+
+_HEAD = f"""# C libraries
+
+`polycnc clib KIND` writes a library with the name and the exports of the maker's; programs that link against it or load
+it reach a served machine through the door `calls`. The [tutorial](../tutorials/your-old-program.md) does it. The library
+is C99 on sockets; nothing else of Python or polycnc is in the program's process.
+
+| what | value |
+| --- | --- |
+| header | C11 and C++17; the sizes and offsets of all structures are asserted when it is compiled. `PC_LONG` has 32 bits: it is `long` where that has 32, else `int` |
+| where the machine is | the environment variable `POLYCNC_CALLS=HOST:PORT`; else the line `calls = "HOST:PORT"` of `polycnc.toml` beside the program; else 127.0.0.1:{PORT} |
+| names | exported as they are, without decoration, also in 32-bit Windows libraries, whose functions are `stdcall` |
+| structures | packed as the manuals have them |
+| clients | one connection is one program of the library, with its own handles; calls of several threads are carried out one after the other |
+| time | passes at the rate of the served machine |
+| waiting | 10 s for an answer; with `cnc_allclibhndl3` as long as the program says |
+| null pointers | refused with a code; nothing is carried out |
+| refused calls | write nothing; others write never more than the length that the program passes, or one structure |
+
+## Targets
+
+| target | library | compiler |
+| --- | --- | --- |
+"""
+
+_TAIL = """
+## The protocol
+
+Little-endian. The library says hello: `PNCCALL1`, width of a pointer, packing (0: each structure's own), two zeros, then its
+name, its version and a hash of its table, 16 bytes each. The answer is `PNCCALL1` and a code of 4 bytes, 0 if all is well. A
+call is its length (4 bytes, of what follows), number and serial number (2 each), then the arguments: a number as it is, what
+is read behind a pointer as a size (4 bytes, 0xFFFFFFFF: null) and the bytes, what is written as the room for it. The answer is
+its length, number, serial number, state (4 bytes, 1: refused), the result (8 bytes), the sizes of all outputs, and the
+outputs. No frame has more than 65,536 bytes. A frame that is none of these ends the connection; nothing of it is carried out.
+
+## A trace
+
+`polycnc calls KIND --trace FILE` writes a line of JSON for each call: `time_s` of the machine, `call`, what went `in`, the
+`code`, what came `out`. Numbers and texts are as they are, structures hexadecimal bytes.
+
+## What there is not
+
+No library in the process (the interpreter is never loaded into the program), no 4-byte packing of later headers, no routine
+of the program that an interrupt calls, no booting of a served board. Functions that no manual of these systems has are not
+exported: the loader names them.
+"""
+
+
+def page() -> str:
+    """Return the text of the page."""
+    targets = "".join(
+        f"| `{name}` | `{row.made.format(name='NAME')}` | {', '.join(row.compilers)} |\n"
+        for name, row in TARGETS.items()
+    )
+    parts = [_HEAD, targets, *(_library(library_of(kind)) for kind in LIBRARIES), _TAIL]
+    return "".join(parts)
+
+
+def _library(library: CLibrary) -> str:
+    lines = [
+        f"\n## {library.name}\n",
+        f"`polycnc clib {library.kind}`: {len(library.functions)} functions"
+        + (f" and {len(library.aliases)} other names of them" if library.aliases else "")
+        + ". The code of a call is",
+        "",
+        "| when | code |",
+        "| --- | --- |",
+        f"| nobody is there when the library is opened | {library.nobody:d} |",
+        f"| the connection is lost, or nobody is there at another call | {library.lost:d} |",
+        f"| a pointer is null, or a call larger than a frame | {library.null:d} |",
+        f"| library and server do not belong together | {library.version:d} |",
+    ]
+    lines += [f"| any of these, in `{name}` | {code:d} |" for name, code in sorted(library.failures.items())]
+    lines += ["", "How many bytes lie behind a pointer, where it is not one structure or number:", ""]
+    lines += ["| function | argument | bytes |", "| --- | --- | --- |", *_rows(library)]
+    if library.left_out:
+        lines += ["", "Exported, but without effect:", "", "| function | why |", "| --- | --- |"]
+        lines += [f"| `{name}` | {reason} |" for name, reason in sorted(library.left_out.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _rows(library: CLibrary) -> Iterator[str]:
+    for call in library.calls:
+        for slot in call.slots:
+            if slot.way is not Way.VALUE and (bytes_ := _bytes(slot)):
+                yield f"| `{call.function.name}` | `{slot.argument.name}` | {bytes_} |"
+
+
+def _bytes(slot: Slot) -> str:
+    said = slot.size if slot.reads else slot.room
+    inner = said.partition("(")[2].removesuffix(")")
+    if said.startswith("pc_least"):
+        inner, _, most = inner.rpartition(", ")
+        return f"`{inner}`, at most `{most}`"
+    if inner == f"sizeof({slot.element.__name__})" or inner == str(slot.width):
+        return ""
+    if slot.way is Way.TEXT and slot.reads:
+        return "a text with its zero" + (
+            f", written: `{slot.room.removeprefix('pc_size')}`" if slot.writes else ""
+        )
+    plain = inner.replace("(int64_t)", "").replace("(int)", "")
+    return f"`{plain.replace('(18)', '18').replace('(6)', '6')}`"

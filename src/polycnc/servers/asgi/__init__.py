@@ -1,0 +1,5 @@
+"""A port on which an application answers HTTP, in the event loop of the machines. Needs `polycnc[serve]`."""
+
+from polycnc.servers.asgi._door import AsgiDoor
+
+__all__ = ["AsgiDoor"]

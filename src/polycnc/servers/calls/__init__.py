@@ -1,0 +1,26 @@
+"""Calls of C programs to served machines: what their library sends is carried out by the façade of the machine."""
+
+from polycnc.controllers.library.clib import PORT
+from polycnc.servers.calls._build import TARGETS, build_command, build_library, target_here, write_library
+from polycnc.servers.calls._caller import Caller
+from polycnc.servers.calls._client import MAGIC, CallClient, Hello, Trace
+from polycnc.servers.calls._libraries import LIBRARIES, Served, library_of
+from polycnc.servers.calls._server import CallsServer
+
+__all__ = [
+    "LIBRARIES",
+    "MAGIC",
+    "PORT",
+    "TARGETS",
+    "CallClient",
+    "Caller",
+    "CallsServer",
+    "Hello",
+    "Served",
+    "Trace",
+    "build_command",
+    "build_library",
+    "library_of",
+    "target_here",
+    "write_library",
+]

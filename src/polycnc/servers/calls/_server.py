@@ -1,0 +1,162 @@
+"""The shell of the door: TCP connections, each a client with a session of the façade of its own."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from polycnc.controllers.library.clib import PORT
+from polycnc.errors import UsageError
+from polycnc.servers.calls._caller import Caller
+from polycnc.servers.calls._client import CallClient, Trace
+from polycnc.servers.calls._libraries import LIBRARIES
+from polycnc.servers.machines import LOOPBACK, Log, ServedMachine
+
+_MOST_CLIENTS = 256
+_HELLO_S = 10.0
+
+
+class CallsServer:
+    """Answer C programs for machines whose kind has a library; port 0 takes a free one, see `port`."""
+
+    def __init__(
+        self,
+        machines: Sequence[ServedMachine],
+        *,
+        address: str = LOOPBACK,
+        port: int = PORT,
+        log: Log | None = None,
+        trace: Path | None = None,
+    ) -> None:
+        self.address, self.port = address, port
+        self.lines: set[_Line] = set()
+        self._machines = machines
+        self._log = log or Log()
+        self.trace = None if trace is None else Trace(trace)
+        self._server: asyncio.Server | None = None
+
+    @property
+    def said(self) -> str:
+        """Where it listens."""
+        return f"{self.address}:{self.port}"
+
+    async def start(self) -> None:
+        """Listen.
+
+        Raises:
+            UsageError: The address or port cannot be listened on.
+        """
+        loop = asyncio.get_running_loop()
+        try:
+            self._server = await loop.create_server(
+                lambda: _Line(self), self.address, self.port, reuse_address=True
+            )
+        except OSError as error:
+            raise UsageError(
+                f"cannot listen on {self.address}:{self.port}: {error.strerror or error}",
+                hint="Choose another port or address; another server may have this one.",
+            ) from None
+        self.port = self._server.sockets[0].getsockname()[1]
+
+    async def close(self) -> None:
+        """Stop listening and end every connection."""
+        if self._server is not None:
+            self._server.close()
+        for line in tuple(self.lines):
+            line.abort()
+        await asyncio.sleep(0)  # lets the connections tell that they are lost
+        if self.trace is not None:
+            self.trace.close()
+
+    def adopt(self, transport: asyncio.Transport, data: bytes) -> None:
+        """Answer a connection that somebody else has taken, and that began with these bytes."""
+        line = _Line(self)
+        transport.set_protocol(line)
+        line.connection_made(transport)
+        line.data_received(data)
+
+    def find(self, name: str) -> tuple[Caller, list[ServedMachine]] | None:
+        """Return a caller of a library, and the machines that it reaches."""
+        kinds = {each.kind for each in self._machines}
+        kind = next((each for each in kinds if LIBRARIES[each].load().name == name), None)
+        if kind is None:
+            return None
+        machines = [each for each in self._machines if each.kind == kind]
+        served = LIBRARIES[kind]
+        return served.make(served.load(), [each.device for each in machines]), machines
+
+    def tell(self, sentence: str) -> None:
+        """Write what was refused into the log."""
+        self._log.write("refused", door="calls", reason=sentence)
+
+
+class _Line(asyncio.Protocol):
+    """One connection. While time cannot pass for it, or its peer takes nothing, nothing more is read."""
+
+    _transport: asyncio.Transport
+
+    def __init__(self, server: CallsServer) -> None:
+        self._server = server
+        self._machines: list[ServedMachine] = []
+        self._client = CallClient(self._find, server.tell, server.trace, self._now_s)
+        self._limit: asyncio.TimerHandle | None = None
+
+    def _find(self, name: str) -> Caller | None:
+        found = self._server.find(name)
+        if found is None:
+            return None
+        caller, self._machines = found
+        return caller
+
+    def _now_s(self) -> float:
+        return self._machines[0].device.clock.now_s if self._machines else 0.0
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        assert isinstance(transport, asyncio.Transport)
+        self._transport = transport
+        if len(self._server.lines) >= _MOST_CLIENTS:
+            self._server.tell(f"more than {_MOST_CLIENTS} clients")
+            transport.abort()
+            return
+        self._server.lines.add(self)
+        self._limit = asyncio.get_running_loop().call_later(_HELLO_S, self.abort)
+
+    def data_received(self, data: bytes) -> None:
+        if not self._machines:  # a hello reaches no machine
+            self._send(self._client.receive(data))
+            return
+        for each in self._machines[1:]:
+            each.keeper.submit(lambda: None, lambda _: None)  # lets its time pass
+        if not self._machines[0].keeper.submit(partial(self._client.receive, data), self._send):
+            self.abort()
+
+    def _send(self, sent: bytes) -> None:
+        if sent:
+            self._transport.write(sent)
+        if self._machines and self._limit is not None:
+            self._limit.cancel()
+            self._limit = None
+        if self._client.ended:
+            self._transport.close()
+
+    def pause_writing(self) -> None:
+        self._transport.pause_reading()
+
+    def resume_writing(self) -> None:
+        self._transport.resume_reading()
+
+    def connection_lost(self, error: Exception | None) -> None:
+        self._server.lines.discard(self)
+        if self._limit is not None:
+            self._limit.cancel()
+        caller = self._client.caller
+        if caller is not None:
+            self._client.ended = True
+            end = LIBRARIES[caller.library.kind].end
+            self._machines[0].keeper.submit(lambda: end(caller.session), lambda _: None)
+
+    def abort(self) -> None:
+        """End the connection at once."""
+        self._transport.abort()

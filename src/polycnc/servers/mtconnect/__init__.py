@@ -1,0 +1,62 @@
+"""MTConnect: an agent of its own for served machines, and the description of a machine for a foreign one."""
+
+from typing import TYPE_CHECKING
+
+from polycnc.on_demand import names_on_demand
+from polycnc.servers.mtconnect._agent import Agent, Answer, StreamAsked
+from polycnc.servers.mtconnect._device import DeviceModel, Item, asset_id, device_model, model_of
+from polycnc.servers.mtconnect._documents import Header, asset_text, devices_document
+from polycnc.servers.mtconnect._errors import AgentError, Code
+from polycnc.servers.mtconnect._observations import Buffer, Observation
+from polycnc.servers.mtconnect._query import Asked, asked_of
+from polycnc.servers.mtconnect._recorder import Change, Looked, Recorder, time_text
+from polycnc.servers.mtconnect._rows import (
+    CONDITIONS,
+    ROWS,
+    USUAL_VERSION,
+    VERSIONS,
+    ConditionRow,
+    Row,
+    Version,
+)
+from polycnc.servers.mtconnect._xpath import PathError, choose, tree_of
+
+if TYPE_CHECKING:
+    from polycnc.servers.mtconnect._door import MTConnectDoor
+
+__all__ = [
+    "CONDITIONS",
+    "ROWS",
+    "USUAL_VERSION",
+    "VERSIONS",
+    "Agent",
+    "AgentError",
+    "Answer",
+    "Asked",
+    "Buffer",
+    "Change",
+    "Code",
+    "ConditionRow",
+    "DeviceModel",
+    "Header",
+    "Item",
+    "Looked",
+    "MTConnectDoor",
+    "Observation",
+    "PathError",
+    "Recorder",
+    "Row",
+    "StreamAsked",
+    "Version",
+    "asked_of",
+    "asset_id",
+    "asset_text",
+    "choose",
+    "device_model",
+    "devices_document",
+    "model_of",
+    "time_text",
+    "tree_of",
+]
+
+__getattr__ = names_on_demand(__name__, {"_door": ("MTConnectDoor",)})

@@ -1,0 +1,110 @@
+"""The shell of the adapter: a TCP port on which agents read what changes."""
+
+from __future__ import annotations
+
+import asyncio
+
+from polycnc.errors import UsageError
+from polycnc.servers.machines import LOOPBACK, ServedMachine
+from polycnc.servers.mtconnect import VERSIONS, model_of
+from polycnc.servers.plant import see
+from polycnc.servers.shdr._lines import Adapter, Session
+
+PORT = 7878
+_MOST_AGENTS = 32
+_MOST_UNREAD = 1 << 22
+_PIECE_BYTES = 1 << 14
+_TURN_S = 0.1  # of the wall clock: so late an agent sees what was commanded while time stands still
+
+
+class ShdrServer:
+    """Serve one machine to agents; `version` decides which data items there are."""
+
+    def __init__(
+        self, machine: ServedMachine, version: str, *, address: str = LOOPBACK, port: int = PORT
+    ) -> None:
+        control = machine.control
+        assert control is not None
+        assert machine.find_control is not None
+        self._machine = machine
+        self._adapter = Adapter(model_of(machine.name, control, VERSIONS[version]), VERSIONS[version])
+        self._see = see(machine.find_control)
+        self._address, self._port = address, port
+        self._server: asyncio.Server | None = None
+        self._agents: set[asyncio.StreamWriter] = set()
+        self._turns: asyncio.Task[None] | None = None
+
+    @property
+    def said(self) -> str:
+        """Where it is."""
+        return f"{self._address}:{self._port}"
+
+    async def start(self) -> None:
+        """Listen.
+
+        Raises:
+            UsageError: The port is taken.
+        """
+        try:
+            self._server = await asyncio.start_server(self._serve, self._address, self._port)
+        except OSError as error:
+            raise UsageError(
+                f"shdr: cannot listen on {self._address}:{self._port}: {error.strerror or error}",
+                hint="Take another port (--doors shdr=0 takes a free one).",
+            ) from None
+        self._port = self._server.sockets[0].getsockname()[1]
+        self._adapter.look(self._see())
+        self._machine.served.watch(self._look)
+        self._turns = asyncio.get_running_loop().create_task(self._turn())
+
+    async def close(self) -> None:
+        """Stop listening and end every connection."""
+        if self._turns is not None:
+            self._turns.cancel()
+        if self._server is not None:
+            self._server.close()
+        for writer in tuple(self._agents):
+            writer.close()
+        if self._server is not None:
+            await self._server.wait_closed()
+
+    async def _turn(self) -> None:
+        while True:
+            await asyncio.sleep(_TURN_S)
+            if self._agents:
+                self._machine.keeper.submit(self._look, lambda _: None)
+
+    def _look(self) -> None:
+        """Send all agents what has changed; one that does not read is disconnected."""
+        lines = self._adapter.look(self._see())
+        for writer in tuple(self._agents) if lines else ():
+            self._send(writer, lines)
+
+    @staticmethod
+    def _send(writer: asyncio.StreamWriter, data: bytes) -> None:
+        if writer.transport.get_write_buffer_size() > _MOST_UNREAD:
+            writer.transport.abort()
+        elif data:
+            writer.write(data)
+
+    def _begin(self, writer: asyncio.StreamWriter) -> None:
+        """Send a new agent everything, at the present cycle."""
+        self._look()
+        self._send(writer, self._adapter.everything())
+        self._agents.add(writer)
+
+    async def _serve(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        if len(self._agents) >= _MOST_AGENTS:
+            writer.close()
+            return
+        session = Session()
+        try:
+            self._machine.keeper.submit(lambda: self._begin(writer), lambda _: None)
+            while data := await reader.read(_PIECE_BYTES):
+                self._machine.keeper.submit(self._look, lambda _: None)
+                self._send(writer, session.receive(data))
+        except (OSError, asyncio.CancelledError):
+            pass  # it has gone, or the door closes
+        finally:
+            self._agents.discard(writer)
+            writer.close()

@@ -1,0 +1,142 @@
+"""C libraries in tests: built once, loaded fresh, memory that ends at a page nobody may touch, a door in a thread."""
+
+from __future__ import annotations
+
+import asyncio
+import ctypes
+import mmap
+import shutil
+import threading
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import cache
+from pathlib import Path
+from tempfile import mkdtemp
+from typing import Any
+
+import pytest
+
+from polycnc.machine import Device
+from polycnc.runner import WallClock
+from polycnc.servers.calls import build_library, library_of, write_library
+from polycnc.servers.machines import Log, Wanted
+from polycnc.servers.process import DOORS, Machinery, MachineWanted, Serving
+
+NO_COMPILER = "no C compiler gcc here"
+_PAGE = mmap.PAGESIZE
+_FILL = 0xA5
+
+
+@cache
+def folder_of(kind: str) -> Path:
+    """Return the folder of a library that is built for this computer, once; the end of the tests removes it."""
+    import atexit
+
+    folder = Path(mkdtemp(prefix="polycnc_clib_"))
+    atexit.register(shutil.rmtree, folder, True)
+    write_library(library_of(kind), folder)
+    build_library(library_of(kind), folder, "linux")
+    return folder
+
+
+def built(kind: str) -> Path:
+    """Return the folder of a library, or skip the test where nothing builds it."""
+    if shutil.which("gcc") is None:
+        pytest.skip(NO_COMPILER)
+    return folder_of(kind)
+
+
+def loaded(kind: str, folder: Path) -> Any:
+    """Load a library as a program of its own has it: with no connection yet."""
+    name = library_of(kind).name
+    own = folder / f"lib{name}_{len(list(folder.iterdir()))}.so"
+    shutil.copy(built(kind) / f"lib{name}.so", own)
+    return ctypes.CDLL(str(own))
+
+
+class _StandingWall:
+    """A clock of the computer that stands still, so that no time passes by itself."""
+
+    def now_s(self) -> float:
+        """Return the same as before."""
+        return 3.5
+
+    def sleep_s(self, _: float) -> None:
+        """Do not sleep."""
+
+
+class Door:
+    """Machines with the door `calls`, in a thread; no time passes by itself, unless they are running."""
+
+    def __init__(self, *machines: tuple[str, Machinery], focas: bool = False, running: bool = False) -> None:
+        self._ready = threading.Event()
+        self._machines, self._focas, self._running = machines, focas, running
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._end: asyncio.Event | None = None
+        self.devices: Sequence[Device[Any]] = ()
+        self.place = self.first_place = ""
+        self._thread = threading.Thread(target=lambda: asyncio.run(self._serve()), daemon=True)
+        self._thread.start()
+        assert self._ready.wait(60)
+
+    async def _serve(self) -> None:
+        self._loop, self._end = asyncio.get_running_loop(), asyncio.Event()
+        at = Wanted(port=0)
+        own = ((DOORS["focas"], at),) if self._focas else ()
+        wanted = [MachineWanted(kind, machinery, doors=own) for kind, machinery in self._machines]
+        wall = WallClock() if self._running else _StandingWall()
+        serving = Serving(wall, Log(), lambda _: None)
+        try:
+            await serving.open(wanted, [(DOORS["calls"], at)])
+            self.devices = [each.device for each in serving.machines]
+            self.place, self.first_place = serving.doors[-1][1].said, serving.doors[0][1].said
+            if self._running:
+                serving.begin()
+            self._ready.set()
+            await self._end.wait()
+        finally:
+            await serving.close()
+
+    def close(self) -> None:
+        """End it, and every connection."""
+        assert self._loop is not None
+        assert self._end is not None
+        with suppress(RuntimeError):
+            self._loop.call_soon_threadsafe(self._end.set)
+        self._thread.join(20)
+        assert not self._thread.is_alive()
+
+
+def at_door(monkeypatch: pytest.MonkeyPatch, door: Door) -> None:
+    """Let libraries that are loaded from now on find a door."""
+    monkeypatch.setenv("POLYCNC_CALLS", door.place)
+
+
+class Guarded:
+    """So many bytes whose last one lies before a page that nobody may touch, and pages of a pattern in front."""
+
+    def __init__(self, size: int, content: bytes = b"") -> None:
+        libc = ctypes.CDLL(None, use_errno=True)
+        pages = -(-size // _PAGE) + 1
+        self._map = mmap.mmap(-1, (pages + 1) * _PAGE)
+        first = ctypes.addressof(ctypes.c_char.from_buffer(self._map))
+        guard = first + pages * _PAGE
+        assert libc.mprotect(ctypes.c_void_p(guard), ctypes.c_size_t(_PAGE), 0) == 0
+        self.address = guard - size
+        self.size, self._first = size, first
+        ctypes.memset(first, _FILL, pages * _PAGE)
+        ctypes.memmove(self.address, content[:size], min(size, len(content)))
+        self._before = ctypes.string_at(first, self.address - first)
+
+    @property
+    def content(self) -> bytes:
+        """Return the bytes."""
+        return ctypes.string_at(self.address, self.size)
+
+    @property
+    def front_is_whole(self) -> bool:
+        """Tell whether nothing was written before them."""
+        return ctypes.string_at(self._first, self.address - self._first) == self._before
+
+
+PATTERN = bytes([_FILL])

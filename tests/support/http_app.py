@@ -1,0 +1,55 @@
+"""The HTTP door without a socket: an application of one machine whose wall clock stands, asked in one event loop."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from typing import Any, TypeVar
+
+import pytest
+
+from polycnc.machine import Wall
+from polycnc.servers.machines import Keeper, ServedDevice, ServedMachine
+from polycnc.servers.process import KINDS, Machinery
+
+R = TypeVar("R")
+
+
+class Still(Wall):
+    """A wall clock that does not move."""
+
+    def now_s(self) -> float:
+        return 0.0
+
+
+def served_machine(kind: str, machinery: Machinery) -> ServedMachine:
+    """Return a machine of a kind, in the running event loop."""
+    made = KINDS[kind](machinery)
+    served: ServedDevice[Any] = ServedDevice(made.device, made.find_control)
+    keeper = Keeper(served, Still())
+    machine = ServedMachine(
+        "m", kind, made.device, served, keeper, made.find_control, made.own, end=made.end,
+        parameters=made.parameters, variables=made.variables,
+    )  # fmt: skip
+    keeper.start()
+    return machine
+
+
+def visit(kind: str, machinery: Machinery, visitor: Callable[[Any, ServedMachine], Awaitable[R]]) -> R:
+    """Let a visitor ask the application of a machine by an httpx client."""
+    httpx = pytest.importorskip("httpx", reason="pip install httpx")
+    pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
+    from polycnc.servers.http._app import make_app
+
+    async def run() -> R:
+        machine = served_machine(kind, machinery)
+        transport = httpx.ASGITransport(app=make_app([machine]))
+        try:
+            async with httpx.AsyncClient(
+                transport=transport, base_url="http://localhost/api/machines/m"
+            ) as client:
+                return await visitor(client, machine)
+        finally:
+            machine.close()
+
+    return asyncio.run(run())

@@ -1,0 +1,273 @@
+"""IMCnet and mcug3 from C: every function against the façade, to the byte; opening, losing and finding again."""
+
+from __future__ import annotations
+
+import ctypes
+import random
+import socket
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from polycnc.controllers.apci import Board, load_system_file, pcap
+from polycnc.controllers.apci.clib import MCUG3
+from polycnc.controllers.imc import Card, imclib
+from polycnc.controllers.imc.clib import IMCNET
+from polycnc.controllers.library.clib import Call, Slot
+from polycnc.servers.process import Machinery
+from support.c_hold import Hold
+from support.c_library import Door, at_door, built, loaded
+
+SYSTEM = Path(__file__).parents[2] / "examples" / "apci_system.dat"
+AXES = 3
+
+
+def _size(call: Call, slot: Slot, numbers: dict[str, Any]) -> int:
+    """Return what a program has there: so many elements as another argument says, else one structure."""
+    name = slot.argument.name
+    counter = next((each.name for each in call.function.arguments if each.length_of == name), "")
+    if counter:
+        width = 8 if name == "spdbuf" else slot.width
+        return max(0, int(numbers[counter])) * width
+    if slot.argument.many == "MAXAXIS":
+        return 18 * slot.width
+    if slot.argument.many:  # up to the highest selected axis
+        chosen = numbers["as"]
+        named = [] if chosen is None else list(chosen.san)[: max(0, min(18, chosen.unoa))]
+        return max((each + 1 for each in named if 0 <= each < 18), default=0) * slot.width
+    return 1024 if name == "EnvStr" else slot.width
+
+
+# ---------------------------------------------------------------------- IMCnet
+
+
+def _imc_number(call: Call, slot: Slot, dice: random.Random) -> Any:
+    name = slot.argument.name
+    if name == "Handle":
+        return 1 if dice.random() < 0.95 else dice.choice((0, 2, 77))
+    if slot.argument.length_of:
+        return dice.choice((1, 2, 3, 5, 0, 32, 33, 127, 4000, -1 if name in ("rdnum", "nWords") else 6))
+    if name == "paramloc" and dice.random() < 0.7:
+        return dice.choice((imclib.runLoc, imclib.mcstgposLoc, imclib.mcsgoLoc, imclib.encpLoc))
+    if dice.random() < 0.7:
+        return dice.randrange(0, 4)
+    return None
+
+
+def _imc_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
+    library = loaded("imc", folder)
+    door = Door(("imc", Machinery()))
+    at_door(monkeypatch, door)
+    twin, session = Card(), imclib.Session()
+    session.attach(twin, clock=None)
+    try:
+        handle = ctypes.c_void_p(0xABCD)
+        assert library.IMC_Open(ctypes.byref(handle), 0, 0) == 0
+        assert handle.value == 1
+        _, mine = session.IMC_Open(0, 0)
+        hold = Hold(IMCNET, library, session, random.Random(seed), _imc_number, _size, objects={1: mine})
+        opening = {"IMC_Open", "IMC_OpenX", "IMC_OpenUsePassword", "IMC_Close"}
+        calls = [each for each in IMCNET.calls if each.function.name not in opening]
+        for number in range(rounds):
+            for call in hold.dice.sample(calls, len(calls)):
+                hold.call(call)
+            for card in (twin, door.devices[0]):
+                card.advance(3 * number)
+        return hold
+    finally:
+        door.close()
+
+
+def test_every_function_of_imcnet_answers_and_writes_as_the_facade(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    built("imc")
+    hold = _imc_hold(monkeypatch, tmp_path, 14, 3)
+    assert {0, 6, 7, 8, 9, 13} <= hold.codes
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(1))
+def test_many_calls_of_imcnet(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int) -> None:
+    built("imc")
+    assert len(_imc_hold(monkeypatch, tmp_path, 700, seed).told) > 30_000
+
+
+def test_cards_are_opened_closed_lost_and_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    library = loaded("imc", tmp_path)
+    door = Door(("imc", Machinery()), ("imc", Machinery(name="second")), ("fanuc", Machinery("third")))
+    at_door(monkeypatch, door)
+    handle, second = ctypes.c_void_p(), ctypes.c_void_p(0x777)
+    assert library.IMC_Open(ctypes.byref(handle), 0, 1) == 0
+    assert library.IMC_OpenX(ctypes.byref(second), 0, 2, 40, 1) == imclib.IMC_DEVICE_NOT_FOUND
+    assert second.value == 0x777
+    moving = ctypes.c_int16()
+    assert library.IMC_GetPatamBit is not None
+    assert library.IMC_GetParam16(handle, imclib.movingLoc, ctypes.byref(moving), 0) == 0
+    assert library.IMC_Close(handle) == 0
+    assert library.IMC_Close(handle) == imclib.IMC_INVALID_HANDLE
+    assert library.IMC_GetParam16(handle, 1, ctypes.byref(moving), 0) == imclib.IMC_DEVICE_NOT_OPEN
+    assert library.IMC_Open(ctypes.byref(handle), 0, 0) == 0
+    door.close()
+    assert library.IMC_GetParam16(handle, 1, ctypes.byref(moving), 0) == imclib.IMC_TIME_OUT
+    assert library.IMC_Open(ctypes.byref(handle), 0, 0) == imclib.IMC_DEVICE_NOT_FOUND
+    again = Door(("imc", Machinery()))
+    try:
+        at_door(monkeypatch, again)
+        assert library.IMC_GetParam16(handle, 1, ctypes.byref(moving), 0) == imclib.IMC_TIME_OUT
+        assert library.IMC_Open(ctypes.byref(handle), 0, 0) == 0
+        assert library.IMC_GetParam16(handle, imclib.movingLoc, ctypes.byref(moving), 0) == 0
+    finally:
+        again.close()
+
+
+# ---------------------------------------------------------------------- mcug3
+
+
+def _apci_number(call: Call, slot: Slot, dice: random.Random) -> Any:
+    if slot.element is ctypes.c_double:
+        return dice.choice((0.0, 2.5, -7.25, 400.0, 1e101, float("nan"), -0.0))
+    if slot.argument.length_of:
+        return dice.choice((0, 1, 3, 17, -4))
+    if slot.argument.name == "ndx" and dice.random() < 0.8:
+        return dice.randrange(-1, 1001)
+    if dice.random() < 0.75:
+        return dice.randrange(-1, AXES + 2)
+    return None
+
+
+def _apci(monkeypatch: pytest.MonkeyPatch, folder: Path, seed: int) -> tuple[Hold, Door, Board]:
+    library = loaded("apci", folder)
+    door = Door(("apci", Machinery(file=SYSTEM)))
+    at_door(monkeypatch, door)
+    twin, session = Board(load_system_file(SYSTEM)), pcap.Session()
+    session.attach(twin, clock=None)
+    hold = Hold(MCUG3, library, session, random.Random(seed), _apci_number, _size)
+    return hold, door, twin
+
+
+FILES = {"InitMcuSystem2", "InitMcuSystem3", "txbf", "txbf2", "rdcbcnct", "wrcbcnct", "getEnvStr"}
+
+
+def _apci_hold(monkeypatch: pytest.MonkeyPatch, folder: Path, rounds: int, seed: int) -> Hold:
+    hold, door, twin = _apci(monkeypatch, folder, seed)
+    try:
+        by_name = {each.function.name: each for each in MCUG3.calls}
+        assert hold.c.rdaxstb(0, 3) == hold.python.rdaxstb(0, 3) == 0
+        tsrp = (pcap.TSRP * 18)()
+        mine = pcap.tsrp_array()
+        assert hold.c.InitMcuSystem(tsrp) == hold.python.InitMcuSystem(mine) == 0
+        assert bytes(tsrp) == b"".join(map(bytes, mine))[: ctypes.sizeof(tsrp)]
+        calls = [each for name, each in by_name.items() if name not in FILES]
+        for number in range(rounds):
+            for call in hold.dice.sample(calls, len(calls)):
+                hold.call(call)
+            for board in (twin, door.devices[0]):
+                board.advance(3 * number)
+        return hold
+    finally:
+        door.close()
+
+
+def test_every_function_of_mcug3_answers_and_writes_as_the_facade(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    built("apci")
+    assert {0, 1} <= _apci_hold(monkeypatch, tmp_path, 5, 4).codes
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("seed", range(1))
+def test_many_calls_of_mcug3(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, seed: int) -> None:
+    built("apci")
+    assert len(_apci_hold(monkeypatch, tmp_path, 190, seed).told) > 30_000
+
+
+class CBCNCT(ctypes.Structure):
+    """The transfer of a buffer as C programs of this width have it."""
+
+    _pack_ = 4
+    _layout_ = "ms"
+    _fields_ = [
+        ("task_number", ctypes.c_int32),
+        ("size", ctypes.c_int32),
+        ("buffer", ctypes.c_void_p),
+    ]
+
+
+def test_common_buffers_go_through_the_pointer_in_a_structure(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    hold, door, _ = _apci(monkeypatch, tmp_path, 5)
+    library = hold.c
+    try:
+        assert library.InitMcuSystem((pcap.TSRP * 18)()) == 0
+        content = (ctypes.c_uint8 * 9)(*b"abcdefghi")
+        into = (ctypes.c_uint8 * 9)(*[0xEE] * 9)
+        write = CBCNCT(2, 7, ctypes.addressof(content))
+        read = CBCNCT(2, 5, ctypes.addressof(into))
+        assert library.wrcbcnct(ctypes.byref(write)) == 0
+        assert library.rdcbcnct(ctypes.byref(read)) == 0
+        assert bytes(into) == b"abcde" + b"\xee" * 4
+        assert bytes(write) == bytes(CBCNCT(2, 7, ctypes.addressof(content)))
+        assert library.rdcbcnct(ctypes.byref(CBCNCT(9, 5, ctypes.addressof(into)))) == 1
+        assert library.rdcbcnct(ctypes.byref(CBCNCT(2, -1, ctypes.addressof(into)))) == 2
+        assert library.rdcbcnct(ctypes.byref(CBCNCT(2, 5, None))) == 4
+        assert library.rdcbcnct(None) == 1
+        assert bytes(into) == b"abcde" + b"\xee" * 4
+    finally:
+        door.close()
+
+
+def test_a_board_is_initialised_lost_and_found(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    hold, door, _ = _apci(monkeypatch, tmp_path, 6)
+    library, records, kind = hold.c, (pcap.TSRP * 18)(), ctypes.c_int32(-7)
+    rosi = (ctypes.c_uint8 * ctypes.sizeof(pcap.ROSI))(*[0xEE] * ctypes.sizeof(pcap.ROSI))
+    initialised = (records, rosi, 0, b"C:\\CNC\\system.dat", ctypes.byref(kind))
+    mine, system = pcap.tsrp_array(), pcap.ROSI()
+    try:
+        expected = hold.python.InitMcuSystem3(mine, system, 0, "system.dat")
+        assert (library.InitMcuSystem3(*initialised), kind.value) == expected
+        assert expected[0] == 0
+        assert bytes(rosi) == bytes(system)
+        text = ctypes.create_string_buffer(b"NOTHING\0" + b"\xee" * 20, 1024)
+        assert library.getEnvStr(text) == hold.python.getEnvStr("NOTHING")[0]
+        assert library.BootFile(b"rwmos.elf", 0) == 1
+        value = ctypes.c_int32(5)
+        assert library.rdSampleTime(None) == 0
+        assert library.rdSampleTime(ctypes.byref(value)) == 1
+    finally:
+        door.close()
+    value = ctypes.c_int32(5)
+    assert library.rdtrvl(ctypes.byref(ctypes.c_double())) == -4
+    assert (library.rdSampleTime(ctypes.byref(value)), value.value) == (0, 5)
+    assert library.rdaxstb(0, 3) == 0
+    kind.value = -7
+    assert (library.InitMcuSystem3(*initialised), kind.value) == (31, -7)
+    again = Door(("apci", Machinery(file=SYSTEM)))
+    try:
+        at_door(monkeypatch, again)
+        assert library.rdtrvl(ctypes.byref(ctypes.c_double())) == -4
+        assert library.InitMcuSystem3(*initialised) == 0
+        assert library.rdtrvl(ctypes.byref(ctypes.c_double())) == 0
+    finally:
+        again.close()
+
+
+def test_programs_leave_nothing_at_a_board(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    hold, door, _ = _apci(monkeypatch, tmp_path, 7)
+    try:
+        board = door.devices[0]
+        assert isinstance(board, Board)
+        before = len(board.interrupts)
+        for _ in range(5):
+            line = socket.create_connection(("127.0.0.1", int(door.place.rpartition(":")[2])))
+            said = b"PNCCALL1\x08\0\0\0" + b"mcug3".ljust(16, b"\0") + bytes(16) + MCUG3.table_hash
+            line.sendall(said)
+            assert line.recv(12) == b"PNCCALL1" + bytes(4)
+            line.close()
+        assert hold.c.InitMcuSystem((pcap.TSRP * 18)()) == 0
+        assert len(board.interrupts) == before + 1
+    finally:
+        door.close()

@@ -1,0 +1,144 @@
+"""The C programs of examples/c: linked, run on this system, and as Windows programs, with the same lines everywhere."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.servers.calls import build_library, library_of, write_library
+from polycnc.servers.process import Machinery
+from support.c_library import Door, built
+from support.command import COMMAND, environment
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SYSTEM = EXAMPLES / "apci_system.dat"
+WARNINGS = ("-Wall", "-Wextra", "-Werror", "-pedantic")
+PROGRAMS = {"fanuc": "fanuc_macro", "apci": "apci_jog", "imc": "imc_move"}
+SAID = {
+    "apci": "init 0, board 4, 3 axes\nat 12.500\n",
+    "imc": "adapters 0: 1\nopen 0\nmove 0\nat 6250, moving 0\nclose 0\n",
+}
+WINDOWS = {"win64": "x86_64-w64-mingw32-gcc", "win32": "i686-w64-mingw32-gcc"}
+ROOTS_OF_32 = ("/usr/lib/i386-linux-gnu/wine", "/usr/lib/wine/i386-windows", "/usr/lib/wine/wine")
+
+
+def _facade_says() -> str:
+    session = fwlib.Session()
+    session.attach(0, PowerMate(3, characters=128_000))
+    _, handle = session.cnc_allclibhndl()
+    write = session.cnc_wrmacro(handle, 103, 10, 271828, 5)
+    code, macro = session.cnc_rdmacro(handle, 103, 10)
+    read, at = session.cnc_absolute(handle, fwlib.ALL_AXES, 16)
+    short, _ = session.cnc_absolute(handle, fwlib.ALL_AXES, 15)
+    found, parameter = session.cnc_rdparam(handle, 1420, 1, 8)
+    lines = (
+        "open 0", f"write {write:d}", f"macro {code:d}: {macro.mcr_val} {macro.dec_val}",
+        f"position {read:d}: {at.data[0]} {at.data[1]} {at.data[2]}", f"too short {short:d}",
+        f"parameter {found:d}: {parameter.u.ldata}", "free 0",
+    )  # fmt: skip
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _said(kind: str) -> str:
+    return SAID.get(kind) or _facade_says()
+
+
+def _linked(kind: str, folder: Path, to: Path) -> Path:
+    made = to / PROGRAMS[kind]
+    source = EXAMPLES / "c" / f"{PROGRAMS[kind]}.c"
+    subprocess.run(
+        ["gcc", "-std=c11", *WARNINGS, "-I", folder, "-o", made, source, "-L", folder,
+         f"-l{library_of(kind).name}", f"-Wl,-rpath,{folder}"], check=True,
+    )  # fmt: skip
+    return made
+
+
+def _run(place: str, *command: str | Path) -> str:
+    ran = subprocess.run(
+        command,
+        env=environment(POLYCNC_CALLS=place, WINEDEBUG="-all"),
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    return ran.stdout
+
+
+@pytest.fixture(scope="module")
+def doors(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Door]]:
+    card = tmp_path_factory.mktemp("card") / "card.toml"
+    card.write_text("number_of_axes = 2\nready = true\n")
+    files = {"apci": SYSTEM, "imc": card}
+    made = {kind: Door((kind, Machinery(file=files.get(kind))), running=True) for kind in PROGRAMS}
+    yield made
+    for door in made.values():
+        door.close()
+
+
+@pytest.mark.covers("apci.lib.c")
+@pytest.mark.parametrize("kind", PROGRAMS)
+def test_a_program_links_and_says_what_it_has_to(kind: str, tmp_path: Path, doors: dict[str, Door]) -> None:
+    assert _run(doors[kind].place, _linked(kind, built(kind), tmp_path)) == _said(kind)
+
+
+def test_a_program_against_the_command(tmp_path: Path) -> None:
+    program, trace = _linked("fanuc", built("fanuc"), tmp_path), tmp_path / "calls.jsonl"
+    process = subprocess.Popen(
+        [*COMMAND, "calls", "fanuc", "--port", "0", "--trace", trace],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
+    )  # fmt: skip
+    assert process.stdout is not None
+    place = process.stdout.readline().partition(" ")[2].strip()
+    assert _run(place, program) == _facade_says()
+    process.terminate()
+    _, error = process.communicate(timeout=30)
+    assert (process.returncode, error) == (143, "")
+    lines = trace.read_text().splitlines()
+    assert len(lines) == 7
+    shown = json.loads(_shown("traced"))
+    assert {**json.loads(lines[1]), "time_s": shown["time_s"]} == shown
+
+
+def _shown(title: str) -> str:
+    """Return what the tutorial shows under a title."""
+    text = (EXAMPLES.parent / "docs" / "tutorials" / "your-old-program.md").read_text("utf-8")
+    found = re.search(rf'^```\w+ title="{title}"\n(.*?)^```$', text, re.MULTILINE | re.DOTALL)
+    assert found is not None
+    return found[1]
+
+
+def test_the_tutorial_shows_the_program_and_what_it_prints() -> None:
+    assert _shown("program") == (EXAMPLES / "c" / "fanuc_macro.c").read_text("utf-8")
+    assert _shown("output") == _facade_says()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("target", WINDOWS)
+@pytest.mark.parametrize("kind", PROGRAMS)
+def test_the_same_program_as_a_windows_one(
+    kind: str, target: str, tmp_path: Path, doors: dict[str, Door]
+) -> None:
+    if shutil.which(WINDOWS[target]) is None:
+        pytest.skip(f"no C compiler {WINDOWS[target]} here")
+    library = library_of(kind)
+    write_library(library, tmp_path)
+    build_library(library, tmp_path, target)
+    program = tmp_path / "client.exe"
+    source = EXAMPLES / "c" / f"{PROGRAMS[kind]}.c"
+    subprocess.run(
+        [WINDOWS[target], "-std=c11", *WARNINGS, "-I", tmp_path, "-o", program, source,
+         tmp_path / f"{library.name}.lib", "-static-libgcc"], check=True,
+    )  # fmt: skip
+    if shutil.which("wine") is None:
+        pytest.skip("no wine here")
+    if target == "win32" and not any(Path(each).exists() for each in ROOTS_OF_32):
+        pytest.skip("no wine for programs of 32 bits here")
+    assert _run(doors[kind].place, "wine", program) == _said(kind)

@@ -1,0 +1,183 @@
+"""The door `calls` without sockets: hello, frames cut anywhere, doubled, too long, garbage; nothing half done."""
+
+from __future__ import annotations
+
+import json
+import random
+import struct
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from polycnc.controllers.fanuc import PowerMate, fwlib
+from polycnc.controllers.fanuc.clib import FWLIB
+from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace
+
+NUMBERS = {each.function.name: each.number for each in FWLIB.calls}
+WELCOME = b"PNCCALL1" + struct.pack("<i", 0)
+
+
+def hello(
+    name: bytes = b"fwlib32", table: bytes = FWLIB.table_hash, pointer: int = 8, packing: int = 0
+) -> bytes:
+    return b"PNCCALL1" + bytes([pointer, packing, 0, 0]) + struct.pack("<16s16s16s", name, b"7.5", table)
+
+
+def frame(name: str, packed: bytes, serial: int = 513) -> bytes:
+    return struct.pack("<IHH", 4 + len(packed), NUMBERS[name], serial) + packed
+
+
+OPEN = frame("cnc_allclibhndl", struct.pack("<I", 2), 21)
+WRITE = frame("cnc_wrmacro", struct.pack("<HhhiH", 1, 103, 10, 31415, 3), 22)
+READ = frame("cnc_rdmacro", struct.pack("<HhhI", 1, 103, 10, 10), 23)
+
+
+class Rig:
+    """A control, and a client of it."""
+
+    def __init__(self, **more: object) -> None:
+        self.device = PowerMate(3)
+        self.told: list[str] = []
+        self.client = self.another(**more)
+
+    def another(self, **more: object) -> CallClient:
+        return CallClient(self.find, self.told.append, **more)  # type: ignore[arg-type]
+
+    def find(self, name: str) -> Caller | None:
+        return LIBRARIES["fanuc"].make(FWLIB, [self.device]) if name == "fwlib32" else None
+
+
+def answers(sent: bytes) -> list[tuple[int, int, bytes]]:
+    """Return serial, code and outputs of each answer."""
+    found = []
+    while sent:
+        size, _, serial, _, code = struct.unpack_from("<IHHIq", sent)
+        found.append((serial, code, sent[20 : 4 + size]))
+        sent = sent[4 + size :]
+    return found
+
+
+def test_a_whole_talk() -> None:
+    rig = Rig()
+    assert rig.client.receive(hello()) == WELCOME
+    sent = answers(rig.client.receive(OPEN + WRITE + READ))
+    assert sent == [
+        (21, 0, struct.pack("<IH", 2, 1)),
+        (22, 0, b""),
+        (23, 0, struct.pack("<Ihhih", 10, 103, 0, 31415, 3)),
+    ]
+
+
+@settings(max_examples=25)
+@given(cuts=st.lists(st.integers(1, 150), max_size=8))
+def test_bytes_may_be_cut_anywhere(cuts: list[int]) -> None:
+    rig = Rig()
+    talk, sent = hello() + OPEN + WRITE + READ, b""
+    places = [0, *sorted({cut % len(talk) for cut in cuts}), len(talk)]
+    for first, last in pairwise(places):
+        sent += rig.client.receive(talk[first:last])
+    whole = Rig()
+    assert sent == whole.client.receive(talk)
+
+
+def test_a_doubled_frame_is_a_second_call() -> None:
+    rig = Rig()
+    rig.client.receive(hello())
+    assert [code for _, code, _ in answers(rig.client.receive(OPEN + OPEN))] == [0, 0]
+    assert not rig.client.ended
+
+
+@pytest.mark.parametrize(
+    ("said", "answer", "told"),
+    [
+        (hello(table=bytes(16)), fwlib.EW_VERSION, "fwlib32 7.5 has another table of functions"),
+        (hello(packing=4), fwlib.EW_VERSION, "fwlib32 packs structures to 4 bytes"),
+        (hello(name=b"mcug7"), None, "no machine here has the library mcug7"),
+        (hello(pointer=2), None, "a client that does not say hello"),
+        (b"GET / HTTP/1.1\r\n", None, "a client that does not say hello"),
+        (b"\xa0\xa0\xa0\xa0\0\1\1\1\0\2\0\2", None, "a client that does not say hello"),
+    ],
+)
+def test_a_hello_that_is_refused(said: bytes, answer: int | None, told: str) -> None:
+    rig = Rig()
+    sent = rig.client.receive(said)
+    assert sent == (b"" if answer is None else b"PNCCALL1" + struct.pack("<i", answer))
+    assert rig.client.ended
+    assert rig.told[0].startswith(told)
+    assert rig.client.receive(OPEN) == b""
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        struct.pack("<I", 3) + b"abc",
+        struct.pack("<I", 65533) + b"abcd",
+        struct.pack("<I", 0xFFFFFFFF),
+        struct.pack("<IHH", 4, 0, 1),
+        struct.pack("<IHH", 4, 97, 1),
+        frame("cnc_wrmacro", struct.pack("<HhhiH", 1, 103, 10, 31415, 3)[:-1]),
+        frame("cnc_wrmacro", struct.pack("<HhhiHb", 1, 103, 10, 31415, 3, 0)),
+        frame("cnc_wrmacror", struct.pack("<HhI", 1, 12, 0x7FFFFFFF) + bytes(12)),
+    ],
+)
+def test_a_bad_frame_ends_the_connection_and_does_nothing(bad: bytes) -> None:
+    rig = Rig()
+    rig.client.receive(hello() + OPEN)
+    before = rig.device.snapshot()
+    assert rig.client.receive(bad + WRITE) == b""
+    assert rig.client.ended
+    assert len(rig.told) == 1
+    assert rig.device.snapshot() == before
+
+
+def test_room_is_never_exceeded_and_a_refused_call_writes_nothing() -> None:
+    rig = Rig()
+    rig.client.receive(hello() + OPEN + WRITE)
+    small = frame("cnc_rdmacro", struct.pack("<HhhI", 1, 103, 10, 6))
+    assert answers(rig.client.receive(small)) == [(513, 0, struct.pack("<Ihhh", 6, 103, 0, 31415))]
+    refused = frame("cnc_rdmacro", struct.pack("<HhhI", 1, 103, 9, 10))
+    assert answers(rig.client.receive(refused)) == [(513, fwlib.EW_LENGTH, struct.pack("<I", 0))]
+    null = frame("cnc_rdmacro", struct.pack("<HhhI", 1, 103, 10, 0xFFFFFFFF))
+    assert answers(rig.client.receive(null)) == [(513, fwlib.EW_DATA, struct.pack("<I", 0))]
+
+
+def _garbage(seed: int, rounds: int) -> None:
+    rig, dice = Rig(), random.Random(seed)
+    talk = hello() + OPEN + WRITE + READ
+    for _ in range(rounds):
+        client = rig.another()
+        bad = bytearray(talk)
+        for _ in range(dice.randrange(1, 9)):
+            bad[dice.randrange(len(bad))] = dice.randrange(256)
+        cut = dice.randrange(1, len(bad) + 1)
+        client.receive(bytes(bad[:cut]))
+        client.receive(dice.randbytes(dice.randrange(90)))
+        if client.caller is not None:
+            LIBRARIES["fanuc"].end(client.caller.session)
+    rig.client.receive(hello() + OPEN)
+    assert [code for _, code, _ in answers(rig.client.receive(WRITE + READ))] == [0, 0]
+
+
+def test_garbage_harms_nobody() -> None:
+    _garbage(5, 150)
+
+
+@pytest.mark.long
+def test_much_garbage_harms_nobody() -> None:
+    _garbage(6, 20_000)
+
+
+def test_calls_are_traced(tmp_path: Path) -> None:
+    trace = Trace(tmp_path / "calls.jsonl")
+    rig = Rig(trace=trace, now_s=lambda: 2.5)
+    rig.client.receive(hello() + OPEN + WRITE + READ)
+    trace.close()
+    lines = [json.loads(line) for line in (tmp_path / "calls.jsonl").read_text().splitlines()]
+    assert lines[1] == {
+        "time_s": 2.5, "call": "cnc_wrmacro", "code": 0, "out": {},
+        "in": {"FlibHndl": 1, "number": 103, "length": 10, "mcr_val": 31415, "dec_val": 3},
+    }  # fmt: skip
+    assert lines[2]["out"] == {"macro": struct.pack("<hhih", 103, 0, 31415, 3).hex()}

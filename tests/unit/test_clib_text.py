@@ -1,0 +1,110 @@
+"""The C text of the libraries: every function of the tables, all lengths known, headers that compile; the command."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from polycnc.controllers.library.clib import write_definitions, write_header, write_source
+from polycnc.errors import UsageError
+from polycnc.servers.calls import LIBRARIES, build_command, build_library, library_of, write_library
+from support.command import polycnc
+
+COUNTS = {"fanuc": 96, "imc": 53, "apci": 197}
+KINDS = sorted(LIBRARIES)
+FEW = [each if each == "fanuc" else pytest.param(each, marks=pytest.mark.long) for each in KINDS]
+WINDOWS = {"win32": "i686-w64-mingw32-gcc", "win64": "x86_64-w64-mingw32-gcc"}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_function_of_the_table_is_generated_or_left_out_with_a_reason(kind: str) -> None:
+    library = library_of(kind)
+    assert len(library.functions) == COUNTS[kind]
+    names = {each.function.name for each in library.calls}
+    assert names | set(library.left_out) == set(library.functions)
+    assert not names & set(library.left_out)
+    for text in (write_header(library), write_source(library, "7.5")):
+        for name in (*library.functions, *library.aliases):
+            assert re.search(rf"PC_CALL {name}\(", text), name
+    exported = write_definitions(library).split("EXPORTS")[1].split()
+    assert exported == sorted((*library.functions, *library.aliases))
+
+
+def test_two_tables_have_two_hashes() -> None:
+    assert len({library_of(kind).table_hash for kind in KINDS}) == len(KINDS)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("language", ["c11", "c++17"])
+def test_the_header_compiles_without_a_warning(kind: str, language: str, tmp_path: Path) -> None:
+    compiler = "g++" if "+" in language else "gcc"
+    if shutil.which(compiler) is None:
+        pytest.skip(f"no C compiler {compiler} here")
+    write_library(library_of(kind), tmp_path)
+    source = tmp_path / ("client.cpp" if "+" in language else "client.c")
+    source.write_text(f'#include "{library_of(kind).name}.h"\n')
+    command = [
+        compiler,
+        f"-std={language}",
+        "-Wall",
+        "-Wextra",
+        "-Werror",
+        "-pedantic",
+        "-fsyntax-only",
+        str(source),
+    ]
+    assert subprocess.run(command, capture_output=True, text=True, check=False).stderr == ""
+
+
+@pytest.mark.parametrize("kind", FEW)
+@pytest.mark.parametrize("target", WINDOWS)
+def test_the_windows_library_exports_plain_names(kind: str, target: str, tmp_path: Path) -> None:
+    if shutil.which(WINDOWS[target]) is None:
+        pytest.skip(f"no C compiler {WINDOWS[target]} here")
+    library = library_of(kind)
+    write_library(library, tmp_path)
+    made = build_library(library, tmp_path, target)
+    assert made.name == f"{library.name}.dll"
+    assert made.stat().st_size < 200_000
+    dump = WINDOWS[target].replace("gcc", "objdump")
+    listed = subprocess.run([dump, "-p", made], capture_output=True, text=True, check=True).stdout
+    names = re.findall(r"^\s*\[\s*\d+\] (?:\+base\[\s*\d+\]\s+\w+ )?([A-Za-z_]\w*)$", listed, re.MULTILINE)
+    assert sorted(names) == sorted((*library.functions, *library.aliases))
+
+
+def test_the_command_writes_the_source_alone(tmp_path: Path) -> None:
+    said = polycnc("clib", "fanuc", "-o", "made", "--source-only", cwd=tmp_path).stdout
+    assert said.split() == ["made/fwlib32.h", "made/fwlib32.c", "made/fwlib32.def"]
+    assert sorted(each.name for each in (tmp_path / "made").iterdir()) == [
+        "fwlib32.c",
+        "fwlib32.def",
+        "fwlib32.h",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("siemens",), "there is no C library of 'siemens'"),
+        (("fanuc", "--target", "amiga"), "there is no target 'amiga'"),
+    ],
+)
+def test_what_there_is_not_is_refused(words: tuple[str, ...], told: str, tmp_path: Path) -> None:
+    assert told in polycnc("clib", *words, cwd=tmp_path, status=2).stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_a_compiler_it_says_what_to_install_and_run(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    library = library_of("fanuc")
+    write_library(library, tmp_path)
+    with pytest.raises(UsageError) as refused:
+        build_library(library, tmp_path, "win32")
+    assert "i686-w64-mingw32-gcc, the compiler for win32, is not found" in str(refused.value)
+    assert " ".join(build_command(library, "win32")) in (refused.value.hint or "")

@@ -1,0 +1,203 @@
+"""What the tables of OPC UA say: words of the enumerations from statuses, units, bounds, certificates, node sets."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("asyncua", reason="pip install 'polycnc[opcua]'")
+
+from asyncua import ua
+from asyncua.server.address_space import AttributeValue, NodeData
+
+from polycnc.cnc import Control, Mode, RunState
+from polycnc.errors import UsageError
+from polycnc.servers.opcua import CNC_TYPES, MACHINE_TOOL_TYPES, _bounds
+from polycnc.servers.opcua._cnc import codes
+from polycnc.servers.opcua._identity import CERTIFICATE, KEY, Users, identity_of
+from polycnc.servers.opcua._model import UNITS
+from polycnc.servers.opcua._moment import At, Fixed
+from polycnc.servers.opcua._node_sets import IN_ORDER, find_node_sets
+from polycnc.servers.opcua._standard import bounded_server
+
+
+def at(**fields: Any) -> At:
+    """Return a status of a mill whose channel has these fields."""
+    control = Control("mill3")
+    fixed = Fixed.of("m", control, {})
+    status = control.status()
+    return At(status._replace(channels=(status.channel._replace(**fields),)), fixed)
+
+
+# OPC 40502, tables of CncChannelStatus (0 active, 1 interrupted, 2 reset) and CncChannelProgramStatus (0 stopped, 1
+# running, 2 waiting, 3 interrupted, 4 canceled); OPC 40501-1: 0 initializing, 1 running, 2 ended, 3 interrupted,
+# 4 aborted
+@pytest.mark.parametrize(
+    ("state", "channel", "program", "production"),
+    [
+        (RunState.READY, 2, 0, 0), (RunState.ACTIVE, 0, 1, 1), (RunState.HOLD, 1, 3, 3),
+        (RunState.STOPPED_AT_BLOCK, 1, 0, 3), (RunState.PROGRAM_STOP, 1, 0, 3), (RunState.OPTIONAL_STOP, 1, 0, 3),
+        (RunState.COMPLETED, 2, 0, 2), (RunState.RESET, 2, 4, 4), (RunState.ALARM, 1, 4, 4),
+    ],
+)  # fmt: skip
+def test_states_of_a_run(state: RunState, channel: int, program: int, production: int) -> None:
+    found = at(run_state=state)
+    assert (found.channel_state, found.program_state, found.production_state) == (
+        channel,
+        program,
+        production,
+    )
+
+
+def test_a_run_that_waits_for_its_program_is_waiting() -> None:
+    assert at(run_state=RunState.ACTIVE, starved=True).program_state == 2
+
+
+@pytest.mark.parametrize(
+    ("mode", "operation", "channel"),
+    [
+        (Mode.AUTO, 2, 0), (Mode.MDI, 1, 1), (Mode.JOG, 0, 2), (Mode.INC, 0, 3), (Mode.HANDLE, 0, 3), (Mode.REF, 0, 6),
+        (Mode.EDIT, 2, 7),
+    ],
+)  # fmt: skip
+def test_modes(mode: Mode, operation: int, channel: int) -> None:
+    found = at(mode=mode)
+    assert (found.operation_mode, found.channel_mode) == (operation, channel)
+
+
+def test_codes_are_the_whole_numbers_of_words() -> None:
+    assert codes(["G54", "1", "G38.2", "M30", "X", ""]) == [54, 1, 30]
+
+
+def test_units_have_the_numbers_of_their_codes() -> None:
+    # OPC 10000-8: the UnitId of MMT is 5066068, of DD 17476
+    assert {UNITS["mm"].number, UNITS["deg"].number} == {5066068, 17476}
+
+
+def test_each_type_comes_after_its_base_and_numbers_are_given_once() -> None:
+    for types in (CNC_TYPES, MACHINE_TOOL_TYPES):
+        known: set[tuple[str, int]] = set()
+        for row in types:
+            assert isinstance(row.base, int) or (row.base.space, row.base.number) in known
+            numbers = [each.number for each in row.members if each.number]
+            for number in [row.number, *numbers]:
+                assert (row.space, number) not in known, (row.name, number)
+                known.add((row.space, number))
+
+
+def _run(visit: Any) -> Any:
+    return asyncio.run(visit)
+
+
+def test_monitored_items_are_bounded_over_all_subscriptions(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(_bounds, "MOST_ITEMS", 7)
+
+    async def nothing() -> None:
+        return
+
+    async def visit() -> list[int]:
+        server = bounded_server(Users(None))
+        node = ua.NodeId("x", 1)
+        data = server.aspace[node] = NodeData(node)
+        data.attributes[ua.AttributeIds.Value] = AttributeValue(ua.DataValue(ua.Variant(1.5)))
+        service = _bounds.Subscriptions(server, nothing, lambda: None)
+        codes = []
+        for wanted in (0.0, float("nan"), 1e300):
+            made = await service.create_subscription(
+                ua.CreateSubscriptionParameters(RequestedPublishingInterval=wanted), nothing, ua.NodeId(3)
+            )
+            assert 50.0 <= made.RevisedPublishingInterval <= 60_000.0
+            item = ua.MonitoredItemCreateRequest(
+                ItemToMonitor=ua.ReadValueId(NodeId=node, AttributeId=ua.AttributeIds.Value),
+                RequestedParameters=ua.MonitoringParameters(QueueSize=2**31),
+            )
+            asked = ua.CreateMonitoredItemsParameters(
+                SubscriptionId=made.SubscriptionId, ItemsToCreate=[item, item, item]
+            )
+            results = await service.create_monitored_items(asked)
+            codes += [each.StatusCode.value for each in results]
+            assert all(each.RevisedQueueSize <= 100 for each in results)
+        await service.delete_subscriptions(list(service.subscriptions))
+        server.method_service.stop()
+        return codes
+
+    full = ua.StatusCodes.BadTooManyMonitoredItems
+    assert _run(visit()) == [0] * 7 + [full] * 2
+
+
+def test_a_certificate_is_kept_and_used_again(tmp_path: Path) -> None:
+    folder = tmp_path / "machine.doors"
+    made = identity_of(folder)
+    assert identity_of(folder) == made
+    (folder / KEY).write_bytes(b"x")
+    with pytest.raises(UsageError, match="no certificate and key can be kept there") as refused:
+        identity_of(folder)
+    assert "Remove certificate.der and key.pem" in refused.value.hint
+    (folder / KEY).write_bytes(identity_of(None).key)
+    with pytest.raises(UsageError, match="do not belong together"):
+        identity_of(folder)
+    assert (folder / CERTIFICATE).read_bytes() == made.certificate
+
+
+def test_a_secret_is_asked_for_where_there_is_one() -> None:
+    assert Users(None).get_user(None) is not None
+    users = Users("a secret of many letters")
+    assert users.get_user(None) is None
+    assert users.get_user(None, "me", "another") is None
+    assert users.get_user(None, "me", "ä") is None
+    assert users.get_user(None, "me", "a secret of many letters") is not None
+
+
+def test_node_sets_are_found_by_their_namespace_and_a_missing_one_is_named(tmp_path: Path) -> None:
+    for number, uri in enumerate(IN_ORDER):
+        text = f"<UANodeSet><NamespaceUris>\n <Uri>{uri}</Uri><Uri>other</Uri></NamespaceUris></UANodeSet>"
+        (tmp_path / f"{number}.XML").write_text(text)
+    assert list(find_node_sets(tmp_path)) == list(IN_ORDER)
+    (tmp_path / "5.XML").unlink()
+    with pytest.raises(UsageError, match=r"there is no node set of \S+/UA/MachineTool/\n"):
+        find_node_sets(tmp_path)
+    with pytest.raises(UsageError, match="node sets cannot be read"):
+        find_node_sets(tmp_path / "none")
+
+
+def official() -> Path | None:
+    """Return the folder of the official node sets, if it is there."""
+    beside = Path(__file__).parents[3] / "shared" / "data"
+    folder = Path(os.environ.get("POLYCNC_DATA") or beside) / "opcua"
+    return folder if folder.is_dir() else None
+
+
+@pytest.mark.long
+@pytest.mark.skipif(official() is None, reason="needs the official node sets (POLYCNC_DATA with opcua/)")
+def test_the_tables_are_those_of_the_official_node_sets() -> None:
+    import xml.etree.ElementTree as ElementTree
+
+    folder = official()
+    assert folder is not None
+    files = find_node_sets(folder)
+    numbers: dict[str, Mapping[int, str]] = {}
+    for uri, path in files.items():
+        found = {}
+        for each in ElementTree.parse(path).getroot():
+            node, name = each.get("NodeId", ""), each.get("BrowseName", "")
+            if node.startswith("ns=1;i="):
+                found[int(node[7:])] = name.rpartition(":")[2]
+        numbers[uri] = found
+    for row in (*CNC_TYPES, *MACHINE_TOOL_TYPES):
+        assert numbers[row.space][row.number] == row.name
+        for member in row.members:
+            if member.number:
+                assert numbers[row.space][member.number] == member.name, (row.name, member.name)
+
+
+def test_the_page_names_every_member() -> None:
+    page = (Path(__file__).parents[2] / "docs/reference/opcua.md").read_text(encoding="utf-8")
+    for row in (*CNC_TYPES, *MACHINE_TOOL_TYPES):
+        for member in row.members:
+            name = member.name.rpartition("/")[2]
+            assert f"`{name}`" in page or row.name == "CncAlarmType", (row.name, name)
