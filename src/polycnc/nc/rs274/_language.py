@@ -87,7 +87,7 @@ class NgcLanguage:
             tuple(source.saved() if isinstance(source, RunningProgram) else None for _, source in under_way),
         )
 
-    def way_back(self, channel: Host, saved: object) -> Returning:
+    def restore_point(self, channel: Host, saved: object) -> Returning:
         """Return what goes back to a state; nothing changes yet.
 
         Raises:
