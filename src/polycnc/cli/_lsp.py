@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import sys
+
 from polycnc.cli import _options as options
+from polycnc.cli._errors import PROGRAM
 
 
 def lsp_command(machine: options.Machine = None, dialect: options.Dialect = None) -> None:
@@ -11,4 +14,5 @@ def lsp_command(machine: options.Machine = None, dialect: options.Dialect = None
     from polycnc.machine import load_machine
     from polycnc.nc import load_dialect
 
-    serve_editor(load_machine(machine), None if dialect is None else load_dialect(dialect))
+    if not serve_editor(load_machine(machine), None if dialect is None else load_dialect(dialect)):
+        sys.exit(PROGRAM)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from polycnc.editor._place import Span, lines_of, words_only
+from polycnc.editor._place import Span, words_only
 from polycnc.nc import Dialect, MAction
 
 _CODE = re.compile(r"(?<![A-Za-z_%$])([GM])[ \t]*([0-9]{1,6}(?:\.[0-9]{0,6})?)", re.IGNORECASE)
@@ -20,9 +20,8 @@ class Completion:
     detail: str
 
 
-def hover(text: str, line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
+def hover(lines: list[str], line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
     """Return what the code at a place does, as Markdown, and where it stands; None where no code stands."""
-    lines = lines_of(text)
     if not 0 <= line < len(lines):
         return None
     for found in _CODE.finditer(words_only(lines[line], dialect)):
@@ -32,9 +31,8 @@ def hover(text: str, line: int, character: int, dialect: Dialect) -> tuple[str, 
     return None
 
 
-def completions(text: str, line: int, character: int, dialect: Dialect) -> list[Completion]:
+def completions(lines: list[str], line: int, character: int, dialect: Dialect) -> list[Completion]:
     """Return the codes of the dialect with the letter that has been begun before a place."""
-    lines = lines_of(text)
     if not 0 <= line < len(lines):
         return []
     begun = _BEGUN.search(words_only(lines[line][:character], dialect))

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from polycnc import runner
-from polycnc.editor._place import Span, lines_of, word_at
+from polycnc.editor._document import Document
+from polycnc.editor._newest import GoOn
+from polycnc.editor._place import Span, word_at
 from polycnc.errors import PolycncError, SourcePosition
 from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ProgramText
@@ -23,17 +25,25 @@ class Finding:
 
 
 def findings(
-    text: str, name: str, machine: MachineConfig | None = None, dialect: Dialect | None = None
+    document: Document,
+    name: str,
+    machine: MachineConfig | None = None,
+    dialect: Dialect | None = None,
+    go_on: GoOn = lambda: None,
 ) -> list[Finding]:
     """Return everything that `polycnc check` says of a program; `name` is its path, whose folder is the root.
 
     What concerns another file, like a sub-program, stands in the first line and names its place.
     """
     folder = Path(name).parent
-    lines = lines_of(text)
+    lines = document.lines
     try:
         report = runner.inspect(
-            ProgramText.from_text(text, name), machine, dialect, root=folder if folder.is_dir() else None
+            ProgramText.from_text(document.text, name),
+            machine,
+            dialect,
+            root=folder if folder.is_dir() else None,
+            progress=lambda _: go_on(),
         )
     except PolycncError as error:
         return [Finding(_span(None, lines), str(error), "", True)]

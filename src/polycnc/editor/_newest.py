@@ -1,4 +1,4 @@
-"""Work on the newest of several texts, one at a time: what has been overtaken is left out or not told."""
+"""Work on the newest of several texts, one at a time: what has been overtaken ends early and is not told."""
 
 from __future__ import annotations
 
@@ -10,6 +10,12 @@ from functools import partial
 from typing import TypeVar
 
 R = TypeVar("R")
+GoOn = Callable[[], None]
+"""To be called now and then by work; it raises `Overtaken` where nobody waits for the answer any more."""
+
+
+class Overtaken(Exception):  # noqa: N818  it is no error
+    """Other work has been given for the same text since."""
 
 
 class Newest:
@@ -22,18 +28,26 @@ class Newest:
         self._turn: dict[str, int] = {}
         self._lock: asyncio.Lock | None = None
 
-    async def run(self, key: str, work: Callable[[], R]) -> R | None:
+    async def run(self, key: str, work: Callable[[GoOn], R]) -> R | None:
         """Return what `work` gives, None where other work for the same key was given since."""
-        turn = self._turn[key] = self._turn.get(key, 0) + 1
+        self.drop(key)
+        turn = self._turn[key]
+
+        def go_on() -> None:
+            if self._turn[key] != turn:
+                raise Overtaken
+
         self._lock = self._lock or asyncio.Lock()  # made within the loop that it belongs to
         async with self._lock:
-            if self._turn[key] != turn:
-                return None
-            result = await _in_thread(work)
-        return result if self._turn[key] == turn else None
+            with suppress(Overtaken):
+                go_on()
+                result = await _in_thread(partial(work, go_on))
+                go_on()
+                return result
+        return None
 
     def drop(self, key: str) -> None:
-        """Let work that was given for a key tell nothing any more."""
+        """Let work that was given for a key end, and tell nothing any more."""
         self._turn[key] = self._turn.get(key, 0) + 1
 
 
@@ -41,14 +55,18 @@ async def _in_thread(work: Callable[[], R]) -> R:
     loop = asyncio.get_running_loop()
     future: asyncio.Future[R] = loop.create_future()
 
+    def tell(settle: Callable[[], None]) -> None:
+        if not future.done():  # it is where the loop ends
+            settle()
+
     def run() -> None:
-        tell: Callable[[], None]
+        settle: Callable[[], None]
         try:
-            tell = partial(future.set_result, work())
+            settle = partial(future.set_result, work())
         except Exception as error:
-            tell = partial(future.set_exception, error)
+            settle = partial(future.set_exception, error)
         with suppress(RuntimeError):  # the loop has ended
-            loop.call_soon_threadsafe(tell)
+            loop.call_soon_threadsafe(tell, settle)
 
     threading.Thread(target=run, daemon=True).start()
     return await future

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-from polycnc.editor._place import lines_of, words_only
+from polycnc.editor._place import words_only
 from polycnc.nc import Dialect, MAction
 
 _PROGRAM = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?O[ \t]*([0-9]+)[ \t]*\Z", re.IGNORECASE)
@@ -35,9 +35,8 @@ class _Mark:
     line: int
 
 
-def outline(text: str, dialect: Dialect) -> list[Symbol]:
-    """Return the programs of a text with their tool changes, and the tool changes before the first program."""
-    lines = lines_of(text)
+def outline(lines: list[str], dialect: Dialect) -> list[Symbol]:
+    """Return the programs in the lines of a text with their tool changes, and those before the first program."""
     marks = [mark for number, line in enumerate(lines) if (mark := _mark(number, line, dialect)) is not None]
     heads = [number for number, mark in enumerate(marks) if mark.is_program]
     first = heads[0] if heads else len(marks)

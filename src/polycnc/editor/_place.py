@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from polycnc.nc import Dialect
 
-_LINE_END = re.compile(r"\r\n|\r|\n")
+LINE_END = re.compile(r"\r\n|\r|\n")
 _WORD = re.compile(r"[A-Za-z][ \t]*[-+]?[0-9.]+|\w+|\S")
 _STATEMENT = re.compile(r"[ \t]*[0-9]+[ \t]")
 
@@ -23,7 +23,7 @@ class Span:
 
 def lines_of(text: str) -> list[str]:
     """Return the lines of a text without their ends."""
-    return _LINE_END.split(text)
+    return LINE_END.split(text)
 
 
 def word_at(line: str, begin: int) -> int:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import sys
+
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect
@@ -9,8 +12,10 @@ from polycnc.nc import Dialect
 _NEEDED = ("pygls", "lsprotocol")
 
 
-def serve_editor(machine: MachineConfig | None = None, dialect: Dialect | None = None) -> None:
-    """Speak the Language Server Protocol on standard input and output until the editor ends it.
+def serve_editor(machine: MachineConfig | None = None, dialect: Dialect | None = None) -> bool:
+    """Speak the Language Server Protocol on standard input and output; return whether the editor ended it in order.
+
+    Whatever else is printed meanwhile goes to standard error, as it would be no message of the protocol.
 
     Raises:
         UsageError: pygls is not installed.
@@ -23,4 +28,10 @@ def serve_editor(machine: MachineConfig | None = None, dialect: Dialect | None =
         raise UsageError(
             "the language server needs pygls", hint="Install it: pip install 'polycnc[editor]'."
         ) from None
-    editor_server(machine, dialect).start_io()
+    server = editor_server(machine, dialect)
+    sys.stdout.flush()
+    out = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    with out:
+        server.start_io(sys.stdin.buffer, out)
+    return server.was_shut_down
