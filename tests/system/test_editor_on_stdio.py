@@ -55,3 +55,35 @@ def test_changes_within_a_text_act_at_their_utf_16_places(editor: Editor, tmp_pa
     found = {each["message"].partition("\n")[0]: each["range"] for each in told if "77" in each["message"]}
     assert sorted(found.values(), key=str) == sorted([span(0, 7, 11), span(1, 9, 13)], key=str), told
     editor.notify("textDocument/didClose", {"textDocument": {"uri": uri}})
+
+
+PART = (
+    "O1234\nT1 M6\nS900 M3\n(POCKET)\nG1 X10 F600\nG91 X5 F100 M8\nG90\nM98 P77 L3\nG20 T4 M6\nG1 X2.5 F90\nM30\n"
+    "O77\nG1 Y3\nG1 Y0\nM99\n"
+)
+
+
+def test_a_word_tells_what_holds_before_its_line_and_how_long_that_takes(
+    editor: Editor, tmp_path: Path
+) -> None:
+    uri = (tmp_path / "part.nc").as_uri()
+    editor.open(uri, PART)
+    outline = editor.ask("textDocument/documentSymbol", {"textDocument": {"uri": uri}})
+    assert [each["name"] for each in outline] == ["O1234", "O77"]
+    operations = outline[0]["children"]
+    assert [each["name"] for each in operations] == ["T1", "POCKET", "T4"]
+    assert "cuts" in operations[1]["detail"]
+
+    def told(line: int, character: int) -> str:
+        text: str = editor.ask_at("textDocument/hover", uri, line, character)["contents"]["value"]
+        return text
+
+    code = told(5, 1)
+    assert "Axis words are ways" in code
+    assert "tool T1; F600 mm/min; S900 rpm, clockwise" in code
+    assert "at X10 " in code
+    assert "This line takes 3." in code
+    assert "Feed, inch/min" in told(9, 8)
+    assert "Axis X, position in inch" in told(9, 4)
+    assert "in 3 rounds" in told(12, 0)
+    assert "Before this line" not in told(12, 0)  # the main program does not come to it

@@ -9,6 +9,7 @@ from polycnc.editor._place import Span, words_only
 from polycnc.nc import Dialect, MAction
 
 _CODE = re.compile(r"(?<![A-Za-z_%$])([GM])[ \t]*([0-9]{1,6}(?:\.[0-9]{0,6})?)", re.IGNORECASE)
+_ADDRESS = re.compile(r"(?<![A-Za-z_%$#.])([A-Z])[ \t]*[-+]?[0-9.#\[][0-9.\[\]#]*", re.IGNORECASE)
 _BEGUN = re.compile(r"(?:\A|(?<=[^A-Za-z_%$]))([GM])[0-9]*\.?[0-9]*\Z", re.IGNORECASE)
 
 
@@ -21,13 +22,23 @@ class Completion:
 
 
 def hover(lines: list[str], line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
-    """Return what the code at a place does, as Markdown, and where it stands; None where no code stands."""
+    """Return what the G or M code at a place does, as Markdown, and where it stands; None where none stands."""
     if not 0 <= line < len(lines):
         return None
     for found in _CODE.finditer(words_only(lines[line], dialect)):
         if found.start() <= character < found.end():
             described = _described(found[1].upper(), float(found[2]), dialect)
             return described, Span(line, found.start(), found.end())
+    return None
+
+
+def word(lines: list[str], line: int, character: int, dialect: Dialect) -> tuple[str, Span] | None:
+    """Return the letter of the word at a place, and where it stands; None where no word stands."""
+    if not 0 <= line < len(lines):
+        return None
+    for found in _ADDRESS.finditer(words_only(lines[line], dialect)):
+        if found.start() <= character < found.end():
+            return found[1].upper(), Span(line, found.start(), found.end())
     return None
 
 

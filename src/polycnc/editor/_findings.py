@@ -7,7 +7,7 @@ from pathlib import Path
 
 from polycnc import runner
 from polycnc.editor._document import Document
-from polycnc.editor._newest import GoOn
+from polycnc.editor._newest import LONGEST_S, GoOn, TooLong, within
 from polycnc.editor._place import Span, word_at
 from polycnc.errors import PolycncError, SourcePosition
 from polycnc.machine import MachineConfig
@@ -43,8 +43,11 @@ def findings(
             machine,
             dialect,
             root=folder if folder.is_dir() else None,
-            progress=lambda _: go_on(),
+            progress=within(LONGEST_S, go_on),
         )
+    except TooLong:
+        what = f"the check was ended after {LONGEST_S:g} s, before the end of the program\nDoes it loop without end?"
+        return [Finding(_span(None, lines), what, "", False)]
     except PolycncError as error:
         return [Finding(_span(None, lines), str(error), "", True)]
     found = []

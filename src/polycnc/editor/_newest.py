@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import threading
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -14,8 +15,28 @@ GoOn = Callable[[], None]
 """To be called now and then by work; it raises `Overtaken` where nobody waits for the answer any more."""
 
 
+LONGEST_S = 20.0
+"""How long one text may be looked at; a program can loop without end."""
+
+
 class Overtaken(Exception):  # noqa: N818  it is no error
     """Other work has been given for the same text since."""
+
+
+class TooLong(Exception):  # noqa: N818  it is no error
+    """A text has been looked at for as long as it may be."""
+
+
+def within(time_s: float, go_on: GoOn) -> Callable[[float], None]:
+    """Return what ends work as `go_on` does, and by `TooLong` after a time."""
+    until = time.monotonic() + time_s
+
+    def progress(_: float) -> None:
+        go_on()
+        if time.monotonic() > until:
+            raise TooLong
+
+    return progress
 
 
 class Newest:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from polycnc.editor._place import words_only
 from polycnc.nc import Dialect, MAction
+from polycnc.runner import Operation, Survey, time_text
 
 _PROGRAM = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?O[ \t]*([0-9]+)[ \t]*\Z", re.IGNORECASE)
 _SUB = re.compile(r"[ \t]*(?:N[0-9]+[ \t]*)?O[ \t]*(<[^>]*>|[0-9]+)[ \t]*SUB\b", re.IGNORECASE)
@@ -35,15 +36,37 @@ class _Mark:
     line: int
 
 
-def outline(lines: list[str], dialect: Dialect) -> list[Symbol]:
-    """Return the programs in the lines of a text with their tool changes, and those before the first program."""
-    marks = [mark for number, line in enumerate(lines) if (mark := _mark(number, line, dialect)) is not None]
+def outline(lines: list[str], dialect: Dialect, survey: Survey | None = None) -> list[Symbol]:
+    """Return the programs in the lines of a text with their operations and tool changes, and those before the first.
+
+    What a survey has found has its times.
+    """
+    marks = {number: mark for number, line in enumerate(lines) if (mark := _mark(number, line, dialect))}
+    for each in survey.operations if survey else ():
+        _time(each, marks)
+    return _nested(sorted(marks.values(), key=lambda mark: mark.line), len(lines))
+
+
+def _time(operation: Operation, marks: dict[int, _Mark]) -> None:
+    """Give the mark at the beginning of an operation its times, one of its own where there is none."""
+    number = operation.line - 1
+    mark = marks.get(number)
+    name = operation.name or (mark.name if mark else f"T{operation.tool}")
+    if mark is not None and mark.is_program:  # its time is that of all that follows
+        return
+    times = f"{time_text(operation.time_s)} (cuts {time_text(operation.cutting_s)})"
+    comment = mark.detail if mark and mark.detail != name else ""
+    tool = f"T{operation.tool}" if operation.name else ""
+    marks[number] = _Mark(name, " ".join(filter(None, (tool, comment, times))), False, number)
+
+
+def _nested(marks: list[_Mark], length: int) -> list[Symbol]:
     heads = [number for number, mark in enumerate(marks) if mark.is_program]
     first = heads[0] if heads else len(marks)
-    end = marks[first].line if heads else len(lines)
+    end = marks[first].line if heads else length
     found = _changes(marks[:first], end)
     for head, after in zip(heads, [*heads, len(marks)][1:], strict=True):
-        end = marks[after].line if after < len(marks) else len(lines)
+        end = marks[after].line if after < len(marks) else length
         found.append(_symbol(marks[head], end, _changes(marks[head + 1 : after], end)))
     return found
 
