@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from polycnc.runner._machining import Machined, MachiningCollector, tools_of
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._schemas import SCHEMAS, json_schema
+    from polycnc.runner._survey import LineTime, Survey, holds_before, survey
     from polycnc.runner._verify import Violation, verify_trace
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
     from polycnc.runner.batches import BatchResult, batch
@@ -37,6 +38,7 @@ _LATER = {
     "_machining": ("Machined", "MachiningCollector", "tools_of"),
     "_post": ("PostResult", "post_file"),
     "_schemas": ("SCHEMAS", "json_schema"),
+    "_survey": ("LineTime", "Survey", "holds_before", "survey"),
     "_verify": ("Violation", "verify_trace"),
     "_verify_post": ("Deviation", "PostVerification", "verify_post"),
     "batches": ("BatchResult", "batch"),
@@ -58,6 +60,7 @@ __all__ = [
     "Comparison",
     "Debugger",
     "Deviation",
+    "LineTime",
     "Machined",
     "MachiningCollector",
     "Operation",
@@ -70,6 +73,7 @@ __all__ = [
     "RunMessage",
     "RunResult",
     "RunSettings",
+    "Survey",
     "Trace",
     "TraceWriter",
     "TracedResult",
@@ -83,6 +87,7 @@ __all__ = [
     "check_view_file",
     "compare",
     "counted",
+    "holds_before",
     "inspect",
     "json_schema",
     "machine_from",
@@ -95,6 +100,7 @@ __all__ = [
     "read_trace",
     "run",
     "run_program",
+    "survey",
     "time_text",
     "tools_of",
     "trace_columns",
