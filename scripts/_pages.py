@@ -76,6 +76,12 @@ def bosch_ncs_page() -> str:
     return page()
 
 
+def control_page() -> str:
+    """Return the page of the control as a library."""
+    page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_control_page.py"))["page"]
+    return page()
+
+
 def cpl_page() -> str:
     """Return the page of CPL."""
     page: Callable[[], str] = runpy.run_path(str(REPOSITORY / "scripts" / "_cpl_page.py"))["page"]
@@ -119,6 +125,7 @@ PAGES: dict[str, Callable[[], str]] = {
     "docs/reference/bosch-ncs.md": bosch_ncs_page,
     "docs/reference/c-libraries.md": c_library_page,
     "docs/reference/conformance.md": conformance_page,
+    "docs/reference/control.md": control_page,
     "docs/reference/cpl.md": cpl_page,
     "docs/reference/data-items.md": data_items_page,
     "docs/reference/dialects.md": dialects_page,

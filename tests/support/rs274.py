@@ -101,6 +101,7 @@ class _Canon:
 
     axes: int
     scale: float
+    least_mm: float  # what printing may have made of no move
     inch: bool = False
     feed: float = 0.0  # mm/min, or mm
     number: float = 0.0  # the same as it was programmed: what counts when only rotary axes move
@@ -116,11 +117,6 @@ class _Canon:
 
     def length(self, text: str) -> float:
         return float(text) * (MM_PER_INCH if self.inch else 1.0) / self.scale
-
-    def coordinate(self, axis: int, text: str) -> float:
-        """Return machine mm or degree of axis 0 to 5 (X Y Z A B C)."""
-        value = self.length(text) if axis < 3 else float(text)
-        return value + sum(offset[axis] for offset in self.offsets.values())
 
     def point(self, texts: list[str]) -> Point:
         values = [self.length(text) if axis < 3 else float(text) for axis, text in enumerate(texts)]
@@ -146,7 +142,7 @@ class _Canon:
 
     def move(self, step: Traverse | Feed | Turn) -> None:
         # A move to where the machine stands is no move, unless it is a full circle.
-        if isinstance(step, Turn) or math.dist(step.end, self.at) > 2.0 * RESOLUTION_MM * SCALE / self.scale:
+        if isinstance(step, Turn) or math.dist(step.end, self.at) > self.least_mm:
             self.steps.append(step)
         self.at = step.end
 
@@ -162,9 +158,8 @@ class _Canon:
         first = math.atan2(self.at[q] - center[1], self.at[p] - center[0])
         last = math.atan2(end[q] - center[1], end[p] - center[0])
         radius = math.dist((self.at[p], self.at[q]), center)
-        nothing = (
-            8.0 * RESOLUTION_MM * SCALE / self.scale / radius
-        )  # an angle that printing may have made or hidden
+        hidden = 8.0 * RESOLUTION_MM * SCALE / self.scale
+        nothing = hidden / radius  # an angle that printing may have made or hidden
         turn = (last - first) * math.copysign(1.0, turns) % (2.0 * math.pi)
         if turn < nothing or turn > 2.0 * math.pi - nothing:
             turn = 2.0 * math.pi
@@ -226,9 +221,14 @@ class _Canon:
                     assert name in _IGNORED, name
 
 
-def canonical_steps(answer: Answer, axes: int, scale: float = SCALE) -> list[Step]:
-    """Turn the calls that rs274 printed for a program `scale` times as large into canonical steps."""
-    canon = _Canon(axes, scale, at=(0.0,) * axes)
+def canonical_steps(
+    answer: Answer, axes: int, scale: float = SCALE, least_mm: float = 2.0 * RESOLUTION_MM
+) -> list[Step]:
+    """Turn the calls that rs274 printed for a program `scale` times as large into canonical steps.
+
+    Moves of up to `least_mm` are none.
+    """
+    canon = _Canon(axes, scale, least_mm, at=(0.0,) * axes)
     for name, texts in answer.calls:
         if name == "SET_SPINDLE_MODE":  # the first call of the reset at program end that nothing else makes
             if canon.steps and canon.steps[-1] == Function("M5"):

@@ -20,6 +20,7 @@ from support.random_ngc_words import RandomWords
 pytestmark = pytest.mark.skipif(rs274.COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
 
 TOLERANCE_MM = 1e-3  # rs274 prints four decimals, also of each shift and of each inch
+LEAST_MM = 2.5e-3  # four decimals, of inches too
 TOOLS = (
     "[tools]\n1 = {length_mm = 254.0, radius_mm = 76.2}\n2 = {x_mm = 25.4, length_mm = 508.0, radius_mm = 101.6}\n"
     "3 = {x_mm = 50.8, length_mm = 762.0, radius_mm = 50.8, tip = 2}\n"
@@ -95,7 +96,7 @@ def test_blocks_have_the_same_end_points(
     ours, error = prepare(whole(blocks))
     assert error is None
     assert not theirs.error
-    assert not first_difference(ours, rs274.canonical_steps(theirs, 3, scale=1), TOLERANCE_MM)
+    assert not first_difference(ours, rs274.canonical_steps(theirs, 3, 1, LEAST_MM), TOLERANCE_MM)
 
 
 @pytest.mark.parametrize("orientation", range(1, 10))
@@ -107,7 +108,7 @@ def test_where_a_tip_lies_is_counted_as_linuxcnc_counts(
     program = whole(f"G18 G0 X20 Z5\nG42.1 D6 L{orientation}\nG1 X10 Z3\nZ-20\nZ-30\nX40\nX50")
     ours, error = prepare(program)
     assert error is None
-    theirs = rs274.canonical_steps(rs274.interpret(program, tmp_path), 3, scale=1)
+    theirs = rs274.canonical_steps(rs274.interpret(program, tmp_path), 3, 1, LEAST_MM)
     assert not first_difference(ours[3:], theirs[3:], TOLERANCE_MM)
     assert len(ours) == 6
 
@@ -165,7 +166,7 @@ def compare(seed: int, count: int, folder: Path) -> str:
         return ""  # a position by radius and angle where the tool stands at zero
     if error is not None or theirs.error:
         return f"seed {seed}: refused\n  ours   {error}\n  theirs {theirs.error}: {theirs.block}\n{program}"
-    found = first_difference(ours, rs274.canonical_steps(theirs, 3, scale=1), 5.0 * TOLERANCE_MM)
+    found = first_difference(ours, rs274.canonical_steps(theirs, 3, 1, LEAST_MM), 5.0 * TOLERANCE_MM)
     return f"seed {seed}: {found}\n{program}" if found else ""
 
 

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from polycnc.controllers.fanuc import PowerMate, fwlib
 from polycnc.controllers.fanuc.clib import FWLIB
+from polycnc.errors import UsageError
 from polycnc.servers.calls import LIBRARIES, CallClient, Caller, Trace
 
 NUMBERS = {each.function.name: each.number for each in FWLIB.calls}
@@ -181,3 +182,8 @@ def test_calls_are_traced(tmp_path: Path) -> None:
         "in": {"FlibHndl": 1, "number": 103, "length": 10, "mcr_val": 31415, "dec_val": 3},
     }  # fmt: skip
     assert lines[2]["out"] == {"macro": struct.pack("<hhih", 103, 0, 31415, 3).hex()}
+
+
+def test_a_trace_that_cannot_be_written_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="cannot be written"):
+        Trace(tmp_path / "missing" / "calls.jsonl")

@@ -83,6 +83,20 @@ def test_the_command_writes_the_source_alone(tmp_path: Path) -> None:
     assert sorted(each.name for each in (tmp_path / "made").iterdir()) == sorted(FILES)
 
 
+@pytest.mark.parametrize("name", ["fwlib32.h", "fwlib32.dll", "fwlib32.lib", "fwlib32.c"])
+def test_files_of_the_maker_are_not_replaced(name: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(b"the maker's own")
+    for words in ((), ("--source-only",)):
+        assert "not of polycnc clib" in polycnc("clib", "fanuc", *words, cwd=tmp_path, status=2).stderr
+    assert [(each.name, each.read_bytes()) for each in tmp_path.iterdir()] == [(name, b"the maker's own")]
+
+
+def test_what_it_wrote_is_written_anew(tmp_path: Path) -> None:
+    for _ in range(2):
+        polycnc("clib", "fanuc", "--source-only", cwd=tmp_path)
+    assert sorted(each.name for each in tmp_path.iterdir()) == sorted(FILES)
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [

@@ -23,7 +23,7 @@ BY_STEPS = {  # of their own: other words ask for them too, or they only change 
     Group.RADIUS_COMPENSATION, Group.SPINDLE_MODE,
 }  # fmt: skip
 ALWAYS = set("NODFHMST")  # any block may have them
-MACHINES = {"fanuc-lathe": "lathe2"}
+MACHINES = {"fanuc-lathe": "lathe2", "linuxcnc": "vmc3"}
 
 
 def test_every_code_is_carried_out_by_one_function() -> None:
@@ -111,7 +111,9 @@ def test_a_row_names_no_words_that_its_code_never_takes(made: list[BlockContext]
         for code, action in taker.codes():
             own = sorted(taker.own(action))
             blocks = [code + "".join(f" {each}2." for each in own if each != other) for other in ("", *own)]
-            beside = (" X2. Y3.", " I5.", " L10 P2", " P2", " P2 Q2")
+            beside = (
+                " X2. Y3.", " I5.", " L10 P2", " L1 P1", " P2", " P2 Q2", " G18 Z-19. P2. I-1. J1. K3.",
+            )  # fmt: skip
             blocks += [f"{code}{some} {each}2." for some in beside for each in own if each not in some]
             contour = "\nN2 G1 X2. Z2.\n"
             found = set().union(*(taker.taken(block + contour) for block in blocks))

@@ -116,15 +116,15 @@ def test_nul_is_a_third_state() -> None:
     assert value("#A=7\n#A=X") is None
     assert value("#N%=3\n#E?=B?=NUL", "#E?") is True
     assert value("#L%=LEN(A$)", "#L%") == -1
-    for text in (
-        "#A=X+1",
-        "#A=SIN(X)",
-        "IF X<1 THEN #A=1 ENDIF",
-        "IF E? THEN #A=1 ENDIF",
-        "#N%=NOT I%",
-        "#E?=A? AND TRUE",
+    for text, name in (
+        ("#A=X+1", "X"),
+        ("#A=SIN(X)", "X"),
+        ("IF X<1 THEN #A=1 ENDIF", "X"),
+        ("IF E? THEN #A=1 ENDIF", "E?"),
+        ("#N%=NOT I%", "I%"),
+        ("#E?=A? AND TRUE", "A?"),
     ):
-        assert failure(text).what == "INVALID VARIABLE: a variable without a value (NUL)", text
+        assert failure(text).what == f"INVALID VARIABLE: {name} has no value (NUL)", text
     assert failure("#E?=NUL<X").what == "NUL is only compared by = and <>"
 
 

@@ -193,6 +193,21 @@ def test_a_laser_of_a_control_is_off_at_rapid_and_behind_the_end() -> None:
     assert bench.control.spindle.state().actual_rpm == 0.0
 
 
+@pytest.mark.parametrize("words", ["M3 S310", "M4 S310"])
+def test_a_laser_that_is_held_does_not_burn_where_it_stands(words: str) -> None:
+    bench = LaserBench("[spindle]\nmax_rpm = 900\nlaser = true\n")
+    bench.send(f"{words}\nG1 X80 F3000\n")
+    while bench.x() < 23.0:
+        bench.passed(1)
+    bench.send("!")
+    bench.passed(2000)
+    assert bench.shown() == [0.0, 0.0]
+    bench.send("~")
+    bench.passed(400)
+    assert 23.0 < bench.x() < 80.0
+    assert bench.shown() == [3000.0, 310.0]
+
+
 @pytest.mark.parametrize("laser", [True, False])
 def test_a_control_has_the_laser_that_its_machine_file_has(laser: bool) -> None:
     bench = LaserBench(f"[spindle]\nlaser = {str(laser).lower()}\n")

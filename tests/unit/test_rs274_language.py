@@ -57,6 +57,19 @@ def test_a_sub_program_in_a_file_beside_the_program(tmp_path: Path) -> None:
     assert {Path(str(name)).name for name in result.trace.program} == {"square.ngc", "part.ngc"}
 
 
+@pytest.mark.parametrize("rest", ["", "#1=3\nG0 X#1\n"])
+def test_comments_that_would_write_files_are_remarked(rest: str, tmp_path: Path) -> None:
+    (tmp_path / "part.ngc").write_text(
+        "G21\n(LogOpen,found.txt)\nG0 X2 (LOG,#5420)\n( log,again)\n; (PROBEOPEN x.txt)\n(a logbook)\n"
+        f"{rest}(logclose)\nM2\n"
+    )
+    found = [each for each in polycnc.run(tmp_path / "part.ngc").messages if "no file" in str(each)]
+    assert [(each.text, each.line) for each in found] == [
+        (f"({word}) writes no file here", line)
+        for word, line in (("LOGOPEN", 2), ("LOG", 3), ("LOGCLOSE", 7 + rest.count("\n")))
+    ]
+
+
 def test_messages_show_parameters(tmp_path: Path) -> None:
     (tmp_path / "part.ngc").write_text("#1=2.5\n(DEBUG,depth #1)\n(msg,hello)\nG0 X1\n")
     texts = [message.text for message in polycnc.run(tmp_path / "part.ngc").messages]

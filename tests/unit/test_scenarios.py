@@ -148,6 +148,23 @@ def test_requests_begin_and_end_steps_and_tell_the_door_what_to_do() -> None:
     with_machine("plain", visit)
 
 
+def test_the_end_of_a_hold_starts_nothing_that_is_not_held() -> None:
+    def visit(machine: ServedMachine) -> None:
+        story = story_of(
+            machine,
+            {"name": "operator", "at_s": 0.1, "do": "feed_hold", "for_s": 0.9},
+            {"name": "reset", "at_s": 0.6, "do": "reset"},
+        )
+        machine.served.again = None
+        machine.served.advance(1500)
+        assert [each[2] for each in told(story)] == ["began", "began", "ended"]
+        control = machine.control
+        assert control is not None
+        assert not control.channels[0].active
+
+    with_machine("plain", visit)
+
+
 def test_what_the_control_refuses_is_told_and_the_rest_goes_on() -> None:
     def visit(machine: ServedMachine) -> None:
         story = story_of(

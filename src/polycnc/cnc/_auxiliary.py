@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from polycnc.cnc._alarms import AlarmList
 from polycnc.cnc._control_channel import ControlChannel
 from polycnc.cnc._plc import Function, PlcModel, functions_of
-from polycnc.cnc._run_state import RunState
+from polycnc.cnc._run_state import INTERRUPTED, RunState
 from polycnc.cnc._spindle import Spindle
 from polycnc.kernel import RAPID
 from polycnc.machine import Clock, TimesConfig
@@ -64,14 +64,15 @@ class AuxiliaryFunctions:
     def follow(self, channel: ControlChannel) -> None:
         """Let a laser have the power of the block that is executed, at the speed that there is now.
 
-        It is off at rapid; with M4 its power is to S as the speed to the programmed feed. A program that is over leaves
-        it off where it was switched off.
+        It is off at rapid, and at rest where the program is held or stopped; with M4 its power is to S as the speed to
+        the programmed feed. A program that is over leaves it off where it was switched off.
         """
         run, block = channel.run, channel.executed
         if run is None or block is None:
             return
         row, modal = run.feed.row, block.modal
-        power = 0.0 if row["flags"] & RAPID else modal.speed
+        rests = run.state in INTERRUPTED and row["speed"] == 0.0
+        power = 0.0 if rests or row["flags"] & RAPID else modal.speed
         if modal.spindle_direction < 0:
             feed_mm_s = modal.feed * (MM_PER_INCH if modal.inch else 1.0) / 60.0
             power *= float(row["speed"]) / feed_mm_s if feed_mm_s > 0.0 else 0.0

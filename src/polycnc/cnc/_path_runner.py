@@ -45,7 +45,7 @@ RESTS_PER_CYCLE = 16
 
 
 class PathRunner:
-    """PathRunner one path of a machine along what its channel prepares, as `moment` says.
+    """Run one path of a machine through what its channel prepares, as `moment` says.
 
     `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes. `rows`, `on_event` and
     `on_skip` are told what happens, see `ProgramRun`.

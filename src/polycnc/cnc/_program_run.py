@@ -605,15 +605,15 @@ class ProgramRun:
         return lambda: self._go_back(saved, channel, back)
 
     def _go_back(self, saved: SavedRun, channel: Channel, back: Callable[[], None]) -> None:
-        conduct = self._path_runner
+        runner = self._path_runner
         back()
         self.program = saved.program
-        conduct.channel = channel
-        conduct.feed.restore(saved.feed)
-        conduct.stopper.step, conduct.stopper.depth = saved.step, saved.depth
-        conduct.overrides.kept = saved.override_kept
-        conduct.moment = saved.moment.copy()
-        conduct.take_switch()
+        runner.channel = channel
+        runner.feed.restore(saved.feed)
+        runner.stopper.step, runner.stopper.depth = saved.step, saved.depth
+        runner.overrides.kept = saved.override_kept
+        runner.moment = saved.moment.copy()
+        runner.take_switch()
 
     @property
     def _made_from(self) -> str:

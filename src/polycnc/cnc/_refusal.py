@@ -18,10 +18,10 @@ class Refusal(StrEnum):
     HELD = "held"  # a signal of feed hold is given
     TRAVEL = "travel"  # the axis stands at the end of its travel in that direction
     DISPLACED = "displaced"  # an axis is not where the program was interrupted
-    NOT_REFERENCED = "not_referenced"
-    NOT_FOUND = "not_found"
-    EXISTS = "exists"
-    PROTECTED = "protected"
+    NOT_REFERENCED = "not_referenced"  # an axis must be referenced first
+    NOT_FOUND = "not_found"  # there is nothing of that name or number
+    EXISTS = "exists"  # there is something of that name already
+    PROTECTED = "protected"  # a program, or the whole memory, must not be changed
     IN_USE = "in_use"  # the program is being executed or edited
     FULL = "full"  # no room in the memory
     DATA = "data"  # a number, name or text that cannot be meant

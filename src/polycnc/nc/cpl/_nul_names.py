@@ -10,8 +10,8 @@ from typing import Any
 from polycnc.nc.cpl._program import Program
 from polycnc.nc.cpl._variables import Variable
 
-_TARGET = re.compile(r"^\s*[\w.]+(\[[^=]*\])? = ")
-"""What is assigned to may have no value."""
+_TARGET = re.compile(r"^\s*([\w.]+(?:\[[^=]*?\])?) = (?:put\(\1, )?")
+"""What is assigned to may have no value; a text is put into it."""
 _SHARED = {"global": "G", "permanent": "M"}
 
 

@@ -94,7 +94,7 @@ class Action(IntEnum):
     THREAD_CHANGING = Family.TURNING, "axes K", "Thread whose lead changes by K with each turn"
     SYNCHRONIZED = Family.TURNING, "axes K", "Straight, by K with each turn of the spindle"
     TAP_AND_BACK = Family.TURNING, "axes K", "The same and back, with the spindle turning the other way"
-    THREADING = Family.TURNING, "Z P I J K R Q H E L", "Cut a thread in several passes down to K"
+    THREADING = Family.TURNING, "axes P I J K R Q H E L", "Cut a thread in several passes down to K"
     TURN_CYCLE = Family.TURNING, "axes R", "Turning in one cut and back; R is the taper"
     THREAD_CYCLE = Family.TURNING, "axes R", "Threading in one cut and back"
     FACE_CYCLE = Family.TURNING, "axes R", "Facing in one cut and back"

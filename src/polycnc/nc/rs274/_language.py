@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
@@ -10,6 +11,7 @@ from polycnc.errors import ProgramError
 from polycnc.language import Traced, standing
 from polycnc.machine import SnapshotError
 from polycnc.nc.blocks._channel_state import ChannelState
+from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.rs274._parameters import Parameters
 from polycnc.nc.rs274._program import Program, holds_language, is_numbered_within, translate
 from polycnc.nc.rs274._saved import SAVED_CLASSES, SavedLanguage, SavedProgram
@@ -17,11 +19,15 @@ from polycnc.nc.rs274._source import RunningProgram, sub_program_file
 from polycnc.nc.sources._block_source import BlockSource, Returning
 from polycnc.nc.text._program import ProgramText
 
+_FILES = re.compile(rb"\([ \t]*(LOGOPEN|LOGAPPEND|LOGCLOSE|LOG|PROBEOPEN|PROBECLOSE)\b", re.IGNORECASE)
+"""A comment that asks LinuxCNC to write a file."""
+
 
 class Host(Protocol):
     """What the language asks of the channel that it works for."""
 
     state: ChannelState
+    messages: Messages
     skip_levels: frozenset[int]
 
 
@@ -47,6 +53,7 @@ class NgcLanguage:
         Raises:
             ProgramError: the program cannot be translated.
         """
+        self._tell_files(text)
         is_numbered = is_numbered_within(text.content)
         if not is_numbered and not holds_language(text.content):
             return None
@@ -66,8 +73,24 @@ class NgcLanguage:
         """
         if name not in self._files:
             path = sub_program_file(name, main, self._folders)
-            self._files[name] = None if path is None else self._of(ProgramText.from_path(path), 0)
+            text = None if path is None else ProgramText.from_path(path)
+            self._files[name] = None if text is None else self._of(text, 0)
+            if text is not None:
+                self._tell_files(text)
         return self._files[name]
+
+    def _tell_files(self, text: ProgramText) -> None:
+        """Say which comments would write files and do not."""
+        assert self._channel is not None
+        known: set[bytes] = set()
+        for found in _FILES.finditer(text.content):
+            word = found[1].upper()
+            begin = text.content.rfind(b"\n", 0, found.start()) + 1
+            if word in known or b";" in text.content[begin : found.start()]:
+                continue
+            known.add(word)
+            line = text.content.count(b"\n", 0, begin) + 1
+            self._channel.messages.note(f"({word.decode('ascii')}) writes no file here", line)
 
     # ------------------------------------------------------------------ where it stands
 
@@ -87,7 +110,7 @@ class NgcLanguage:
             tuple(source.saved() if isinstance(source, RunningProgram) else None for _, source in under_way),
         )
 
-    def way_back(self, channel: Host, saved: object) -> Returning:
+    def restore_point(self, channel: Host, saved: object) -> Returning:
         """Return what goes back to a state; nothing changes yet.
 
         Raises:

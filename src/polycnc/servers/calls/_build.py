@@ -14,6 +14,8 @@ from polycnc.errors import UsageError
 
 _MOST_SHOWN = 400
 _LIMIT_S = 300
+_MARK = "Written by polycnc clib"
+"""In the first line of the source: what lies beside it is ours, and may be written anew."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +77,7 @@ def write_library(library: CLibrary, folder: Path) -> list[Path]:
     """Write header, source and definitions into a folder; return the files.
 
     Raises:
-        UsageError: They cannot be written.
+        UsageError: They cannot be written, or files of these names are there that are not of `polycnc clib`.
     """
     texts = {
         f"{library.name}.h": write_header(library),
@@ -83,7 +85,9 @@ def write_library(library: CLibrary, folder: Path) -> list[Path]:
         f"{library.name}.def": write_definitions(library),
         f"{library.name}_win32.def": write_definitions(library, decorated=True),
     }
+    made = [row.made.format(name=library.name) for row in TARGETS.values()]
     try:
+        _refuse_foreign(folder, f"{library.name}.c", [*texts, *made, f"{library.name}.lib"])
         folder.mkdir(parents=True, exist_ok=True)
         for name, text in texts.items():
             (folder / name).write_text(text, "utf-8")
@@ -92,6 +96,24 @@ def write_library(library: CLibrary, folder: Path) -> list[Path]:
             f"{folder}: cannot be written: {error.strerror}", hint="Name another folder with -o."
         ) from None
     return [folder / name for name in texts]
+
+
+def _refuse_foreign(folder: Path, source: str, names: list[str]) -> None:
+    """Refuse a folder in which a file of the maker's, or of somebody else, would be replaced.
+
+    Raises:
+        OSError: The source that is there cannot be read.
+        UsageError: There is such a file.
+    """
+    if (folder / source).is_file():
+        with (folder / source).open("rb") as file:
+            if _MARK.encode() in file.read(_MOST_SHOWN):
+                return
+    if found := [name for name in names if (folder / name).exists()]:
+        raise UsageError(
+            f"{folder / found[0]} is there already, and not of polycnc clib",
+            hint="Name another folder with -o: the maker's files have the same names.",
+        )
 
 
 def build_command(library: CLibrary, target: str, compiler: str = "") -> list[str]:
@@ -134,9 +156,15 @@ def _run(folder: Path, command: list[str]) -> None:
     Raises:
         UsageError: It fails.
     """
-    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=_LIMIT_S, check=False)
-    if ran.returncode:
-        raise UsageError(
-            f"{Path(command[0]).name} fails: {ran.stderr.strip()[:_MOST_SHOWN]}",
-            hint=f"In {folder}: {' '.join(command)}",
+    hint = f"In {folder}: {' '.join(command)}"
+    name = Path(command[0]).name
+    try:
+        ran = subprocess.run(
+            command, cwd=folder, capture_output=True, text=True, timeout=_LIMIT_S, check=False
         )
+    except subprocess.TimeoutExpired:
+        raise UsageError(f"{name} takes longer than {_LIMIT_S} s", hint=hint) from None
+    except OSError as error:
+        raise UsageError(f"{name} cannot be run: {error.strerror}", hint=hint) from None
+    if ran.returncode:
+        raise UsageError(f"{name} fails: {ran.stderr.strip()[:_MOST_SHOWN]}", hint=hint)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from polycnc.controllers.library.clib import CLibrary, Slot, Way
+from polycnc.errors import UsageError
 from polycnc.servers.calls._caller import Caller, CallError, Done, Given, answer_frame
 
 MAGIC = b"PNCCALL1"
@@ -50,10 +51,18 @@ def _text(said: bytes) -> str:
 
 
 class Trace:
-    """Write every call as a line of JSON: name, arguments, answer, outputs, machine time."""
+    """Write every call as a line of JSON: name, arguments, answer, outputs, machine time.
+
+    Raises:
+        UsageError: The file cannot be written.
+    """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("a", encoding="utf-8")
+        try:
+            self._file = path.open("a", encoding="utf-8")
+        except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
+            raise UsageError(f"{path}: cannot be written: {why}", hint="Name another file.") from None
 
     def write(self, time_s: float, given: list[Given], done: Done) -> None:
         """Write a call."""

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError
 
-from polycnc.cnc import Control
+from polycnc.cnc import Control, RunState
 from polycnc.controllers.fanuc import PowerMate
 from polycnc.errors import UsageError
 from polycnc.machine import StrictModel
@@ -213,11 +213,22 @@ def _before(machine: ServedMachine, name: str, values: Mapping[str, Any]) -> Map
 _UNDONE = frozenset({"emergency_stop", "feed_hold", "jog", "select_mode", "set_overrides", "set_switches"})
 
 
+def _is_due(machine: ServedMachine, back: Mapping[str, Any]) -> bool:
+    """Tell whether there is anything to undo: a start goes on with what is held, and starts nothing else."""
+    if back["command"] != "cycle_start":
+        return True
+    control = _control(machine)
+    chosen = control.channels if (number := back.get("channel")) is None else (control.channels[number],)
+    return any(each.run_state is RunState.HOLD for each in chosen)
+
+
 def _command(name: str) -> Action:
     def begin(machine: ServedMachine, values: Mapping[str, Any]) -> Undo | None:
         back = _before(machine, name, values)
         carry_out(machine, {"command": name, **values})
-        return None if back is None else lambda: carry_out(machine, back)
+        if back is None:
+            return None
+        return lambda: carry_out(machine, back) if _is_due(machine, back) else None
 
     def check(machine: ServedMachine, values: Mapping[str, Any]) -> None:
         _control(machine)
