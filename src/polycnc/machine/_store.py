@@ -20,7 +20,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Generic, Self, TypeAlias, TypeVar
 
-from polycnc.errors import UsageError
+from polycnc.errors import UsageError, shown
 from polycnc.machine._store_file import (
     StoreError,
     let_go,
@@ -35,7 +35,6 @@ Key: TypeAlias = int | str
 Attributes: TypeAlias = Mapping[str, Any]
 V = TypeVar("V", int, float, str, bytes, dict[str, Any])
 
-_MOST_BITS = 256  # of a whole number that is shown as such
 _NAME = re.compile(r"[a-z][a-z0-9_]*(\.[a-z][a-z0-9_]*)*")
 
 
@@ -301,7 +300,7 @@ class Area(MutableMapping[Key, V], Generic[V]):
                 ) from None
         if type(value) is not self._of:
             raise UsageError(
-                f"{self._name} {key!r}: {_shown(value)} is not of type {self._of.__name__}",
+                f"{self._name} {key!r}: {shown(value)} is not of type {self._of.__name__}",
                 hint=f"this area holds values of type {self._of.__name__}",
             )
         if isinstance(value, dict):
@@ -312,7 +311,7 @@ class Area(MutableMapping[Key, V], Generic[V]):
             )
         if isinstance(value, int) and not -(2**63) <= value < 2**63:
             raise UsageError(
-                f"{self._name} {key!r}: {_shown(value)} is over 64 bits", hint="store it as text or as bytes"
+                f"{self._name} {key!r}: {shown(value)} is over 64 bits", hint="store it as text or as bytes"
             )
         return value
 
@@ -392,16 +391,9 @@ def _checked_name(name: str) -> str:
     return name
 
 
-def _shown(value: object) -> str:
-    """Return a value for a message; of a very long whole number its size: Python writes at most 4,300 digits."""
-    if isinstance(value, int) and value.bit_length() > _MOST_BITS:
-        return f"a number of {value.bit_length()} bits"
-    return repr(value)
-
-
 def _checked_key(key: Key) -> Key:
     if type(key) not in (int, str) or (isinstance(key, int) and not -(2**63) <= key < 2**63):
-        raise UsageError(f"{_shown(key)} cannot be a key", hint="use a whole number of 64 bits, or text")
+        raise UsageError(f"{shown(key)} cannot be a key", hint="use a whole number of 64 bits, or text")
     return key
 
 
