@@ -334,7 +334,8 @@ def test_inputs_by_word_and_by_number(pc: Pc, number: int) -> None:
     assert pcap.rddigib(2, 17 if number == 16 else number + 1) == (1 if number == 4 else 0)
 
 
-@pytest.mark.covers("apci.digi.16", "apci.rddigib.bitnr.17", "apci.rddigib.bitnr.25-32")
+@pytest.mark.covers("apci.digi.16", "apci.rddigib.bitnr.17", "apci.rddigib.bitnr.25-32", "apci.rddigi")
+@pytest.mark.covers("apci.rddigib", "apci.TSRP.digi")
 def test_the_index_signal_is_seen_while_the_encoder_passes_it(pc: Pc) -> None:
     axes = pc.close(0)
     pc.tsrp[0].tp = 6.0
@@ -343,6 +344,14 @@ def test_the_index_signal_is_seen_while_the_encoder_passes_it(pc: Pc) -> None:
     while not pcap.rdaxstb(0, 13):
         before = pc.rp(0)
         pc.board.advance(1)
+        own, other = pcap.TSRP(an=0), pcap.TSRP(an=1)
+        pcap.rddigi(own)
+        pcap.rddigi(other)
+        assert (own.digi >> 16 & 1, other.digi >> 16 & 1) == (
+            pcap.rddigib(0, 17),
+            0,
+        )  # the signal of this axis
+        assert pcap.rddigib(1, 17) == 0
         if pcap.rddigib(0, 17):
             seen.append((before, pc.rp(0)))
         assert not any(pcap.rddigib(0, bit) for bit in range(25, 33))
@@ -424,8 +433,12 @@ def test_each_light_is_switched_by_itself(pc: Pc, colour: str) -> None:
     assert [light() for light in lights.values()] == [0, 0, 0]
     getattr(pcap, f"wrled{colour}")(1)
     assert {name for name, light in lights.items() if light() == 1} == {colour}
+    for name in lights:
+        getattr(pcap, f"wrled{name}")(1)
     getattr(pcap, f"wrled{colour}")(0)
-    assert lights[colour]() == 0
+    assert {name for name, light in lights.items() if light() == 0} == {colour}
+    getattr(pcap, f"wrled{colour}")(-4)  # anything but 0 is on
+    assert [light() for light in lights.values()] == [1, 1, 1]
 
 
 # ---------------------------------------------------------------------- latches, recording, interrupts

@@ -121,6 +121,14 @@ def test_jogs_obey_what_was_written_before(pc: Pc) -> None:
     pc.scans_until_rest()
     pc.board.advance(10)
     assert (pcap.rdaxstb(0, 13), pc.dv(0)) == (1, near(17.0))  # ended, and goes on
+    for target, jtv, velocity in ((-60.0, 17.0, -17.0), (60.0, -13.0, -13.0)):  # counted the way of travel
+        pcap.js(axes)
+        pc.scans_until_rest()
+        pcap.wrjtvl(pcap.TSRP(an=0, jtv=jtv))
+        pc.tsrp[0].tp = target
+        pcap.jr(axes, pc.tsrp)
+        pc.scans_until_rest()
+        assert pc.dv(0) == near(velocity)
 
 
 @pytest.mark.covers("apci.jhl", "apci.jhr", "apci.wrhac", "apci.wrhvl", "apci.TSRP.hac", "apci.TSRP.hvl")

@@ -121,9 +121,13 @@ def test_a_wait_holds_its_queue_and_no_other(program: Program) -> None:
     program.set("user16b1", 1, fifo=IF)
     program.run(1)
     assert (program.get("user16b0"), program.get("user16b1")) == (0, 1)
-    program.run(48)
-    assert program.get("user16b0") == 0
-    program.run(4)
+    shown = [program.get("qwaittime")]
+    for _ in range(49):
+        assert program.get("user16b0") == 0
+        program.run(1)
+        shown.append(program.get("qwaittime"))
+    assert shown == list(range(50, 0, -1))
+    program.run(2)
     assert program.get("user16b0") == 1
 
 
