@@ -272,6 +272,7 @@ def test_an_unknown_axis_is_an_unknown_error(name: str) -> None:
     assert returned == ((1, 0) if isinstance(returned, tuple) else 1)
 
 
+@pytest.mark.covers("apci.rdErrorReg", "apci.rdirqpc", "apci.rdrv")
 @pytest.mark.covers("apci.pcap.general.timeout")
 def test_functions_without_a_status_do_nothing_when_the_board_does_not_answer() -> None:
     pc = Pc()

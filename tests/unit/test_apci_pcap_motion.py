@@ -244,6 +244,7 @@ def test_mlr_counts_from_where_the_axes_are_in_the_units_of_ctru(pc: Pc) -> None
     assert at(pc) == near((200.0, 0.0, 0.0, 0.0))
 
 
+@pytest.mark.covers("apci.rdErrorReg")
 @pytest.mark.parametrize("name", ["mla", "mlr"])
 @pytest.mark.covers("apci.mla", "apci.mlr")
 def test_a_line_that_cannot_be_is_not_begun(pc: Pc, name: str) -> None:
@@ -266,6 +267,7 @@ def test_a_line_that_cannot_be_is_not_begun(pc: Pc, name: str) -> None:
     assert at(pc) == (0.0,) * 4
 
 
+@pytest.mark.covers("apci.rdErrorReg")
 @pytest.mark.covers("apci.mca", "apci.mcr")
 def test_a_circle_needs_two_axes_and_a_radius(pc: Pc) -> None:
     axes = pc.close(0, 1)
@@ -389,6 +391,7 @@ def test_ssms_starts_only_axes_at_rest_in_position_control(pc: Pc) -> None:
     assert (pc.rp(0), pcap.rdaxstb(0, 13)) == (0.0, 1)
 
 
+@pytest.mark.covers("apci.rddigob")
 @pytest.mark.covers("apci.ssf", "apci.ssfi", "apci.ssfni", "apci.smlai", "apci.smlri", "apci.rdPcapIndex")
 @pytest.mark.covers("apci.var.PcapIndex")
 def test_special_functions_run_in_their_turn_and_indices_show_what_is_executed(pc: Pc) -> None:

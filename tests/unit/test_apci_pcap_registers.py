@@ -204,6 +204,7 @@ def test_the_trajectory_override_reads_as_programmed_and_jovr_shows_what_is_in_f
     assert pcap.rdtrovr() == 0.5  # only factors above 0
 
 
+@pytest.mark.covers("apci.rdSampleTime")
 @pytest.mark.covers("apci.rdslsp", "apci.ret.bool.1", "apci.ret.bool.0")
 def test_slsp_is_read_with_1_for_success_and_only_positive_values_are_written(pc: Pc) -> None:
     assert pcap.rdslsp(1) == (1, 4000.0)

@@ -181,6 +181,10 @@ def test_a_program_reads_the_status_and_signals_that_the_pc_reads() -> None:
             shown |= values[0]
             assert values[0] & ~MEANT == 0
     assert shown == MEANT
+    for name in state.axis.dtype.names or ():  # and nothing else shows in it
+        if state.axis.dtype[name].kind == "i":
+            state.axis[1][name] = 3
+    assert int(uncompiled(_turn_values._status)(state, 1)) == own.status_word == own.status_word & MEANT
 
 
 def test_events_watch_the_board_in_every_scan() -> None:

@@ -353,6 +353,7 @@ def test_an_event_starts_something_when_a_position_is_reached(program: Program) 
     assert program.get("user16b0") == 0  # only once
 
 
+@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_the_card_holds_128_events(program: Program) -> None:
     event = lib.EventInfo.of(lib.CMD_ADD32i, src1=(317, 0), src2=1, dest=(317, 0))
     for _ in range(4):
@@ -368,6 +369,7 @@ def test_the_card_holds_128_events(program: Program) -> None:
     program.ok(lib.IMC_InstallEvent, [event], 1, IF)
 
 
+@pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.concept.rbfifo")
 def test_reading_back_needs_no_queue(program: Program) -> None:
     for fifo in (Q, P1, P2):

@@ -243,6 +243,13 @@ def test_events_take_the_operands_of_their_command(card: ToldCard, handle: lib.I
     assert card.told == [(0, InstallEvents(told))]
 
 
+@pytest.mark.covers(
+    "imc.IMC_GetMulParam",
+    "imc.IMC_GetParam16",
+    "imc.IMC_GetParam32",
+    "imc.IMC_GetParam48",
+    "imc.IMC_GetParamBit",
+)
 def test_reading(card: ToldCard, handle: lib.IMC_HANDLE) -> None:
     words = {152: 0x0000, 153: 0xFFFF, 175: 0x0001, 176: 0x0000, 177: 0xFFFE}
     card.memory = {(at, 1): word for at, word in words.items()}
