@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from polycnc.kernel import give_to_path
 from polycnc.machine import Machine, MachineConfig, parse_toml, validate
 from polycnc.nc import Channel, ProgramText, language_for, load_dialect
 from support import rs274
-from support.canonical import Step, first_difference, queued_steps
+from support.canonical import Feed, Step, Traverse, first_difference, queued_steps
 from support.random_o_words import RandomProgram
 
 pytestmark = pytest.mark.skipif(rs274.COMMAND is None, reason="rs274 (LinuxCNC) is not installed")
@@ -37,7 +38,21 @@ def prepare(program: str) -> tuple[list[Step], ProgramError | None]:
         channel.fill()
         if channel.done:
             break
+        machine.clock.tick(1)  # so much is prepared in one cycle
+    assert channel.done
     return queued_steps(machine, channel), channel.error
+
+
+def printed(steps: list[Step]) -> list[Step]:
+    """Return the steps without moves that four decimals do not show."""
+    kept: list[Step] = []
+    at: tuple[float, ...] = (0.0, 0.0, 0.0)
+    for step in steps:
+        if isinstance(step, Traverse | Feed) and math.dist(step.end, at) <= TOLERANCE_MM:
+            continue
+        at = step.end if isinstance(step, Traverse | Feed) else at
+        kept.append(step)
+    return kept
 
 
 def compare(seed: int, folder: Path) -> str:
@@ -49,7 +64,9 @@ def compare(seed: int, folder: Path) -> str:
         return f"seed {seed}: refused\n  ours   {error}\n  theirs {theirs.error}: {theirs.block}\n{program}"
     if error is not None:
         return ""
-    found = first_difference(ours, rs274.canonical_steps(theirs, 3, 1.0), TOLERANCE_MM)
+    found = first_difference(
+        printed(ours), printed(rs274.canonical_steps(theirs, 3, 1.0)), 2.0 * TOLERANCE_MM
+    )
     return f"seed {seed}: {found}\n{program}" if found else ""
 
 

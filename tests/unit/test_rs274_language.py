@@ -14,6 +14,7 @@ ENDS = [
     ("#<a>=2\n#<_B c>=3\nG0 X[#<A>**#<_bc> + 2 * 3]", 14.0),
     ("#5=6\nG0 X[#[2+3] / 4 + 7 mod 4]", 4.5),
     ("G0 X[-[2] ** 2]", 4.0),
+    ("G0 X[FUP[COS[90]] + FUP[COS[-90]] + 3*FUP[COS[270]] + 5*FUP[SIN[180]] + FIX[SIN[360]]]", 3.0),
     ("G0 X[2 + 1 gt 2 and 0 or 5]", 1.0),
     ("G0 X[ATAN[1]/[1] + ROUND[2.5] + FIX[-1.5] + FUP[1.2] + ABS[-1]]", 49.0),
     ("G0 X[EXISTS[#<no>] + EXISTS[#<_metric>]]", 1.0),
