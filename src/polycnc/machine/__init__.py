@@ -56,17 +56,6 @@ if TYPE_CHECKING:
     from polycnc.machine._store_file import StoreError
     from polycnc.machine._ways import Condition, Elapsed, Free, Poll, RealTime, Step, Way, wait
 
-_LATER = {
-    "_describe": ("AXIS_COLUMNS", "axis_rows", "describe_machine", "machine_file_reference", "machine_row"),
-    "_device": ("Device", "Timed"),
-    "_host": ("Host", "HostError"),
-    "_pace": ("Pace", "Pacer", "Wall"),
-    "_polling": ("Polling",),
-    "_store": ("Area", "Entry", "History", "Store"),
-    "_store_file": ("StoreError",),
-    "_ways": ("Condition", "Elapsed", "Free", "Poll", "RealTime", "Step", "Way", "wait"),
-}
-
 __all__ = [
     "AXIS_COLUMNS",
     "DEFAULT_MACHINE",
@@ -147,4 +136,4 @@ __all__ = [
     "wait",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)
