@@ -55,8 +55,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
     "one method or branch for each statement of a language, which share what is known of the program": (
         "nc/cpl/_program_reader.py _ProgramReader",
         "nc/cpl/_values.py Values",
-        "nc/macro/_reader.py",
-        "nc/macro/_reader.py _Statements",
     ),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
