@@ -37,11 +37,7 @@ from polycnc.nc import (
     load_dialect,
 )
 
-_STANDING = {
-    RunState.STOPPED_AT_BLOCK,
-    RunState.PROGRAM_STOP,
-    RunState.OPTIONAL_STOP,
-}
+_STANDING = {RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
 _GOING = {RunState.ACTIVE, RunState.HOLD}
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 

@@ -5,12 +5,7 @@ A run needs no store and no host: what a device needs besides is loaded when it 
 
 from typing import TYPE_CHECKING
 
-from polycnc.machine._bounds import (
-    LARGEST_POSITION,
-    LEAST_OVERRIDE,
-    LONGEST_BLOCK_S,
-    PIECE_CYCLES,
-)
+from polycnc.machine._bounds import LARGEST_POSITION, LEAST_OVERRIDE, LONGEST_BLOCK_S, PIECE_CYCLES
 from polycnc.machine._clock import Clock
 from polycnc.machine._config import (
     IoConfig,

@@ -263,10 +263,4 @@ def _read(path: Path) -> tuple[bytes, str]:
 def _plain(setup: Setup) -> tuple[object, ...]:
     """Return what tells a setup from others, the same in every process."""
     dialect = setup.dialect.model_dump_json() if isinstance(setup.dialect, Dialect) else setup.dialect
-    return (
-        setup.machine.model_dump_json(),
-        dialect,
-        setup.override_percent,
-        setup.check_only,
-        setup.detail,
-    )
+    return (setup.machine.model_dump_json(), dialect, setup.override_percent, setup.check_only, setup.detail)

@@ -9,14 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 
-from polycnc.cnc import (
-    Control,
-    ControlError,
-    Refusal,
-    Script,
-    Status,
-    Step,
-)
+from polycnc.cnc import Control, ControlError, Refusal, Script, Status, Step
 from polycnc.controllers.fanuc.data._bindings import bound
 from polycnc.controllers.fanuc.data._configuration import Configuration
 from polycnc.controllers.fanuc.data._increment import Increment, Scale
@@ -24,9 +17,7 @@ from polycnc.controllers.fanuc.data._macro_variables import CommonRange, SharedM
 from polycnc.controllers.fanuc.data._parameter_rows import ParameterRow
 from polycnc.controllers.fanuc.data._parameters import Parameters
 from polycnc.controllers.fanuc.data._tool_offsets import ToolOffsets
-from polycnc.controllers.fanuc.device._alarms import (
-    AlarmBit,
-)
+from polycnc.controllers.fanuc.device._alarms import AlarmBit
 from polycnc.controllers.fanuc.device._axis_motion import AxisMotion
 from polycnc.controllers.fanuc.device._device_state import DeviceState
 from polycnc.controllers.fanuc.device._execution import Execution

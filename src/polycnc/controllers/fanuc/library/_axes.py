@@ -138,9 +138,7 @@ def cnc_rddynamic(
 
 @call
 def cnc_wrrelpos(
-    link: Link,
-    length: Annotated[SHORT, LengthOf("wrrelpos")],
-    wrrelpos: Annotated[IDBWRR, IN],
+    link: Link, length: Annotated[SHORT, LengthOf("wrrelpos")], wrrelpos: Annotated[IDBWRR, IN]
 ) -> EW:
     """Preset relative positions: of the axis `type`, or of all (Manual 000, cnc_wrrelpos)."""
     axes, axis = link.device.axes, wrrelpos.type

@@ -175,12 +175,7 @@ def cnc_getfigure(
         axes = range(1, device.axes + 1)
         read = [device.input_scale(axis).decimals for axis in axes]
         shown_ = [device.output_scale(axis).decimals for axis in axes]
-        return (
-            EW.EW_OK,
-            _FIGURES[data_type],
-            read + none[device.axes :],
-            shown_ + none[device.axes :],
-        )
+        return (EW.EW_OK, _FIGURES[data_type], read + none[device.axes :], shown_ + none[device.axes :])
     increment = device.increment
     if data_type == _MACRO and increment is Increment.IS_A:
         increment = Increment.IS_B

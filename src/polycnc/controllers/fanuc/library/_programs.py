@@ -13,17 +13,7 @@ from polycnc.controllers.fanuc.library._call import call
 from polycnc.controllers.fanuc.library._codes import EW
 from polycnc.controllers.fanuc.library._network import Link
 from polycnc.controllers.fanuc.library._structs import ODBMDIP, ODBNC, ODBPRO, ODBSEQ, ODBUP, PRGDIR
-from polycnc.controllers.library import (
-    INOUT,
-    LONG,
-    SHORT,
-    USHORT,
-    Bytes,
-    LengthOf,
-    Out,
-    Refused,
-    variant,
-)
+from polycnc.controllers.library import INOUT, LONG, SHORT, USHORT, Bytes, LengthOf, Out, Refused, variant
 
 CHARS: TypeAlias = Annotated[Any, Bytes("char *")]
 """Characters, which a program may pass as text or as bytes; a function gets bytes."""
@@ -32,11 +22,7 @@ PIECE_MOST = 256
 MDI_MOST = 199
 _INFO_LENGTHS = {0: (12,), 1: (31, 32)}
 
-_FAULTS = {
-    Fault.PROTECTED: EW.EW_PROT,
-    Fault.FULL: EW.EW_OVRFLOW,
-    Fault.RESET: EW.EW_RESET,
-}
+_FAULTS = {Fault.PROTECTED: EW.EW_PROT, Fault.FULL: EW.EW_OVRFLOW, Fault.RESET: EW.EW_RESET}
 _MEM_OR_EDIT = (PowerMateMode.MEM, PowerMateMode.EDIT)
 
 
@@ -209,11 +195,7 @@ def cnc_delete(link: Link, number: SHORT) -> EW:
 
 @call
 def cnc_rdprogdir(
-    link: Link,
-    type: SHORT,
-    datano_s: SHORT,
-    datano_e: SHORT,
-    length: Annotated[SHORT, LengthOf("prgdir")],
+    link: Link, type: SHORT, datano_s: SHORT, datano_e: SHORT, length: Annotated[SHORT, LengthOf("prgdir")]
 ) -> tuple[EW, Annotated[PRGDIR, Out("prgdir")]]:
     """List programs: numbers (0), with comments (1), with characters as well (2) (Manual 000, cnc_rdprogdir).
 
@@ -235,9 +217,7 @@ def cnc_rdprogdir(
 
 @call
 def cnc_rdproginfo(
-    link: Link,
-    type: SHORT,
-    length: Annotated[SHORT, LengthOf("prginfo")],
+    link: Link, type: SHORT, length: Annotated[SHORT, LengthOf("prginfo")]
 ) -> tuple[EW, Annotated[ODBNC, Out("prginfo")]]:
     """Tell how full the program memory is, in numbers (0) or as text (1) (Manual 000, cnc_rdproginfo)."""
     lengths = _INFO_LENGTHS.get(type, (*_INFO_LENGTHS[0], *_INFO_LENGTHS[1]))
