@@ -50,7 +50,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
         "cnc/_path_runner.py PathRunner",
-        "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
     "one method or branch for each statement of a language, which share what is known of the program": (
         "nc/cpl/_program_reader.py _ProgramReader",

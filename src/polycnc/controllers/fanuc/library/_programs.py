@@ -45,7 +45,7 @@ def cnc_dwnstart(link: Link) -> EW:
     busy = (
         device.transfer is not None
         or device.programs.background_edit
-        or device.transfers_blocked
+        or device.power.blocks_transfers
         or device.mode is PowerMateMode.MDI
     )
     _refuse_if(busy, EW.EW_BUSY)
@@ -99,7 +99,7 @@ def cnc_dwnend(link: Link) -> EW:
 def cnc_upstart(link: Link, number: SHORT) -> EW:
     """Begin to read a program (Manual 000, cnc_upstart)."""
     device = link.command()
-    _refuse_if(link.upload is not None or device.transfers_blocked, EW.EW_BUSY)
+    _refuse_if(link.upload is not None or device.power.blocks_transfers, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
     link.upload = Upload(device.programs.read(number), device.power_ups)
     return EW.EW_OK
@@ -140,7 +140,7 @@ def cnc_search(link: Link, number: SHORT) -> EW:
     """Select a program in MEM and EDIT; in other modes only tell whether it is there (Manual 000, cnc_search)."""
     device = link.command()
     download = device.transfer is not None and not device.transfer.compare
-    _refuse_if(_in_operation(device) or download or device.transfers_blocked, EW.EW_BUSY)
+    _refuse_if(_in_operation(device) or download or device.power.blocks_transfers, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
     if device.mode in _MEM_OR_EDIT:
         try:
@@ -154,7 +154,7 @@ def _check_deletable(device: PowerMate) -> None:
     busy = (
         device.programs.background_edit
         or device.transfer is not None
-        or device.transfers_blocked
+        or device.power.blocks_transfers
         or device.mode is PowerMateMode.MDI
         or _in_operation(device)
     )
@@ -183,7 +183,7 @@ def cnc_delete(link: Link, number: SHORT) -> EW:
     """Delete a program (Manual 000, cnc_delete)."""
     device = link.command()
     _check_deletable(device)
-    _refuse_if(number == device.selected != 0, EW.EW_BUSY)
+    _refuse_if(number == device.programs.selected != 0, EW.EW_BUSY)
     _refuse_if(number not in device.programs, EW.EW_DATA)
     _refuse_if(device.programs.key_protects or device.programs.parameter_protects(number), EW.EW_PROT)
     try:
