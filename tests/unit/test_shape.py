@@ -51,10 +51,7 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_program_run.py ProgramRun",
         "cnc/_path_runner.py PathRunner",
     ),
-    "one method or branch for each statement of a language, which share what is known of the program": (
-        "nc/cpl/_program_reader.py _ProgramReader",
-        "nc/cpl/_values.py Values",
-    ),
+    "one method or branch for each statement of a language, which share what is known of the program": (),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
         "post/output/_motion.py Motion",
