@@ -91,7 +91,7 @@ class Bench:
             copied(made.signals.state),
             copied(made.state.pmc),
             made.mode,
-            made.cursor,
+            made.state.cursor,
             made.mdi.state.blocks,
         )
         return content, seen, made.transfer is None, made.clock.epoch
