@@ -5,15 +5,14 @@ from __future__ import annotations
 import json
 import re
 import socket
-import subprocess
 from contextlib import ExitStack
 from typing import Any
 
 import httpx
 from websockets.sync.client import connect
 
-from support.command import COMMAND, environment
 from support.focas_line import Line, values
+from support.started import started
 
 AUT = {0: "mdi", 1: "auto", 3: "edit", 4: "handle", 5: "jog", 8: "inc", 9: "ref"}
 RUN = {0: "reset", 1: "stop", 2: "hold", 3: "start"}
@@ -23,10 +22,7 @@ class FourDoors:
     """The process, and what each of its doors says of the machine."""
 
     def __init__(self, *more: str) -> None:
-        self.process = subprocess.Popen(
-            [*COMMAND, "serve", "--fanuc", "--doors", "focas=0,http=0,grbl=0", *more],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-        )  # fmt: skip
+        self.process = started("serve", "--fanuc", "--doors", "focas=0,http=0,grbl=0", *more)
         assert self.process.stdout is not None
         said = {
             name: at.strip()

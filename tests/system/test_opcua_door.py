@@ -9,7 +9,6 @@ import os
 import random
 import socket
 import struct
-import subprocess
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
 from contextlib import asynccontextmanager, suppress
@@ -18,7 +17,7 @@ from typing import Any
 
 import pytest
 
-from support.command import COMMAND, environment
+from support.started import started
 
 httpx = pytest.importorskip("httpx", reason="pip install httpx")
 pytest.importorskip("asyncua", reason="pip install 'polycnc[opcua]'")
@@ -46,11 +45,7 @@ class Served:
     log: Path
 
     def __init__(self, *more: str) -> None:
-        self.process = subprocess.Popen(
-            [*COMMAND, "serve", "--plain", "mill3", "--doors", "opcua=0,http=0", *more],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-        )  # fmt: skip
-        assert self.process.stdout is not None
+        self.process = started("serve", "--plain", "mill3", "--doors", "opcua=0,http=0", *more)
         self.opcua = self.process.stdout.readline().partition(" ")[2].strip()
         self.url = self.process.stdout.readline().partition(" ")[2].strip()
         self.http = httpx.Client(base_url=f"{self.url}/api/machines/machine", timeout=60)

@@ -7,8 +7,6 @@ import json
 import random
 import re
 import socket
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,8 +14,9 @@ from xml.etree import ElementTree
 
 import pytest
 
-from support.command import COMMAND, environment
+from support.command import polycnc, script
 from support.mtconnect import assert_valid, header_of, values_of
+from support.started import started
 
 pytest.importorskip("fastapi", reason="pip install 'polycnc[serve]'")
 
@@ -40,11 +39,9 @@ class Served:
     """A process that serves a control, and a client of each door."""
 
     def __init__(self) -> None:
-        self.process = subprocess.Popen(
-            [*COMMAND, "serve", "--plain", "mill3", "--doors", "shdr=0,http=0,mtconnect=0", "--rate", "0"],
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-        )  # fmt: skip
-        assert self.process.stdout is not None
+        self.process = started(
+            "serve", "--plain", "mill3", "--doors", "shdr=0,http=0,mtconnect=0", "--rate", "0"
+        )
         lines = [self.process.stdout.readline() for _ in range(3)]
         self.ports = {line.partition(":")[0]: int(line.strip().rpartition(":")[2]) for line in lines}
         self.rest = http.client.HTTPConnection("127.0.0.1", self.ports["http"], timeout=60)
@@ -258,12 +255,8 @@ def test_the_pages_show_what_happens(tmp_path: Path) -> None:
     ]
     (tmp_path / "plate.nc").write_text(shown["plate.nc"])
     program = str(tmp_path / "plate.nc")
-    process = subprocess.Popen(
-        [*COMMAND, "serve", "--plain", "mill3", "--program", program, "--doors", "mtconnect=0,shdr=0"],
-        stdout=subprocess.PIPE, text=True, env=environment(PYTHONUNBUFFERED="1"),
-    )  # fmt: skip
+    process = started("serve", "--plain", "mill3", "--program", program, "--doors", "mtconnect=0,shdr=0")
     try:
-        assert process.stdout is not None
         shdr, agent = (process.stdout.readline().strip() for _ in range(2))
         assert shdr.startswith("shdr: 127.0.0.1:")
         assert agent.startswith("mtconnect: http://127.0.0.1:")
@@ -271,14 +264,11 @@ def test_the_pages_show_what_happens(tmp_path: Path) -> None:
         for name, expected in (
             ("read_it.py", prints[0]), ("follow_it.py", shown["follows"]), ("is_it_there.py", prints[1]),
         ):  # fmt: skip
-            script = re.sub(r"5000|7878", lambda found: ports[found[0]], shown[name])
-            done = subprocess.run(
-                [sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=True
-            )
-            assert done.stdout == expected, name
+            (tmp_path / name).write_text(re.sub(r"5000|7878", lambda found: ports[found[0]], shown[name]))
+            assert script(tmp_path / name, "", tmp_path).stdout == expected, name
     finally:
         process.terminate()
         process.communicate(timeout=20)
     command = re.findall(r"```sh\npolycnc (mtconnect .*?)\n```", pages[1].read_text("utf-8"))[0]
-    subprocess.run([*COMMAND, *command.split()], cwd=tmp_path, check=True, timeout=60, env=environment())
+    polycnc(*command.split(), cwd=tmp_path)
     assert 'name="Mill4"' in (tmp_path / "Devices.xml").read_text("utf-8")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import ipaddress
 import os
 import sys
@@ -16,6 +15,7 @@ from polycnc.cli._output import say, say_error
 if TYPE_CHECKING:
     from polycnc.servers.setup import Plan
 
+_MOST_END_S = 0.85  # after a signal
 _MOST_LINES = 20  # of doors that are named one by one
 
 
@@ -79,13 +79,7 @@ def _run(plan: Plan) -> None:
     """Serve until a signal ends it."""
     import asyncio
 
-    try:
-        asyncio.run(serve_plan(plan))
-    except KeyboardInterrupt:
-        say_error("interrupted")
-        _leave(INTERRUPTED)
-    except SystemExit as ended:
-        _leave(ended.code if isinstance(ended.code, int) else 1)
+    asyncio.run(serve_plan(plan))
 
 
 def _leave(status: int) -> NoReturn:
@@ -152,7 +146,7 @@ async def serve_plan(plan: Plan) -> None:
     from polycnc import runner
     from polycnc.servers.process import Serving
 
-    ended = _end_on_signal(signal.SIGTERM)
+    ended = _end_on_signals(signal.SIGTERM, signal.SIGINT)
     serving = Serving(runner.WallClock(), plan.log, _Late().say, say_error)
     try:
         for why in plan.lasting:
@@ -165,27 +159,48 @@ async def serve_plan(plan: Plan) -> None:
         await serving.begin()
         await serving.run()
     except asyncio.CancelledError:
-        if ended:
-            sys.exit(128 + ended[0])
-        raise
+        if not ended:
+            raise
     finally:
         await serving.close()
+    if ended:
+        if _status_of(ended[0]) == INTERRUPTED:
+            say_error("interrupted")
+        _leave(_status_of(ended[0]))
 
 
-def _end_on_signal(number: int) -> list[int]:
-    """Let a signal end what runs where it waits, never in the middle of something; return the list that tells of it."""
+def _status_of(number: int) -> int:
+    """Return the exit status after a signal."""
+    import signal
+
+    return INTERRUPTED if number == signal.SIGINT else 128 + number
+
+
+def _end_on_signals(*numbers: int) -> list[int]:
+    """Let signals end what runs where it waits, never in the middle of something; return the list that tells of them.
+
+    What does not wait in time (a program that is being compiled, a computer that has no time) is broken off: what was
+    acknowledged is kept already.
+    """
     import asyncio
+    import signal
+    import threading
 
-    task, came = asyncio.current_task(), list[int]()
+    task, loop, came = asyncio.current_task(), asyncio.get_running_loop(), list[int]()
     assert task is not None
+    cancel = task.cancel
 
-    def end() -> None:
-        if not came:  # who asks twice does not break off the closing
-            task.cancel()
+    def end(number: int, _: object) -> None:
         came.append(number)
+        if len(came) > 1:  # who asks twice does not break off the closing
+            return
+        loop.call_soon_threadsafe(cancel)
+        late = threading.Timer(_MOST_END_S, os._exit, [_status_of(number)])
+        late.daemon = True
+        late.start()
 
-    with contextlib.suppress(NotImplementedError):  # Windows: the process ends as others do
-        asyncio.get_running_loop().add_signal_handler(number, end)
+    for number in numbers:
+        signal.signal(number, end)
     return came
 
 

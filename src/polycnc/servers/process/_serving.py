@@ -26,6 +26,7 @@ from polycnc.servers.process._kinds import KINDS
 from polycnc.servers.process._made import Machinery, Made
 
 _SHARE_S = 0.01  # of the wall clock that all machines together may take before a door answers
+_CLOSE_S = 0.6  # that doors have to end their connections
 _MOST_PROGRAM_BYTES = 64 << 20
 Load = Callable[[str, bytes], None]
 
@@ -109,9 +110,11 @@ class Serving:
                 each.result()
 
     async def close(self) -> None:
-        """Close every door, and switch the machines off."""
-        for _, door in self.doors:
-            await door.close()
+        """Close every door, all at once, and switch the machines off; a door that takes its time is not waited for."""
+        tell_errors(asyncio.get_running_loop(), lambda kind, text: self.log.write(kind, text=text))
+        closing = [asyncio.ensure_future(door.close()) for _, door in self.doors]
+        if closing:
+            await asyncio.wait(closing, timeout=_CLOSE_S)
         for machine in self.machines:
             machine.close()
         self.log.write("end")
