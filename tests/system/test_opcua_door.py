@@ -183,6 +183,11 @@ def test_the_tree_has_what_the_tables_say(served: Served) -> None:
         await look(below["machine"])
         await look((await names_below(client, below["Machines"]))["machine"])
         assert "test" not in below
+        for kind in (ua.ObjectIds.Structure, ua.ObjectIds.Enumeration):
+            for each in await client.get_node(kind).get_children(refs=ua.ObjectIds.HasSubtype):
+                if each.nodeid.NamespaceIndex:
+                    is_abstract = await each.read_attribute(ua.AttributeIds.IsAbstract)
+                    assert is_abstract.Value.Value is False, each
         assert {
             "CncInterfaceType",
             "CncChannelType",
@@ -304,6 +309,27 @@ class Seen:
             await asyncio.wait_for(self.news.wait(), 20)
 
 
+async def see_refreshed(client: Client, served: Served) -> None:
+    """An alarm that was on before a client came is repeated for it, between the events that say so."""
+    served.command("emergency_stop", on=True)
+    seen = Seen()
+    subscription = await client.create_subscription(50, seen)
+    messages = client.get_node(ua.NodeId("Machines/machine/Notification/Messages", 1))
+    alert = client.get_node(ua.NodeId(39, await client.get_namespace_index(TOOL)))
+    await subscription.subscribe_events(messages, alert)
+    condition = client.get_node(ua.ObjectIds.ConditionType)
+    await condition.call_method(
+        ua.NodeId(ua.ObjectIds.ConditionType_ConditionRefresh),
+        ua.Variant(subscription.subscription_id, ua.VariantType.UInt32),
+    )
+    await seen.until(lambda: bool(seen.events))
+    (event,) = seen.events
+    assert (event.ErrorCode, event.Message.Text) == ("400", "emergency stop")
+    await subscription.delete()
+    with pytest.raises(ua.uaerrors.BadHistoryOperationUnsupported):
+        await client.get_node(ua.NodeId(f"{CHANNEL}/Id", 1)).read_raw_history()
+
+
 def test_a_subscription_follows_without_being_asked_and_alarms_are_events(served: Served) -> None:
     async def visit(client: Client) -> None:
         index = await client.get_namespace_index(CNC)
@@ -332,6 +358,7 @@ def test_a_subscription_follows_without_being_asked_and_alarms_are_events(served
         assert getattr(came, "ActiveState/Id") is True
         assert getattr(went, "ActiveState/Id") is False
         await subscription.delete()
+        await see_refreshed(client, served)
 
     with_client(served, visit)
 
