@@ -44,6 +44,7 @@ def serve_command(
     scenario: _options.Scenario = None,
     mtconnect_version: _options.MTConnectVersion = "2.7",
     opcua_nodesets: _options.NodeSets = None,
+    part: _options.Part = None,
 ) -> None:
     """Serve simulated machines that run, until Ctrl-C ends it."""
     from polycnc.servers.setup import Flags, plan_of
@@ -70,16 +71,12 @@ def serve_command(
             scenario=scenario,
             mtconnect=mtconnect_version,
             node_sets=opcua_nodesets,
+            part=part,
         )
     )
-    _run(plan)
-
-
-def _run(plan: Plan) -> None:
-    """Serve until a signal ends it."""
     import asyncio
 
-    asyncio.run(serve_plan(plan))
+    asyncio.run(serve_plan(plan, is_part=part is not None) if plan.processes == 1 else serve_fleet(plan))
 
 
 def _leave(status: int) -> NoReturn:
@@ -138,8 +135,33 @@ def _addresses(first: str, count: int) -> list[str]:
     return [str(start + k) for k in range(count)]
 
 
-async def serve_plan(plan: Plan) -> None:
-    """Serve what a plan says until a signal ends it."""
+async def serve_fleet(plan: Plan) -> None:
+    """Let several processes serve what a plan says until a signal ends them, or one of them has ended."""
+    import asyncio
+    import signal
+
+    from polycnc.servers.fleets import Fleet, FleetError, this_command
+
+    ended = _end_on_signals(signal.SIGTERM, signal.SIGINT)
+    plan.log.close()
+    fleet = Fleet(this_command(), plan.processes, _say_line, plan.metrics)
+    try:
+        await fleet.run()
+    except asyncio.CancelledError:
+        if not ended:
+            raise
+    except FleetError as error:
+        await fleet.close()
+        say_error(f"{error.what}\n{error.hint}")
+        _leave(error.status)
+    finally:
+        await fleet.close()
+    if ended:
+        _leave_after(ended[0])
+
+
+async def serve_plan(plan: Plan, *, is_part: bool = False) -> None:
+    """Serve what a plan says until a signal ends it; `is_part`: as one of several processes."""
     import asyncio
     import signal
 
@@ -154,9 +176,17 @@ async def serve_plan(plan: Plan) -> None:
         await serving.open(plan.machines, plan.shared)
         for warning in plan.warnings:
             say_error(warning)
-        _say_doors([(name, door.said) for name, door in serving.doors])
+        if is_part:
+            from polycnc.servers.fleets import Part
+
+            part = Part(sys.stdout, lambda: signal.raise_signal(signal.SIGTERM))
+            part.tell_doors(serving.doors_of_machines())
+        else:
+            _say_doors([(name, door.said) for name, door in serving.doors])
         await asyncio.sleep(0)  # whoever wants it to end already
         await serving.begin()
+        if is_part:
+            part.begin(serving.machines)
         await serving.run()
     except asyncio.CancelledError:
         if not ended:
@@ -164,9 +194,19 @@ async def serve_plan(plan: Plan) -> None:
     finally:
         await serving.close()
     if ended:
-        if _status_of(ended[0]) == INTERRUPTED:
-            say_error("interrupted")
-        _leave(_status_of(ended[0]))
+        _leave_after(ended[0])
+
+
+def _leave_after(number: int) -> NoReturn:
+    """End the process after a signal."""
+    if _status_of(number) == INTERRUPTED:
+        say_error("interrupted")
+    _leave(_status_of(number))
+
+
+def _say_line(line: str) -> None:
+    say(line)
+    sys.stdout.flush()
 
 
 def _status_of(number: int) -> int:

@@ -57,6 +57,8 @@ class Serving:
     on_error: Callable[[str], None] = lambda text: None
     machines: list[ServedMachine] = field(default_factory=list)
     doors: list[tuple[str, Door]] = field(default_factory=list)
+    served_by: list[Sequence[ServedMachine]] = field(default_factory=list)
+    """The machines of each door."""
     programs: dict[str, tuple[Load, Path]] = field(default_factory=dict)
     told: set[str] = field(default_factory=set)
     """Kinds of errors that `on_error` has been told of, once each."""
@@ -85,7 +87,12 @@ class Serving:
             door = kind.open_door(machines, at)
             await door.start()
             self.doors.append((kind.name, door))
+            self.served_by.append(machines)
             self.log.write("open", door=kind.name, address=door.said)
+
+    def doors_of_machines(self) -> list[tuple[str, Door, Sequence[ServedMachine]]]:
+        """Return the doors, each with its machines."""
+        return [(*door, machines) for door, machines in zip(self.doors, self.served_by, strict=True)]
 
     async def begin(self) -> None:
         """Start the programs and let time begin; what has to be compiled is compiled here."""
