@@ -3,24 +3,29 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Coroutine
-from contextlib import suppress
+from collections.abc import Coroutine, Iterator
+from contextlib import contextmanager, suppress
 from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
 from lsprotocol import types as lsp
+from pygls.exceptions import JsonRpcException
 from pygls.uris import to_fs_path
 
 from polycnc.editor._codes import completions, hover, word
 from polycnc.editor._document import Document, characters, units
 from polycnc.editor._findings import Finding, findings
+from polycnc.editor._format import formatted
+from polycnc.editor._names import PROGRAM, Name, Role, givers, name_at, names_of, program_file, same
 from polycnc.editor._newest import LONGEST_S, GoOn, Newest, Overtaken, TooLong, within
 from polycnc.editor._outline import Symbol, outline
 from polycnc.editor._place import Span
 from polycnc.editor._protocol import EditorServer
 from polycnc.editor._reading import held, taken, word_meaning
+from polycnc.editor._rename import check_renaming, renamed
+from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ModalWords, ProgramText, choose_dialect
 from polycnc.runner import Survey, holds_before, survey
@@ -114,6 +119,71 @@ class _Editor:
         found = await self._survey(uri, document, dialect)
         return [_symbol(each, document) for each in outline(document.lines, dialect, found)]
 
+    # ------------------------------------------------------------------ names
+
+    def definition(self, params: lsp.DefinitionParams) -> list[lsp.Location]:
+        uri = params.text_document.uri
+        document, names, found = self._named(uri, params.position)
+        if found is None:
+            return []
+        given = givers(names, found)
+        if given or found.kind != PROGRAM:
+            return _locations(uri, document, given)
+        _, dialect = self._read(uri)
+        place = None if dialect is None else program_file(found.key, document.text, _name(uri), dialect)
+        if place is None:
+            return []
+        start = lsp.Position(place[1], 0)
+        return [lsp.Location(place[0].resolve().as_uri(), lsp.Range(start, start))]
+
+    def references(self, params: lsp.ReferenceParams) -> list[lsp.Location]:
+        uri = params.text_document.uri
+        document, names, found = self._named(uri, params.position)
+        if found is None:
+            return []
+        asked = same(names, found)
+        if not params.context.include_declaration:
+            asked = [each for each in asked if each.role is Role.USED]
+        return _locations(uri, document, asked)
+
+    def can_rename(self, params: lsp.PrepareRenameParams) -> lsp.Range | None:
+        document, names, found = self._named(params.text_document.uri, params.position)
+        _, dialect = self._read(params.text_document.uri)
+        if found is None or dialect is None:
+            return None
+        with _refusals():
+            check_renaming(names, found, dialect)
+        return _range(found.span, document)
+
+    def rename(self, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+        uri = params.text_document.uri
+        document, names, found = self._named(uri, params.position)
+        _, dialect = self._read(uri)
+        if found is None or dialect is None:
+            return None
+        with _refusals():
+            changes = renamed(names, document.lines, found, params.new_name, dialect)
+        return lsp.WorkspaceEdit(
+            {uri: [lsp.TextEdit(_range(span, document), text) for span, text in changes]}
+        )
+
+    def format(self, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
+        document, dialect = self._read(params.text_document.uri)
+        if dialect is None:
+            return []
+        lines = document.lines
+        return [
+            lsp.TextEdit(_range(Span(number, 0, len(before)), document), after)
+            for number, (before, after) in enumerate(zip(lines, formatted(lines, dialect), strict=True))
+            if before != after
+        ]
+
+    def _named(self, uri: str, at: lsp.Position) -> tuple[Document, list[Name], Name | None]:
+        """Return a text with its names, and the one at a place."""
+        document, dialect = self._read(uri)
+        names = [] if dialect is None else list(names_of(document.lines, dialect))
+        return document, names, name_at(names, *_place(document, at))
+
     # ------------------------------------------------------------------ checks
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> None:
@@ -204,6 +274,11 @@ def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> Edi
         (lsp.TEXT_DOCUMENT_HOVER, editor.hover, None),
         (lsp.TEXT_DOCUMENT_COMPLETION, editor.completion, lsp.CompletionOptions(["G", "M"])),
         (lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, editor.symbols, None),
+        (lsp.TEXT_DOCUMENT_DEFINITION, editor.definition, None),
+        (lsp.TEXT_DOCUMENT_REFERENCES, editor.references, None),
+        (lsp.TEXT_DOCUMENT_RENAME, editor.rename, lsp.RenameOptions(prepare_provider=True)),
+        (lsp.TEXT_DOCUMENT_PREPARE_RENAME, editor.can_rename, None),
+        (lsp.TEXT_DOCUMENT_FORMATTING, editor.format, None),
     ):
         server.feature(method, options)(partial(answer))  # a feature carries attributes, which methods cannot
     return server
@@ -232,6 +307,19 @@ def _range(span: Span, document: Document) -> lsp.Range:
     return lsp.Range(
         lsp.Position(span.line, units(line[: span.begin])), lsp.Position(span.line, units(line[: span.end]))
     )
+
+
+@contextmanager
+def _refusals() -> Iterator[None]:
+    """Send what is refused as the answer to a request."""
+    try:
+        yield
+    except UsageError as error:
+        raise JsonRpcException(str(error), int(lsp.LSPErrorCodes.RequestFailed)) from None
+
+
+def _locations(uri: str, document: Document, names: list[Name]) -> list[lsp.Location]:
+    return [lsp.Location(uri, _range(each.span, document)) for each in names]
 
 
 def _diagnostic(found: Finding, document: Document) -> lsp.Diagnostic:
