@@ -109,7 +109,7 @@ def test_a_name_is_changed_wherever_it_stands_and_nowhere_else(
     text: str, dialect: Dialect, word: str, new: str, expected: str
 ) -> None:
     lines, names, found = _at(text, word, dialect)
-    assert _changed(lines, renamed(names, lines, found, new, dialect)) == expected
+    assert _changed(lines, renamed(names, lines, found, new, dialect.language)) == expected
 
 
 @pytest.mark.parametrize(
@@ -132,7 +132,7 @@ def test_a_new_name_that_would_mean_something_else_is_refused(
 ) -> None:
     lines, names, found = _at(text, word, dialect)
     with pytest.raises(UsageError, match=said):
-        renamed(names, lines, found, new, dialect)
+        renamed(names, lines, found, new, dialect.language)
 
 
 def test_blocks_are_numbered_anew_with_the_jumps_to_them() -> None:

@@ -52,6 +52,8 @@ def characters(line: str, count: int) -> int:
     count = max(count, 0)
     if line.isascii():
         return min(count, len(line))
-    before = line.encode("utf-16-le", "surrogatepass")[: 2 * count]
-    cut = len(before) >= 2 and 0xD8 <= before[-1] <= 0xDB and 2 * count < 2 * units(line)
-    return len(before.decode("utf-16-le", "surrogatepass" if not cut else "ignore"))
+    content = line.encode("utf-16-le", "surrogatepass")
+    before, after = content[: 2 * count], content[2 * count : 2 * count + 2]
+    if before and after and 0xD8 <= before[-1] <= 0xDB and 0xDC <= after[1] <= 0xDF:
+        before = before[:-2]
+    return len(before.decode("utf-16-le", "surrogatepass"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Coroutine, Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -18,13 +19,16 @@ from polycnc.editor._codes import completions, hover, word
 from polycnc.editor._document import Document, characters, units
 from polycnc.editor._findings import Finding, findings
 from polycnc.editor._format import formatted
+from polycnc.editor._kinds import Kind, kind_of
 from polycnc.editor._names import PROGRAM, Name, Role, givers, name_at, names_of, program_file, same
 from polycnc.editor._newest import LONGEST_S, GoOn, Newest, Overtaken, TooLong, within
 from polycnc.editor._outline import Symbol, outline
-from polycnc.editor._place import Span
+from polycnc.editor._place import MOST_LINE, Span
 from polycnc.editor._protocol import EditorServer
 from polycnc.editor._reading import held, taken, word_meaning
-from polycnc.editor._rename import check_renaming, renamed
+from polycnc.editor._rename import CONTROL, STAND_ALONE, check_renaming, renamed
+from polycnc.editor._stand_alone import sap_completions, sap_hover, sap_names, sap_outline
+from polycnc.editor._tables import control_names, key_completions, key_hover, table_outline
 from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ModalWords, ProgramText, choose_dialect
@@ -80,10 +84,24 @@ class _Editor:
     # ------------------------------------------------------------------ questions
 
     async def hover(self, params: lsp.HoverParams) -> lsp.Hover | None:
-        document, dialect = self._read(params.text_document.uri)
-        if dialect is None:
+        uri = params.text_document.uri
+        document, kind, dialect = self._read(uri)
+        line, character = _place(document, params.position)
+        if kind is Kind.STAND_ALONE:
+            found = sap_hover(document.lines, line, character)
+        elif dialect is None:
+            found = key_hover(document.lines, line, character, kind)
+        else:
+            found = await self._word(uri, document, line, character, dialect)
+        if found is None:
             return None
-        uri, (line, character) = params.text_document.uri, _place(document, params.position)
+        content = lsp.MarkupContent(lsp.MarkupKind.Markdown, found[0])
+        return lsp.Hover(content, _range(found[1], document))
+
+    async def _word(
+        self, uri: str, document: Document, line: int, character: int, dialect: Dialect
+    ) -> tuple[str, Span] | None:
+        """Return what a word of a program means, what holds before its line and how long that takes, and its place."""
         code = hover(document.lines, line, character, dialect)
         at = word(document.lines, line, character, dialect)
         if code is None and at is None:
@@ -98,39 +116,49 @@ class _Editor:
         if known is not None and known[0] == document.text and known[1] is not None:
             time = known[1].lines.get(line + 1)
             parts.append(taken(time) if time or before else "")
-        content = lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(filter(None, parts)))
-        return lsp.Hover(content, _range(span, document)) if content.value else None
+        content = "\n\n".join(filter(None, parts))
+        return (content, span) if content else None
 
     def completion(self, params: lsp.CompletionParams) -> list[lsp.CompletionItem]:
-        document, dialect = self._read(params.text_document.uri)
+        document, kind, dialect = self._read(params.text_document.uri)
         line, character = _place(document, params.position)
-        found = [] if dialect is None else completions(document.lines, line, character, dialect)
-        kind = lsp.CompletionItemKind.Keyword
+        if kind is Kind.STAND_ALONE:
+            found = sap_completions(document.text)
+        elif dialect is None:
+            found = key_completions(document.lines, line, character, kind)
+        else:
+            found = completions(document.lines, line, character, dialect)
+        item = lsp.CompletionItemKind.Keyword
         return [
-            lsp.CompletionItem(each.label, kind=kind, detail=each.detail, sort_text=f"{number:04}")
+            lsp.CompletionItem(each.label, kind=item, detail=each.detail, sort_text=f"{number:04}")
             for number, each in enumerate(found)
         ]
 
     async def symbols(self, params: lsp.DocumentSymbolParams) -> list[lsp.DocumentSymbol]:
         uri = params.text_document.uri
-        document, dialect = self._read(uri)
-        if dialect is None:
-            return []
-        found = await self._survey(uri, document, dialect)
-        return [_symbol(each, document) for each in outline(document.lines, dialect, found)]
+        document, kind, dialect = self._read(uri)
+        if kind is Kind.STAND_ALONE:
+            found = sap_outline(document.text, len(document.lines))
+        elif dialect is not None:
+            survey = await self._survey(uri, document, dialect)
+            found = outline(document.lines, dialect, survey)
+        else:
+            found = [] if kind in (Kind.PROGRAM, Kind.UNKNOWN) else table_outline(document.lines)
+        return [_symbol(each, document) for each in found]
 
     # ------------------------------------------------------------------ names
 
     def definition(self, params: lsp.DefinitionParams) -> list[lsp.Location]:
         uri = params.text_document.uri
-        document, names, found = self._named(uri, params.position)
+        named = self._named(uri)
+        found = named.at(params.position)
         if found is None:
             return []
-        given = givers(names, found)
-        if given or found.kind != PROGRAM:
-            return _locations(uri, document, given)
-        _, dialect = self._read(uri)
-        place = None if dialect is None else program_file(found.key, document.text, _name(uri), dialect)
+        given = givers(named.names, found)
+        _, _, dialect = self._read(uri)
+        if given or found.kind != PROGRAM or dialect is None:
+            return _locations(uri, named.document, given)
+        place = program_file(found.key, named.document.text, _name(uri), dialect)
         if place is None:
             return []
         start = lsp.Position(place[1], 0)
@@ -138,37 +166,35 @@ class _Editor:
 
     def references(self, params: lsp.ReferenceParams) -> list[lsp.Location]:
         uri = params.text_document.uri
-        document, names, found = self._named(uri, params.position)
-        if found is None:
-            return []
-        asked = same(names, found)
+        named = self._named(uri)
+        found = named.at(params.position)
+        asked = [] if found is None else same(named.names, found)
         if not params.context.include_declaration:
             asked = [each for each in asked if each.role is Role.USED]
-        return _locations(uri, document, asked)
+        return _locations(uri, named.document, asked)
 
     def can_rename(self, params: lsp.PrepareRenameParams) -> lsp.Range | None:
-        document, names, found = self._named(params.text_document.uri, params.position)
-        _, dialect = self._read(params.text_document.uri)
-        if found is None or dialect is None:
+        named = self._named(params.text_document.uri)
+        found = named.at(params.position)
+        if found is None:
             return None
         with _refusals():
-            check_renaming(names, found, dialect)
-        return _range(found.span, document)
+            check_renaming(named.names, found, named.language)
+        return _range(found.span, named.document)
 
     def rename(self, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
         uri = params.text_document.uri
-        document, names, found = self._named(uri, params.position)
-        _, dialect = self._read(uri)
-        if found is None or dialect is None:
+        named = self._named(uri)
+        found = named.at(params.position)
+        if found is None:
             return None
         with _refusals():
-            changes = renamed(names, document.lines, found, params.new_name, dialect)
-        return lsp.WorkspaceEdit(
-            {uri: [lsp.TextEdit(_range(span, document), text) for span, text in changes]}
-        )
+            changes = renamed(named.names, named.document.lines, found, params.new_name, named.language)
+        edits = [lsp.TextEdit(_range(span, named.document), text) for span, text in changes]
+        return lsp.WorkspaceEdit({uri: edits})
 
     def format(self, params: lsp.DocumentFormattingParams) -> list[lsp.TextEdit]:
-        document, dialect = self._read(params.text_document.uri)
+        document, _, dialect = self._read(params.text_document.uri)
         if dialect is None:
             return []
         lines = document.lines
@@ -178,11 +204,14 @@ class _Editor:
             if before != after
         ]
 
-    def _named(self, uri: str, at: lsp.Position) -> tuple[Document, list[Name], Name | None]:
-        """Return a text with its names, and the one at a place."""
-        document, dialect = self._read(uri)
-        names = [] if dialect is None else list(names_of(document.lines, dialect))
-        return document, names, name_at(names, *_place(document, at))
+    def _named(self, uri: str) -> _Named:
+        """Return a text with its names, and what they are names in."""
+        document, kind, dialect = self._read(uri)
+        if dialect is not None:
+            return _Named(document, list(names_of(document.lines, dialect)), dialect.language)
+        if kind is Kind.STAND_ALONE:
+            return _Named(document, sap_names(document.text), STAND_ALONE)
+        return _Named(document, control_names(document.lines) if kind is Kind.CONTROL else [], CONTROL)
 
     # ------------------------------------------------------------------ checks
 
@@ -204,7 +233,7 @@ class _Editor:
                 lsp.PublishDiagnosticsParams(uri, shown, document.version)
             )
 
-        document, dialect = self._read(uri)
+        document, _, dialect = self._read(uri)
         if found is not None and dialect is not None:
             await self._survey(uri, document, dialect)
 
@@ -255,11 +284,29 @@ class _Editor:
     def _document(self, uri: str) -> Document:
         return self._documents.get(uri) or Document("")
 
-    def _read(self, uri: str) -> tuple[Document, Dialect | None]:
-        """Return a text and its dialect, None for a language that nobody reads here."""
-        document = self._document(uri)
-        chosen = choose_dialect(ProgramText.from_text(document.text, _name(uri)), self._dialect)
-        return document, None if chosen.problem else chosen.dialect
+    def _read(self, uri: str) -> tuple[Document, Kind, Dialect | None]:
+        """Return a text, what it is, and the dialect of a program; None for a language that nobody reads here."""
+        document, name = self._document(uri), _name(uri)
+        if any(
+            len(line) > MOST_LINE for line in document.lines
+        ):  # which nobody writes: looked at by the check alone
+            return Document(""), Kind.UNKNOWN, None
+        kind = kind_of(name, document.text)
+        if kind is not Kind.PROGRAM:
+            return document, kind, None
+        chosen = choose_dialect(ProgramText.from_text(document.text, name), self._dialect)
+        return document, kind, None if chosen.problem else chosen.dialect
+
+
+@dataclass(frozen=True, slots=True)
+class _Named:
+    document: Document
+    names: list[Name]
+    language: str
+
+    def at(self, position: lsp.Position) -> Name | None:
+        """Return the name at a position."""
+        return name_at(self.names, *_place(self.document, position))
 
 
 def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> EditorServer:
@@ -272,7 +319,7 @@ def editor_server(machine: MachineConfig | None, dialect: Dialect | None) -> Edi
         (lsp.TEXT_DOCUMENT_DID_SAVE, editor.saved, None),
         (lsp.TEXT_DOCUMENT_DID_CLOSE, editor.closed, None),
         (lsp.TEXT_DOCUMENT_HOVER, editor.hover, None),
-        (lsp.TEXT_DOCUMENT_COMPLETION, editor.completion, lsp.CompletionOptions(["G", "M"])),
+        (lsp.TEXT_DOCUMENT_COMPLETION, editor.completion, lsp.CompletionOptions(["G", "M", "#", "[", "="])),
         (lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL, editor.symbols, None),
         (lsp.TEXT_DOCUMENT_DEFINITION, editor.definition, None),
         (lsp.TEXT_DOCUMENT_REFERENCES, editor.references, None),

@@ -8,6 +8,7 @@ from polycnc.on_demand import names_on_demand
 
 if TYPE_CHECKING:
     from polycnc.nc.macro._calls import Arguments, MacroCalls
+    from polycnc.nc.macro._functions import FUNCTIONS, OPERATORS
     from polycnc.nc.macro._language import MacroLanguage
     from polycnc.nc.macro._macro_source import MacroSource
     from polycnc.nc.macro._system import SystemVariables
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
 
 _LATER = {
     "_calls": ("Arguments", "MacroCalls"),
+    "_functions": ("FUNCTIONS", "OPERATORS"),
     "_language": ("MacroLanguage",),
     "_macro_source": ("MacroSource",),
     "_system": ("SystemVariables",),
@@ -22,9 +24,11 @@ _LATER = {
 }
 
 __all__ = [
+    "FUNCTIONS",
     "LARGEST",
     "LEVELS",
     "LOCALS",
+    "OPERATORS",
     "Arguments",
     "MacroCalls",
     "MacroError",
