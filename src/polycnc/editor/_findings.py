@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +16,8 @@ from polycnc.editor._tables import problems
 from polycnc.errors import ConfigurationError, PolycncError, ProgramError, SourcePosition
 from polycnc.machine import MachineConfig
 from polycnc.nc import Dialect, ProgramText
+
+_MARK = "\ufeff"  # which is no part of a text
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +36,17 @@ def findings(
     machine: MachineConfig | None = None,
     dialect: Dialect | None = None,
     go_on: GoOn = lambda: None,
+    *,
+    longest_s: float | None = None,
 ) -> list[Finding]:
     """Return everything that is wrong with a text; `name` is its path, and the folder of a program its root.
 
     Of a program it is what `polycnc check` says, of other files what loading them says.
 
     What concerns another file, like a sub-program, stands in the first line and names its place.
+
+    Raises:
+        TooLong: It took more than `longest_s` of computing; without that, a check of more than 20 s is a finding.
     """
     folder = Path(name).parent
     lines = document.lines
@@ -48,16 +56,19 @@ def findings(
         what = f"a line with more than {MOST_LINE} bytes: the editor looks no further\nCheck the line ends."
         return [_finding(what, "", program.position(offset), name, lines, is_error=True)]
     if kind is not Kind.PROGRAM:
-        return [_error(each, name, lines) for each in _wrong(document.text, name, kind)]
+        return [_error(each, name, lines) for each in _wrong(document.text.removeprefix(_MARK), name, kind)]
     try:
         report = runner.inspect(
             program,
             machine,
             dialect,
             root=folder if folder.is_dir() else None,
-            progress=within(LONGEST_S, go_on),
+            progress=within(longest_s, go_on, time.thread_time) if longest_s else within(LONGEST_S, go_on),
+            rehearse=longest_s is None,
         )
     except TooLong:
+        if longest_s is not None:
+            raise
         what = f"the check was ended after {LONGEST_S:g} s, before the end of the program\nDoes it loop without end?"
         return [Finding(_span(None, lines), what, "", False)]
     except PolycncError as error:
@@ -95,4 +106,5 @@ def _finding(
 def _span(at: SourcePosition | None, lines: list[str]) -> Span:
     if at is None or not 1 <= at.line <= len(lines):
         return Span(0, 0, max(1, len(lines[0])))
-    return Span(at.line - 1, at.column - 1, word_at(lines[at.line - 1], at.column - 1))
+    begin = at.column - 1 + (at.line == 1 and lines[0].startswith(_MARK))
+    return Span(at.line - 1, begin, word_at(lines[at.line - 1], begin))

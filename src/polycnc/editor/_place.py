@@ -28,7 +28,7 @@ class Span:
 
 def lines_of(text: str) -> list[str]:
     """Return the lines of a text without their ends."""
-    return LINE_END.split(text)
+    return LINE_END.split(text) if "\r" in text else text.split("\n")
 
 
 def word_at(line: str, begin: int) -> int:

@@ -25,6 +25,7 @@ from polycnc.editor._newest import LONGEST_S, GoOn, Newest, Overtaken, TooLong, 
 from polycnc.editor._outline import Symbol, outline
 from polycnc.editor._place import MOST_LINE, Span
 from polycnc.editor._protocol import EditorServer
+from polycnc.editor._quick import Checked, quick_findings
 from polycnc.editor._reading import held, taken, word_meaning
 from polycnc.editor._rename import CONTROL, STAND_ALONE, check_renaming, renamed
 from polycnc.editor._stand_alone import sap_completions, sap_hover, sap_names, sap_outline
@@ -33,6 +34,8 @@ from polycnc.errors import UsageError
 from polycnc.machine import MachineConfig, load_machine
 from polycnc.nc import Dialect, ModalWords, ProgramText, choose_dialect
 from polycnc.runner import Survey, holds_before, survey
+
+_NOTHING = Document("")
 
 
 class _Editor:
@@ -44,6 +47,7 @@ class _Editor:
         self._dialect = dialect
         self._config = load_machine(machine)
         self._newest, self._answers, self._times = Newest(), Newest(), Newest()
+        self._checked: dict[str, Checked] = {}
         self._surveys: dict[str, tuple[str, Survey | None]] = {}
         self._surveying: dict[str, asyncio.Future[None]] = {}
         self._documents: dict[str, Document] = {}
@@ -79,6 +83,7 @@ class _Editor:
         self._newest.drop(uri)
         self._documents.pop(uri, None)
         self._surveys.pop(uri, None)
+        self._checked.pop(uri, None)
         self._server.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, []))
 
     # ------------------------------------------------------------------ questions
@@ -221,17 +226,25 @@ class _Editor:
         task.add_done_callback(self._under_way.discard)
 
     async def _check(self, uri: str) -> None:
-        document = self._document(uri)
+        document, name, loop = self._document(uri), _name(uri), asyncio.get_running_loop()
+        before = self._checked.get(uri)
 
         def work(go_on: GoOn) -> list[Finding]:
-            return findings(document, _name(uri), self._machine, self._dialect, go_on)
+            if before is not None:
+                first = quick_findings(before, document, name, self._machine, self._dialect, go_on)
+                if first is not None:
+                    go_on()
+                    loop.call_soon_threadsafe(self._publish, uri, document, first)
+            return findings(document, name, self._machine, self._dialect, go_on)
 
-        found = await self._newest.run(uri, work)
+        try:
+            found = await self._newest.run(uri, work)
+        except Exception as error:  # whatever it is, it is ours: nobody is shown a traceback
+            what = f"internal error, the mistake is not yours: {type(error).__name__}: {error}"
+            found = [Finding(Span(0, 0, 1), f"{what}\nPlease report it, with this text.", "", True)]
         if found is not None:
-            shown = [_diagnostic(each, document) for each in found]
-            self._server.text_document_publish_diagnostics(
-                lsp.PublishDiagnosticsParams(uri, shown, document.version)
-            )
+            self._checked[uri] = Checked(document, found)
+            self._publish(uri, document, found)
 
         document, _, dialect = self._read(uri)
         if found is not None and dialect is not None:
@@ -281,8 +294,15 @@ class _Editor:
             return None
         return holds_before(program, line + 1, self._config, dialect, root=_root(program.name))
 
+    def _publish(self, uri: str, document: Document, found: list[Finding]) -> None:
+        if self._document(uri) is document:
+            shown = [_diagnostic(each, document) for each in found]
+            self._server.text_document_publish_diagnostics(
+                lsp.PublishDiagnosticsParams(uri, shown, document.version)
+            )
+
     def _document(self, uri: str) -> Document:
-        return self._documents.get(uri) or Document("")
+        return self._documents.get(uri, _NOTHING)
 
     def _read(self, uri: str) -> tuple[Document, Kind, Dialect | None]:
         """Return a text, what it is, and the dialect of a program; None for a language that nobody reads here."""
