@@ -33,21 +33,6 @@ if TYPE_CHECKING:
     from polycnc.runner.plots import PLOT_FORMATS, check_plot_file, plot, plot_track
     from polycnc.runner.view import TrackCollector, View, check_view_file, open_in_browser, view_program
 
-_LATER = {
-    "_debugger": ("Debugger", "Place"),
-    "_machining": ("Machined", "MachiningCollector", "tools_of"),
-    "_post": ("PostResult", "post_file"),
-    "_schemas": ("SCHEMAS", "json_schema"),
-    "_survey": ("LineTime", "Survey", "holds_before", "survey"),
-    "_verify": ("Violation", "verify_trace"),
-    "_verify_post": ("Deviation", "PostVerification", "verify_post"),
-    "batches": ("BatchResult", "batch"),
-    "comparison": ("Comparison", "PathDeviation", "compare"),
-    "machine_sources": ("machine_from",),
-    "plots": ("PLOT_FORMATS", "check_plot_file", "plot", "plot_track"),
-    "view": ("TrackCollector", "View", "check_view_file", "open_in_browser", "view_program"),
-}
-
 __all__ = [
     "LOOP_LIMIT_S",
     "PLOT_FORMATS",
@@ -109,4 +94,4 @@ __all__ = [
     "view_program",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

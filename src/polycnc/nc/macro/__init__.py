@@ -14,15 +14,6 @@ if TYPE_CHECKING:
     from polycnc.nc.macro._system import SystemVariables
     from polycnc.nc.macro._variables import LARGEST, LEVELS, LOCALS, MacroError, MacroVariables, Value
 
-_LATER = {
-    "_calls": ("Arguments", "MacroCalls"),
-    "_functions": ("FUNCTIONS", "OPERATORS"),
-    "_language": ("MacroLanguage",),
-    "_macro_source": ("MacroSource",),
-    "_system": ("SystemVariables",),
-    "_variables": ("LARGEST", "LEVELS", "LOCALS", "MacroError", "MacroVariables", "Value"),
-}
-
 __all__ = [
     "FUNCTIONS",
     "LARGEST",
@@ -39,4 +30,4 @@ __all__ = [
     "Value",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)
