@@ -380,7 +380,10 @@ def test_sequence_numbers_step_and_begin_again() -> None:
 @pytest.mark.covers("post.block.empty")
 def test_lines_of_blanks_and_of_empty_texts_are_no_blocks() -> None:
     assert blocks_of('\n  \n""\n&X&\n@1@\n\',5\'\n"  "', sequence_place=1) == ["N10  "]
-    assert blocks_of(" <V1=2> \t&X&  @1@ <V2=V1>\t\n A <V1=3> \nB \t", sequence_place=1) == ["N10 A ", "N20B \t"]
+    assert blocks_of(" <V1=2> \t&X&  @1@ <V2=V1>\t\n A <V1=3> \nB \t", sequence_place=1) == [
+        "N10 A ",
+        "N20B \t",
+    ]
 
 
 @pytest.mark.covers("post.order.sort", "post.word.OUTPUTORDER", "post.string.squote", "post.order.written")
