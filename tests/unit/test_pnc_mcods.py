@@ -207,6 +207,7 @@ def mode(which: Mode) -> Callable[[Living], object]:
 CHANGES = [
     Change(7, 1, 1, [10000.0], lambda six: six.pnc.control.set_overrides(feed=0.825, channel=0), [8250.0]),
     Change(8, -1, 1, [10000.0], lambda six: six.pnc.control.set_overrides(spindle=0.9), [9000.0]),
+    Change(9, 1, 1, [-1], run("N1 H3\nN2 G1 X9 F60\n"), [3]),
     Change(11, 1, 1, [-1], run("N1 G18 G41 D3 G1 X5 F60000\nN2 X9 F60\n"), [3], ("11.val.-1",)),
     Change(12, 1, 1, [0.0], run("N1 G18 G41 D3 G1 X5 F60000\nN2 X9 F60\n"), [6.25]),
     Change(18, 1, 1, [1], run("N1 G70\nN2 G1 X9 F60\n"), [0], ("18.val.0",)),
