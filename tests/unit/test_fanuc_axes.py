@@ -196,7 +196,7 @@ def test_example_relative_of_a_rotary_axis_is_not_folded() -> None:
 @covers("example.cnc_distance", "cnc_distance")
 def test_example_distance_is_twice_the_real_one() -> None:
     control, handle = attached(axes=4, rotary=(3,))
-    assert [control.axis_name(axis) for axis in (1, 2, 3, 4)] == ["X", "Y", "A", "Z"]
+    assert [control.units.axis_name(axis) for axis in (1, 2, 3, 4)] == ["X", "Y", "A", "Z"]
     control.control.set_overrides(feed=1e-3)
     control.select_mode("MDI")
     control.mdi.put(b"\nO1\nG91G1X-17.3Y30.009A-.18Z4.F600\nM30\n%")

@@ -92,7 +92,7 @@ def test_unit_and_range_of_tool_offsets(increment: str, limit: int, mm: float, i
     control, _ = attached(increment="IS-B")
     control.parameters.set(1004, 1 if increment == "IS-A" else 2 if increment == "IS-C" else 0)
     control.power_cycle()
-    assert control.increment == increment
+    assert control.units.increment == increment
 
 
 @covers(
@@ -345,14 +345,14 @@ def test_some_parameters_need_the_power_switched_off() -> None:
         EW.EW_BUSY
     ] * 3
     assert fwlib.cnc_delete(handle, 12) == EW.EW_BUSY
-    assert not control.is_rotary(2)
+    assert not control.units.is_rotary(2)
     control.reset()
     assert fwlib.cnc_search(handle, 12) == EW.EW_BUSY
     control.power_cycle()
     assert fwlib.cnc_search(handle, 12) == OK
-    assert control.is_rotary(2)
+    assert control.units.is_rotary(2)
     assert fwlib.cnc_wrparam(handle, 8, psd(1320, 1, ldata=5000)) == OK
-    assert control.alarm_bits == 0
+    assert control.power.alarm_bits == 0
 
 
 # ---------------------------------------------------------------------- records

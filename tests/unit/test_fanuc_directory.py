@@ -360,7 +360,7 @@ def test_searches_of_the_cursor_that_are_refused() -> None:
     assert fwlib.cnc_seqsrch(handle, 20) == OK
     for number in (11, 0, -1, 99_999_999):
         assert fwlib.cnc_seqsrch(handle, number) == EW.EW_DATA
-        assert control.cursor == 2
+        assert control.state.cursor == 2
     for mode in ("MDI", "EDIT", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"):
         control.select_mode(mode)
         assert fwlib.cnc_seqsrch(handle, 10) == EW.EW_MODE

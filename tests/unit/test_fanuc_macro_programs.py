@@ -68,7 +68,7 @@ def test_variables_from_500_on_outlast_the_power_and_the_others_do_not(tmp_path:
     control.macros.set(503, 1.25, (1250, 3))
     control.power_cycle()
     assert [control.macros.get(number) for number in (500, 100, 501, 502)] == [2.5, None, 1.0 / 3.0, None]
-    assert control.local_variable(1) is None
+    assert control.custom_macros.local(1) is None
     control.close()
     again = PowerMate(memory=tmp_path / "power.mate")
     assert [again.macros.get(number) for number in (500, 100, 501, 502)] == [2.5, None, 1.0 / 3.0, None]
@@ -95,7 +95,7 @@ def test_a_reset_clears_what_parameter_6001_says(bits: int, left: tuple[float | 
     registered(control, O1="\n#100=5.5\n#1=6.5\nM30\n")
     assert until_over(control) is RunState.COMPLETED
     control.reset()
-    assert (control.macros.get(100), control.local_variable(1)) == left
+    assert (control.macros.get(100), control.custom_macros.local(1)) == left
 
 
 def test_switching_off_clears_what_a_reset_may_keep() -> None:
@@ -105,7 +105,11 @@ def test_switching_off_clears_what_a_reset_may_keep() -> None:
     assert until_over(control) is RunState.COMPLETED
     assert (control.macros.get(100), macro(handle, 500)) == (5.5, (0, 0))
     control.power_cycle()
-    assert (control.macros.get(100), control.local_variable(1), control.macros.get(500)) == (None, None, 0.0)
+    assert (control.macros.get(100), control.custom_macros.local(1), control.macros.get(500)) == (
+        None,
+        None,
+        0.0,
+    )
 
 
 def test_codes_call_programs_by_parameters() -> None:

@@ -309,11 +309,11 @@ def test_search_selects_in_mem_and_edit_only() -> None:
         control.select_mode(mode)
         for number in (12, 200):
             assert fwlib.cnc_search(handle, number) == OK
-            assert fwlib.cnc_rdprgnum(handle)[1].data == control.selected == number
+            assert fwlib.cnc_rdprgnum(handle)[1].data == control.programs.selected == number
     for mode in ("MDI", "HND", "JOG", "T-JOG", "T-HND", "INC", "REF", "RMT"):
         control.select_mode(mode)
         assert fwlib.cnc_search(handle, 12) == OK
-        assert control.selected == 200
+        assert control.programs.selected == 200
     for mode in ("MEM", "JOG"):
         control.select_mode(mode)
         for number in (13, 0, -1, 10000):

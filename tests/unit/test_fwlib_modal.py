@@ -218,7 +218,7 @@ def test_words_of_the_axes(number: int, value: int) -> None:
         for name, each in zip(names, ("51.25", "-3.5", "4.125", "-17.", "61.", "-72.5"), strict=True)
     )
     library, handle, control = executing(f"G1 {moves} F500", "G1", axes=6, rotary=(4, 5, 6))
-    assert [control.axis_name(axis) for axis in range(1, 7)] == list(names)
+    assert [control.units.axis_name(axis) for axis in range(1, 7)] == list(names)
     code, modal = library.cnc_modal(handle, number, 0)
     assert (code, modal.modal.aux.aux_data) == (0, value)
     _, every = library.cnc_modal(handle, -3, 0)

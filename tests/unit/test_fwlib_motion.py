@@ -105,7 +105,7 @@ def test_units_of_positions(more: dict[str, Any], value: int, axis: str, unit: f
     library, handle = at(control)
     assert library.cnc_incpoint(handle, 2, 0, 1, 3000, idb((1, value)))[0] == 0
     control.advance(3000)
-    assert control.status().axes[control.axis_name(1)].machine == pytest.approx(value * unit, abs=1e-9)
+    assert control.status().axes[control.units.axis_name(1)].machine == pytest.approx(value * unit, abs=1e-9)
 
 
 @pytest.mark.covers("fanuc.cnc_finstate", "fanuc.cnc_incpoint")
