@@ -131,6 +131,11 @@ class ProgramRun:
         return self._path_runner.channel
 
     @property
+    def language(self) -> Language | None:
+        """The language that executes the program, None where it holds NC blocks only."""
+        return self._language
+
+    @property
     def feed(self) -> PathFeed:
         """What keeps the path supplied."""
         return self._path_runner.feed

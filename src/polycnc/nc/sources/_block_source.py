@@ -209,6 +209,15 @@ class FastForwardLanguage(Language, Protocol):
 
 
 @runtime_checkable
+class KeepingLanguage(Language, Protocol):
+    """A language with values that outlive a program, in a file."""
+
+    def kept_text(self) -> str:
+        """Return the text of that file."""
+        ...
+
+
+@runtime_checkable
 class BoundedLanguage(Language, Protocol):
     """A language whose programs may begin and end at blocks that are given."""
 
