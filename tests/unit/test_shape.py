@@ -38,7 +38,6 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "kernel/_limits.py _give_way",
         "kernel/_profile.py plan_profile",
         "nc/fast/_plain_blocks.py _run",
-        "nc/fast/_plain_blocks.py _arc",
         "nc/text/_scan.py",
         "nc/text/_scan.py _scan_easy_blocks",
         "nc/text/_scan.py _scan_block",

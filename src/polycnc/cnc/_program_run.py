@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from polycnc import kernel
 from polycnc.cnc._block_search import block_line, calculate_to
+from polycnc.cnc._passed_events import OnPassed
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._path_runner import Floats, OnEvent, PathRunner, Rows, Until
@@ -47,7 +48,8 @@ class ProgramRun:
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
-    stands there until `answered`. `axes` are the
+    stands there until `answered`. With `on_passed` the path does not stop for those at which it need not: they are told
+    later, to that. `axes` are the
     names of the machine's axes in this channel, those of others by `of_another_channel`.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
@@ -73,6 +75,7 @@ class ProgramRun:
         axes: Sequence[str] | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
+        on_passed: OnPassed | None = None,
         attaches: bool = True,
     ) -> None:
         options = options or RunOptions()
@@ -91,6 +94,7 @@ class ProgramRun:
         self._path_runner = PathRunner(machine, channel, options, moment, ahead=ahead)
         self._path_runner.rows = rows
         self._path_runner.on_event = on_event
+        self._path_runner.passed.told = on_passed
 
     def _new_channel(
         self,

@@ -209,7 +209,7 @@ def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
     path["merged"] = 0
     for i in range(paths.queued.shape[1]):
         paths.queued[g, i] = paths.position[g, i]
-    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag)  # where it stands
+    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag, 0)  # where it stands
     path["head"] += 1
     path["tail"] = path["head"]
     path["prepared"] = path["head"]
