@@ -257,6 +257,7 @@ def test_speeds_and_limits_of_an_inch_machine() -> None:
     assert axis.vmax == pytest.approx(15_000 / 60 * 2.54)  # 0.1 inch/min
 
 
+@pytest.mark.covers("fanuc.cnc_machine")
 @pytest.mark.parametrize(
     ("code", "name"), [(0, "Y"), (ord("X"), "Y"), (7, "Y"), (ord("N"), "Y"), (ord("W"), "W")]
 )
@@ -363,6 +364,7 @@ def test_two_programs_in_two_threads_have_one_control() -> None:
     assert not control.programs.directory()
 
 
+@pytest.mark.covers("fanuc.cnc_wrmdiprog")
 def test_power_off_and_on() -> None:
     control, handle = attached(axes=2)
     registered(control, O7="\nG1 X5. F600\nM30\n")
@@ -395,6 +397,7 @@ def test_power_off_and_on() -> None:
     assert control.machine.config.axes[0].soft_limits[1] == 4.0
 
 
+@pytest.mark.covers("fanuc.cnc_rdmacro", "fanuc.cnc_rdprogdir", "fanuc.cnc_rdtofs")
 def test_everything_durable_is_in_the_file(tmp_path: Path) -> None:
     file = tmp_path / "power-mate.db"
     control, handle = attached(memory=file, axes=2, increment="IS-A")

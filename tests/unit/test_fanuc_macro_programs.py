@@ -193,6 +193,7 @@ def test_a_message_stop_shows_its_text_until_the_program_goes_on() -> None:
     assert fwlib.cnc_rdopmsg3(handle, 4, 5)[1] == 0
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_system_variables_are_those_of_the_control() -> None:
     control, handle = attached()
     control.parameters.set(6711, 41)
@@ -219,6 +220,7 @@ def test_system_variables_are_those_of_the_control() -> None:
     assert fwlib.pmc_rdpmcrng(handle, 1, 0, 54, 55, 10)[1].u.cdata[:2] == [0, 0]
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 def test_the_hours_of_operation_are_counted_on_from_what_a_program_wrote() -> None:
     control, handle = attached()
     registered(
@@ -327,6 +329,7 @@ def test_a_program_goes_on_from_a_file_in_another_control() -> None:
     assert other.clock.cycles == control.clock.cycles
 
 
+@pytest.mark.covers("fanuc.cnc_seqsrch")
 def test_a_program_with_macros_may_begin_at_a_block() -> None:
     control, handle = attached()
     registered(

@@ -244,6 +244,7 @@ def test_what_is_known_about_a_word() -> None:
     assert flags(103, 2) == (0x80 | 2, 0)
 
 
+@pytest.mark.covers("fanuc.cnc_modal")
 @pytest.mark.covers("fanuc.param.3030")
 def test_digits_of_m_are_those_of_the_parameter() -> None:
     library, handle, control = executing("G1 X9. F500 M8", "G1")

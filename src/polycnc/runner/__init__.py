@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from polycnc.runner._machining import Machined, MachiningCollector, tools_of
     from polycnc.runner._post import PostResult, post_file
     from polycnc.runner._schemas import SCHEMAS, json_schema
+    from polycnc.runner._survey import LineTime, Survey, holds_before, survey
     from polycnc.runner._verify import Violation, verify_trace
     from polycnc.runner._verify_post import Deviation, PostVerification, verify_post
     from polycnc.runner.batches import BatchResult, batch
@@ -44,6 +45,7 @@ __all__ = [
     "Comparison",
     "Debugger",
     "Deviation",
+    "LineTime",
     "Machined",
     "MachiningCollector",
     "Operation",
@@ -56,6 +58,7 @@ __all__ = [
     "RunMessage",
     "RunResult",
     "RunSettings",
+    "Survey",
     "Trace",
     "TraceWriter",
     "TracedResult",
@@ -69,6 +72,7 @@ __all__ = [
     "check_view_file",
     "compare",
     "counted",
+    "holds_before",
     "inspect",
     "json_schema",
     "machine_from",
@@ -81,6 +85,7 @@ __all__ = [
     "read_trace",
     "run",
     "run_program",
+    "survey",
     "time_text",
     "tools_of",
     "trace_columns",
