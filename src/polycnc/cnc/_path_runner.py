@@ -48,7 +48,7 @@ class PathRunner:
     """Run one path of a machine through what its channel prepares, as `moment` says.
 
     `feed` keeps the path supplied, `stopper` says where it rests, `overrides` how fast it goes. `rows`, `on_event` and
-    `on_skip` are told what happens, see `ProgramRun`.
+    `on_skip` get what happens, see `ProgramRun`.
     """
 
     def __init__(

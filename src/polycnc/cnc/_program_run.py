@@ -1,7 +1,7 @@
 """A program run: one program on one path of a machine, that can be stopped and continued at every cycle.
 
-Nothing here changes where the path leads. Holding, overrides and stops at block ends only change how fast it is gone
-along, within every axis' limits, so a run that is interrupted ends where the undisturbed one does, to the last bit.
+Nothing here changes where the path leads. Holding, overrides and stops at block ends only change how fast it is
+followed, within every axis' limits, so a run that is interrupted ends where the undisturbed one does, to the last bit.
 """
 
 from __future__ import annotations
@@ -46,12 +46,12 @@ class ProgramRun:
     """Run `program` on path `path` of `machine`.
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
-    `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
+    `on_event` gets each auxiliary function in the cycle in which the path comes to it; if it returns True the path
     stands there until `answered`. `axes` are the
     names of the machine's axes in this channel, those of others by `of_another_channel`.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
-    The surfaces of the machine file do the same. `on_skip` is told when either is met.
+    The surfaces of the machine file do the same. `on_skip` is called when either ends a move.
 
     Without `attaches` it is made to go back to a snapshot: only then it takes its language over.
 
@@ -147,7 +147,7 @@ class ProgramRun:
 
     @property
     def on_event(self) -> OnEvent | None:
-        """What is told each auxiliary function."""
+        """What gets each auxiliary function."""
         return self._path_runner.on_event
 
     @on_event.setter
@@ -156,7 +156,7 @@ class ProgramRun:
 
     @property
     def on_skip(self) -> Callable[[], None] | None:
-        """What is told the end of a skip move."""
+        """What is called at the end of a skip move."""
         return self._path_runner.on_skip
 
     @on_skip.setter
