@@ -84,7 +84,7 @@ def test_the_older_ways_to_initialise(tmp_path: Path) -> None:
         assert tsrp[0].jac == 55.0
     # A board that runs with its defaults takes the file that is named, even by the oldest of them.
     for initialise_it in (
-        lambda tsrp: pcap.InitMcuSystem(tsrp),
+        pcap.InitMcuSystem,
         lambda tsrp: pcap.InitMcuSystem2(tsrp, 0, "system.dat"),
         lambda tsrp: pcap.InitMcuSystem3(tsrp, pcap.ROSI(), 0, "system.dat")[0],
     ):

@@ -45,7 +45,7 @@ def _printed() -> list[tuple[str, str, int, int]]:
 
 @pytest.mark.parametrize(
     ("name", "at", "bits"),
-    [pytest.param(*each, marks=pytest.mark.covers(row), id=each[0]) for row, *each in _printed()],
+    [pytest.param(*each, marks=pytest.mark.covers(row), id=str(each[0])) for row, *each in _printed()],
 )
 def test_a_parameter_of_the_manual_is_at_its_address_with_its_width(name: str, at: int, bits: int) -> None:
     each = PARAMETERS[name]
