@@ -99,3 +99,12 @@ def _placed(what: str, position: SourcePosition | None, hint: str) -> str:
     if hint:
         lines.append(hint)
     return "\n".join(lines)
+
+
+def shown(value: object, most: int = 60) -> str:
+    """Return a value for a message, in at most so many characters."""
+    try:
+        text = repr(value)
+    except ValueError:  # Python writes no whole number of more than 4,300 digits
+        return "a number without end"
+    return text if len(text) <= most else f"{text[: most - 3]}..."

@@ -74,6 +74,7 @@ def test_a_diagnosis_value_of_each_kind(
     assert library.cnc_diagnoss(handle, number, axis, length - 1)[0] is EW.EW_LENGTH
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.diag.axis.-1")
 @pytest.mark.covers("fanuc.ODBDGN.type")
 def test_all_axes_at_once() -> None:
@@ -85,6 +86,7 @@ def test_all_axes_at_once() -> None:
     assert library.cnc_diagnoss(handle, 301, -1, 4 + 4 * 6)[0] is EW.EW_OK
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.parametrize(
     ("number", "axis", "code"),
     [
@@ -100,6 +102,7 @@ def test_a_diagnosis_is_refused(number: int, axis: int, code: str) -> None:
     assert library.cnc_diagnoss(handle, number, axis, 28)[0] is EW[code]
 
 
+@pytest.mark.covers("fanuc.cnc_diagnoss")
 @pytest.mark.covers("fanuc.cnc_diagnoss.err.EW_LENGTH")
 def test_a_diagnosis_needs_its_length() -> None:
     library, handle = at(PowerMate())
@@ -140,6 +143,7 @@ def test_a_range_of_diagnosis_numbers() -> None:
     assert data[34:50] == b"\xca\0\xff\2" + b"\x58\2\xe8\3\xe8\3" + bytes(6)
 
 
+@pytest.mark.covers("fanuc.cnc_diagnosr")
 @pytest.mark.parametrize(
     ("first", "axis", "last", "length", "code"),
     [
@@ -221,6 +225,7 @@ def test_figures_of_tool_offsets_and_macro_variables(
         assert (code, valid, read[0]) == (0, digits, decimals)
 
 
+@pytest.mark.covers("fanuc.cnc_getfigure")
 @pytest.mark.covers("fanuc.param.1004_0", "fanuc.param.1004_1", "fanuc.cnc_getfigure.err.EW_ATTRIB")
 def test_the_increment_system_is_a_parameter() -> None:
     control = PowerMate()
@@ -284,6 +289,7 @@ def test_the_manuals_program_prints_the_message() -> None:
     assert (code, count, [each.datano for each in messages]) == (0, 2, [100, 999])
 
 
+@pytest.mark.covers("fanuc.cnc_rdopmsg")
 @pytest.mark.parametrize(
     ("kind", "length", "options", "code"),
     [

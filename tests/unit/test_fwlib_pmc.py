@@ -183,6 +183,7 @@ def test_reading_is_refused(kind: int, data_type: int, first: int, last: int, le
     assert library.pmc_rdpmcrng(handle, kind, data_type, first, last, length)[0] is EW[code]
 
 
+@pytest.mark.covers("fanuc.pmc_wrpmcrng")
 @pytest.mark.parametrize(
     ("head", "length", "code"),
     [
@@ -210,6 +211,7 @@ def test_writing_is_refused_and_writes_nothing(head: tuple[int, ...], length: in
     assert control.pmc.read("D", 0, 1859) == before
 
 
+@pytest.mark.covers("fanuc.pmc_rdpmcrng")
 @pytest.mark.covers("fanuc.EW_NOPMC", "fanuc.pmc_rdpmcrng.err.EW_NOPMC", "fanuc.pmc_wrpmcrng.err.EW_NOPMC")
 def test_a_control_without_a_pmc() -> None:
     library, handle = at(PowerMate(options=("custom_macro",)))

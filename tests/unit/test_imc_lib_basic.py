@@ -121,9 +121,13 @@ def test_a_wait_holds_its_queue_and_no_other(program: Program) -> None:
     program.set("user16b1", 1, fifo=IF)
     program.run(1)
     assert (program.get("user16b0"), program.get("user16b1")) == (0, 1)
-    program.run(48)
-    assert program.get("user16b0") == 0
-    program.run(4)
+    shown = [program.get("qwaittime")]
+    for _ in range(49):
+        assert program.get("user16b0") == 0
+        program.run(1)
+        shown.append(program.get("qwaittime"))
+    assert shown == list(range(50, 0, -1))
+    program.run(2)
     assert program.get("user16b0") == 1
 
 
@@ -349,6 +353,7 @@ def test_an_event_starts_something_when_a_position_is_reached(program: Program) 
     assert program.get("user16b0") == 0  # only once
 
 
+@pytest.mark.covers("imc.IMC_InstallEvent")
 def test_the_card_holds_128_events(program: Program) -> None:
     event = lib.EventInfo.of(lib.CMD_ADD32i, src1=(317, 0), src2=1, dest=(317, 0))
     for _ in range(4):
@@ -364,6 +369,7 @@ def test_the_card_holds_128_events(program: Program) -> None:
     program.ok(lib.IMC_InstallEvent, [event], 1, IF)
 
 
+@pytest.mark.covers("imc.IMC_GetCapData")
 @pytest.mark.covers("imc.concept.rbfifo")
 def test_reading_back_needs_no_queue(program: Program) -> None:
     for fifo in (Q, P1, P2):

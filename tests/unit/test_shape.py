@@ -50,14 +50,8 @@ EXCEPTIONS: dict[str, tuple[str, ...]] = {
         "cnc/_program_run.py",
         "cnc/_program_run.py ProgramRun",
         "cnc/_path_runner.py PathRunner",
-        "controllers/fanuc/device/_power_mate.py PowerMate",
     ),
-    "one method or branch for each statement of a language, which share what is known of the program": (
-        "nc/cpl/_program_reader.py _ProgramReader",
-        "nc/cpl/_values.py Values",
-        "nc/macro/_reader.py",
-        "nc/macro/_reader.py _Statements",
-    ),
+    "one method or branch for each statement of a language, which share what is known of the program": (),
     "one course of motion, in which each record changes what the next one means": (
         "post/macros/_rows.py write_rows",
         "post/output/_motion.py Motion",

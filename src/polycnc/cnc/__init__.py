@@ -62,56 +62,6 @@ if TYPE_CHECKING:
     from polycnc.cnc._tables import OffsetTable, Tool, ToolTable
     from polycnc.cnc._timers import PartCounter, Parts, Timer, Timers, TimersState
 
-_LATER = {
-    "_alarms": (
-        "ALARMS",
-        "Alarm",
-        "AlarmKind",
-        "AlarmList",
-        "AlarmRow",
-        "AlarmTable",
-        "ClearedBy",
-        "OperatorMessage",
-        "OperatorMessages",
-        "PastAlarm",
-    ),
-    "_control": ("Control",),
-    "_control_time": ("ControlEvent",),
-    "_control_channel": ("ControlChannel",),
-    "_control_data": (
-        "AfterManual",
-        "ChannelData",
-        "ControlData",
-        "Mode",
-        "OnModeChange",
-        "Overrides",
-        "Search",
-        "Switches",
-    ),
-    "_control_snapshot": ("ControlSnapshot",),
-    "_inventory": ("AxisLimits", "Identity", "Inventory", "PastMessage", "SetBreakpoint"),
-    "_manual": ("AxisMotion", "Handwheel", "ManualData", "ManualKind", "ManualMotion", "ManualState"),
-    "_open_program": ("OpenProgram",),
-    "_plc": ("Answer", "Function", "PlcModel", "PlcState", "Request", "Script"),
-    "_program_edit": ("ProgramEdit",),
-    "_program_memory": ("Found", "MemoryData", "ProgramEntry", "ProgramMemory", "first_comment"),
-    "_refusal": ("ControlError", "Refusal"),
-    "_spindle": ("Spindle", "SpindleMotion", "SpindleState"),
-    "_status": (
-        "AxisStatus",
-        "ChannelStatus",
-        "Emergency",
-        "Feed",
-        "Motion",
-        "Status",
-        "ToolInUse",
-        "WorkOffset",
-    ),
-    "_stopping": ("PROGRAM_MESSAGE",),
-    "_tables": ("OffsetTable", "Tool", "ToolTable"),
-    "_timers": ("PartCounter", "Parts", "Timer", "Timers", "TimersState"),
-}
-
 __all__ = [
     "ALARMS",
     "PROGRAM_MESSAGE",
@@ -191,4 +141,4 @@ __all__ = [
     "first_comment",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

@@ -37,11 +37,7 @@ from polycnc.nc import (
     load_dialect,
 )
 
-_STANDING = {
-    RunState.STOPPED_AT_BLOCK,
-    RunState.PROGRAM_STOP,
-    RunState.OPTIONAL_STOP,
-}
+_STANDING = {RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
 _GOING = {RunState.ACTIVE, RunState.HOLD}
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 
@@ -51,7 +47,7 @@ class ProgramRun:
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
-    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on. `axes` are the
+    stands there until `answered`. `axes` are the
     names of the machine's axes in this channel, those of others by `of_another_channel`.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
@@ -77,7 +73,6 @@ class ProgramRun:
         axes: Sequence[str] | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
-        before: ProgramRun | None = None,
         attaches: bool = True,
     ) -> None:
         options = options or RunOptions()
@@ -91,9 +86,7 @@ class ProgramRun:
         self._config = config
         self._library = library
         moment = RunProgress(options.block_delete, options.single_block, options.optional_stop)
-        channel = self._new_channel(
-            program, None if before is None else before.channel, options.block_delete, attaches=attaches
-        )
+        channel = self._new_channel(program, None, options.block_delete, attaches=attaches)
         ahead = self.dialect.blocks_ahead if options.blocks_ahead is None else options.blocks_ahead
         self._path_runner = PathRunner(machine, channel, options, moment, ahead=ahead)
         self._path_runner.rows = rows

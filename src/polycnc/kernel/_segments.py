@@ -10,7 +10,7 @@ arc in rad, that of a circle in three axes in deg, which whole turns leave exact
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +48,7 @@ WAIT_S, WAIT_EVENT = 0, 1
 TINY = 1e-12
 
 Floats = npt.NDArray[np.float64]
+Table = Annotated[Floats, 2]  # entries say how many dimensions an array has that is no row
 
 
 SEGMENT_ROW = np.dtype(

@@ -16,7 +16,7 @@ from polycnc.cnc import RunOptions
 from polycnc.errors import PolycncError, ProgramError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, ProgramText
-from polycnc.runner._execution import run_to_end
+from polycnc.runner._execution import Progress, run_to_end
 from polycnc.runner._program_control import Surroundings, control_for, run_under
 from polycnc.runner._remarks import MachiningWatch, Remark
 
@@ -34,7 +34,13 @@ class Rehearsal(NamedTuple):
     remarks: list[Remark]
 
 
-def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, root: Path) -> Rehearsal:
+def rehearsed(
+    program: ProgramText,
+    config: MachineConfig,
+    dialect: Dialect,
+    root: Path,
+    progress: Progress | None = None,
+) -> Rehearsal:
     """Return what is wrong with the blocks of a program and remarked on it, as far as it comes without keys and inputs.
 
     Where it ends early, and that it has not been rehearsed at all, is logged.
@@ -62,7 +68,7 @@ def rehearsed(program: ProgramText, config: MachineConfig, dialect: Dialect, roo
         run.channel.on_filled = look
         ended: PolycncError | None = None
         try:
-            run_to_end(run, every_cycle=False, control=control, loop_limit_s=_LOOP_LIMIT_S)
+            run_to_end(run, every_cycle=False, progress=progress, control=control, loop_limit_s=_LOOP_LIMIT_S)
             control.finish()
         except PolycncError as error:
             ended = error

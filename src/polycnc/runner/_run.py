@@ -136,13 +136,7 @@ def run(
         resolution_mm=resolution_mm,
     )
     return run_program(
-        program,
-        settings,
-        trace=trace,
-        check=check,
-        rows=rows,
-        tagged_rows=tagged_rows,
-        progress=progress,
+        program, settings, trace=trace, check=check, rows=rows, tagged_rows=tagged_rows, progress=progress
     )
 
 
@@ -256,10 +250,7 @@ def _program_alarm(error: ProgramError, time_s: float) -> Alarm:
 
 
 def _result(
-    execution: ProgramRun,
-    log: EventLog,
-    collector: TraceCollector | None,
-    stuck: ProgramError | None,
+    execution: ProgramRun, log: EventLog, collector: TraceCollector | None, stuck: ProgramError | None
 ) -> RunResult:
     machine, channel = execution.machine, execution.channel
     config, state = machine.config, machine.state

@@ -33,13 +33,7 @@ from polycnc.kernel import (
 from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks._arcs import ARC_OK, arc_by_center, arc_by_radius
 from polycnc.nc.dialect._dialect import DialectTables
-from polycnc.nc.fast._carried import (
-    CARRIED_WORDS,
-    changes_power,
-    lasts,
-    sense_of,
-    take_note,
-)
+from polycnc.nc.fast._carried import CARRIED_WORDS, changes_power, lasts, sense_of, take_note
 from polycnc.nc.fast._work import (
     AXES,
     CENTERS,
@@ -196,13 +190,7 @@ def _run(
             if motion != MOTION_RAPID and (feed <= 0.0 or whole[FEED_MODE] != FEED_PER_MINUTE):
                 return block, NOT_PLAIN
             if not _target(
-                modal.position,
-                modal.scale,
-                modal.offset,
-                modal.low,
-                modal.high,
-                modal.rotary,
-                work,
+                modal.position, modal.scale, modal.offset, modal.low, modal.high, modal.rotary, work
             ):
                 return block, NOT_PLAIN
             flags = RAPID if motion == MOTION_RAPID else 0

@@ -13,14 +13,6 @@ if TYPE_CHECKING:
     from polycnc.nc.macro._system import SystemVariables
     from polycnc.nc.macro._variables import LARGEST, LEVELS, LOCALS, MacroError, MacroVariables, Value
 
-_LATER = {
-    "_calls": ("Arguments", "MacroCalls"),
-    "_language": ("MacroLanguage",),
-    "_macro_source": ("MacroSource",),
-    "_system": ("SystemVariables",),
-    "_variables": ("LARGEST", "LEVELS", "LOCALS", "MacroError", "MacroVariables", "Value"),
-}
-
 __all__ = [
     "LARGEST",
     "LEVELS",
@@ -35,4 +27,4 @@ __all__ = [
     "Value",
 ]
 
-__getattr__ = names_on_demand(__name__, _LATER)
+__getattr__ = names_on_demand(__name__)

@@ -9,13 +9,14 @@ from typing import Protocol
 
 from polycnc.errors import ProgramError
 from polycnc.language import Traced, standing
-from polycnc.machine import SnapshotError
+from polycnc.machine import Machine, SnapshotError
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.rs274._parameters import Parameters
-from polycnc.nc.rs274._program import Program, holds_language, is_numbered_within, translate
+from polycnc.nc.rs274._program import Program, translate
 from polycnc.nc.rs274._saved import SAVED_CLASSES, SavedLanguage, SavedProgram
 from polycnc.nc.rs274._source import RunningProgram, sub_program_file
+from polycnc.nc.rs274._structure import holds_language, is_numbered_within
 from polycnc.nc.sources._block_source import BlockSource, Returning
 from polycnc.nc.text._program import ProgramText
 
@@ -27,6 +28,7 @@ class Host(Protocol):
     """What the language asks of the channel that it works for."""
 
     state: ChannelState
+    machine: Machine
     messages: Messages
     skip_levels: frozenset[int]
 
@@ -36,6 +38,7 @@ class NgcLanguage:
 
     def __init__(self, folders: tuple[Path, ...] = ()) -> None:
         self.parameters = Parameters()
+        self.fast_forward = False
         self._folders = folders
         self._channel: Host | None = None
         self._translated: dict[tuple[int, int], tuple[ProgramText, Program]] = {}
@@ -59,6 +62,19 @@ class NgcLanguage:
             return None
         program = self._of(text, offset)
         return RunningProgram(self, program) if is_numbered or not program.plain else None
+
+    @property
+    def machine(self) -> Machine:
+        """The machine that the channel prepares for."""
+        assert self._channel is not None
+        return self._channel.machine
+
+    def loops(self) -> bool:
+        """Tell whether programs go round for ever; that is not known here."""
+        return False
+
+    def moves_on(self) -> None:
+        """Take note that something has happened; nothing is kept of it."""
 
     def skips(self, level: int) -> bool:
         """Tell whether lines with a skip mark of this number are left out."""
@@ -139,7 +155,7 @@ class NgcLanguage:
         programs: Sequence[tuple[SavedProgram, list[tuple[Program, Traced[int] | None]]] | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
-        self.parameters.put_back(saved.common, saved.others, saved.names)
+        self.parameters.restore_state(saved.common, saved.others, saved.names)
         sources = [
             None if each is None else RunningProgram(self, each[1][0][0]).go_to(*each) for each in programs
         ]

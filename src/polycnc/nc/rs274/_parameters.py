@@ -9,6 +9,7 @@ from polycnc.nc.blocks._tables import WORK_SYSTEMS
 from polycnc.nc.blocks._tool_offsets import TURNED_TIPS, offsets_of
 from polycnc.nc.modal._modal import length_scale
 from polycnc.nc.rs274._functions import NumberError
+from polycnc.nc.rs274._inputs import ANSWER
 from polycnc.nc.rs274._known_names import KNOWN_NAMES
 
 AXES = "XYZABCUVW"
@@ -33,7 +34,9 @@ class Parameters:
         """Return what programs have set by number: common parameters, and further ones."""
         return {n: value for n, value in enumerate(self.common) if value}, dict(self._others)
 
-    def put_back(self, common: dict[int, float], others: dict[int, float], names: dict[str, float]) -> None:
+    def restore_state(
+        self, common: dict[int, float], others: dict[int, float], names: dict[str, float]
+    ) -> None:
         """Go back to what programs had set."""
         self.common[:] = [common.get(n, 0.0) for n in range(len(self.common))]
         self._others, self.names = dict(others), dict(names)
@@ -87,6 +90,10 @@ class Parameters:
                 point[at] = value * self.unit(at)
             first, second = state.references
             state.references = (tuple(point), second) if number == 1 else (first, tuple(point))
+
+    def answer(self, value: float) -> None:
+        """Keep how the input of the last M66 was."""
+        self._others[ANSWER] = value
 
     def named(self, name: str) -> float:
         """Return a global name: one that a program has set, or that the control knows."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from polycnc.errors import PolycncError
-from polycnc.servers.asgi import AsgiDoor
+from polycnc.servers.asgi import AsgiDoor, refused_in_text
 from polycnc.servers.fleets._figures import figures_app
 from polycnc.servers.fleets._part import ASK
 from polycnc.servers.machines import LOOPBACK
@@ -62,7 +62,9 @@ class Fleet:
         """
         loop = asyncio.get_running_loop()
         if self._metrics is not None:
-            self._page = AsgiDoor("metrics", figures_app(self.figures), LOOPBACK, self._metrics)
+            self._page = AsgiDoor(
+                "metrics", figures_app(self.figures), LOOPBACK, self._metrics, refused_in_text
+            )
             await self._page.start()
             self._say(f"metrics: {self._page.said}/metrics")
         for number in range(self._count):
