@@ -337,7 +337,7 @@ def test_reserved_words_expand_to_texts_and_numbers() -> None:
     assert blocks_of(macro, words={"PARTNAME": "A & B", "PATHNUMBER": 2, "DWELL": 0.25}) == [
         "(A & B 2 0.25)T00"
     ]
-    words = {"PARTNAME": "  A  ", "PATHNUMBER": -2, "DWELL": -0.125}
+    words: dict[str, float | str] = {"PARTNAME": "  A  ", "PATHNUMBER": -2, "DWELL": -0.125}
     assert blocks_of(macro, words=words) == ["(  A   -2 -0.125)T00"]
     assert blocks_of("$TOOLCHANGE$", words={"T": 7}) == ["T07"]  # a system that gives no text
     assert blocks_of("$TOOLCHANGE$", words={"T": 7, "TOOLCHANGE": "T7"}) == ["T7"]

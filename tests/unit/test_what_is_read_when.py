@@ -135,7 +135,7 @@ def test_a_macro_in_single_block_reads_what_is_there_when_its_block_is_started(k
     text = "G1 X1. F6000\n#100=#5041+1\nG1 X#100\nX[#101*2]\nG90\nX[#5041+#101]\nM30\n"
     made = control(kind, text)
     made.set_switches(single_block=True)
-    language = made.channels[0].run.language if made.channels[0].run else None  # type: ignore[attr-defined]
+    language = made.channels[0].run.language if made.channels[0].run else None
     assert language is None
     stops = []
     for number in range(1, 9):
