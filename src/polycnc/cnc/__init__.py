@@ -5,6 +5,7 @@ Running a program needs no control: what belongs to one is loaded when it is fir
 
 from typing import TYPE_CHECKING
 
+from polycnc.cnc._passed_events import OnPassed, Passed, PassedRun, let_pass
 from polycnc.cnc._program_run import ProgramRun
 from polycnc.cnc._run_snapshot import RunSnapshot
 from polycnc.cnc._run_state import RunAlarm, RunOptions, RunState
@@ -101,12 +102,15 @@ __all__ = [
     "Motion",
     "OffsetTable",
     "OnModeChange",
+    "OnPassed",
     "OpenProgram",
     "OperatorMessage",
     "OperatorMessages",
     "Overrides",
     "PartCounter",
     "Parts",
+    "Passed",
+    "PassedRun",
     "PastAlarm",
     "PastMessage",
     "PlcModel",
@@ -139,6 +143,7 @@ __all__ = [
     "ToolTime",
     "WorkOffset",
     "first_comment",
+    "let_pass",
 ]
 
 __getattr__ = names_on_demand(__name__)

@@ -202,14 +202,14 @@ def earliest_limit(seg: Segments, paths: Paths, g: int, dt: float) -> int:
 
 @entry
 def drop_queue(seg: Segments, paths: Paths, g: int) -> None:
-    """Forget what path `g`, which is at rest, has still to go along; it stands where it is."""
+    """Forget what path `g`, which is at rest, has still to follow; it stays where it is."""
     path = paths.row[g]
     tag = path["tag"]
     path["tail"] = path["head"]
     path["merged"] = 0
     for i in range(paths.queued.shape[1]):
         paths.queued[g, i] = paths.position[g, i]
-    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag)  # where it stands
+    set_wait(seg, slot(paths, g, path["head"]), paths.queued[g], 0.0, -1, tag, 0)  # where it stands
     path["head"] += 1
     path["tail"] = path["head"]
     path["prepared"] = path["head"]

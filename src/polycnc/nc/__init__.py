@@ -1,10 +1,10 @@
 """Part programs: block scanner, dialects, modal state, coordinate systems, tool compensation, the channel."""
 
 from polycnc.nc.blocks._channel_state import ChannelState, of_another_channel
+from polycnc.nc.blocks._events import Event, EventRun, function_word
 from polycnc.nc.blocks._messages import Message
 from polycnc.nc.blocks._moves import Stop
 from polycnc.nc.blocks._probe import Probe
-from polycnc.nc.blocks._queue import Event
 from polycnc.nc.channel._channel import Channel
 from polycnc.nc.channel._channel_snapshot import CHANNEL_CLASSES, ChannelSnapshot, Texts
 from polycnc.nc.channel._languages import language_for
@@ -33,6 +33,7 @@ from polycnc.nc.sources._block_source import (
     CallProgram,
     Drain,
     EndSource,
+    KeepingLanguage,
     Language,
     LastingLanguage,
     Pause,
@@ -70,9 +71,11 @@ __all__ = [
     "Drain",
     "EndSource",
     "Event",
+    "EventRun",
     "Family",
     "Group",
     "IncomingText",
+    "KeepingLanguage",
     "Language",
     "LastingLanguage",
     "Library",
@@ -99,6 +102,7 @@ __all__ = [
     "Zero",
     "choose_dialect",
     "dialect_for",
+    "function_word",
     "language_for",
     "line_of",
     "load_dialect",

@@ -9,11 +9,12 @@ from polycnc.on_demand import names_on_demand
 from polycnc.runner._check import CheckReport, check, inspect
 from polycnc.runner._execution import LOOP_LIMIT_S
 from polycnc.runner._operations import Operation
-from polycnc.runner._outcome import Alarm, RunEvent, RunMessage, Trace, counted, time_text
+from polycnc.runner._outcome import Alarm, RunMessage, Trace, counted, time_text
 from polycnc.runner._program_control import SCREEN_FORMATS, read_keys
 from polycnc.runner._remarks import Remark
 from polycnc.runner._result import RunResult, TracedResult
 from polycnc.runner._run import run, run_program
+from polycnc.runner._run_events import RunEvent, RunEvents
 from polycnc.runner._settings import RunSettings, program_text
 from polycnc.runner._trace import TraceWriter, read_trace, trace_columns
 from polycnc.runner._trace_formats import TRACE_FORMATS
@@ -55,6 +56,7 @@ __all__ = [
     "PostVerification",
     "Remark",
     "RunEvent",
+    "RunEvents",
     "RunMessage",
     "RunResult",
     "RunSettings",

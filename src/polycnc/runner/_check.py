@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from polycnc.cnc import RunOptions
+from polycnc.cnc import RunOptions, let_pass
 from polycnc.errors import ProgramError
 from polycnc.machine import Machine, MachineConfig, load_machine
 from polycnc.nc import Dialect, ProgramText
@@ -115,7 +115,9 @@ def _inspected(
             return CheckReport(errors, [])
         return CheckReport(*rehearsed(text, simulated.config, chosen, settings.root_of(program), progress))
     options = RunOptions(stands_at_stops=False, collect_errors=True)
-    execution = run_under(control, simulated, text, chosen, options, root=settings.root_of(program))
+    execution = run_under(
+        control, simulated, text, chosen, options, root=settings.root_of(program), on_passed=let_pass
+    )
     watch = MachiningWatch(execution.channel)
     execution.channel.on_filled = watch.look
     run_to_end(execution, every_cycle=False, progress=progress)

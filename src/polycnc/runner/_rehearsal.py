@@ -12,7 +12,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import NamedTuple
 
-from polycnc.cnc import RunOptions
+from polycnc.cnc import RunOptions, let_pass
 from polycnc.errors import PolycncError, ProgramError
 from polycnc.machine import Machine, MachineConfig
 from polycnc.nc import Dialect, ProgramText
@@ -56,7 +56,7 @@ def rehearsed(
         control = control_for(dialect, program, machine, Surroundings(folder))
         assert control is not None
         options = RunOptions(stands_at_stops=False, collect_errors=True)
-        run = run_under(control, machine, program, dialect, options)
+        run = run_under(control, machine, program, dialect, options, on_passed=let_pass)
         watch = MachiningWatch(run.channel)
         errors = run.channel.errors
 
