@@ -109,3 +109,25 @@ def test_names_are_found_changed_and_numbered_by_the_editor(editor: Editor, tmp_
     options = {"tabSize": 4, "insertSpaces": True}
     edits = editor.ask("textDocument/formatting", {"textDocument": {"uri": uri}, "options": options})
     assert [each["newText"] for each in edits] == ["N10G1X#101F90", "IF[#101GT5]GOTO 10"]
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("part.nc", "G1 X" + "9" * 10_000_000 + "\nG777\n"),
+        ("part.nc", "\0G1\ud83d X3 \ude00\n\ufeff"),
+        ("shop.toml", "[[axis]]\nname = '''\nvmax_mm_s ="),
+        ("feed.sap", "BEGIN js (X, 'C\n{ "),
+    ],
+)
+def test_whatever_stands_in_a_text_every_question_is_answered(
+    editor: Editor, tmp_path: Path, name: str, text: str
+) -> None:
+    uri = (tmp_path / name).as_uri()
+    assert editor.open(uri, text)
+    for line, character in ((0, 3), (1, 9_999_999), (77, 7)):
+        for method in ("hover", "completion", "definition", "prepareRename"):
+            editor.ask_at(f"textDocument/{method}", uri, line, character)
+    document = {"textDocument": {"uri": uri}}
+    editor.ask("textDocument/documentSymbol", document)
+    editor.ask("textDocument/formatting", {**document, "options": {"tabSize": 4, "insertSpaces": True}})
