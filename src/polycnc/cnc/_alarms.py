@@ -198,13 +198,7 @@ class AlarmList:
         alarm = Alarm(name, row.number, row.kind, text, axis, self._clock.cycles, row.cleared_by, channel)
         self.last_time = self._clock.now.isoformat()
         self._history.append(
-            {
-                "number": row.number,
-                "kind": row.kind.value,
-                "text": text,
-                "axis": axis,
-                "time": self.last_time,
-            }
+            {"number": row.number, "kind": row.kind.value, "text": text, "axis": axis, "time": self.last_time}
         )
         self._history.trim(self._keep)
         self.revision += 1

@@ -17,7 +17,6 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import Any, Generic, Self, TypeAlias, TypeVar
 
 from polycnc.errors import UsageError, shown
@@ -95,7 +94,7 @@ class Store:
                     self._execute("COMMIT")
             except BaseException:
                 if self._depth == 1 and connection.in_transaction and not self._is_foreign:
-                    with suppress(sqlite3.Error):  # what broke it is what is told
+                    with suppress(sqlite3.Error):  # what broke it is what is reported
                         connection.execute("ROLLBACK")
                 raise
             finally:
@@ -162,9 +161,7 @@ class Store:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def _open_connection(self) -> sqlite3.Connection:

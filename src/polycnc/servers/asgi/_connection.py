@@ -30,6 +30,11 @@ Refuse: TypeAlias = Callable[[int, str, str], Refused]
 """Return the refusal for an HTTP status, what is wrong, and what to do."""
 
 
+def refused_in_text(status: int, what: str, hint: str) -> Refused:
+    """Return the refusal of a door that has no form of its own: a line of text."""
+    return Refused(status, [(b"content-type", b"text/plain; charset=utf-8")], f"{what}. {hint}\n".encode())
+
+
 class Connection(H11Protocol):
     """A connection that does not wait for ever for what a client does not send, or does not read."""
 

@@ -73,7 +73,7 @@ class FanucParameters:
                 mate.parameters.set(row.number, each, axes.get(axis, 0))
 
     def _axes(self) -> dict[str, int]:
-        return {self._mate.axis_name(axis): axis for axis in range(1, self._mate.axes + 1)}
+        return {self._mate.units.axis_name(axis): axis for axis in range(1, self._mate.axes + 1)}
 
     def _row(self, name: str) -> ParameterRow:
         row = self._mate.parameters.rows.get(number(name))
@@ -128,7 +128,7 @@ class FanucVariables:
     def _named(self, number: int) -> NamedValue:
         mate = self._mate
         if number in _LOCALS:
-            return NamedValue(f"#{number}", mate.local_variable(number), "local", writable=False)
+            return NamedValue(f"#{number}", mate.custom_macros.local(number), "local", writable=False)
         if number in mate.macros:
             return NamedValue(f"#{number}", mate.macros.get(number), "common", -LARGEST, LARGEST)
         return NamedValue(f"#{number}", mate.custom_macros.at_rest(number), "system", writable=False)
@@ -148,9 +148,8 @@ def set_tool(mate: PowerMate, number: int, values: Mapping[str, float | str]) ->
     length = values.get(_LENGTH, 0.0)
     if not is_number(length):
         raise ControlError(Refusal.DATA, f"a length of {shown(length, 40)}", hint="Give mm.")
-    per_mm = (
-        10.0**mate.increment.decimals if not mate.inch_input else 10.0 ** (mate.increment.decimals + 1) / 25.4
-    )
+    decimals = mate.units.increment.decimals
+    per_mm = 10.0**decimals if not mate.units.inch_input else 10.0 ** (decimals + 1) / 25.4
     try:
         offsets.set_all({number: round(length * per_mm)})
     except KeyError:
@@ -176,7 +175,7 @@ def set_offset(mate: PowerMate, name: str, values: Mapping[str, float], *, add: 
             hint="Give EXT, G54 to G59, G54.P1 to G54.P300.",
         )
     before = mate.control.offsets.get(name, {})
-    most = mate.increment.offset_limit * 10.0**-mate.increment.decimals
+    most = mate.units.increment.offset_limit * 10.0**-mate.units.increment.decimals
     for axis, value in values.items():
         total = value + (before.get(axis, 0.0) if add else 0.0)
         if not abs(total) <= most:
