@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
 from polycnc import runner
 from polycnc.machine import parse_machine, preset_text
+from polycnc.servers.scenarios import load_script
 
 MOST = 1.2
 TRIES = 4
@@ -89,3 +91,77 @@ def test_a_window_wider_than_the_program_costs_nothing(blocks: int) -> None:
         return time.process_time() - before
 
     _assert_linear(seconds, 15_000)
+
+
+OTHERS: dict[str, tuple[str, Callable[[int], str]]] = {
+    "sub-programs by O": (
+        "linuxcnc",
+        lambda n: (
+            _lines(lambda i: f"o<s{i}> sub\n#<_total>=[#1+{i}]\no<s{i}> endsub\n", n)
+            + _lines(lambda i: f"o<s{i}> call [2]\n", n)
+            + "M2\n"
+        ),
+    ),
+    "choices by O": (
+        "linuxcnc",
+        lambda n: _lines(lambda i: f"o{i} if [#1 GT {i}]\n#1=[#1+2]\no{i} else\n#1=[#1+1]\no{i} endif\n", n),
+    ),
+    "named parameters": ("linuxcnc", lambda n: _lines(lambda i: f"#<p{i}>={i}\nG1 X[#<p{i}>/90] F900\n", n)),
+    "labels of CPL": (
+        "bosch",
+        lambda n: (
+            "1 A%=0\n" + _lines(lambda i: f"{i}0 A%=A%+1\n{i}1 GOTO {i + 1}0\n", n) + f"{n + 1}0 A%=1\n"
+        ),
+    ),
+    "strings of CPL": (
+        "bosch",
+        lambda n: "1 DIM S$(30)\n" + _lines(lambda i: f"{i}0 S$=STR$({i})\n{i}1 B{i}%=LEN(S$)\n", n),
+    ),
+    "brackets of CPL": ("bosch", lambda n: "1 A%=2\n" + _lines(lambda i: f"N{i} G1 X[A%*{i % 7}] F900\n", n)),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_the_time_of_other_languages_grows_with_the_program(name: str, tmp_path: Path) -> None:
+    dialect, text = OTHERS[name]
+
+    def seconds(count: int) -> float:
+        program = text(count)
+        before = time.process_time()
+        assert runner.run(program, None, dialect, check=False, root=tmp_path).ok
+        return time.process_time() - before
+
+    _assert_linear(seconds, 120)
+
+
+STEP = '[[step]]\nname = "s{0}"\nat_s = {0}.5\ndo = "emergency_stop"\nfor_s = 0.25\n'
+
+
+def test_the_time_of_a_scenario_grows_with_its_steps(tmp_path: Path) -> None:
+    def seconds(count: int) -> float:
+        path = tmp_path / "day.toml"
+        path.write_text(_lines(STEP.format, count))
+        before = time.process_time()
+        assert len(load_script(path).step) == count
+        return time.process_time() - before
+
+    _assert_linear(seconds, 120)
+
+
+def test_the_time_of_an_agent_grows_with_what_it_has_seen() -> None:
+    pytest.importorskip("starlette", reason="pip install 'polycnc[serve]'")
+    from support.mtconnect import Rig
+
+    def seconds(count: int) -> float:
+        rig = Rig()
+        rig.control.programs.create("PART", "G91\n" + _lines(lambda i: f"G1 X{i % 7 - 3}.25 F900\n", 2000))
+        rig.control.select_program("PART")
+        rig.control.cycle_start()
+        before = time.process_time()
+        for _ in range(count):
+            rig.control.advance(3)
+            rig.observe()
+        rig.get("/sample", "count=10000")
+        return time.process_time() - before
+
+    _assert_linear(seconds, 120)

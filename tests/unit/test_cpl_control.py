@@ -138,7 +138,7 @@ def test_a_wait_that_cannot_end_is_an_error(root: Root) -> None:
             '10 DIM F%(9) : DIM T$(9) : F%(3)=1\n20 WHILE TRUE DO\n30 F%(3)=5-F%(3) : T$=STR$("#",F%(3))\n40 END',
             4,
         ),
-        ("10 X=15000000.0\n20 WHILE X>0 DO\n30 X=X+1\n40 END", 4),  # 2**24 + 1 is 2**24 in single precision
+        ("10 X=16750000.0\n20 WHILE X>0 DO\n30 X=X+1\n40 END", 4),  # 2**24 + 1 is 2**24 in single precision
         ("10 CALL SUB", 3),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 
 import pytest
@@ -141,11 +142,31 @@ def test_an_error_in_brackets_stands_at_its_bracket_and_names_the_variable(
         "20 A%=A%+3\n30 GOTO 20",
     ],
 )
-def test_a_loop_that_only_counts_is_told_after_4_million_jumps(tmp_path: Path, loop: str) -> None:
+def test_a_loop_that_only_counts_is_told_after_4_million_steps(tmp_path: Path, loop: str) -> None:
     text = ProgramText.from_text(f"10 X!=1 : A%=1\n{loop}\n", "main")
     (alarm,) = run(text, "mill3", "bosch", root=tmp_path, check=False).alarms
     assert alarm.text == "the program has looped for 0.2 s without a block or a WAIT"
     assert alarm.line in (2, 3, 4)
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "20 WHILE X!>0 DO\n30 X!=X!+1 : S$=STR$(X!) : B%=ASC(MID$(S$,2,1))\n40 END",
+        "20 WHILE X!>0 DO\n30 X!=X!+1 : Y=CPOS(1)+MPOS(2)\n40 END",
+        "20 WHILE X!>0 DO\n30 X!=X!+1\n35 CALL MADE\n40 END",
+        "20 REPEAT\n30 A%=A%+2\n" + "".join(f"{50 + n} B{n}%=A%*{n}\n" for n in range(40)) + "99 UNTIL A%=4",
+        "20 A%=A%+3 : Y=SQRT(A%)+SIN(A%)\n30 GOTO 20",
+    ],
+)
+def test_what_a_loop_does_in_a_round_counts(tmp_path: Path, loop: str) -> None:
+    """The machine's time is the same, and so is that of the computer: 5 to 20 s where rounds alone counted."""
+    (tmp_path / "MADE").write_text("10 A%=1\n")
+    text = ProgramText.from_text(f"5 DIM S$(40)\n10 X!=1 : A%=1\n{loop}\n", "main")
+    before = time.process_time()
+    (alarm,) = run(text, "mill3", "bosch", root=tmp_path, check=False).alarms
+    assert time.process_time() - before < 3.0
+    assert alarm.text == "the program has looped for 0.2 s without a block or a WAIT"
 
 
 def test_a_loop_that_asks_the_clock_has_longer(tmp_path: Path) -> None:

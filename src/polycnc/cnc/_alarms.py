@@ -188,11 +188,12 @@ class AlarmList:
         channel = self._channel(axis, channel)
         if known := self._active.get((name, axis, channel)):
             return known
-        row = self._table.get(name)
-        if row is None:
+        try:
+            row = self._table[name]
+        except KeyError:
             raise ControlError(
                 Refusal.NOT_FOUND, f"there is no alarm {shown(name)}", hint="Use one of the control's table."
-            )
+            ) from None
         text = row.text.format(axis=axis, detail=detail)
         alarm = Alarm(name, row.number, row.kind, text, axis, self._clock.cycles, row.cleared_by, channel)
         self.last_time = self._clock.now.isoformat()

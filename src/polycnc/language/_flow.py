@@ -3,21 +3,26 @@
 The compiler of a language is the `Words`: it writes its own statements and conditions into the same `Emitter`. The
 flow machine writes what is around them. A body that jumps lead into becomes a *region*: a loop over its pieces, of
 which `at` says which one is next; a jump sets it and goes on with that loop, through the loops in between (`go` says
-how far). Every round and every jump back counts, and after so many of them the program gives a `PAUSE`.
+how far). Every round and every jump back counts, by itself or with the work that it comes back over, and after so much
+the program gives a `PAUSE`.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Hashable, Sequence
+from collections.abc import Callable, Collection, Hashable, Sequence
 from contextlib import ExitStack
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeAlias
 
 from polycnc.language._flow_tree import Again, Choice, Jump, Leave, Loop, Mark, Plan
 from polycnc.language._python import Emitter, Piece
 
 _GROUP = 32
+_LEAP_WORK = 50  # at most, where what it comes back over is not known
 _LABEL = re.compile("\x01([0-9]+)\x01")  # no text constant holds it: repr() writes it otherwise
+
+
+Weigh: TypeAlias = Callable[[Sequence[str]], int]
 
 
 class Words(Protocol):
@@ -67,14 +72,20 @@ class _Region:
 
 
 class Flow:
-    """Write a program with its flow; a pause comes after `rounds` rounds and jumps back."""
+    """Write a program with its flow; a pause comes after `rounds` rounds and jumps back.
 
-    def __init__(self, out: Emitter[Any], words: Words, *, rounds: int) -> None:
+    With `weigh`, which tells how much lines of Python do, a round counts as much as what it comes back over.
+    """
+
+    def __init__(self, out: Emitter[Any], words: Words, *, rounds: int, weigh: Weigh | None = None) -> None:
         self.places: dict[Hashable, tuple[int, int]] = {}
         """Region and piece of each mark, when all is written: what `leap` is given."""
         self._out = out
         self._words = words
         self._rounds = rounds
+        self._weigh = weigh
+        self._work = 0  # of all that is written
+        self._begun: dict[int, int] = {}  # work before each label, and before each loop by its identity
         self._count = 0
         self._around: list[_Around] = []
         self._regions: list[_Region] = []
@@ -114,7 +125,7 @@ class Flow:
         """Write a jump to a mark."""
         label, region = self._labels[key]
         if label in self._numbers:
-            self.tick()
+            self.tick(self._since(label))
         self._go(region, f"\x01{label}\x01")
 
     def leap(self, place: str) -> None:
@@ -122,12 +133,12 @@ class Flow:
         self._out.put(f"to, k = {place}")
         for region in reversed(self._regions):
             with self._out.block(f"if to == {region.number}:"):
-                self.tick()
+                self.tick(min(1 + self._work, _LEAP_WORK))
                 self._go(region, "k")
 
-    def tick(self) -> None:
-        """Count a round."""
-        self._out.put("n -= 1")
+    def tick(self, work: int = 1) -> None:
+        """Count a round with its work."""
+        self._out.put(f"n -= {1 if self._weigh is None else work}")
         with self._out.block("if n < 0:"):
             self._out.put(f"n = {self._rounds}", "yield PAUSE")
 
@@ -187,7 +198,29 @@ class Flow:
             elif isinstance(statement, (Leave, Again)):
                 self._end_of_loop(statement)
             else:
+                before = len(out.lines)
                 words.statement(statement)
+                self._add(out.lines[before:])
+
+    def _condition(self, structure: Any, number: int) -> str | None:
+        before = len(self._out.lines)
+        test = self._words.condition(structure, number)
+        self._add([*self._out.lines[before:], test or ""])
+        return test
+
+    def _end(self, loop: Loop) -> str | None:
+        before = len(self._out.lines)
+        ends = self._words.end(loop)
+        self._add([*self._out.lines[before:], ends or ""])
+        return ends
+
+    def _add(self, lines: Sequence[str]) -> None:
+        if self._weigh is not None:
+            self._work += self._weigh(lines)
+
+    def _since(self, key: int) -> int:
+        """Return the work of a round that comes back to a label or a loop."""
+        return 1 + self._work - self._begun[key]
 
     # ------------------------------------------------------------------ structures
 
@@ -197,7 +230,7 @@ class Flow:
             keyword = "if"
             for number, body in enumerate(choice.bodies):
                 out.divert()
-                test = self._words.condition(choice, number)
+                test = self._condition(choice, number)
                 before = out.diverted()
                 if before.lines:
                     if number:
@@ -218,7 +251,7 @@ class Flow:
         out, end = self._out, self._new_number()
         places = [self._new_number() for _ in choice.bodies]
         for number, place in enumerate(places):
-            test = self._words.condition(choice, number)
+            test = self._condition(choice, number)
             if test is None:
                 self._next(place)
                 break
@@ -234,8 +267,9 @@ class Flow:
 
     def _loop(self, loop: Loop) -> None:
         out = self._out
+        self._begun[id(loop)] = self._work
         out.divert()
-        test = self._words.condition(loop, 0)
+        test = self._condition(loop, 0)
         before = out.diverted()
         self._around.append(_Around(loop))
         with out.block("while True:" if test is None or before.lines else f"while {test}:"):
@@ -244,9 +278,9 @@ class Flow:
                 if test is not None:
                     out.put(f"if not ({test}): break")
             self._body(loop.body)
-            if (ends := self._words.end(loop)) is not None:
+            if (ends := self._end(loop)) is not None:
                 out.put(f"if {ends}: break")
-            self.tick()
+            self.tick(self._since(id(loop)))
         self._leave_loop()
 
     def _parts_of_loop(self, loop: Loop) -> None:
@@ -254,23 +288,24 @@ class Flow:
         begin, close, end = (self._new_number() for _ in range(3))
         self._apart[id(loop)] = close if loop.closes else begin, end, self._regions[-1]
         self._mark(begin)
-        if (test := self._words.condition(loop, 0)) is not None:
+        self._begun[id(loop)] = self._work
+        if (test := self._condition(loop, 0)) is not None:
             with out.block(f"if not ({test}):"):
                 self._next(end)
         self._statements(loop.body)
         if loop.closes:
             self._mark(close)
-        if (ends := self._words.end(loop)) is not None:
+        if (ends := self._end(loop)) is not None:
             with out.block(f"if {ends}:"):
                 self._next(end)
-        self.tick()
+        self.tick(self._since(id(loop)))
         self._next(begin)
         self._mark(end)
 
     def _end_of_loop(self, statement: Leave | Again) -> None:
         ends = isinstance(statement, Leave)
         if not ends:
-            self.tick()
+            self.tick(self._since(id(statement.loop)))
         if apart := self._apart.get(id(statement.loop)):
             close, end, region = apart
             self._go(region, f"\x01{end if ends else close}\x01")
@@ -296,6 +331,7 @@ class Flow:
             pieces.append(self._out.diverted())
             self._out.divert()
         self._numbers[label] = len(pieces)
+        self._begun[label] = self._work
 
     def _next(self, label: int) -> None:
         """Go on at a label of the present region, which is in no loop."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 
 from polycnc.language import Chain, Emitter, Flaw, Flow, Jump, Link, Mark, Python, Source, Traced
@@ -33,7 +34,24 @@ from polycnc.nc.cpl._values import is_text, makes_text
 from polycnc.nc.cpl._variables import KIND_NAMES, Variable
 
 SLICE = 20_000
-"""How often a program jumps back before it lets time pass."""
+"""How much a program does, in assignments, before it lets time pass."""
+_CALL = 4
+_OF_CONTROL = 200
+_SUB_PROGRAM = 2000
+_CALLS_OF_CONTROL = re.compile(r"\b(?:function|setter)_[A-Z]\w*\(")
+_SUB_PROGRAMS = re.compile(r"\byield SubProgram\(")
+
+
+def _work(lines: Iterable[str]) -> int:
+    """Return how much lines of Python do, in assignments: what they call, and what the control is asked for."""
+    text = "\n".join(lines)
+    return (
+        text.count("\n")
+        + 1
+        + _CALL * text.count("(")
+        + _OF_CONTROL * len(_CALLS_OF_CONTROL.findall(text))
+        + _SUB_PROGRAM * len(_SUB_PROGRAMS.findall(text))
+    )
 
 
 class Compiler:
@@ -69,7 +87,7 @@ class Compiler:
         self._stores.hot = bool(gotos)
         out = self._out
         out.divert()
-        Flow(out, self, rounds=SLICE).write(statements, used=gotos)
+        Flow(out, self, rounds=SLICE, weigh=_work).write(statements, used=gotos)
         body = out.diverted()
         if self.flaws:
             return None
