@@ -148,6 +148,7 @@ def test_codes() -> None:
     ("text", "expected"),
     [
         ('STR$("number = ##.###",(37/3))', "number = 12.333"), ('STR$("A$ = ##.###",(37/3))', "A$ = 12.333"),
+        ('STR$("##.###",(38/3))', "12.667"), ('STR$("###.##",-(20/3))', " -6.67"),
         ("STR$(2.5)", "   2.500"), ("STR$(7)", "        7"), ("STR$(-1234567)", " -1234567"),
         ("STR$(D!)", "        2.345679"),
         ('STR$("##",-5)', "-5"), ('STR$("####.#",2.25)', "   2.2"), ('STR$("[#]",-0.4)', "[0]"),
@@ -217,6 +218,10 @@ def test_trim_of_a_part() -> None:
         '#D$=TRIM$(MID$(X$,8),"R")',
     )  # fmt: skip
     assert results(*lines) == {"#A$": " 0.123 ", "#B$": "0.123", "#C$": "0.123 ", "#D$": " 0.123"}
+    found = results("DIM X$(20)", *lines)  # of a field it is a part of the field
+    assert {name: found[name] for name in ("#A$", "#B$", "#C$", "#D$")} == {
+        "#A$": " 0.123 ", "#B$": "0.123", "#C$": "0.123 ", "#D$": " 0.123",
+    }  # fmt: skip
 
 
 @pytest.mark.covers("cpl.ex.3599", "cpl.ex.3610", "cpl.err.INADMISSIBLE_STRING")

@@ -99,6 +99,9 @@ def test_booleans_are_true_or_false() -> None:
     assert value("#A?=FALSE", "#A?") is False
     assert value("#A%=7\n#A?=#A%>5", "#A?") is True
     assert failure("#A?=1").what == "INVALID ASSIGNMENT"
+    for number in ("0", "1", "2.5", "-1"):  # nor by a variable, whose type is not known before
+        assert failure(f"P={number}\n#A?=P").what == "INVALID ASSIGNMENT"
+        assert failure(f"@1={number}\n#A?=@1").what == "INVALID ASSIGNMENT"
     assert failure("#A%=TRUE").what == "INVALID ASSIGNMENT"
     assert failure("IF 1 THEN #A=1 ENDIF").what == "a condition is TRUE or FALSE, not INTEGER"
 

@@ -459,6 +459,11 @@ def test_feeds_per_revolution_and_program_stops_are_seen(example: Example) -> No
     example.pnc.cycle_start()
     example.pnc.advance(500)
     assert example.pnc.axes["X"].setpoint == 5
+    example.pnc.control.set_switches(optional_stop=True)
+    example.start("N1 M1\nN2 G1 X7")
+    example.pnc.advance(50)
+    assert example.pnc.run_state(1) is RunState.OPTIONAL_STOP
+    assert example.run(read, channel=2)["#W%"] == 16
 
 
 @pytest.mark.covers("cpl.SCS")

@@ -426,6 +426,13 @@ def test_machine_parameters_are_read_and_the_root_may_say_otherwise(cell: Cell, 
     assert shown == "OTHER" if kind == "$" else float(shown) == 7
 
 
+@pytest.mark.covers("cpl.param.7060_00010", "cpl.param.7060_00020")
+def test_the_power_up_condition_is_a_list_of_functions(cell: Cell) -> None:
+    for number in (706000010, 706000020):
+        read = "".join(f"{100 + k} V$=MCA({number},{k}) : PRN#(1,V$)\n" for k in range(7))
+        assert cell.report(f"2 DIM V$(9)\n{read}") == ["G1", "G17", "G40", "G53", "G71", "G90", "G94"]
+
+
 @pytest.mark.covers("cpl.MCA")
 @pytest.mark.covers("cpl.ex.2077", "cpl.param.1001_00004")
 def test_the_type_of_axis_movement_is_an_integer(cell: Cell) -> None:
