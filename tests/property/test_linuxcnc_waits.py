@@ -113,10 +113,10 @@ def test_a_hold_holds_in_a_wait_and_everywhere(cycle: int, wanted: tuple[object,
     rig.advance(cycle)
     rig.control.feed_hold()
     rig.advance(60)  # it has braked
-    held = rig.place()
+    held = (rig.place(), rig.state)
     rig.advance(1200)
-    assert rig.place() == held
-    assert rig.state is RunState.HOLD
+    assert (rig.place(), rig.state) == held
+    assert held[1] is RunState.HOLD
     rig.control.cycle_start()
     for _ in range(60):
         rig.advance(50)

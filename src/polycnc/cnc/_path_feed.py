@@ -219,7 +219,7 @@ class PathFeed:
             return
         tags = self.tags(int(row["head"]), int(row["tail"]))
         tags += [executed, channel.interpreter.last_tag, int(row["tag"])]
-        tags += [event.tag for event in channel.writer.events.values()]
+        tags += channel.writer.events.tags()
         tags += [tag for _, tag in channel.writer.marks or ()]
         tags += [item.tag for item in channel.writer.backlog]
         channel.records.keep(tags)

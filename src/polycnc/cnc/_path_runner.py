@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from polycnc import kernel
 from polycnc.cnc._axis_alarms import axis_alarm
+from polycnc.cnc._passed_events import PassedEvents
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._probing import Probing, cannot_begin, delete_rest, positions
@@ -40,8 +41,6 @@ _MASK = (
 _GOING = (RunState.ACTIVE, RunState.HOLD)
 _STOP_STATES = {Stop.PROGRAM: RunState.PROGRAM_STOP, Stop.OPTIONAL: RunState.OPTIONAL_STOP}
 _MOST_MARKS = 1000
-RESTS_PER_CYCLE = 16
-"""Points of rest at which no time passes, as functions that are answered at once, that a path leaves in one cycle."""
 
 
 class PathRunner:
@@ -67,6 +66,7 @@ class PathRunner:
         self.rows: Rows | None = None
         self.on_event: OnEvent | None = None
         self.on_skip: Callable[[], None] | None = None
+        self.passed = PassedEvents(machine, channel.path)
         self.stopper = Stopper(channel.records, Step.INTO if moment.single_block else Step.RUN)
         self.feed = PathFeed(machine, channel, ahead, self.stopper)
         self.row = self.feed.row
@@ -164,11 +164,14 @@ class PathRunner:
         while self.moment.state is RunState.ACTIVE and self.row["head"] < target:
             if self.moment.probing is not None:
                 return done + self.advance(1)
+            self.passed.begin(self.moment)
             cycles = self.machine.skip(self.path, target)
             done += cycles
+            self.passed.take(self.channel, self.moment)
             if self.row["event"] >= 0:
+                at_once = cycles == 0 or self.passed.at_once
                 self._meet_event()
-                if cycles == 0:
+                if at_once:
                     self._count_rest()
             elif cycles == 0:
                 break
@@ -196,6 +199,7 @@ class PathRunner:
         self.look()
         self.machine.state.clock[0]["mask"] |= _MASK
         self._head = int(self.row["head"])
+        self.passed.begin(self.moment)
         paused = self.channel.paused and not asleep
         often = paused or self.moment.probing is not None or self._has_met_enough
         return min(cycles, 1) if often else cycles
@@ -203,11 +207,14 @@ class PathRunner:
     def after_cycles(self, cycles: int) -> None:
         """Do what the last `cycles` cycles ask for."""
         raised = int(self.machine.state.clock[0]["raised"])
+        self.passed.take(self.channel, self.moment)
+        at_once = cycles == 0 and bool(self.row["head"] != self._head)
         if self.moment.probing is not None:
             self._probe(self.moment.probing)
         if raised & kernel.PATH_EVENT and self.row["event"] >= 0:
+            at_once |= self.passed.at_once
             self._meet_event()
-        if cycles == 0 and self.row["head"] != self._head:
+        if at_once:
             self._count_rest()
         if raised & kernel.RECORDER_FULL:
             self.drain()
@@ -328,7 +335,7 @@ class PathRunner:
         cycle, count = self.moment.rests
         count = count + 1 if cycle == self.machine.clock.cycles else 1
         self.moment.rests = self.machine.clock.cycles, count
-        if count >= RESTS_PER_CYCLE:
+        if count >= kernel.RESTS_PER_CYCLE:
             self.moment.enough_at = self.machine.clock.cycles
             self.set_hold()
 

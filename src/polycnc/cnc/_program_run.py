@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from polycnc import kernel
 from polycnc.cnc._block_search import block_line, calculate_to
+from polycnc.cnc._passed_events import OnPassed
 from polycnc.cnc._path_feed import PathFeed
 from polycnc.cnc._path_overrides import PathOverrides
 from polycnc.cnc._path_runner import Floats, OnEvent, PathRunner, Rows, Until
@@ -37,11 +38,7 @@ from polycnc.nc import (
     load_dialect,
 )
 
-_STANDING = {
-    RunState.STOPPED_AT_BLOCK,
-    RunState.PROGRAM_STOP,
-    RunState.OPTIONAL_STOP,
-}
+_STANDING = {RunState.STOPPED_AT_BLOCK, RunState.PROGRAM_STOP, RunState.OPTIONAL_STOP}
 _GOING = {RunState.ACTIVE, RunState.HOLD}
 _OVER = {RunState.READY, RunState.RESET, RunState.COMPLETED, RunState.ALARM}
 
@@ -51,7 +48,8 @@ class ProgramRun:
 
     `rows` gets the recorder's rows in pieces, with the tag of each row's block; their column BLOCK holds lines.
     `on_event` is told each auxiliary function in the cycle in which the path comes to it; if it returns True the path
-    stands there until `answered`. `before` is the run on this path until now, whose modal state goes on. `axes` are the
+    stands there until `answered`. With `on_passed` the path does not stop for those at which it need not: they are told
+    later, to that. `axes` are the
     names of the machine's axes in this channel, those of others by `of_another_channel`.
 
     `skip_signal` is the signal that ends a skip move: the axes brake, and the next block goes on from where they stand.
@@ -77,7 +75,7 @@ class ProgramRun:
         axes: Sequence[str] | None = None,
         rows: Rows | None = None,
         on_event: OnEvent | None = None,
-        before: ProgramRun | None = None,
+        on_passed: OnPassed | None = None,
         attaches: bool = True,
     ) -> None:
         options = options or RunOptions()
@@ -91,13 +89,12 @@ class ProgramRun:
         self._config = config
         self._library = library
         moment = RunProgress(options.block_delete, options.single_block, options.optional_stop)
-        channel = self._new_channel(
-            program, None if before is None else before.channel, options.block_delete, attaches=attaches
-        )
+        channel = self._new_channel(program, None, options.block_delete, attaches=attaches)
         ahead = self.dialect.blocks_ahead if options.blocks_ahead is None else options.blocks_ahead
         self._path_runner = PathRunner(machine, channel, options, moment, ahead=ahead)
         self._path_runner.rows = rows
         self._path_runner.on_event = on_event
+        self._path_runner.passed.told = on_passed
 
     def _new_channel(
         self,

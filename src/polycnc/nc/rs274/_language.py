@@ -161,7 +161,7 @@ class NgcLanguage:
         programs: Sequence[tuple[SavedProgram, list[tuple[Program, Traced[int] | None]]] | None],
     ) -> list[tuple[object, BlockSource | None]]:
         """Go back to a state; return the programs under way."""
-        self.parameters.put_back(saved.common, saved.others, saved.names)
+        self.parameters.restore_state(saved.common, saved.others, saved.names)
         sources = [
             None if each is None else RunningProgram(self, each[1][0][0]).go_to(*each) for each in programs
         ]

@@ -44,7 +44,9 @@ class Parameters:
         """Return what programs have set by number: common parameters, and further ones."""
         return {n: value for n, value in enumerate(self.common) if value}, dict(self._others)
 
-    def put_back(self, common: dict[int, float], others: dict[int, float], names: dict[str, float]) -> None:
+    def restore_state(
+        self, common: dict[int, float], others: dict[int, float], names: dict[str, float]
+    ) -> None:
         """Go back to what programs had set."""
         self.common[:] = [common.get(n, 0.0) for n in range(len(self.common))]
         self._others, self.names = dict(others), dict(names)

@@ -171,7 +171,7 @@ class RunningProgram:
                     return None
                 level = self._levels[-1]
                 if level.goes_back is not None:
-                    self._put_back(level, level.goes_back)
+                    self._restore_modes(level, level.goes_back)
                 self._return(ended.value)
             except _PROBLEMS as error:
                 raise self._refused(error) from None
@@ -242,12 +242,12 @@ class RunningProgram:
         """
         level = self._levels[-1]
         if asked.code == 72:
-            self._put_back(level, asked)
+            self._restore_modes(level, asked)
             return
         level.kept = () if asked.code == 71 else modes_of(self._owner.parameters.state)
         level.goes_back = asked if asked.code == 73 else None
 
-    def _put_back(self, level: _Level, asked: ModesRequest) -> None:
+    def _restore_modes(self, level: _Level, asked: ModesRequest) -> None:
         text = level.program.text
         try:
             if not level.kept:

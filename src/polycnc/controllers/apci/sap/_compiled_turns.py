@@ -170,11 +170,7 @@ class CompiledTurns:
             known = self._waits[number]
             if wait.axes not in known:
                 known.append(wait.axes)
-            row["wait"], row["axes"], row["names"] = (
-                ts.PROFILES,
-                mask_of(wait.axes),
-                known.index(wait.axes),
-            )
+            row["wait"], row["axes"], row["names"] = (ts.PROFILES, mask_of(wait.axes), known.index(wait.axes))
 
     def reclaim(self, task: Task) -> None:
         """Put the state of a task back into it."""

@@ -10,28 +10,9 @@ from polycnc.controllers.imc.core._instructions import ARC, HEADER, POINTS
 from polycnc.controllers.imc.core._ownership import take_over
 from polycnc.controllers.imc.core._planner import to_units
 from polycnc.controllers.imc.core._queue import cell, drop_head, drop_point
-from polycnc.controllers.imc.core._state import (
-    COORDINATES,
-    GIVEN,
-    IDLE,
-    PFIFO1,
-    RELEASED,
-    SPACES,
-    CardState,
-)
-from polycnc.controllers.imc.core._words import (
-    FLAG,
-    get48,
-    get_u16,
-    get_u32,
-    put16,
-    put32,
-)
-from polycnc.kernel import (
-    compiled,
-    set_arc,
-    set_line,
-)
+from polycnc.controllers.imc.core._state import COORDINATES, GIVEN, IDLE, PFIFO1, RELEASED, SPACES, CardState
+from polycnc.controllers.imc.core._words import FLAG, get48, get_u16, get_u32, put16, put32
+from polycnc.kernel import compiled, set_arc, set_line
 
 _SPEED_COUNTS_ON = 3  # X, Y and Z
 
