@@ -15,8 +15,8 @@ from polycnc.post.tool_path._tool_path import ToolPath, open_tool_path, parse_to
 
 __all__ = [
     "CONTROLS",
-    "SECTIONS",
     "NO_DIALECT",
+    "SECTIONS",
     "ArcAxis",
     "BlockMap",
     "ControlFile",
