@@ -13,7 +13,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from polycnc.nc.blocks._compensation import CompensationError, RadiusCompensation, Side
+from polycnc.nc.blocks._compensation import RadiusCompensation, Side
+from polycnc.nc.blocks._compensation_errors import CompensationError
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, QueueItem
 
 Outer = Literal["arc", "intersection"]

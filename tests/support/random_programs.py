@@ -84,9 +84,9 @@ class Program:
         return "".join(f"{block.text(scale)}\n" for block in self.blocks)
 
 
-def tool_table() -> str:
+def tool_table(most: int = 0) -> str:
     """Return a tool table for LinuxCNC: tools without length and radius."""
-    return "".join(f"T{tool} P{tool} D0 Z0 ;\n" for tool in range(1, _TOOLS + 1))
+    return "".join(f"T{tool} P{tool} D0 Z0 ;\n" for tool in range(1, (most or _TOOLS) + 1))
 
 
 def random_program(seed: int, size: int = 60) -> Program:

@@ -81,13 +81,13 @@ def call(file: Path, *options: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-def interpret(program: str, folder: Path, *, block_delete: bool = False) -> Answer:
-    """Run rs274 on a program text in `folder`, with an empty tool table and no variables."""
-    file, tools = folder / "program.ngc", folder / "tools.tbl"
+def interpret(program: str, folder: Path, *, block_delete: bool = False, tools: str = "") -> Answer:
+    """Run rs274 on a program text in `folder`, with a tool table (default: a few, all zero) and no variables."""
+    file, table = folder / "program.ngc", folder / "tools.tbl"
     file.write_text(program, encoding="ascii")
-    tools.write_text(tool_table(), encoding="ascii")
+    table.write_text(tools or tool_table(), encoding="ascii")
     options = ["-b"] if block_delete else []
-    done = call(file, *options, "-t", str(tools))
+    done = call(file, *options, "-t", str(table))
     calls = [(name, [part.strip() for part in rest.split(",")]) for name, rest in _CALL.findall(done.stdout)]
     if done.returncode == 0:
         return Answer(calls)

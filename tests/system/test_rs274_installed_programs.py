@@ -44,15 +44,11 @@ REFUSED: dict[str, str] = {
     "lathe_g70_71_demo": "G71.1 is not known",
     "lathe_g7x_face_boring": "G72 is not known",
     "lathe_g7x_quadrants": "G70 is not known",
-    **dict.fromkeys(
-        ("comp311_2", "g76", "lathe-g76", "gmoccapy_2_tools_with_cutter_radius_compensation"),
-        "radius compensation starts with an arc",
-    ),
     "nestedcall": "'u' is no function",  # an O-word `callsub`, which rs274 refuses too
     "skeleton": "a dwell (G4) and a move in one block",
 }
 """Programs that polycnc refuses, with what its error says."""
-REFUSED_BY_RS274 = {"increment", "lathecomp", "mmount", "probe-hole"}
+REFUSED_BY_RS274 = {"increment", "probe-hole"}
 """Programs that polycnc takes and rs274 does not."""
 OTHER_WAYS = {
     "systems": "rs274 does not print where splines (G5.1) end",
@@ -109,7 +105,7 @@ def test_an_installed_program_has_the_same_end_points(name: str, tmp_path: Path)
         assert refused in error.what
         return
     assert error is None
-    theirs = rs274.interpret(program, tmp_path)
+    theirs = rs274.interpret(program, tmp_path, tools=tool_table(20))
     assert bool(theirs.error) == (file.stem in REFUSED_BY_RS274)
     if theirs.error or file.stem in OTHER_WAYS:
         return

@@ -52,6 +52,19 @@ def whole(blocks: str) -> str:
 
 
 SAME = [
+    # drilling goes back to R until a G98
+    "G0 Z[10+#<_retract_r_plane>]\nG81 X1 Z-5 R1\nX2\nG80",
+    # radius compensation that starts with an arc, on both sides, in helices, before corners of every kind
+    "G41.1 D2\nG3 X10 Y10 R10\nG1 Y20\nG40 G1 X30",
+    "G42.1 D2\nG3 X10 Y10 R10\nG1 Y20\nG40 G1 X30",
+    "G41.1 D2\nG2 X10 Y-10 R10\nG1 Y-20\nG40 G1 X30",
+    "G41.1 D2\nG3 X10 Y10 R10\nG1 X20\nG1 Y30\nG40 G1 X30",
+    "G41.1 D2\nG3 X10 Y10 R10\nG1 X0\nG1 Y30\nG40 G1 X-30",
+    "G41.1 D8\nG3 X10 Y10 R10\nG3 X0 Y20 R10\nG40 G1 X-30",
+    "G42.1 D2\nG3 X4 Y4 I0 J4 Z3\nG3 X0 Y8 R4\nG40 G1 X-30",
+    "G18 G42.1 D3\nG2 X14 Z9 R17\nG1 X20 Z22\nG40 G1 X30",
+    # which the next straight move ends, whatever it moves
+    "G41.1 D2\nG1 Y10\nG1 Y20\nG40\nG0 Z4\nG42.1 D2\nG1 X30\nG1 X40\nG40 G1 X50 Z1",
     # a shift by G92 and by G52 is one shift
     "G0 X1 Y2\nG92 X5\nG0 X6\nG52 X10 Y3\nG0 X1 Y1\nG91 G52 X2\nG90 G0 X0\nG92.1\nG0 X2",
     "G0 X4 Y3\nG92 X5 Y7\nG92.2\nG0 X0 Y9\nG92.3\nG0 X0.5\nG92 X3\nG0 X7 Y2",

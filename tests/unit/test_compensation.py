@@ -11,7 +11,8 @@ from typing import Literal
 import pytest
 
 from polycnc.errors import ConfigurationError, ProgramError
-from polycnc.nc.blocks._compensation import CompensationError, RadiusCompensation, Side
+from polycnc.nc.blocks._compensation import RadiusCompensation, Side
+from polycnc.nc.blocks._compensation_errors import CompensationError
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, QueueItem, Wait
 from support.rs274 import COMMAND, call
 

@@ -194,8 +194,7 @@ def run_program(
         on_event=lambda event: log.note(event, execution),
         on_passed=lambda passed: log.note_passed(passed, execution),
     )
-    stuck = chosen.problem or _to_end(execution, control, settings, record)
-    _save_parameters(execution, settings)
+    stuck = chosen.problem or _kept(execution, _to_end(execution, control, settings, record), settings)
     _remark(execution, text, times_remark(config, dialect, log.counts))
     result = replace(
         _result(execution, log, collector, stuck), guessed=chosen.reason, refused_s=log.refused_s
@@ -247,11 +246,12 @@ def _to_end(
     return stuck
 
 
-def _save_parameters(execution: ProgramRun, settings: RunSettings) -> None:
-    """Write the parameters that outlive the program where that was asked for."""
+def _kept(execution: ProgramRun, stuck: ProgramError | None, settings: RunSettings) -> ProgramError | None:
+    """Write the parameters that outlive the program where that was asked for; return the error that ended it."""
     if settings.save_parameters is not None and isinstance(execution.language, KeepingLanguage):
         with complete_or_absent(Path(settings.save_parameters)) as file:
             file.write_text(execution.language.kept_text(), encoding="ascii")
+    return stuck
 
 
 def _program_alarm(error: ProgramError, time_s: float) -> Alarm:

@@ -13,7 +13,8 @@ from dataclasses import replace
 from enum import Enum, IntEnum
 from typing import Literal, NamedTuple
 
-from polycnc.errors import ConfigurationError, ProgramError
+from polycnc.errors import ConfigurationError
+from polycnc.nc.blocks._compensation_errors import refusal
 from polycnc.nc.blocks._moves import Arc, Feed, Line, Move, Point, QueueItem, Spline, Wait
 from polycnc.nc.blocks._offset_geometry import (
     COLLAPSED_MM,
@@ -21,6 +22,7 @@ from polycnc.nc.blocks._offset_geometry import (
     Joint,
     Leg,
     arc_leg,
+    bent_arc,
     chamfer,
     collapses,
     end_offset,
@@ -37,40 +39,6 @@ from polycnc.nc.blocks._offset_geometry import (
 
 # A compensated move may come out this much shorter than nothing by rounding before it counts as reversed.
 _ROUNDING_MM = 1e-10
-_CANCEL_FIRST = "Cancel with G40 and a straight move first."
-# Why a path is refused: what is wrong, and what to do.
-_REFUSALS = {
-    "radius": ("the tool radius is not a finite number", "Check the tool table."),
-    "plane_change": ("the plane changes while radius compensation is active", _CANCEL_FIRST),
-    "side_change": ("radius compensation changes sides while active", _CANCEL_FIRST),
-    "radius_change": ("the tool radius changes while radius compensation is active", _CANCEL_FIRST),
-    "no_lead_out": ("radius compensation starts again before its lead-out", _CANCEL_FIRST),
-    "lead_in_arc": (
-        "radius compensation starts with an arc",
-        "Make the first plane move after G41 or G42 a straight one.",
-    ),
-    "lead_out_arc": (
-        "radius compensation ends with an arc",
-        "Make the first plane move after G40 a straight one.",
-    ),
-    "arc_too_small": (
-        "the arc radius {arc:.6g} mm is smaller than the tool radius {tool:.6g} mm",
-        "Use a smaller tool, or a larger arc.",
-    ),
-    "no_intersection": (
-        "a tool of radius {tool:.6g} mm does not fit into this inside corner",
-        "The offset paths do not meet: use a smaller tool, or round the corner.",
-    ),
-    "interference": (
-        "the compensated move would run backwards: the tool is too large for this part of the contour",
-        "Use a smaller tool, or leave out moves that are shorter than the tool needs at inside corners.",
-    ),
-    "spline": ("a spline with radius compensation", _CANCEL_FIRST),
-    "stopped_inside": (
-        "preparation stopped at an inside corner, so the tool has already cut into the next move",
-        "Move the word that stops preparation away from this corner.",
-    ),
-}
 
 
 class Side(IntEnum):
@@ -80,24 +48,21 @@ class Side(IntEnum):
     RIGHT = -1
 
 
-class CompensationError(ProgramError):
-    """A path that a tool of this radius cannot follow, or a compensation word out of place.
-
-    `reason` is a stable key a dialect can map to its own alarm number; `line` is the number of the program
-    line. The interpreter turns the line into `position`.
-    """
-
-    def __init__(self, what: str, *, reason: str, line: int, hint: str = "") -> None:
-        super().__init__(what, hint=hint)
-        self.reason = reason
-        self.line = line
-
-
 class _Mode(Enum):
     OFF = "off"
     ENTERING = "entering"
     ON = "on"
     LEAVING = "leaving"
+
+
+class Leads(NamedTuple):
+    """Say whether the lead-in may be an arc, and whether any straight move after the cancellation is the lead-out."""
+
+    by_arc: bool = False
+    leaves_at_once: bool = False
+
+
+_STRAIGHT = Leads()
 
 
 class SavedCompensation(NamedTuple):
@@ -112,6 +77,7 @@ class SavedCompensation(NamedTuple):
     pending: bool
     lead_in: bool
     at: XY | None
+    leads: Leads
 
 
 class _Plane(NamedTuple):
@@ -130,8 +96,12 @@ class _Plane(NamedTuple):
         if isinstance(item, Line):
             return line_leg(start[i], start[j], end[i], end[j])
         if item.plane != self:
-            raise _refusal("plane_change", item.line)
+            raise refusal("plane_change", item.line)
         return arc_leg(start[i], start[j], end[i], end[j], *item.center, item.sweep_rad)
+
+    def end(self, item: Move) -> XY:
+        """Return where an item ends in the plane."""
+        return item.end[self.p], item.end[self.q]
 
     def line(self, item: Move, start: XY, end: XY) -> Line:
         """Return a straight move between two places, otherwise like an item."""
@@ -199,6 +169,7 @@ class RadiusCompensation:
         self._leg: Leg | None = None
         self._pending = False  # that move has not been emitted yet
         self._lead_in = False  # that move is the lead-in
+        self._leads = Leads()
         self._at: XY | None = None  # compensated place where the pending move starts or all motion has ended
 
     def copy(self) -> RadiusCompensation:
@@ -219,6 +190,7 @@ class RadiusCompensation:
             self._pending,
             self._lead_in,
             self._at,
+            self._leads,
         )
 
     @classmethod
@@ -231,9 +203,17 @@ class RadiusCompensation:
         made._hold = list(saved.hold)
         made._move, made._leg = saved.move, saved.leg
         made._pending, made._lead_in, made._at = saved.pending, saved.lead_in, saved.at
+        made._leads = saved.leads
         return made
 
-    def start(self, side: Side, radius_mm: float, plane: tuple[int, int, int], line: int = 0) -> None:
+    def start(
+        self,
+        side: Side,
+        radius_mm: float,
+        plane: tuple[int, int, int],
+        line: int = 0,
+        leads: Leads = _STRAIGHT,
+    ) -> None:
         """Start compensation (G41, G42); the next plane move is the lead-in.
 
         A negative radius is the other side. Repeating the words in force changes nothing; anything else while
@@ -243,22 +223,23 @@ class RadiusCompensation:
             CompensationError: another side, radius or plane while active, or a start before the lead-out.
         """
         if not math.isfinite(radius_mm):
-            raise _refusal("radius", line)
+            raise refusal("radius", line)
         offset = float(side * radius_mm)
         if self._mode in (_Mode.OFF, _Mode.ENTERING):
             self._plane = _Plane(*plane)
             self._offset = offset
             self._mode = _Mode.ENTERING
+            self._leads = leads
             self.active = True
             return
         if plane != self._plane:
-            raise _refusal("plane_change", line)
+            raise refusal("plane_change", line)
         if self._mode is _Mode.LEAVING:
-            raise _refusal("no_lead_out", line)
+            raise refusal("no_lead_out", line)
         if offset * self._offset < 0.0:
-            raise _refusal("side_change", line)
+            raise refusal("side_change", line)
         if offset != self._offset:
-            raise _refusal("radius_change", line)
+            raise refusal("radius_change", line)
 
     def cancel(self) -> None:
         """Cancel compensation (G40); the next plane move is the lead-out.
@@ -291,8 +272,10 @@ class RadiusCompensation:
         if self._mode is _Mode.OFF:
             return [item]
         if isinstance(item, Spline):
-            raise _refusal("spline", item.line)
+            raise refusal("spline", item.line)
         leg = self._plane.leg(item)
+        if self._leads.leaves_at_once and self._mode is _Mode.LEAVING and isinstance(item, Line):
+            return self._leave(item, self._plane.end(item))
         if leg is None or isinstance(item, Wait):
             if self._pending:
                 self._hold.append(item)
@@ -301,14 +284,17 @@ class RadiusCompensation:
         if self._mode is _Mode.ENTERING:
             return self._enter(item, leg)
         if self._mode is _Mode.LEAVING:
-            return self._leave(item, leg)
+            return self._leave(item, (leg.x1, leg.y1))
         if self._offset == 0.0:
             return [item]
         return self._follow(item, leg)
 
     def _enter(self, item: Move, leg: Leg) -> list[QueueItem]:
-        if isinstance(item, Arc):
-            raise _refusal("lead_in_arc", item.line)
+        if isinstance(item, Arc) and not self._leads.by_arc:
+            raise refusal("lead_in_arc", item.line)
+        if isinstance(item, Arc) and self._offset != 0.0:
+            self._enter_by_arc(item, leg)
+            return []
         self._mode = _Mode.ON
         if self._offset == 0.0:
             return [item]
@@ -316,21 +302,30 @@ class RadiusCompensation:
         self._at = leg.x0, leg.y0
         return []
 
-    def _leave(self, item: Move, leg: Leg) -> list[QueueItem]:
+    def _enter_by_arc(self, item: Arc, leg: Leg) -> None:
+        """Begin with an arc from where the tool is to beside the end of an arc, in its direction there."""
+        at = leg.x0, leg.y0
+        bent = _bent(leg, at, self._offset, item.line)
+        self._mode = _Mode.ON
+        self._at = at
+        self._move = replace(item, center=(bent.cx, bent.cy), sweep_rad=bent.sweep_rad)
+        self._leg, self._pending, self._lead_in = bent, True, False
+
+    def _leave(self, item: Move, end: XY) -> list[QueueItem]:
         if isinstance(item, Arc):
-            raise _refusal("lead_out_arc", item.line)
+            raise refusal("lead_out_arc", item.line)
         if self._offset == 0.0 or self._at is None:
             self.reset()
             return [item]
         out = self.flush()
-        out.append(self._plane.line(item, self._at, (leg.x1, leg.y1)))
+        out.append(self._plane.line(item, self._at, end))
         self.reset()
         return out
 
     def _follow(self, item: Move, leg: Leg) -> list[QueueItem]:
         if leg.sense and smallest_offset_radius(leg, self._offset) < -COLLAPSED_MM:
             radius = min(leg.radius0, leg.radius1)
-            raise _refusal("arc_too_small", item.line, arc=radius, tool=abs(self._offset))
+            raise refusal("arc_too_small", item.line, arc=radius, tool=abs(self._offset))
         out: list[QueueItem] = []
         if self._pending and self._lead_in:
             self._emit_pending(start_offset(leg, self._offset), out)
@@ -347,7 +342,7 @@ class RadiusCompensation:
         rapid = _is_rapid(before) and _is_rapid(after)
         joint = join(leg, next_leg, self._offset, min(self._meet_cosine, 0.0) if rapid else self._meet_cosine)
         if joint is None:
-            raise _refusal("no_intersection", after.line, tool=abs(self._offset))
+            raise refusal("no_intersection", after.line, tool=abs(self._offset))
         if joint.sweep_rad == 0.0:
             self._emit_pending(joint.end, out)
         elif rapid:
@@ -364,7 +359,7 @@ class RadiusCompensation:
             self._straight(after, start_offset(next_leg, self._offset), out)
             return
         if turns_inside(leg, next_leg, self._offset):
-            raise _refusal("stopped_inside", after.line)
+            raise refusal("stopped_inside", after.line)
         joint = round_joint(leg, next_leg, self._offset)
         if _is_rapid(before) and _is_rapid(after):
             joint = chamfer(leg, next_leg, joint)
@@ -433,8 +428,18 @@ class RadiusCompensation:
 def _vanishes(travel_mm: float, line: int) -> bool:
     """Tell whether nothing but rounding is left of a compensated move. Refuse a reversed one."""
     if travel_mm < -_ROUNDING_MM:
-        raise _refusal("interference", line)
+        raise refusal("interference", line)
     return travel_mm <= _ROUNDING_MM
+
+
+def _bent(leg: Leg, at: XY, offset: float, line: int) -> Leg:
+    """Return the arc whose parallel begins where the tool is. Refuse one that has no place for it."""
+    if smallest_offset_radius(leg, offset) <= COLLAPSED_MM:
+        raise refusal("arc_too_small", line, arc=min(leg.radius0, leg.radius1), tool=abs(offset))
+    bent = bent_arc(leg, at, offset)
+    if bent is None or smallest_offset_radius(bent, offset) <= COLLAPSED_MM:
+        raise refusal("lead_in_bend", line)
+    return bent
 
 
 def _path_feed(move: Move, leg: Leg) -> Feed:
@@ -447,8 +452,3 @@ def _path_feed(move: Move, leg: Leg) -> Feed:
 
 def _is_rapid(move: Move) -> bool:
     return isinstance(move, Line) and move.rapid
-
-
-def _refusal(reason: str, line: int, **values: float) -> CompensationError:
-    what, hint = _REFUSALS[reason]
-    return CompensationError(what.format(**values), reason=reason, line=line, hint=hint)

@@ -13,7 +13,7 @@ from dataclasses import replace
 from polycnc.errors import ProgramError
 from polycnc.nc.blocks._block import BlockContext, ChannelRules
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._compensation_errors import CompensationError
 from polycnc.nc.blocks._limits import check_path
 from polycnc.nc.blocks._messages import Messages
 from polycnc.nc.blocks._moves import Arc, Line, QueueItem, Stop, Wait

@@ -9,7 +9,7 @@ from polycnc.machine import LONGEST_BLOCK_S
 from polycnc.nc.blocks._arcs import arc_extents
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import ChannelState
-from polycnc.nc.blocks._compensation import CompensationError
+from polycnc.nc.blocks._compensation_errors import CompensationError
 from polycnc.nc.blocks._moves import Arc, Line, Move, Point, QueueItem, Spline, Wait
 from polycnc.nc.modal._modal import AXIS_P, AXIS_Q, LARGEST
 from polycnc.nc.text._scan_plain import Word

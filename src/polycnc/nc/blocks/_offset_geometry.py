@@ -92,6 +92,24 @@ def arc_leg(x0: float, y0: float, x1: float, y1: float, cx: float, cy: float, sw
     return Leg(x0, y0, x1, y1, *tangents, sense, cx, cy, radius0, radius1, sweep_rad)
 
 
+def bent_arc(leg: Leg, start: XY, offset: float) -> Leg | None:
+    """Return the arc with the end and direction of another whose offset curve begins at a point, if there is one."""
+    x1, y1 = end_offset(leg, offset)
+    inwards_x, inwards_y = -leg.sense * leg.ty1, leg.sense * leg.tx1  # from the end to the center
+    dx, dy = start[0] - x1, start[1] - y1
+    towards = dx * inwards_x + dy * inwards_y
+    if towards <= SHORTEST_MM:
+        return None
+    radius = (dx * dx + dy * dy) / (2.0 * towards)
+    cx, cy = x1 + radius * inwards_x, y1 + radius * inwards_y
+    scale = (radius + leg.sense * offset) / radius
+    x0, y0 = cx + (start[0] - cx) * scale, cy + (start[1] - cy) * scale
+    sweep = leg.sense * (_angle(start[0] - cx, start[1] - cy, x1 - cx, y1 - cy) * leg.sense % math.tau)
+    turns = math.ceil(abs(leg.sweep_rad) / math.tau - _TANGENT) - 1
+    sweep += leg.sense * turns * math.tau
+    return arc_leg(x0, y0, leg.x1, leg.y1, cx, cy, sweep)
+
+
 def leg_length(leg: Leg) -> float:
     """Return how far the leg goes in the plane (mm)."""
     if leg.sense:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from polycnc.machine import ToolConfig
 from polycnc.nc.blocks._block import BlockContext
 from polycnc.nc.blocks._channel_state import of_another_channel
-from polycnc.nc.blocks._compensation import Side
+from polycnc.nc.blocks._compensation import Leads, Side
 from polycnc.nc.blocks._tip import TIPS, TipShift
 from polycnc.nc.blocks._tool_offsets import OFFSETS, diameter_of, shift_by_tool, tool_data
 from polycnc.nc.blocks._words import GWord, whole_number
@@ -92,7 +92,13 @@ def compensate_radius(block: BlockContext) -> None:
 
     def start() -> None:
         state.compensation = state.compensation.copy()
-        state.compensation.start(Side(state.side), radius, plane, block.line)
+        state.compensation.start(
+            Side(state.side),
+            radius,
+            plane,
+            block.line,
+            Leads(block.dialect.lead_in_by_arc, block.dialect.leads_out_at_once),
+        )
         if tip != state.tip.vector:
             state.tip = TipShift(tip)
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from polycnc.errors import ProgramError, SourcePosition
 from polycnc.machine import Form
 from polycnc.nc.blocks._channel_state import Cycle, Plain, SavedState
-from polycnc.nc.blocks._compensation import RadiusCompensation, SavedCompensation
+from polycnc.nc.blocks._compensation import Leads, RadiusCompensation, SavedCompensation
 from polycnc.nc.blocks._coordinates import Coordinates
 from polycnc.nc.blocks._corners import Corner
 from polycnc.nc.blocks._cycles import CycleWords
@@ -59,7 +59,7 @@ class ChannelSnapshot(NamedTuple):
 CHANNEL_CLASSES: Sequence[type] = (
     Arc, Back, Call, ChannelSnapshot, Coordinates, Corner, Cycle, CycleWords, Event, Family, Feed, Frame, Leg, Line,
     Message, ModalSnapshot, Nurbs, Place, Placement, Plain, Polar, Probe, Rotation, RunBegin, SavedCall,
-    SavedCompensation, SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop,
+    Leads, SavedCompensation, SavedRecords, SavedState, SavedTables, SavedTurns, SourcePosition, Spindle, Spline, Stop,
     Suppressed, TipShift, Turning, Wait, WriterSnapshot,
 )  # fmt: skip
 """The classes of which a snapshot of a channel is made, beside those of its language."""

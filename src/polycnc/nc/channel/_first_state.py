@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from polycnc.machine import MachineConfig
 from polycnc.nc.blocks._channel_state import ChannelState
 from polycnc.nc.dialect._dialect import Dialect
@@ -32,6 +34,7 @@ def first_state(config: MachineConfig, dialect: Dialect, names: tuple[str, ...])
     state = ChannelState(config, modal)
     state.path_tolerance_mm = dialect.path_tolerance_mm(config.path)
     state.axis_names = names
+    state.cycle = replace(state.cycle, retract_to_initial=dialect.initial.retract == "initial")
     given = getattr(config.offsets, "at_start", None)
     begins = _START_OFFSET in config.offsets if given is None else given
     if begins or dialect.sets_work_offsets:

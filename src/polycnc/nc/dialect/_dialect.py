@@ -186,6 +186,9 @@ class Initial(StrictModel):
     absolute: bool = Field(default=True, description="Positions are absolute.")
     exact_stop: bool = Field(default=False, description="Every block comes to rest.")
     feed_mode: Literal["per_minute", "per_revolution"] = Field(default="per_minute", description="Feed mode.")
+    retract: Literal["initial", "r"] = Field(
+        default="initial", description="Where drilling cycles go back to: as with G98, or with G99."
+    )
     feed_mm_min: Annotated[float, Field(ge=0)] = Field(
         default=0.0, description="Feed until the first F; 0 is none."
     )
@@ -255,6 +258,14 @@ class Dialect(StrictModel):
     free_corners: bool = Field(
         default=False,
         description="Without a tolerance (G64 without P) corners are rounded as far as a quarter of the shorter move.",
+    )
+    lead_in_by_arc: bool = Field(
+        default=False,
+        description="Radius compensation may start with an arc: from where the tool is to beside its end.",
+    )
+    leads_out_at_once: bool = Field(
+        default=False,
+        description="After G40 the next straight move leads out, also one that does not move in the plane.",
     )
     merges_lines: bool = Field(
         default=False,
